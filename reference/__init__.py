@@ -1,0 +1,49 @@
+"""The truth: golden datasets of the full Foucault pendulum, and the solver that makes them.
+
+>>> import reference
+>>> paris = reference.load_scene("paris")
+>>> solution = reference.solve(paris, t_end="60", digits=20)
+>>> len(solution.transits.values)
+7
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from .errors import DatasetError, FoucaultError, InputError, IntegrationError, UnreachableError
+from .scene import Scene, load_scene, parse_scene, scene_ids
+
+if TYPE_CHECKING:
+    from .golden import Golden, load
+    from .solution import Solution
+    from .solve import solve
+
+__all__ = [
+    "DatasetError",
+    "FoucaultError",
+    "Golden",
+    "InputError",
+    "IntegrationError",
+    "Scene",
+    "Solution",
+    "UnreachableError",
+    "load",
+    "load_scene",
+    "parse_scene",
+    "scene_ids",
+    "solve",
+]
+
+_LAZY = {"Golden": "golden", "load": "golden", "Solution": "solution", "solve": "solve"}
+
+
+def __getattr__(name: str) -> Any:
+    """Import the solver and the reader where they are first used: `foucault --help` needs neither."""
+    if name not in _LAZY:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(f".{_LAZY[name]}", __name__), name)
+    globals()[name] = value  # also over the submodule of the same name, which importing it has bound
+    return value

@@ -1,0 +1,102 @@
+"""Number types, and conversions between them that lose nothing or say what they lose.
+
+Precision is always an argument: every mpmath context made here is its own, the global one is untouched.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+
+GUARD_BITS = 64  # constants and conversions carry this much more than the run that uses them
+DOUBLE_BITS = 53
+LONG_DOUBLE_BITS = 64
+
+
+@dataclass(frozen=True)
+class NumberType:
+    """A type that a run computes in: its name, and its precision in bits."""
+
+    name: str
+    prec: int
+
+    def __str__(self) -> str:
+        return f"real({self.prec})" if self.name == "real" else self.name
+
+
+DOUBLE = NumberType("double", DOUBLE_BITS)
+LONG_DOUBLE = NumberType("long_double", LONG_DOUBLE_BITS)
+
+
+def real(prec: int) -> NumberType:
+    """Binary floating point (MPFR) of `prec` bits."""
+    return NumberType("real", prec)
+
+
+def cheapest_type(prec: int) -> NumberType:
+    """The fastest type with at least `prec` bits."""
+    if prec <= DOUBLE_BITS:
+        return DOUBLE
+    return LONG_DOUBLE if prec <= LONG_DOUBLE_BITS else real(prec)
+
+
+def context(prec: int) -> Any:
+    """A new mpmath context of `prec` bits."""
+    made = mpmath.mp.clone()
+    made.prec = prec
+    return made
+
+
+def to_mpf(value: Fraction, ctx: Any) -> Any:
+    """`value` rounded once to the context's precision."""
+    return ctx.mpf(value.numerator) / value.denominator
+
+
+def to_fraction(value: Any) -> Fraction:
+    """An mpf, float or int as the exact fraction."""
+    if isinstance(value, float | int):
+        return Fraction(value)
+    sign, mantissa, exponent, _ = value._mpf_
+    if not mantissa and exponent:
+        raise ValueError(f"{value} is not finite")
+    signed = -int(mantissa) if sign else int(mantissa)
+    return Fraction(signed * 2**exponent) if exponent >= 0 else Fraction(signed, 2**-exponent)
+
+
+def bits_of(digits: float) -> int:
+    """Bits that hold `digits` decimal digits."""
+    return math.ceil(digits * math.log2(10))
+
+
+def fixed_decimal(value: Fraction, decimals: int) -> str:
+    """`value` rounded to nearest (ties to even) with `decimals` digits after the point, never "-0"."""
+    scaled = round(value * 10**decimals)
+    sign, digits = ("-" if scaled < 0 else ""), str(abs(scaled)).rjust(decimals + 1, "0")
+    return sign + (f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits)
+
+
+def decimals_for(largest: Fraction, digits: int) -> int:
+    """Digits after the point so that a column whose largest size is `largest` has `digits` significant ones."""
+    return max(0, digits - 1 - magnitude(largest)) if largest else digits
+
+
+def magnitude(value: Fraction) -> int:
+    """The power of ten of the leading digit of a positive number: floor(log10(value)), exactly."""
+    guess = len(str(value.numerator)) - len(str(value.denominator))
+    return guess if value >= Fraction(10) ** guess else guess - 1
+
+
+def rounded_up(value: Fraction, significant: int = 2) -> str:
+    """A bound as text with two significant digits, never below `value`: "1.3e-45"."""
+    if value <= 0:
+        return "0"
+    power = magnitude(value)
+    digits = math.ceil(value / Fraction(10) ** (power - significant + 1))
+    if digits >= 10**significant:
+        digits, power = digits // 10, power + 1
+    text = str(digits)
+    return f"{text[0]}.{text[1:]}e{power:+03d}"

@@ -1,0 +1,161 @@
+"""One run: a scene in one formulation and one number type; and two runs side by side on two cores."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from .constants import Constants, Vector, constants, release, scaled
+from .errors import FoucaultError, IntegrationError
+from .mechanics import FORMULATIONS
+from .precision import GUARD_BITS, NumberType, context
+from .scene import Inputs
+from .transits import march, quiet_start, xdot_vanishes, zero_at_release
+
+SPARE_BITS = 80  # fixed-point values carry this much below the run's epsilon, for amplitudes far below l
+WORTH_A_PROCESS = 4.0  # estimated CPU seconds from which a second process pays for its start
+
+Report = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What to run: formulation, number type, times of output in s, and whether transits are wanted."""
+
+    inputs: Inputs
+    formulation: str
+    number: NumberType
+    times: tuple[Fraction, ...]
+    transits: bool
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run computed, as integers over 2**scale, and what it cost.
+
+    Attributes:
+        grid: per output time x, y, z (m), vx, vy, vz (m/s), ax (m/s²).
+        zeros: per transit t (s) followed by the same seven; None if transits were not asked for.
+        directions: sign of each crossing of xdot.
+        terms: elementary operations in the compiled Taylor decomposition.
+        tension: least pull of the cord over l on the grid, 1/s²; negative where a rod is pushed.
+    """
+
+    plan: Plan
+    scale: int
+    grid: list[tuple[int, ...]] = field(repr=False)
+    zeros: list[tuple[int, ...]] | None = field(repr=False)
+    directions: list[int] = field(repr=False)
+    order: int
+    steps: int
+    terms: int
+    tension: float
+    compile_s: float
+    cpu_s: float
+
+
+def start_of(inputs: Inputs, number: NumberType) -> tuple[Any, Constants, Vector, Vector]:
+    """A context finer than `number`, and in it the constants, n = r/l and v = r'/l at t = 0."""
+    ctx = context(number.prec + GUARD_BITS)
+    k = constants(inputs, ctx)
+    position, velocity = release(inputs, ctx)
+    n, v = (scaled(vector, k.length) for vector in (position, velocity))
+    return ctx, k, n, v
+
+
+def run(plan: Plan, report: Report | None = None) -> Run:
+    """Integrate a plan.
+
+    Raises:
+        IntegrationError: heyoka warned or stopped, or transits contradict each other.
+    """
+    from . import taylor  # heyoka takes 0.2 s to import and is not needed to check or show a scene
+
+    ctx, k, n, v = start_of(plan.inputs, plan.number)
+    model = FORMULATIONS[plan.formulation]
+    watching = plan.transits and not xdot_vanishes(n, v, k)
+    stepper = taylor.Stepper(model, k, n, v, ctx, plan.number, events=watching)
+    times = [stepper.numbers.of(t) for t in plan.times]
+    found: list[taylor.Zero] = []
+    with taylor.watched_log() as watch:
+        multiplicity = zero_at_release(n, v)
+        quiet = quiet_start(stepper, multiplicity) if watching and multiplicity else None
+        begun = time.process_time()
+        if watching:
+            states, found = march(stepper, times, watch, quiet, report)
+        else:
+            states = stepper.propagate(times, report)
+            if watch.fresh():
+                raise IntegrationError("heyoka wrote a warning to its log during a run without events.")
+    scale = plan.number.prec + SPARE_BITS
+    grid = taylor.cartesian(stepper, states, scale)
+    met = taylor.cartesian(stepper, np.array([zero.state for zero in found], dtype=stepper.numbers.dtype), scale)
+    moments = stepper.numbers.fixed(np.array([zero.t for zero in found], dtype=stepper.numbers.dtype), scale)
+    return Run(
+        plan=plan,
+        scale=scale,
+        grid=grid.rows,
+        zeros=[(t, *row) for t, row in zip(moments, met.rows, strict=True)] if watching else None,
+        directions=[zero.direction for zero in found],
+        order=stepper.order,
+        steps=stepper.steps,
+        terms=stepper.terms,
+        tension=taylor.least_tension(stepper, states),
+        compile_s=stepper.compile_s,
+        cpu_s=time.process_time() - begun,
+    )
+
+
+def run_both(first: Plan, second: Plan, expected_s: float, report: Report | None = None) -> tuple[Run, Run]:
+    """Two runs, at the same time in two processes if the machine has two cores and the work is worth it.
+
+    Args:
+        first: runs in this process.
+        second: runs in a child if that pays.
+        expected_s: estimated CPU seconds of the longer one.
+        report: called with the simulated time, the mean of both.
+    """
+    if (os.cpu_count() or 1) < 2 or expected_s < WORTH_A_PROCESS:
+        one = run(first, report and (lambda t: report(t / 2)))
+        end = float(first.times[-1])
+        return one, run(second, report and (lambda t: report((end + t) / 2)))
+    spawn = multiprocessing.get_context("spawn")
+    receiver, sender = spawn.Pipe(duplex=False)
+    reached = spawn.Value("d", 0.0)
+    child = spawn.Process(target=_child, args=(second, sender, reached, os.getpid()), daemon=True)
+    child.start()
+    sender.close()
+    try:
+        one = run(first, report and (lambda t: report((t + reached.value) / 2)))
+        while report is not None and not receiver.poll(0.2):
+            report((float(first.times[-1]) + reached.value) / 2)
+        answer = receiver.recv()
+    except EOFError:
+        raise IntegrationError("the process of the confirming run ended without an answer.") from None
+    finally:
+        child.terminate()
+        child.join()
+    if isinstance(answer, BaseException):
+        raise answer
+    return one, answer
+
+
+def _child(plan: Plan, sender: Any, reached: Any, parent: int) -> None:
+    def report(t: float) -> None:
+        reached.value = t
+        if os.getppid() != parent:
+            os._exit(1)  # the parent was killed: nobody waits for this run
+
+    try:
+        sender.send(run(plan, report))
+    except FoucaultError as error:
+        sender.send(IntegrationError(str(error)))
+    except KeyboardInterrupt:
+        os._exit(1)

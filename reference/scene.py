@@ -1,0 +1,358 @@
+"""A scene: exact decimal inputs, units, validation, TOML.
+
+Numbers stay strings until they are needed and become exact fractions then: "48.846111" is the
+decimal 48.846111 and not the double next to it, unless the scene says `inputs = "binary64"`.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Annotated, Any, Literal, cast
+
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError
+
+from .errors import InputError
+
+LEVELS = ("computed", "self_consistent", "confirmed", "enclosed")
+MAX_DIGITS = 1000
+MAX_ROWS = 2_000_000
+MAX_EXPONENT = 400  # keeps a typing slip such as 1e999999999 from filling the memory
+
+Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
+Reading = Literal["decimal", "binary64"]
+
+_ID = re.compile(r"[a-z][a-z0-9_]*")
+_DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
+
+
+def is_scene_id(word: str) -> bool:
+    """True for a word that may be a scene's id, a folder and a command-line argument."""
+    return _ID.fullmatch(word) is not None and len(word) <= 64
+
+
+class _Refused(ValueError):
+    """What a validator expected, and its advice; turned into an `InputError` with the field's name."""
+
+    def __init__(self, expected: str, advice: str = "") -> None:
+        super().__init__(expected)
+        self.expected, self.advice = expected, advice
+
+
+def _as_text(value: object) -> object:
+    if isinstance(value, float):
+        raise _Refused("a decimal number in quotes", 'A bare TOML float is rounded: write it as a string, "0.3".')
+    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
+def _decimal(text: str) -> str:
+    if not _DECIMAL.fullmatch(text) or len(text) > 2000:
+        raise _Refused("a decimal number such as 67 or 7.292115e-5", "NaN and inf are not numbers here.")
+    exponent = int(Decimal(text).adjusted())
+    if Decimal(text) != 0 and abs(exponent) > MAX_EXPONENT:
+        raise _Refused(f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size")
+    return text
+
+
+def _decimal_or_inf(text: str) -> str:
+    return text if text == "inf" else _decimal(text)
+
+
+def _within(low: str | None, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
+    words = [
+        *([f"{'above' if open_low else 'at least'} {low}"] if low is not None else []),
+        *([f"at most {high}"] if high is not None else []),
+    ]
+
+    def check(text: str) -> str:
+        if text == "inf":
+            return text
+        value = Fraction(text)
+        too_low = low is not None and (value < Fraction(low) or (open_low and value == Fraction(low)))
+        if too_low or (high is not None and value > Fraction(high)):
+            raise _Refused("a number " + " and ".join(words))
+        return text
+
+    return AfterValidator(check)
+
+
+Number = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal)]
+NumberOrInf = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal_or_inf)]
+Positive = Annotated[Number, _within("0", open_low=True)]
+NotNegative = Annotated[Number, _within("0")]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Pendulum(_Table):
+    """Cord length in m, linear drag in 1/s."""
+
+    length: Positive = "67"
+    drag: NotNegative = "0"
+
+
+class Site(_Table):
+    """Where the suspension stands (degrees, m), gravity (m/s²) and the turning Earth (rad/s)."""
+
+    latitude: Annotated[Number, _within("-90", "90")] = "48.846111"
+    altitude: Number = "0"
+    gravity: NotNegative = "9.80665"
+    rotation_rate: Number = "7.292115e-5"
+    equatorial_radius: NotNegative = "6378137"
+    inverse_flattening: Annotated[NumberOrInf, _within("1", open_low=True)] = "298.257223564"
+
+
+class Release(_Table):
+    """Either x, y (m, below the suspension) with vx, vy (m/s), or angles and their rates (degrees)."""
+
+    x: Number | None = None
+    y: Number | None = None
+    vx: Number | None = None
+    vy: Number | None = None
+    angle: Annotated[Number, _within("0", "180")] | None = None
+    azimuth: Annotated[Number, _within("-360", "360")] | None = None
+    angle_rate: Number | None = None
+    azimuth_rate: Number | None = None
+
+
+def _digits(value: int) -> int:
+    if not 1 <= value <= MAX_DIGITS:
+        raise _Refused(f"a whole number from 1 to {MAX_DIGITS}")
+    return value
+
+
+class Run(_Table):
+    """Time span and grid (s), digits asked for, level of trust, transits or not."""
+
+    t_end: Positive = "86400"
+    grid_step: Positive = "60"
+    digits: Annotated[int, AfterValidator(_digits)] = 40
+    level: Level = "confirmed"
+    transits: bool = True
+
+
+def _identifier(text: str) -> str:
+    if not is_scene_id(text):
+        raise _Refused("a lower-case letter followed by letters, digits or _ (at most 64)")
+    return text
+
+
+class Scene(_Table):
+    """A pendulum, its site, its release and what is asked of the run; frozen.
+
+    `exact` gives the numbers as fractions in the reading that `inputs` names.
+    """
+
+    id: Annotated[str, AfterValidator(_identifier)]
+    title: str = ""
+    source: str = ""
+    flags: tuple[str, ...] = ()
+    inputs: Reading = "decimal"
+    pendulum: Pendulum = Pendulum()
+    site: Site = Site()
+    release: Release
+    run: Run = Run()
+
+    @property
+    def exact(self) -> Inputs:
+        """The scene's numbers as exact fractions, in the reading that `inputs` names."""
+        return Inputs.of(self)
+
+    def with_values(self, assignments: Iterable[str]) -> Scene:
+        """The scene with fields replaced, each assignment written `section.key=value`."""
+        document = self.model_dump(exclude_none=True)
+        for assignment in assignments:
+            _assign(document, assignment)
+        return parse_scene(document)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """The exact numbers of a scene: SI units, angles in degrees; `flattening` is 0 for a sphere.
+
+    Exactly one of `position` (x, y, vx, vy) and `angles` (angle, azimuth, angle_rate, azimuth_rate)
+    is set, as it was given.
+    """
+
+    length: Fraction
+    drag: Fraction
+    latitude: Fraction
+    altitude: Fraction
+    gravity: Fraction
+    rotation_rate: Fraction
+    equatorial_radius: Fraction
+    flattening: Fraction
+    position: tuple[Fraction, Fraction, Fraction, Fraction] | None
+    angles: tuple[Fraction, Fraction, Fraction, Fraction] | None
+    t_end: Fraction
+    grid_step: Fraction
+
+    @classmethod
+    def of(cls, scene: Scene) -> Inputs:
+        """Read every number of `scene`, rounding each to binary64 first if the scene says so."""
+
+        def read(text: str | None) -> Fraction:
+            value = Fraction(text or "0")
+            return Fraction(float(value)) if scene.inputs == "binary64" else value
+
+        site, release = scene.site, scene.release
+        inverse = site.inverse_flattening
+        cartesian = release.angle is None
+        position = tuple(map(read, (release.x, release.y, release.vx, release.vy)))
+        angles = tuple(map(read, (release.angle, release.azimuth, release.angle_rate, release.azimuth_rate)))
+        return cls(
+            length=read(scene.pendulum.length),
+            drag=read(scene.pendulum.drag),
+            latitude=read(site.latitude),
+            altitude=read(site.altitude),
+            gravity=read(site.gravity),
+            rotation_rate=read(site.rotation_rate),
+            equatorial_radius=read(site.equatorial_radius),
+            flattening=Fraction(0) if inverse == "inf" else 1 / read(inverse),
+            position=cast("tuple[Fraction, Fraction, Fraction, Fraction]", position) if cartesian else None,
+            angles=None if cartesian else cast("tuple[Fraction, Fraction, Fraction, Fraction]", angles),
+            t_end=read(scene.run.t_end),
+            grid_step=read(scene.run.grid_step),
+        )
+
+    @property
+    def grid(self) -> list[Fraction]:
+        """Output times in s: 0, grid_step, 2 grid_step, …, and t_end as the last."""
+        whole = int(self.t_end / self.grid_step)
+        times = [k * self.grid_step for k in range(whole + 1)]
+        return times if times[-1] == self.t_end else [*times, self.t_end]
+
+    @property
+    def at_rest(self) -> bool:
+        """True if the bob is let go without any velocity."""
+        moving = self.position[2:] if self.position else (self.angles or ())[2:]
+        return not any(moving)
+
+
+def _assign(document: dict[str, Any], assignment: str) -> None:
+    key, sign, value = assignment.partition("=")
+    parts = key.strip().split(".")
+    if not sign or len(parts) > 2 or not all(parts):
+        raise InputError("--set", assignment, "section.key=value, such as site.latitude=0")
+    table = document
+    for part in parts[:-1]:
+        inner = table.setdefault(part, {})
+        if not isinstance(inner, dict):
+            raise InputError("--set", assignment, f"a section, and {part} is a single field")
+        table = inner
+    if parts == ["flags"]:
+        document["flags"] = [flag for flag in value.split(",") if flag]
+    else:
+        table[parts[-1]] = value.strip()
+
+
+def parse_scene(document: Mapping[str, Any]) -> Scene:
+    """Check a scene given as nested mappings.
+
+    Raises:
+        InputError: naming the first wrong field, what it got and what was expected.
+    """
+    try:
+        scene = Scene.model_validate(dict(document))
+    except ValidationError as error:
+        raise _explain(error) from None
+    _check_release(scene)
+    _check_grid(scene)
+    return scene
+
+
+def _explain(error: ValidationError) -> InputError:
+    details = error.errors()[0]
+    field = ".".join(str(part) for part in details["loc"])
+    kind, got = details["type"], details["input"]
+    cause = details.get("ctx", {}).get("error")
+    if isinstance(cause, _Refused):
+        return InputError(field, got, cause.expected, cause.advice)
+    if kind == "extra_forbidden":
+        return InputError(field, got, "no such key", "Remove it, or look for a misspelling.")
+    if kind == "missing":
+        return InputError(field, "nothing", "a value", "Add this field to the scene.")
+    expected = {
+        "literal_error": "one of " + str(details.get("ctx", {}).get("expected", "")),
+        "int_parsing": "a whole number",
+        "int_type": "a whole number",
+        "int_from_float": "a whole number",
+        "bool_parsing": "true or false",
+        "bool_type": "true or false",
+        "string_type": "a number in quotes",
+        "model_type": f"a table, written [{field}]",
+    }.get(kind, details["msg"])
+    return InputError(field, got, expected)
+
+
+def _check_release(scene: Scene) -> None:
+    release = scene.release
+    given = release.model_fields_set & {n for n in type(release).model_fields if getattr(release, n) is not None}
+    cartesian, angular = given & {"x", "y", "vx", "vy"}, given & {"angle", "azimuth", "angle_rate", "azimuth_rate"}
+    if cartesian and angular:
+        raise InputError(
+            "release", ", ".join(sorted(given)), "either x, y (vx, vy) or angle, azimuth (and rates)", "Keep one kind."
+        )
+    for kind, needed in ((cartesian, ("x", "y")), (angular, ("angle", "azimuth"))):
+        for name in needed:
+            if kind and name not in kind:
+                raise InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
+    if not given:
+        raise InputError("release", "nothing", "x and y, or angle and azimuth")
+    position, length = scene.exact.position, scene.exact.length
+    if position and position[0] ** 2 + position[1] ** 2 >= length**2:
+        raise InputError(
+            "release",
+            f"x = {release.x}, y = {release.y}",
+            f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²",
+            "For a release at or above the horizontal give angle and azimuth.",
+        )
+
+
+def _check_grid(scene: Scene) -> None:
+    rows = scene.exact.t_end / scene.exact.grid_step
+    if rows > MAX_ROWS:
+        raise InputError(
+            "run.grid_step", scene.run.grid_step, f"at most {MAX_ROWS} grid times up to t_end", "Take a longer step."
+        )
+
+
+def data_root() -> Path:
+    """The folder that holds `scenes` and `golden`: in the installed package, or beside it in a checkout."""
+    here = Path(__file__).resolve().parent
+    return here / "data" if (here / "data").is_dir() else here.parent / "data"
+
+
+def scene_ids() -> list[str]:
+    """Ids of the scenes that come with the project, sorted."""
+    return sorted(path.stem for path in (data_root() / "scenes").glob("*.toml"))
+
+
+def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
+    """Read a scene by id, or from the path of a TOML file, with `section.key=value` replacements.
+
+    Raises:
+        InputError: no such scene, broken TOML, or a wrong field.
+    """
+    word = str(name)
+    path = data_root() / "scenes" / f"{word}.toml" if is_scene_id(word) else Path(word)
+    try:
+        document = tomllib.loads(path.read_bytes().decode())
+    except FileNotFoundError:
+        raise InputError(
+            "SCENE", word, "a scene's id or the path of a TOML file", f"Known ids: {', '.join(scene_ids())}."
+        ) from None
+    except OSError as error:
+        raise InputError("SCENE", word, "a readable file", f"{error.strerror}.") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise InputError("SCENE", word, "a TOML file", f"{error}.") from None
+    for assignment in assignments:
+        _assign(document, assignment)
+    return parse_scene(document)

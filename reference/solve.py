@@ -1,0 +1,263 @@
+"""From a scene to numbers with bounds: choose the precision, run, confirm, compare, raise, repeat.
+
+A double run beside a long double run measures what rounding does to this scene over its whole span;
+from that follow the bits that the digits asked for need. Two runs then have to agree to a quarter of
+the last digit printed, in every column: for `self_consistent` at two precisions and tolerances, for
+`confirmed` in another formulation as well. What is published comes from the finer run.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import Any
+
+from .errors import UnreachableError
+from .precision import DOUBLE, LONG_DOUBLE, NumberType, cheapest_type, decimals_for, real
+from .runs import Plan, Report, Run, run, run_both
+from .scene import Inputs, Scene
+from .solution import CrossCheck, Solution, Source, Table
+
+MARGIN_BITS = 10  # the coarser run aims this far below the last digit, so that rounding is rarely in doubt
+CLOSE_TRANSIT_BITS = 12  # what the time of a day's worst conditioned transit loses against xdot
+FINER_BITS = 16  # how much finer the published run is than the one it is compared with
+ROUND_TO_BITS = 8  # precisions are multiples of this, so that a jitter of the pilot does not show
+ESTIMATE_FACTOR = 16  # a single run's error is estimated from the pilot's, with this in hand
+AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last digit printed
+MAX_PREC = 8192
+MAX_RAISES = 8
+
+GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
+TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
+_OF_ZERO = (0, 1, 2, 3, 5, 7)  # of t, x, y, z, vx, vy, vz, ax
+
+
+@dataclass(frozen=True)
+class Growth:
+    """What a run at `prec` bits loses on this scene: its largest error per grid column, in m and m/s."""
+
+    prec: int
+    errors: tuple[Fraction, ...]
+    largest: tuple[Fraction, ...]
+    tension: float
+    cpu_s: float
+    steps: int
+
+    def at(self, prec: int) -> tuple[Fraction, ...]:
+        """The errors to expect at another precision."""
+        return tuple(error * Fraction(2) ** (self.prec - prec) for error in self.errors)
+
+    def bits_for(self, digits: int, t_end: Fraction | None = None) -> int:
+        """Bits with which every column's error stays `MARGIN_BITS` below its last digit.
+
+        With `t_end` the times of transits up to then are a column too.
+        """
+        needed = self.prec
+        for error, largest in zip(self.errors, self.largest, strict=True):
+            unit = Fraction(1, 10 ** decimals_for(largest, digits))
+            if error:
+                needed = max(needed, self.prec + _bits(error / unit) + MARGIN_BITS)
+            elif largest:
+                needed = max(needed, _bits(largest / unit) + MARGIN_BITS)
+        if t_end is not None:
+            late = self.errors[3] * 10 ** decimals_for(t_end, digits)
+            needed = max(needed, self.prec + _bits(late) + CLOSE_TRANSIT_BITS)
+        return needed
+
+
+def _bits(ratio: Fraction) -> int:
+    return math.ceil(math.log2(ratio)) if ratio > 0 else 0
+
+
+def measure_growth(inputs: Inputs, times: tuple[Fraction, ...]) -> Growth:
+    """Compare two cheap runs of `momentum`, finer ones if the first are wholly lost.
+
+    Raises:
+        UnreachableError: even `MAX_PREC` bits keep no digit.
+    """
+    pair: tuple[NumberType, NumberType] = (DOUBLE, LONG_DOUBLE)
+    while pair[1].prec <= MAX_PREC:
+        coarse, fine = (run(Plan(inputs, "momentum", number, times, transits=False)) for number in pair)
+        errors = _disagreement(coarse.grid, coarse.scale, fine.grid, fine.scale)[:6]
+        largest = _largest(fine.grid, fine.scale)[:6]
+        scale = max(largest[:3]), max(largest[3:])
+        lost = any(error > Fraction(1, 2**12) * scale[i // 3] for i, error in enumerate(errors))
+        if not lost:
+            return Growth(pair[0].prec, errors, largest, coarse.tension, coarse.cpu_s + fine.cpu_s, coarse.steps)
+        pair = (pair[1], real(2 * pair[1].prec))
+    raise UnreachableError(
+        f"Rounding grows so fast that {MAX_PREC} bits keep no digit.", "Ask for a shorter run.run.t_end."
+    )
+
+
+def _largest(rows: Sequence[tuple[int, ...]], scale: int) -> tuple[Fraction, ...]:
+    return tuple(Fraction(max(map(abs, column)), 2**scale) for column in zip(*rows, strict=True))
+
+
+def _disagreement(
+    a: Sequence[tuple[int, ...]], a_scale: int, b: Sequence[tuple[int, ...]], b_scale: int
+) -> tuple[Fraction, ...]:
+    """Largest difference of two tables, per column."""
+    up_a, up_b = max(0, b_scale - a_scale), max(0, a_scale - b_scale)
+    columns = zip(zip(*a, strict=True), zip(*b, strict=True), strict=True)
+    common = 2 ** max(a_scale, b_scale)
+    return tuple(
+        Fraction(max(abs((p << up_a) - (q << up_b)) for p, q in zip(one, other, strict=True)), common)
+        for one, other in columns
+    )
+
+
+def confirming_formulation(growth: Growth) -> str:
+    """`space` where the cord always pulls; `spin`, neutral at every angle, where a rod would be pushed."""
+    return "space" if growth.tension > 0 else "spin"
+
+
+def solve(
+    scene: Scene,
+    *,
+    digits: int | None = None,
+    level: str | None = None,
+    t_end: str | None = None,
+    transits: bool | None = None,
+    report: Report | None = None,
+) -> Solution:
+    """Solve a scene to the digits and the level asked (the scene's own where not given).
+
+    Args:
+        scene: what to solve.
+        digits: significant decimal digits of the largest number in each column.
+        level: one of `scene.LEVELS`.
+        t_end: end of the run in s, as a decimal string.
+        transits: whether to find every zero of xdot.
+        report: called with the simulated time reached, in s.
+
+    Returns:
+        A `Solution`: binary64 arrays, exact values, and a bound on every number.
+
+    Raises:
+        InputError: a field of the scene is wrong.
+        UnreachableError: the level or the digits cannot be had; no numbers then.
+    """
+    wanted = {"digits": digits, "level": level, "t_end": t_end, "transits": transits}
+    scene = scene.with_values(f"run.{key}={value}" for key, value in wanted.items() if value is not None)
+    inputs, asked = scene.exact, scene.run
+    times = tuple(inputs.grid)
+    if asked.level == "enclosed":
+        from .proof import solve_enclosed  # the proof is not imported unless the level asks for it
+
+        return solve_enclosed(scene, times, report)
+    growth = measure_growth(inputs, times)
+    if asked.level == "computed":
+        return _computed(scene, times, growth, report)
+    return _agreed(scene, times, growth, report)
+
+
+def _computed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: Report | None) -> Solution:
+    prec = growth.bits_for(scene.run.digits, _span(scene)) + _bits(Fraction(ESTIMATE_FACTOR))
+    number = cheapest_type(_rounded(prec) if prec > LONG_DOUBLE.prec else prec)
+    done = run(Plan(scene.exact, "momentum", number, times, scene.run.transits), report)
+    errors = tuple(error * ESTIMATE_FACTOR for error in growth.at(number.prec))
+    return _assemble(scene, times, done, errors, None, (), growth)
+
+
+def _agreed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: Report | None) -> Solution:
+    confirmed = scene.run.level == "confirmed"
+    other = confirming_formulation(growth) if confirmed else "momentum"
+    prec = _rounded(max(growth.bits_for(scene.run.digits, _span(scene)), LONG_DOUBLE.prec))
+    for _ in range(MAX_RAISES):
+        if prec > MAX_PREC:
+            break
+        fine = Plan(scene.exact, "momentum", real(prec + FINER_BITS), times, scene.run.transits)
+        coarse = replace(fine, formulation=other, number=real(prec))
+        published, witness = run_both(fine, coarse, _expected_s(growth, prec), report)
+        missing, grid_gap, zero_gap = _missing_bits(published, witness, scene.run.digits)
+        if not missing:
+            errors = tuple(2 * gap for gap in grid_gap)
+            check = CrossCheck.of(witness, grid_gap, zero_gap)
+            zero_errors = None if zero_gap is None else [tuple(2 * gap for gap in row) for row in zero_gap]
+            return _assemble(scene, times, published, errors, zero_errors, (check,), growth)
+        prec = _rounded(prec + missing)
+    raise UnreachableError(
+        f"Two runs up to {prec} bits do not agree to {scene.run.digits} digits.",
+        "Ask for fewer digits or a shorter run; a transit that only grazes xdot = 0 cannot be decided this way.",
+    )
+
+
+def _span(scene: Scene) -> Fraction | None:
+    return scene.exact.t_end if scene.run.transits else None
+
+
+def _rounded(prec: int) -> int:
+    return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
+
+
+def _expected_s(growth: Growth, prec: int) -> float:
+    """CPU seconds of a `real` run, from the pilot's steps: 0.6 ms a step at 160 bits, growing with the square."""
+    return growth.steps * 6e-4 * (prec / 160) ** 2
+
+
+def _missing_bits(
+    published: Run, witness: Run, digits: int
+) -> tuple[int, tuple[Fraction, ...], list[tuple[Fraction, ...]] | None]:
+    """Bits that two runs lack to agree to a quarter of the last digit, and by how much they differ."""
+    gaps = _disagreement(published.grid, published.scale, witness.grid, witness.scale)[:6]
+    missing = _lacking(gaps, _largest(published.grid, published.scale)[:6], digits)
+    if published.zeros is None or witness.zeros is None:
+        return missing, gaps, None
+    if published.directions != witness.directions:
+        return witness.plan.number.prec // 2, gaps, None
+    if not published.zeros:
+        return missing, gaps, []
+    rows = [
+        tuple(_disagreement([a], published.scale, [b], witness.scale)[i] for i in _OF_ZERO)
+        for a, b in zip(published.zeros, witness.zeros, strict=True)
+    ]
+    worst = tuple(map(max, zip(*rows, strict=True)))
+    largest = _largest(published.zeros, published.scale)
+    return max(missing, _lacking(worst, tuple(largest[i] for i in _OF_ZERO), digits)), gaps, rows
+
+
+def _lacking(gaps: Sequence[Fraction], largest: Sequence[Fraction], digits: int) -> int:
+    lacking = 0
+    for gap, size in zip(gaps, largest, strict=True):
+        unit = Fraction(1, 10 ** decimals_for(size, digits))
+        if gap > AGREEMENT * unit:
+            lacking = max(lacking, _bits(gap / unit) + MARGIN_BITS)
+    return lacking
+
+
+def _assemble(
+    scene: Scene,
+    times: tuple[Fraction, ...],
+    done: Run,
+    errors: tuple[Fraction, ...],
+    zero_errors: list[tuple[Fraction, ...]] | None,
+    checks: tuple[CrossCheck, ...],
+    growth: Growth,
+) -> Solution:
+    """A run with the bounds known for it as a `Solution`."""
+
+    def fixed(values: Sequence[Fraction]) -> tuple[int, ...]:
+        return tuple(math.ceil(value * 2**done.scale) for value in values)
+
+    grid = Table(GRID_COLUMNS, done.scale, [row[:6] for row in done.grid], [fixed(errors)] * len(done.grid))
+    met: Table | None = None
+    if done.zeros is not None:
+        rows = [tuple(row[i] for i in _OF_ZERO) for row in done.zeros]
+        spread = [
+            _zero_errors(row, done.scale, errors, zero_errors[i] if zero_errors else None) for i, row in enumerate(rows)
+        ]
+        met = Table(TRANSIT_COLUMNS, done.scale, rows, [fixed(row) for row in spread])
+    return Solution(scene, times, grid, met, done.directions, Source.of(done), checks, growth.cpu_s)
+
+
+def _zero_errors(
+    row: tuple[int, ...], scale: int, errors: tuple[Fraction, ...], measured: tuple[Fraction, ...] | None
+) -> tuple[Fraction, ...]:
+    """Errors of a transit: its time is the error of xdot over |ax|, and never less than two runs differ."""
+    ax = abs(Fraction(row[5], 2**scale))
+    late = errors[3] / ax if ax else Fraction(10) ** 9
+    expected: tuple[Any, ...] = (late, errors[0], *errors[1:3], errors[4], errors[3])
+    return tuple(map(max, expected, measured)) if measured else expected
