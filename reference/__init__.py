@@ -17,7 +17,7 @@ from .scene import Scene, load_scene, parse_scene, scene_ids
 if TYPE_CHECKING:
     from .golden import Golden, load
     from .solution import Solution
-    from .solve import solve
+    from .solver import solve
 
 __all__ = [
     "DatasetError",
@@ -35,7 +35,7 @@ __all__ = [
     "solve",
 ]
 
-_LAZY = {"Golden": "golden", "load": "golden", "Solution": "solution", "solve": "solve"}
+_LAZY = {"Golden": "golden", "load": "golden", "Solution": "solution", "solve": "solver"}
 
 
 def __getattr__(name: str) -> Any:

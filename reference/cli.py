@@ -153,7 +153,7 @@ def generate(
     as_shipped = scene_word in scene_ids() and not set_ and t_end is None and not no_transits
     folder = out or default_folder(scene, as_shipped or set_ == ["inputs=binary64"])
     check_target(folder)
-    from .solve import solve
+    from .solver import solve
 
     with progress(scene.id, float(scene.exact.t_end)) as report:
         solution = solve(scene, report=report)

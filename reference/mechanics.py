@@ -312,12 +312,6 @@ class Lagrangian(Angles):
         kinetic = plus(alpha_0, times(alpha_1, k.rate), times(alpha_2, k.rate, k.rate)) / 2
         return plus(kinetic, times(k.gravity, cp))
 
-    def dissipation(self, state: State, k: Constants, functions: Functions) -> Any:
-        """Rayleigh's function of the linear drag, γ α0 / 2."""
-        phi, _, phi_rate, azimuth_rate = state
-        sp = functions.sin(phi)
-        return times(k.drag, phi_rate * phi_rate + sp * sp * azimuth_rate * azimuth_rate) / 2
-
 
 _ALL: tuple[Formulation, ...] = (Momentum(), Space(), Spin(), Plane(), Angles(), Lagrangian())
 FORMULATIONS: dict[str, Formulation] = {made.name: made for made in _ALL}

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .errors import UnreachableError
-from .precision import decimals_for, fixed_decimal, rounded_up
+from .precision import column_decimals, fixed_decimal, rounded_up
 from .scene import Scene
-from .solution import Solution, Table
+from .solution import Solution, Table, grid_scales, transit_scales
 
 GRID_HEADER = ("t", "x", "y", "z", "vx", "vy", "vz")
 TRANSITS_HEADER = ("k", "t", "direction", "x", "y", "z", "vy", "ax", "bound")
@@ -37,11 +37,18 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
     return digits
 
 
-def _decimals(table: Table, digits: int) -> dict[str, int]:
-    unit = 1 << table.scale
+def _decimals(solution: Solution, table: Table) -> dict[str, int]:
+    grid, digits = solution.grid, solution.scene.run.digits
+    scales = grid_scales(grid.largest(), grid.largest_bounds())
     return {
-        name: decimals_for(Fraction(max((abs(row[i]) for row in table.values), default=0), unit), digits)
-        for i, name in enumerate(table.columns)
+        name: column_decimals(largest, error, scale, digits)
+        for name, largest, error, scale in zip(
+            table.columns,
+            table.largest(),
+            table.largest_bounds(),
+            scales if table is grid else transit_scales(scales),
+            strict=True,
+        )
     }
 
 
@@ -73,7 +80,7 @@ class UndecidedRounding(UnreachableError):
 
 def grid_sheet(solution: Solution) -> Sheet:
     """`grid.csv`: exact times, and the state at each."""
-    decimals = {"t": exact_decimals(solution.times), **_decimals(solution.grid, solution.scene.run.digits)}
+    decimals = {"t": exact_decimals(solution.times), **_decimals(solution, solution.grid)}
     printed = _printed(solution.grid, decimals, solution.level == "enclosed")
     times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
     return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, printed, strict=True)], decimals)
@@ -84,7 +91,7 @@ def transits_sheet(solution: Solution) -> Sheet:
     table = solution.transits
     if table is None:
         return Sheet(TRANSITS_HEADER, [], {})
-    decimals = _decimals(table, solution.scene.run.digits)
+    decimals = _decimals(solution, table)
     half_unit = Fraction(1, 2 * 10 ** decimals["t"])
     rows = []
     printed = _printed(table, decimals, solution.level == "enclosed")

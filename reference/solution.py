@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from .precision import NOISE
 from .runs import Run
 from .scene import Scene
 
@@ -37,10 +38,34 @@ class Table:
         i = self.columns.index(name)
         return [Fraction(row[i], 1 << self.scale) for row in rows]
 
+    def largest(self) -> tuple[Fraction, ...]:
+        """Per column the largest size of its values."""
+        return self._maxima(self.values)
+
+    def largest_bounds(self) -> tuple[Fraction, ...]:
+        """Per column the largest of its bounds."""
+        return self._maxima(self.errors)
+
+    def _maxima(self, rows: Sequence[tuple[int, ...]]) -> tuple[Fraction, ...]:
+        return tuple(
+            Fraction(max((abs(row[i]) for row in rows), default=0), 1 << self.scale) for i in range(len(self.columns))
+        )
+
     def array(self, name: str) -> Array:
         """A column as the nearest doubles, shape (rows,)."""
         i, unit = self.columns.index(name), 1 << self.scale
         return np.array([row[i] / unit for row in self.values])
+
+
+def grid_scales(largest: Sequence[Fraction], errors: Sequence[Fraction]) -> tuple[Fraction, ...]:
+    """Per grid column the largest number of its kind, position or velocity, that is more than error."""
+    resolved = [size if size > NOISE * error else Fraction(0) for size, error in zip(largest, errors, strict=True)]
+    return (max(resolved[:3]),) * 3 + (max(resolved[3:]),) * 3
+
+
+def transit_scales(of_grid: Sequence[Fraction]) -> tuple[Fraction, ...]:
+    """The same for the columns of the transits: t, x, y, z, vy, ax."""
+    return (Fraction(0), *of_grid[:3], of_grid[3], Fraction(0))
 
 
 @dataclass(frozen=True)

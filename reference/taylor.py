@@ -132,10 +132,12 @@ class System:
 
 
 def _euler_lagrange(formulation: mechanics.Lagrangian, state: Any, constants: Constants) -> list[Any]:
-    function = formulation.lagrangian(state, constants, hy)
-    dissipation = formulation.dissipation(state, constants, hy) + hy.expression(0.0)
-    derived = hy.lagrangian(function, list(state[:2]), list(state[2:]), dissipation)
-    return [derived[[str(name) for name, _ in derived].index(str(variable))][1] for variable in state]
+    """Heyoka's equations of L; linear drag, with Rayleigh function γ α0/2, adds -γ q' to each q'' whatever q is."""
+    derived = hy.lagrangian(formulation.lagrangian(state, constants, hy), list(state[:2]), list(state[2:]))
+    rates = {str(name): rate for name, rate in derived}
+    for velocity in state[2:]:
+        rates[str(velocity)] = mechanics.minus(rates[str(velocity)], mechanics.times(constants.drag, velocity))
+    return [rates[str(variable)] for variable in state]
 
 
 def equations_text(formulation: Formulation, constants: Constants) -> list[str]:

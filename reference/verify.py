@@ -177,7 +177,7 @@ def recompute(folder: Path, report: Callable[[float], None] | None = None) -> li
     Raises:
         UnreachableError: it cannot be solved again.
     """
-    from .solve import solve
+    from .solver import solve
 
     made = render(solve(scene_of(read_manifest(folder)), report=report))
     return [

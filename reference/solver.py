@@ -15,10 +15,10 @@ from fractions import Fraction
 from typing import Any
 
 from .errors import UnreachableError
-from .precision import DOUBLE, LONG_DOUBLE, NumberType, cheapest_type, decimals_for, real
+from .precision import DOUBLE, LONG_DOUBLE, NumberType, cheapest_type, column_decimals, decimals_for, real
 from .runs import Plan, Report, Run, run, run_both
 from .scene import Inputs, Scene
-from .solution import CrossCheck, Solution, Source, Table
+from .solution import CrossCheck, Solution, Source, Table, grid_scales, transit_scales
 
 MARGIN_BITS = 10  # the coarser run aims this far below the last digit, so that rounding is rarely in doubt
 CLOSE_TRANSIT_BITS = 12  # what the time of a day's worst conditioned transit loses against xdot
@@ -27,7 +27,7 @@ ROUND_TO_BITS = 8  # precisions are multiples of this, so that a jitter of the p
 ESTIMATE_FACTOR = 16  # a single run's error is estimated from the pilot's, with this in hand
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last digit printed
 MAX_PREC = 8192
-MAX_RAISES = 8
+MAX_RAISES = 6
 
 GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
@@ -54,9 +54,10 @@ class Growth:
 
         With `t_end` the times of transits up to then are a column too.
         """
-        needed = self.prec
-        for error, largest in zip(self.errors, self.largest, strict=True):
-            unit = Fraction(1, 10 ** decimals_for(largest, digits))
+        needed = 0
+        scales = grid_scales(self.largest, self.errors)
+        for error, largest, scale in zip(self.errors, self.largest, scales, strict=True):
+            unit = Fraction(1, 10 ** column_decimals(largest, error, scale, digits))
             if error:
                 needed = max(needed, self.prec + _bits(error / unit) + MARGIN_BITS)
             elif largest:
@@ -166,6 +167,7 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: R
     confirmed = scene.run.level == "confirmed"
     other = confirming_formulation(growth) if confirmed else "momentum"
     prec = _rounded(max(growth.bits_for(scene.run.digits, _span(scene)), LONG_DOUBLE.prec))
+    before: Fraction | None = None
     for _ in range(MAX_RAISES):
         if prec > MAX_PREC:
             break
@@ -178,6 +180,9 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: R
             check = CrossCheck.of(witness, grid_gap, zero_gap)
             zero_errors = None if zero_gap is None else [tuple(2 * gap for gap in row) for row in zero_gap]
             return _assemble(scene, times, published, errors, zero_errors, (check,), growth)
+        if before is not None and max(grid_gap) >= before > 0:
+            raise UnreachableError("Two formulations disagree, and a higher precision does not bring them together.")
+        before = max(grid_gap)
         prec = _rounded(prec + missing)
     raise UnreachableError(
         f"Two runs up to {prec} bits do not agree to {scene.run.digits} digits.",
@@ -203,7 +208,9 @@ def _missing_bits(
 ) -> tuple[int, tuple[Fraction, ...], list[tuple[Fraction, ...]] | None]:
     """Bits that two runs lack to agree to a quarter of the last digit, and by how much they differ."""
     gaps = _disagreement(published.grid, published.scale, witness.grid, witness.scale)[:6]
-    missing = _lacking(gaps, _largest(published.grid, published.scale)[:6], digits)
+    largest = _largest(published.grid, published.scale)[:6]
+    scales = grid_scales(largest, gaps)
+    missing = _lacking(gaps, largest, scales, digits)
     if published.zeros is None or witness.zeros is None:
         return missing, gaps, None
     if published.directions != witness.directions:
@@ -215,14 +222,14 @@ def _missing_bits(
         for a, b in zip(published.zeros, witness.zeros, strict=True)
     ]
     worst = tuple(map(max, zip(*rows, strict=True)))
-    largest = _largest(published.zeros, published.scale)
-    return max(missing, _lacking(worst, tuple(largest[i] for i in _OF_ZERO), digits)), gaps, rows
+    sizes = _largest(published.zeros, published.scale)
+    return max(missing, _lacking(worst, [sizes[i] for i in _OF_ZERO], transit_scales(scales), digits)), gaps, rows
 
 
-def _lacking(gaps: Sequence[Fraction], largest: Sequence[Fraction], digits: int) -> int:
+def _lacking(gaps: Sequence[Fraction], largest: Sequence[Fraction], scales: Sequence[Fraction], digits: int) -> int:
     lacking = 0
-    for gap, size in zip(gaps, largest, strict=True):
-        unit = Fraction(1, 10 ** decimals_for(size, digits))
+    for gap, size, scale in zip(gaps, largest, scales, strict=True):
+        unit = Fraction(1, 10 ** column_decimals(size, gap, scale, digits))
         if gap > AGREEMENT * unit:
             lacking = max(lacking, _bits(gap / unit) + MARGIN_BITS)
     return lacking

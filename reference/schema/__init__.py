@@ -1,0 +1,1 @@
+"""The JSON Schema of a manifest, for those who read datasets without Python."""
