@@ -115,7 +115,7 @@ def test_a_missing_id_is_asked_for():
 
 @pytest.mark.parametrize("word", ["atlantis", "no/such/file.toml"])
 def test_an_unknown_scene_lists_the_known_ones(word):
-    with pytest.raises(InputError, match="Known ids:.*paris"):
+    with pytest.raises(InputError, match=r"Known ids:.*paris"):
         load_scene(word)
 
 

@@ -213,7 +213,3 @@ def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
         for reading in ("decimal", "binary64")
     ]
     assert 1e-14 < abs(np.subtract(*ends)) < 5e-12
-
-
-def test_an_enclosed_level_is_never_quietly_lowered(paris):
-    assert "enclosed" in reference.scene.LEVELS

@@ -75,7 +75,6 @@ def test_drag_is_in_the_equations_when_the_scene_has_it():
 
 def test_no_python_float_stands_in_a_real_system(paris):
     """A float is a double for ever; every constant of the compiled lines must carry the run's digits."""
-    ctx, k, _, _ = model_at(paris, 300)
     stepper = stepper_of(paris, real(200))
     lines = System.build(FORMULATIONS["momentum"], stepper.constants).equations
     numbers = [word.strip("()-") for _, rate in lines for word in str(rate).split()]
