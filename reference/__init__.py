@@ -44,6 +44,4 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    value = getattr(import_module(f".{_LAZY[name]}", __name__), name)
-    globals()[name] = value  # also over the submodule of the same name, which importing it has bound
-    return value
+    return getattr(import_module(f".{_LAZY[name]}", __name__), name)

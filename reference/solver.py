@@ -10,104 +10,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 from .errors import UnreachableError
-from .precision import DOUBLE, LONG_DOUBLE, NumberType, cheapest_type, column_decimals, decimals_for, real
+from .growth import MARGIN_BITS, MAX_PREC, Growth, bits_in, disagreement, largest_of, measure_growth
+from .precision import LONG_DOUBLE, cheapest_type, column_decimals, real
 from .runs import Plan, Report, Run, run, run_both
-from .scene import Inputs, Scene
+from .scene import Scene
 from .solution import CrossCheck, Solution, Source, Table, grid_scales, transit_scales
 
-MARGIN_BITS = 10  # the coarser run aims this far below the last digit, so that rounding is rarely in doubt
-CLOSE_TRANSIT_BITS = 12  # what the time of a day's worst conditioned transit loses against xdot
 FINER_BITS = 16  # how much finer the published run is than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that a jitter of the pilot does not show
-ESTIMATE_FACTOR = 16  # a single run's error is estimated from the pilot's, with this in hand
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last digit printed
-MAX_PREC = 8192
 MAX_RAISES = 6
 
 GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
 _OF_ZERO = (0, 1, 2, 3, 5, 7)  # of t, x, y, z, vx, vy, vz, ax
-
-
-@dataclass(frozen=True)
-class Growth:
-    """What a run at `prec` bits loses on this scene: its largest error per grid column, in m and m/s."""
-
-    prec: int
-    errors: tuple[Fraction, ...]
-    largest: tuple[Fraction, ...]
-    tension: float
-    cpu_s: float
-    steps: int
-
-    def at(self, prec: int) -> tuple[Fraction, ...]:
-        """The errors to expect at another precision."""
-        return tuple(error * Fraction(2) ** (self.prec - prec) for error in self.errors)
-
-    def bits_for(self, digits: int, t_end: Fraction | None = None) -> int:
-        """Bits with which every column's error stays `MARGIN_BITS` below its last digit.
-
-        With `t_end` the times of transits up to then are a column too.
-        """
-        needed = 0
-        scales = grid_scales(self.largest, self.errors)
-        for error, largest, scale in zip(self.errors, self.largest, scales, strict=True):
-            unit = Fraction(1, 10 ** column_decimals(largest, error, scale, digits))
-            if error:
-                needed = max(needed, self.prec + _bits(error / unit) + MARGIN_BITS)
-            elif largest:
-                needed = max(needed, _bits(largest / unit) + MARGIN_BITS)
-        if t_end is not None:
-            late = self.errors[3] * 10 ** decimals_for(t_end, digits)
-            needed = max(needed, self.prec + _bits(late) + CLOSE_TRANSIT_BITS)
-        return needed
-
-
-def _bits(ratio: Fraction) -> int:
-    return math.ceil(math.log2(ratio)) if ratio > 0 else 0
-
-
-def measure_growth(inputs: Inputs, times: tuple[Fraction, ...]) -> Growth:
-    """Compare two cheap runs of `momentum`, finer ones if the first are wholly lost.
-
-    Raises:
-        UnreachableError: even `MAX_PREC` bits keep no digit.
-    """
-    pair: tuple[NumberType, NumberType] = (DOUBLE, LONG_DOUBLE)
-    while pair[1].prec <= MAX_PREC:
-        coarse, fine = (run(Plan(inputs, "momentum", number, times, transits=False)) for number in pair)
-        errors = _disagreement(coarse.grid, coarse.scale, fine.grid, fine.scale)[:6]
-        largest = _largest(fine.grid, fine.scale)[:6]
-        scale = max(largest[:3]), max(largest[3:])
-        lost = any(error > Fraction(1, 2**12) * scale[i // 3] for i, error in enumerate(errors))
-        if not lost:
-            return Growth(pair[0].prec, errors, largest, coarse.tension, coarse.cpu_s + fine.cpu_s, coarse.steps)
-        pair = (pair[1], real(2 * pair[1].prec))
-    raise UnreachableError(
-        f"Rounding grows so fast that {MAX_PREC} bits keep no digit.", "Ask for a shorter run.run.t_end."
-    )
-
-
-def _largest(rows: Sequence[tuple[int, ...]], scale: int) -> tuple[Fraction, ...]:
-    return tuple(Fraction(max(map(abs, column)), 2**scale) for column in zip(*rows, strict=True))
-
-
-def _disagreement(
-    a: Sequence[tuple[int, ...]], a_scale: int, b: Sequence[tuple[int, ...]], b_scale: int
-) -> tuple[Fraction, ...]:
-    """Largest difference of two tables, per column."""
-    up_a, up_b = max(0, b_scale - a_scale), max(0, a_scale - b_scale)
-    columns = zip(zip(*a, strict=True), zip(*b, strict=True), strict=True)
-    common = 2 ** max(a_scale, b_scale)
-    return tuple(
-        Fraction(max(abs((p << up_a) - (q << up_b)) for p, q in zip(one, other, strict=True)), common)
-        for one, other in columns
-    )
 
 
 def confirming_formulation(growth: Growth) -> str:
@@ -156,17 +77,16 @@ def solve(
 
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: Report | None) -> Solution:
-    prec = growth.bits_for(scene.run.digits, _span(scene)) + _bits(Fraction(ESTIMATE_FACTOR))
+    prec = growth.bits_for(scene.run.digits, _span(scene), checked=False)
     number = cheapest_type(_rounded(prec) if prec > LONG_DOUBLE.prec else prec)
     done = run(Plan(scene.exact, "momentum", number, times, scene.run.transits), report)
-    errors = tuple(error * ESTIMATE_FACTOR for error in growth.at(number.prec))
-    return _assemble(scene, times, done, errors, None, (), growth)
+    return _assemble(scene, times, done, growth.estimates(number.prec), None, (), growth)
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: Report | None) -> Solution:
     confirmed = scene.run.level == "confirmed"
     other = confirming_formulation(growth) if confirmed else "momentum"
-    prec = _rounded(max(growth.bits_for(scene.run.digits, _span(scene)), LONG_DOUBLE.prec))
+    prec = _rounded(max(growth.bits_for(scene.run.digits, _span(scene), checked=True), LONG_DOUBLE.prec))
     before: Fraction | None = None
     for _ in range(MAX_RAISES):
         if prec > MAX_PREC:
@@ -207,8 +127,8 @@ def _missing_bits(
     published: Run, witness: Run, digits: int
 ) -> tuple[int, tuple[Fraction, ...], list[tuple[Fraction, ...]] | None]:
     """Bits that two runs lack to agree to a quarter of the last digit, and by how much they differ."""
-    gaps = _disagreement(published.grid, published.scale, witness.grid, witness.scale)[:6]
-    largest = _largest(published.grid, published.scale)[:6]
+    gaps = disagreement(published.grid, published.scale, witness.grid, witness.scale)[:6]
+    largest = largest_of(published.grid, published.scale)[:6]
     scales = grid_scales(largest, gaps)
     missing = _lacking(gaps, largest, scales, digits)
     if published.zeros is None or witness.zeros is None:
@@ -218,11 +138,11 @@ def _missing_bits(
     if not published.zeros:
         return missing, gaps, []
     rows = [
-        tuple(_disagreement([a], published.scale, [b], witness.scale)[i] for i in _OF_ZERO)
+        tuple(disagreement([a], published.scale, [b], witness.scale)[i] for i in _OF_ZERO)
         for a, b in zip(published.zeros, witness.zeros, strict=True)
     ]
     worst = tuple(map(max, zip(*rows, strict=True)))
-    sizes = _largest(published.zeros, published.scale)
+    sizes = largest_of(published.zeros, published.scale)
     return max(missing, _lacking(worst, [sizes[i] for i in _OF_ZERO], transit_scales(scales), digits)), gaps, rows
 
 
@@ -231,7 +151,7 @@ def _lacking(gaps: Sequence[Fraction], largest: Sequence[Fraction], scales: Sequ
     for gap, size, scale in zip(gaps, largest, scales, strict=True):
         unit = Fraction(1, 10 ** column_decimals(size, gap, scale, digits))
         if gap > AGREEMENT * unit:
-            lacking = max(lacking, _bits(gap / unit) + MARGIN_BITS)
+            lacking = max(lacking, bits_in(gap / unit) + MARGIN_BITS)
     return lacking
 
 

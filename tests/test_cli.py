@@ -156,9 +156,9 @@ def test_an_unknown_level_or_command_is_wrong_usage(foucault):
 
 
 def test_what_cannot_be_reached_ends_with_exit_3_and_no_file(foucault, tmp_path, monkeypatch):
-    from reference import solver
+    from reference import growth
 
-    monkeypatch.setattr(solver, "MAX_PREC", 60)
+    monkeypatch.setattr(growth, "MAX_PREC", 60)
     status, out, err = foucault("generate", "paris", "--t-end", "60", "--out", str(tmp_path / "p"))
     assert (status, out) == (3, "")
     assert "keep no digit" in err

@@ -10,7 +10,7 @@ import pytest
 from conftest import make_scene
 
 import reference
-from reference import runs, solver
+from reference import growth, runs, solver
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.precision import DOUBLE, real
 from reference.render import grid_sheet, transits_sheet
@@ -120,8 +120,8 @@ def test_precision_is_raised_when_the_first_guess_is_too_low(monkeypatch, paris)
     honest = solver.measure_growth
 
     def optimistic(inputs, times):
-        growth = honest(inputs, times)
-        return replace(growth, errors=tuple(error / 2**60 for error in growth.errors))
+        measured = honest(inputs, times)
+        return replace(measured, errors=tuple(error / 2**60 for error in measured.errors))
 
     monkeypatch.setattr(solver, "measure_growth", optimistic)
     solution = reference.solve(paris, t_end="60", digits=30)
@@ -163,17 +163,17 @@ def test_a_scene_that_loses_every_digit_of_double_is_measured_with_more(monkeypa
         release={"angle": "179.999999999999", "azimuth": "30"},
         run={"t_end": "60", "digits": 20},
     )
-    growth = solver.measure_growth(scene.exact, tuple(scene.exact.grid))
-    assert growth.prec > DOUBLE.prec
+    assert growth.measure_growth(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
     solution = reference.solve(scene)
     truth = by_higher_precision(scene, 400)
     assert abs(solution.grid.exact("x")[-1] - truth[0]) <= solution.grid.bound("x")[-1]
 
 
 def test_growth_beyond_every_precision_is_refused(monkeypatch, paris):
-    monkeypatch.setattr(solver, "MAX_PREC", 60)
+    monkeypatch.setattr(growth, "MAX_PREC", 60)
     with pytest.raises(UnreachableError, match="keep no digit"):
-        solver.measure_growth(paris.exact, (Fraction(0), Fraction(60)))
+        growth.measure_growth(paris.exact, (Fraction(0), Fraction(60)))
+    monkeypatch.undo()
     monkeypatch.setattr(solver, "MAX_PREC", 100)
     with pytest.raises(UnreachableError, match="do not agree"):
         reference.solve(paris, t_end="60", digits=60)
