@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .errors import UnreachableError
-from .precision import DOUBLE, LONG_DOUBLE, NumberType, column_decimals, decimals_for, real
+from .precision import DOUBLE, LONG_DOUBLE, NumberType, decimals_for, real
 from .runs import Plan, run
 from .scene import Inputs
-from .solution import grid_scales
+from .solution import grid_decimals
 
 MARGIN_BITS = 10  # a run aims this far below the last digit, so that rounding is rarely in doubt
 CLOSE_TRANSIT_BITS = 12  # what the time of a day's worst conditioned transit loses against xdot
@@ -58,10 +58,10 @@ class Growth:
             checked: whether another run will check the result, so that a guess by column will do.
         """
         needed = 0
-        scales = grid_scales(self.largest, self.errors)
         expected = self.errors if checked else self.cautious
-        for error, seen, largest, scale in zip(expected, self.errors, self.largest, scales, strict=True):
-            unit = Fraction(1, 10 ** column_decimals(largest, seen, scale, digits))
+        decimals = grid_decimals(self.largest, self.errors, digits)
+        for error, largest, places in zip(expected, self.largest, decimals, strict=True):
+            unit = Fraction(1, 10**places)
             if error:
                 needed = max(needed, self.prec + bits_in(error / unit) + MARGIN_BITS)
             elif largest:

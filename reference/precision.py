@@ -15,7 +15,6 @@ import mpmath
 GUARD_BITS = 64  # constants and conversions carry this much more than the run that uses them
 DOUBLE_BITS = 53
 LONG_DOUBLE_BITS = 64
-NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
 
 
 @dataclass(frozen=True)
@@ -83,15 +82,6 @@ def fixed_decimal(value: Fraction, decimals: int) -> str:
 def decimals_for(largest: Fraction, digits: int) -> int:
     """Digits after the point so that a column whose largest size is `largest` has `digits` significant ones."""
     return max(0, digits - 1 - magnitude(largest)) if largest else digits
-
-
-def column_decimals(largest: Fraction, error: Fraction, scale: Fraction, digits: int) -> int:
-    """Digits after the point of a column; one that is nothing but error takes those of its kind's `scale`.
-
-    A coordinate that vanishes by symmetry (vy at the turning points of a pole's swing) comes out of a
-    run as rounding noise, and noise has no significant digits.
-    """
-    return decimals_for(largest if largest > NOISE * error else scale, digits)
 
 
 def magnitude(value: Fraction) -> int:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .errors import UnreachableError
-from .precision import column_decimals, fixed_decimal, rounded_up
+from .precision import fixed_decimal, rounded_up
 from .scene import Scene
-from .solution import Solution, Table, grid_scales, transit_scales
+from .solution import Solution, Table, grid_decimals, transit_decimals
 
 GRID_HEADER = ("t", "x", "y", "z", "vx", "vy", "vz")
 TRANSITS_HEADER = ("k", "t", "direction", "x", "y", "z", "vy", "ax", "bound")
@@ -37,19 +37,15 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
     return digits
 
 
-def _decimals(solution: Solution, table: Table) -> dict[str, int]:
-    grid, digits = solution.grid, solution.scene.run.digits
-    scales = grid_scales(grid.largest(), grid.largest_bounds())
-    return {
-        name: column_decimals(largest, error, scale, digits)
-        for name, largest, error, scale in zip(
-            table.columns,
-            table.largest(),
-            table.largest_bounds(),
-            scales if table is grid else transit_scales(scales),
-            strict=True,
-        )
-    }
+def decimals_of(solution: Solution) -> tuple[dict[str, int], dict[str, int]]:
+    """Digits after the point of the columns of the grid and of the transits (empty without transits)."""
+    grid, met, digits = solution.grid, solution.transits, solution.scene.run.digits
+    of_grid = grid_decimals(grid.largest(), grid.largest_bounds(), digits)
+    named = dict(zip(grid.columns, of_grid, strict=True))
+    if met is None:
+        return named, {}
+    t, *_, ax = met.largest()
+    return named, dict(zip(met.columns, transit_decimals(of_grid, t, ax, digits), strict=True))
 
 
 def _printed(table: Table, decimals: dict[str, int], proven: bool) -> list[tuple[str, ...]]:
@@ -80,7 +76,7 @@ class UndecidedRounding(UnreachableError):
 
 def grid_sheet(solution: Solution) -> Sheet:
     """`grid.csv`: exact times, and the state at each."""
-    decimals = {"t": exact_decimals(solution.times), **_decimals(solution, solution.grid)}
+    decimals = {"t": exact_decimals(solution.times), **decimals_of(solution)[0]}
     printed = _printed(solution.grid, decimals, solution.level == "enclosed")
     times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
     return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, printed, strict=True)], decimals)
@@ -91,7 +87,7 @@ def transits_sheet(solution: Solution) -> Sheet:
     table = solution.transits
     if table is None:
         return Sheet(TRANSITS_HEADER, [], {})
-    decimals = _decimals(solution, table)
+    decimals = decimals_of(solution)[1]
     half_unit = Fraction(1, 2 * 10 ** decimals["t"])
     rows = []
     printed = _printed(table, decimals, solution.level == "enclosed")

@@ -10,11 +10,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .precision import NOISE
+from .precision import decimals_for
 from .runs import Run
 from .scene import Scene
 
 Array = npt.NDArray[np.float64]
+
+NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
 
 
 @dataclass(frozen=True)
@@ -57,15 +59,21 @@ class Table:
         return np.array([row[i] / unit for row in self.values])
 
 
-def grid_scales(largest: Sequence[Fraction], errors: Sequence[Fraction]) -> tuple[Fraction, ...]:
-    """Per grid column the largest number of its kind, position or velocity, that is more than error."""
+def grid_decimals(largest: Sequence[Fraction], errors: Sequence[Fraction], digits: int) -> list[int]:
+    """Digits after the point of x, y, z, vx, vy, vz, from each column's largest number and error.
+
+    A column that is nothing but error takes the digits of the largest column of its kind: a coordinate
+    that vanishes by symmetry comes out of a run as rounding noise, and noise has no significant digits.
+    """
     resolved = [size if size > NOISE * error else Fraction(0) for size, error in zip(largest, errors, strict=True)]
-    return (max(resolved[:3]),) * 3 + (max(resolved[3:]),) * 3
+    scales = [max(resolved[:3])] * 3 + [max(resolved[3:])] * 3
+    return [decimals_for(size or scale, digits) for size, scale in zip(resolved, scales, strict=True)]
 
 
-def transit_scales(of_grid: Sequence[Fraction]) -> tuple[Fraction, ...]:
-    """The same for the columns of the transits: t, x, y, z, vy, ax."""
-    return (Fraction(0), *of_grid[:3], of_grid[3], Fraction(0))
+def transit_decimals(of_grid: Sequence[int], t: Fraction, ax: Fraction, digits: int) -> list[int]:
+    """Digits after the point of t, x, y, z, vy, ax: states as in the grid, t and ax by their own largest number."""
+    x, y, z, _, vy, _ = of_grid
+    return [decimals_for(t, digits), x, y, z, vy, decimals_for(ax, digits)]
 
 
 @dataclass(frozen=True)

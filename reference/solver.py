@@ -16,10 +16,10 @@ from typing import Any
 
 from .errors import UnreachableError
 from .growth import MARGIN_BITS, MAX_PREC, Growth, bits_in, disagreement, largest_of, measure_growth
-from .precision import LONG_DOUBLE, cheapest_type, column_decimals, real
+from .precision import LONG_DOUBLE, cheapest_type, real
 from .runs import Plan, Report, Run, run, run_both
 from .scene import Scene
-from .solution import CrossCheck, Solution, Source, Table, grid_scales, transit_scales
+from .solution import CrossCheck, Solution, Source, Table, grid_decimals, transit_decimals
 
 FINER_BITS = 16  # how much finer the published run is than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that a jitter of the pilot does not show
@@ -128,9 +128,8 @@ def _missing_bits(
 ) -> tuple[int, tuple[Fraction, ...], list[tuple[Fraction, ...]] | None]:
     """Bits that two runs lack to agree to a quarter of the last digit, and by how much they differ."""
     gaps = disagreement(published.grid, published.scale, witness.grid, witness.scale)[:6]
-    largest = largest_of(published.grid, published.scale)[:6]
-    scales = grid_scales(largest, gaps)
-    missing = _lacking(gaps, largest, scales, digits)
+    decimals = grid_decimals(largest_of(published.grid, published.scale)[:6], gaps, digits)
+    missing = _lacking(gaps, decimals)
     if published.zeros is None or witness.zeros is None:
         return missing, gaps, None
     if published.directions != witness.directions:
@@ -141,17 +140,17 @@ def _missing_bits(
         tuple(disagreement([a], published.scale, [b], witness.scale)[i] for i in _OF_ZERO)
         for a, b in zip(published.zeros, witness.zeros, strict=True)
     ]
-    worst = tuple(map(max, zip(*rows, strict=True)))
     sizes = largest_of(published.zeros, published.scale)
-    return max(missing, _lacking(worst, [sizes[i] for i in _OF_ZERO], transit_scales(scales), digits)), gaps, rows
+    worst = tuple(map(max, zip(*rows, strict=True)))
+    return max(missing, _lacking(worst, transit_decimals(decimals, sizes[0], sizes[-1], digits))), gaps, rows
 
 
-def _lacking(gaps: Sequence[Fraction], largest: Sequence[Fraction], scales: Sequence[Fraction], digits: int) -> int:
+def _lacking(gaps: Sequence[Fraction], decimals: Sequence[int]) -> int:
     lacking = 0
-    for gap, size, scale in zip(gaps, largest, scales, strict=True):
-        unit = Fraction(1, 10 ** column_decimals(size, gap, scale, digits))
-        if gap > AGREEMENT * unit:
-            lacking = max(lacking, bits_in(gap / unit) + MARGIN_BITS)
+    for gap, places in zip(gaps, decimals, strict=True):
+        ratio = gap * 10**places
+        if ratio > AGREEMENT:
+            lacking = max(lacking, bits_in(ratio) + MARGIN_BITS)
     return lacking
 
 

@@ -1,0 +1,88 @@
+"""TRUSTED. Balls, vectors and norms; a name of a size stands for an upper bound."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+from flint import arb, fmpq, fmpz, fmpz_poly
+
+from .shapes import Interval
+
+SHORT = 64  # bits for bounds, where only the leading digits count
+HUGE = fmpz(1) << 64  # nothing that is larger says anything about a sphere of radius 1
+Vector = list[Any]  # three balls, or three integer polynomials
+
+
+def ball(q: Fraction) -> arb:
+    """A ball that contains the fraction."""
+    return arb(fmpq(q.numerator, q.denominator))
+
+
+def upper(x: arb) -> arb:
+    """An upper bound; refuses what is not finite, or useless."""
+    if not x < HUGE:
+        raise ArithmeticError("a bound is not finite or has outgrown the sphere")
+    return x.upper()
+
+
+def interval(x: arb) -> Interval:
+    """The exact ends of a ball."""
+    upper(abs(x) / HUGE)
+    (mid, e), (rad, f) = ([int(i) for i in part.man_exp()] for part in (x.mid(), x.rad()))
+    low = min(e, f, 0)
+    return Interval(*(Fraction((mid << (e - low)) + side * (rad << (f - low)), 1 << -low) for side in (-1, 1)))
+
+
+def integer(x: arb, bits: int) -> fmpz:
+    """The integer below mid(x) 2^bits."""
+    man, exp = x.mid().man_exp()
+    shift = int(exp) + bits
+    return man << shift if shift >= 0 else man >> -shift
+
+
+def fixed(values: Vector, bits: int) -> tuple[list[fmpz], arb]:
+    """Integers over 2^bits, and the distance of the balls from them."""
+    whole = [integer(x, bits) for x in values]
+    off = [(x - arb(n) / (fmpz(1) << bits)).abs_upper() for x, n in zip(values, whole, strict=True)]
+    return whole, upper(sum(off, arb(0)))
+
+
+def add(*vectors: Vector) -> Vector:
+    """The sum."""
+    return [sum(x[1:], x[0]) for x in zip(*vectors, strict=True)]
+
+
+def times(factor: Any, a: Vector) -> Vector:
+    """The vector, stretched."""
+    return [factor * x for x in a]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """The cross product."""
+    return [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+
+
+def dot(a: Vector, b: Vector) -> Any:
+    """The scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def size(a: Vector) -> arb:
+    """The length."""
+    return upper(upper(sum((x.abs_upper() ** 2 for x in a), arb(0))).sqrt())
+
+
+def norm(f: fmpz_poly, first: int = 1) -> int:
+    """At least Σ|coefficient|: in blocks of doubling length, length times largest."""
+    total, width = 0, first
+    while f.length():
+        total += min(width, f.length()) << f.truncate(width).height_bits()
+        f, width = f.right_shift(width), 2 * width
+    return total
+
+
+def norm3(f: Vector, bits: int, first: int = 0) -> arb:
+    """Sup norm on |s| <= 1 of three polynomials over 2^bits; blocks start anew at `first`."""
+    sums = [norm(x.truncate(first), first or 1) + norm(x.right_shift(first)) for x in f]
+    return upper(arb(fmpz(sum(n * n for n in sums)).isqrt() + 1) / (fmpz(1) << bits))

@@ -1,0 +1,368 @@
+"""The run: method, order and precision from scene and digits, defects on all cores, more bits when needed.
+
+Nothing here enters a bound. It hands every step to the trusted functions, which check that steps join.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pickle
+import subprocess
+import sys
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+from fractions import Fraction
+from itertools import chain, islice, pairwise
+from math import ceil, log2
+from time import process_time
+from types import SimpleNamespace
+from typing import IO, Any, NamedTuple, cast
+
+from flint import arb, fmpz
+
+from ..errors import UnreachableError
+from .bound import Piece, Radius, World, output
+from .candidate import ColumnSource, Expansion, Recurrence, coarse, pair
+from .columns import Columns
+from .shapes import EnclosedTransit, Interval, Sizes, Step
+from .transits import Scan
+
+GUARD_BITS = 64  # the scene's balls beyond the steps' coefficients
+MARGIN = 18  # bits lost to coefficient rounding and norms; measured on Paris
+COLUMN_MARGIN = 14  # the same, more, with columns
+ORDER_PER_BIT = 0.5  # measured optimum, flat
+GROWTH_SHARE = 0.2  # bits of growth that one radius may cost before columns are cheaper
+LEAST_BITS, MAX_BITS = 96, 2048
+ATTEMPTS = 4
+CHUNK = 32  # steps sent at once
+AHEAD = 2  # chunks a helper holds
+WORTH = 500  # oscillation times below which a helper costs more than it saves
+TINY = -1e9  # logarithm of a width that is 0
+PARTS = ("candidate", "defect", "bound", "transits")
+
+Source = Iterable[Expansion] | Callable[[int], Iterable[Expansion]]
+State = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
+
+
+@dataclass(frozen=True)
+class Cost:
+    """CPU seconds by part, helpers included."""
+
+    candidate: float
+    defect: float
+    bound: float
+    transits: float
+
+    @property
+    def proof(self) -> float:
+        """All but the candidate."""
+        return self.defect + self.bound + self.transits
+
+
+@dataclass(frozen=True)
+class Enclosure:
+    """What was proved: the true state at `times` lies in `states`; all zeros of xdot in (0, T] in `transits`."""
+
+    times: list[Fraction]
+    states: list[State]  # x, y, z in m, vx, vy, vz in m/s
+    transits: list[EnclosedTransit] | None  # None: not asked, or xdot is identically zero (see `still`)
+    still: bool
+    bits: int
+    order: int
+    steps: int
+    method: str  # "radius" or "columns"
+    position_radius: Fraction  # the largest of all, m
+    velocity_radius: Fraction  # m/s
+    cpu_s: Cost
+
+
+class _Narrow(Exception):
+    """Bounds came out too wide; carries how many bits more to take."""
+
+    def __init__(self, said: str, bits: int) -> None:
+        super().__init__(said)
+        self.bits = bits
+
+
+class _Plan(NamedTuple):
+    method: str
+    bits: int
+    order: int
+    first: Fraction
+
+
+def enclose(
+    inputs: Any,
+    times: Sequence[Fraction],
+    *,
+    radius: Fraction,
+    transits: bool = True,
+    candidate: Source | None = None,
+    workers: int | None = None,
+    progress: Callable[[float], None] | None = None,
+    method: str | None = None,
+) -> Enclosure:
+    """Prove where the pendulum is at `times` (s, increasing), and every transit up to the last of them.
+
+    Args:
+        inputs: the exact numbers of a scene (`Scene.exact`).
+        times: output times in s, from 0 on, increasing.
+        radius: wanted half-width, m for positions and m/s for velocities.
+        transits: also enclose all zeros of xdot.
+        candidate: expansions in a chain from t = 0, or a function of the precision in bits that makes such a chain
+            (only then can a second attempt be made); None for the package's own recurrence.
+        workers: processes that may be used, this one included; None for one a core.
+        progress: called with the part of the time span done.
+        method: "radius" or "columns"; None for what is likely to be cheaper.
+
+    Raises:
+        UnreachableError: no bound of this width could be had; says how wide it came out.
+    """
+    if not times or times[0] < 0 or any(b <= a for a, b in pairwise(times)):
+        raise ValueError("times: got a sequence that is empty, negative or not increasing")
+    plan, said = _plan(inputs, times[-1], radius, method), "nothing tried"
+    attempts = ATTEMPTS if candidate is None or callable(candidate) else 1
+    for _ in range(attempts):
+        try:
+            run = _Run(inputs, plan, list(times), transits, workers, progress)
+            return run.prove(candidate, radius)
+        except _Narrow as error:
+            said, more = str(error), error.bits
+        except (ArithmeticError, ValueError) as error:
+            # a bound that is not finite, a matrix without inverse, a step that does not join
+            said, more = f"at {plan.bits} bits: {error}", plan.bits // 3
+        plan = plan._replace(bits=plan.bits + more, order=_order(plan.bits + more))
+        if plan.bits > MAX_BITS:
+            break
+    raise UnreachableError(
+        f"enclosure: no bound of {_short(radius)} m at {float(times[-1]):g} s; {said}.",
+        "Ask for fewer digits or a shorter time.",
+    )
+
+
+def _order(bits: int) -> int:
+    return max(24, round(ORDER_PER_BIT * bits))
+
+
+def _plan(inputs: Any, end: Fraction, radius: Fraction, method: str | None) -> _Plan:
+    """Method and precision from the bound's own growth rate."""
+    world = World(inputs, 128)
+    w, span = float(world.w0), float(end)
+    growth = span * float(max(world.below, world.above + world.speed**2, key=float)) / (2 * w) / 0.693
+    ratio = inputs.length / radius
+    wanted = ratio.numerator.bit_length() - ratio.denominator.bit_length() + log2(2 + span * w)
+    method = method or ("radius" if growth <= GROWTH_SHARE * wanted + MARGIN else "columns")
+    extra = growth if method == "radius" else COLUMN_MARGIN + 2 * log2(2 + span * w) / 2
+    bits = max(LEAST_BITS, 8 * ceil((wanted + MARGIN + extra) / 8))
+    if bits > MAX_BITS:
+        said = f"enclosure: {_short(radius)} m would take more than {MAX_BITS} bits."
+        raise UnreachableError(said, "Ask for fewer digits.")
+    return _Plan(method, bits, _order(bits), coarse(Fraction(1 / (4 * w))))
+
+
+@dataclass
+class _Clock:
+    """CPU seconds since the last reading, by part."""
+
+    parts: dict[str, float] = field(default_factory=lambda: dict.fromkeys(PARTS, 0.0))
+    last: float = field(default_factory=process_time)
+
+    def lap(self, part: str) -> None:
+        now = process_time()
+        self.parts[part] += now - self.last
+        self.last = now
+
+
+class _Run:
+    """One attempt at one precision."""
+
+    def __init__(
+        self,
+        inputs: Any,
+        plan: _Plan,
+        times: list[Fraction],
+        transits: bool,
+        workers: int | None,
+        progress: Callable[[float], None] | None,
+    ) -> None:
+        self.inputs, self.plan, self.times, self.progress = inputs, plan, times, progress
+        self.transits = transits
+        self.workers = workers or os.cpu_count() or 1
+        self.end = times[-1]
+        self.clock = _Clock()
+
+    def prove(self, candidate: Source | None, radius: Fraction) -> Enclosure:
+        """Run all steps; refuse a result that is wider than `radius`."""
+        bits, order = self.plan.bits, self.plan.order
+        source: Iterator[Expansion] = iter(())
+        if candidate is not None:
+            given = iter(candidate(bits) if callable(candidate) else candidate)
+            first = next(given, None)
+            if first is None:
+                raise UnreachableError("enclosure: the candidate is empty.")
+            source, bits, order = chain([first], given), first.bits, len(first.coefficients[0]) - 1
+        self.world = world = World(self.inputs, bits + GUARD_BITS)
+        if candidate is None:
+            source = Recurrence(world, bits, order).chain(self.plan.first)
+        self.clock.lap("bound")
+        scan = Scan(world) if self.transits and not world.still else None
+        states, count = self._steps(self._until(pair(source)), scan, bits)
+        found = (scan.finish() if self.end else []) if scan else None
+        self.clock.lap("transits")
+        widths = [[(i.high - i.low) / 2 for i in row] for row in states]
+        position = max(max(row[:3]) for row in widths)
+        velocity = max(max(row[3:]) for row in widths)
+        if max(position, velocity) > radius:
+            ratio = max(position, velocity) / radius
+            more = 8 * ceil((ratio.numerator.bit_length() - ratio.denominator.bit_length() + 6) / 8)
+            said = f"{bits} bits gave {_short(position)} m and {_short(velocity)} m/s ({self.plan.method})"
+            raise _Narrow(said, more)
+        rows = cast("list[State]", [tuple(row) for row in states])
+        cost = Cost(**self.clock.parts)
+        return Enclosure(
+            self.times, rows, found, world.still, bits, order, count, self.plan.method, position, velocity, cost
+        )
+
+    def _until(self, steps: Iterator[Step]) -> Iterator[Step]:
+        """The steps up to the end of the run, the last one cut there."""
+        for step in steps:
+            if step.centre + step.h * step.high >= self.end:
+                yield step._replace(high=max((self.end - step.centre) / step.h, step.low + Fraction(1, 1 << 20)))
+                return
+            yield step
+        raise UnreachableError(f"enclosure: the candidate ends before {float(self.end):g} s.")
+
+    def _steps(self, steps: Iterator[Step], scan: Scan | None, bits: int) -> tuple[list[list[Interval]], int]:
+        world, states, count, waiting = self.world, [], 0, deque(self.times)
+        bound: Radius | Columns = Radius(world)
+        columns = None
+        if self.plan.method == "columns":
+            bound, columns = Columns(world), ColumnSource(world)
+        for piece, sizes in self._with_sizes(steps, bits):
+            if columns is None:
+                tube = cast(Radius, bound).advance(piece, sizes)
+            else:
+                box = cast(Columns, bound)
+                proposal = columns.propose(piece.step, [_log(z) for z in box.z])
+                self.clock.lap("candidate")
+                tube = box.advance(piece, sizes, proposal)
+            while waiting and waiting[0] <= piece.end:
+                states.append(output(world, piece, tube, waiting.popleft()))
+            self.clock.lap("bound")
+            if scan:
+                scan.advance(piece, tube)
+                self.clock.lap("transits")
+            count += 1
+            if self.progress:
+                self.progress(float(piece.end / self.end) if self.end else 1.0)
+        return states, count
+
+    def _with_sizes(self, steps: Iterator[Step], bits: int) -> Iterator[tuple[Piece, Sizes]]:
+        """Each step with its defect, computed here or by helpers."""
+        world = self.world
+        if self.workers < 2 or float(self.end) * float(world.w0) < WORTH:
+            for step in steps:
+                self.clock.lap("candidate")
+                piece = Piece(self.world, step)
+                sizes = piece.sizes()
+                self.clock.lap("defect")
+                yield piece, sizes
+            return
+        helpers = [_Helper(self.inputs, world.prec) for _ in range(self.workers - 1)]
+        try:
+            yield from self._shared(steps, helpers)
+        finally:
+            for helper in helpers:
+                helper.stop()
+
+    def _shared(self, steps: Iterator[Step], helpers: list[_Helper]) -> Iterator[tuple[Piece, Sizes]]:
+        sent: deque[tuple[_Helper, list[Step]]] = deque()
+        turn = 0
+        while True:
+            chunk = list(islice(steps, CHUNK))
+            self.clock.lap("candidate")
+            if chunk:
+                helper = helpers[turn % len(helpers)]
+                helper.send(chunk)
+                sent.append((helper, chunk))
+                turn += 1
+                self.clock.lap("defect")
+            if not sent:
+                return
+            if chunk and len(sent) < AHEAD * len(helpers) + 1:
+                continue
+            helper, done = sent.popleft()
+            sizes, cpu = helper.receive()
+            self.clock.parts["defect"] += cpu
+            for step, row in zip(done, sizes, strict=True):
+                piece = Piece(self.world, step)
+                self.clock.lap("defect")
+                yield piece, row
+
+
+def _short(x: Fraction) -> str:
+    """Two digits, also of what a float cannot hold."""
+    return f"{Decimal(x.numerator) / Decimal(x.denominator):.1e}"
+
+
+def _log(z: arb) -> float:
+    return float(z.log()) if z > 0 else TINY
+
+
+def _pack(sizes: Sizes) -> list[tuple[int, int]]:
+    return [(int(m), int(e)) for m, e in (x.man_exp() for x in sizes)]
+
+
+def _unpack(row: list[tuple[int, int]]) -> Sizes:
+    return Sizes(*(arb((fmpz(m), fmpz(e))) for m, e in row))
+
+
+class _Helper:
+    """A process that computes defects; it ends when its input does, so it cannot outlive this one."""
+
+    def __init__(self, inputs: Any, prec: int) -> None:
+        code = "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer); from {} import serve; serve()"
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", code.format(__name__)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
+        self.put(sys.path)
+        self.put((SimpleNamespace(**vars(inputs)), prec))
+
+    def put(self, value: object) -> None:
+        pipe = cast("IO[bytes]", self.process.stdin)
+        pickle.dump(value, pipe, protocol=pickle.HIGHEST_PROTOCOL)
+        pipe.flush()
+
+    def send(self, steps: list[Step]) -> None:
+        self.put([tuple(step) for step in steps])
+
+    def receive(self) -> tuple[list[Sizes], float]:
+        rows, cpu = pickle.load(cast("IO[bytes]", self.process.stdout))
+        return [_unpack(row) for row in rows], cpu
+
+    def stop(self) -> None:
+        self.process.kill()
+        for pipe in (self.process.stdin, self.process.stdout):
+            if pipe:
+                with contextlib.suppress(OSError):
+                    pipe.close()
+        self.process.wait()
+
+
+def serve() -> None:
+    """The helper's loop: steps in, sizes out, until the input ends."""
+    source, target = sys.stdin.buffer, sys.stdout.buffer
+    inputs, prec = pickle.load(source)
+    world = World(inputs, prec)
+    while True:
+        before = process_time()
+        try:
+            steps = [Step(*row) for row in pickle.load(source)]
+        except EOFError:
+            return
+        rows = [_pack(Piece(world, s).sizes()) for s in steps]
+        pickle.dump((rows, process_time() - before), target)
+        target.flush()

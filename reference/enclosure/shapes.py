@@ -1,0 +1,72 @@
+"""Declarations only: what goes in and out of the enclosure. No arithmetic here."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from flint import arb
+
+
+@dataclass(frozen=True)
+class Interval:
+    """A closed interval with exact ends."""
+
+    low: Fraction
+    high: Fraction
+
+
+@dataclass(frozen=True)
+class EnclosedTransit:
+    """A zero of xdot ("one"), or an interval that may hold some ("possible"); SI units."""
+
+    kind: str
+    parity: str  # "one"; of a possible one "odd" (so at least one), "even" or "unknown"
+    direction: int  # +1 where xdot goes from - to +, 0 if not known
+    t: Interval
+    x: Interval
+    y: Interval
+    z: Interval
+    vy: Interval
+    ax: Interval
+
+
+class Step(NamedTuple):
+    """A proposal: n and h H on [centre + h low, centre + h high], integer coefficients of s over 2^bits."""
+
+    centre: Fraction
+    h: Fraction
+    low: Fraction  # -1 <= low < high <= 1
+    high: Fraction
+    bits: int
+    coefficients: tuple[list[int], ...]
+
+
+class Sizes(NamedTuple):
+    """Sup norms on |s| <= 1: the defects, |p|, |K|, |d1'|."""
+
+    d1: arb
+    d2: arb
+    p: arb
+    k: arb
+    d1_rate: arb
+
+
+class Tube(NamedTuple):
+    """Bounds of |r - p|, |H - K|, |v - p'|, |r'' - p''|."""
+
+    eta: arb
+    gamma: arb
+    u: arb
+    a: arb
+
+
+class Leaf(NamedTuple):
+    """A part of a step: `way` is the sign of xdot (E, no zero), of xddot (M, monotone), or 0 (R, undecided)."""
+
+    kind: str
+    way: int
+    low: arb
+    high: arb
+    slope: Any

@@ -1,0 +1,179 @@
+"""What the enclosure is checked against: the equations of motion, run by somebody else's integrators."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+
+import heyoka as hy
+import mpmath as mp
+import numpy as np
+from flint import ctx
+
+from reference.enclosure.bound import Piece, Radius, World, output
+from reference.enclosure.candidate import ColumnSource, Recurrence, pair
+from reference.enclosure.columns import Columns
+from reference.scene import Inputs
+
+PARIS = Inputs(
+    length=Fraction(67), drag=Fraction(0), latitude=Fraction("48.846111"), altitude=Fraction(0),
+    gravity=Fraction("9.80665"), rotation_rate=Fraction("7.292115e-5"), equatorial_radius=Fraction(6378137),
+    flattening=1 / Fraction("298.257223564"), position=(Fraction("0.3"), Fraction("0.4"), Fraction(0), Fraction(0)),
+    angles=None, t_end=Fraction(60), grid_step=Fraction(1),
+)  # fmt: skip
+DEGREE = 180 / Fraction("3.14159265358979323846")
+
+
+def scene(**changes: object) -> Inputs:
+    """Paris with changes; numbers as strings, `x`, `y`, `vx`, `vy` or four `angles` in degrees."""
+    start = [Fraction(str(changes.pop(n, d))) for n, d in (("x", "0.3"), ("y", "0.4"), ("vx", 0), ("vy", 0))]
+    angles = changes.pop("angles", None)
+    turned = tuple(Fraction(str(a)) for a in angles) if angles else None
+    numbers = {name: Fraction(str(value)) for name, value in changes.items()}
+    return replace(PARIS, position=None if turned else tuple(start), angles=turned, **numbers)
+
+
+def constants(inputs: Inputs):
+    """sin, cos of the latitude, R, and the rest, as mpmath numbers."""
+    q = lambda f: mp.mpf(f.numerator) / f.denominator  # noqa: E731
+    phi, f = q(inputs.latitude) * mp.pi / 180, q(inputs.flattening)
+    s, c = mp.sin(phi), mp.cos(phi)
+    R = (q(inputs.equatorial_radius) / mp.sqrt(1 - f * (2 - f) * s * s) + q(inputs.altitude)) * c
+    return s, c, R, q(inputs.length), q(inputs.gravity), q(inputs.rotation_rate), q(inputs.drag)
+
+
+def start(inputs: Inputs):
+    """x, y, z, vx, vy, vz at t = 0."""
+    q = lambda f: mp.mpf(f.numerator) / f.denominator  # noqa: E731
+    length = q(inputs.length)
+    if inputs.position:
+        x, y, vx, vy = map(q, inputs.position)
+        z = -mp.sqrt(length**2 - x * x - y * y)
+        return [x, y, z, vx, vy, -(x * vx + y * vy) / z]
+    a, b, da, db = (q(v) * mp.pi / 180 for v in inputs.angles)
+    sa, ca, sb, cb = mp.sin(a), mp.cos(a), mp.sin(b), mp.cos(b)
+    speeds = [ca * cb * da - sa * sb * db, ca * sb * da + sa * cb * db, sa * da]
+    return [length * v for v in (sa * cb, sa * sb, -ca, *speeds)]
+
+
+def acceleration(pars, state):
+    """The issue's equations of motion, x east, y north, z up, with every term."""
+    s, c, R, length, g, om, drag = pars
+    x, y, z, u, v, w = state
+    q = R - s * y + c * z
+    fx = om * om * x - 2 * om * (c * w - s * v) - drag * u
+    fy = -om * om * s * q - 2 * om * s * u - drag * v
+    fz = -g + om * om * c * q + 2 * om * c * u - drag * w
+    pull = (u * u + v * v + w * w + x * fx + y * fy + z * fz) / (length * length)
+    return fx - x * pull, fy - y * pull, fz - z * pull
+
+
+@cache
+def integrator(prec: int):
+    x, y, z, u, v, w = names = hy.make_vars("x", "y", "z", "u", "v", "w")
+    two = hy.real(2, prec)
+    pars = [hy.par[i] for i in range(7)]
+    s, c, R, length, g, om, drag = pars
+    q = R - s * y + c * z
+    fx = om * om * x - two * om * (c * w - s * v) - drag * u
+    fy = -om * om * s * q - two * om * s * u - drag * v
+    fz = -g + om * om * c * q + two * om * c * u - drag * w
+    pull = (u * u + v * v + w * w + x * fx + y * fy + z * fz) / (length * length)
+    rates = [u, v, w, fx - x * pull, fy - y * pull, fz - z * pull]
+    zero = [hy.real(0, prec)] * 7
+    return hy.taylor_adaptive(
+        list(zip(names, rates, strict=True)), zero[:6], pars=zero, fp_type=hy.real, prec=prec, compact_mode=True
+    )
+
+
+def _real(x, prec: int):
+    return hy.real(mp.nstr(x, int(prec * 0.302) + 8, strip_zeros=False), prec)
+
+
+def truth(inputs: Inputs, times: list[Fraction], prec: int = 400) -> list[list[Fraction]]:
+    """States at `times` by heyoka in the plain form at `prec` bits."""
+    out = []
+    with mp.workprec(prec + 64):
+        ta = integrator(prec)
+        ta.time = hy.real(0, prec)
+        ta.state[:] = [_real(x, prec) for x in start(inputs)]
+        ta.pars[:] = [_real(x, prec) for x in constants(inputs)]
+        for t in times:
+            ta.propagate_until(_real(mp.mpf(t.numerator) / t.denominator, prec))
+            out.append([Fraction(mp.nstr(mp.mpf(str(x)), int(prec * 0.3))) for x in ta.state])
+    return out
+
+
+@cache
+def turning(prec: int):
+    """The same motion as n and H, for steep scenes: the plain form leaves the sphere there."""
+    names = hy.make_vars("x", "y", "z", "a", "b", "c")
+    x, y, z, a, b, c = names
+    wy, wz, cy, cz = (hy.par[i] for i in range(4))
+    q, s = b - wy, c - wz
+    rates = [q * z - s * y, s * x - a * z, a * y - q * x]
+    rates += [y * cz - z * cy + b * wz - c * wy, -(x * cz) - a * wz, x * cy + a * wy]
+    zero = [hy.real(0, prec)] * 6
+    return hy.taylor_adaptive(
+        list(zip(names, rates, strict=True)), zero, pars=zero[:4], fp_type=hy.real, prec=prec, compact_mode=True
+    )
+
+
+def steep_truth(inputs: Inputs, time: Fraction, prec: int) -> list[Fraction]:
+    """The state at `time` by heyoka in the momentum form, without drag."""
+    with mp.workprec(prec + 64):
+        s, c, R, length, g, om, _ = constants(inputs)
+        x, y, z, u, v, w = (q / length for q in start(inputs))
+        wy, wz = om * c, om * s
+        u, v, w = u + wy * z - wz * y, v + wz * x, w - wy * x
+        first = [x, y, z, y * w - z * v, z * u - x * w, x * v - y * u]
+        ta = turning(prec)
+        ta.time = hy.real(0, prec)
+        ta.state[:] = [_real(q, prec) for q in first]
+        ta.pars[:] = [_real(q, prec) for q in (wy, wz, -om * om * s * R / length, (om * om * c * R - g) / length)]
+        ta.propagate_until(_real(mp.mpf(time.numerator) / time.denominator, prec))
+        x, y, z, a, b, d = (mp.mpf(str(q)) for q in ta.state)
+        b, d = b - wy, d - wz
+        end = [x, y, z, b * z - d * y, d * x - a * z, a * y - b * x]
+        return [Fraction(mp.nstr(length * q, int(prec * 0.29))) for q in end]
+
+
+def doubles(inputs: Inputs):
+    """Start and right-hand side for double-precision integrators."""
+    pars = [float(x) for x in constants(inputs)]
+
+    def rates(_t, s):
+        return np.array([*s[3:], *acceleration(pars, s)])
+
+    return rates, np.array([float(x) for x in start(inputs)])
+
+
+def contains(interval, x: Fraction) -> bool:
+    return interval.low <= x <= interval.high
+
+
+def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first: Fraction = Fraction(1, 4)):
+    """The package's own steps, the last one cut at `end`."""
+    for step in pair(Recurrence(World(inputs, bits + 64), bits, order).chain(first)):
+        last = step.centre + step.h * step.high >= end
+        yield step._replace(high=(end - step.centre) / step.h) if last else step
+        if last:
+            return
+
+
+def carry(inputs: Inputs, proposal, columns: bool = False):
+    """Every piece with its tube."""
+    proposal = list(proposal)
+    world = World(inputs, proposal[0].bits + 64)
+    bound, source = (Columns(world), ColumnSource(world)) if columns else (Radius(world), None)
+    for step in proposal:
+        piece = Piece(world, step)
+        more = [source.propose(step, [float(z) for z in bound.z])] if source else []
+        yield world, piece, bound.advance(piece, piece.sizes(), *more)
+
+
+def last_state(inputs: Inputs, proposal, columns: bool = False):
+    *_, (world, piece, tube) = carry(inputs, proposal, columns)
+    with ctx.workprec(world.prec):
+        return output(world, piece, tube, piece.end)
