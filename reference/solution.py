@@ -16,6 +16,8 @@ from .scene import Scene
 
 Array = npt.NDArray[np.float64]
 
+GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
+TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
 NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
 
 

@@ -19,15 +19,22 @@ from .growth import MARGIN_BITS, MAX_PREC, Growth, bits_in, disagreement, larges
 from .precision import LONG_DOUBLE, cheapest_type, real
 from .runs import Plan, Report, Run, run, run_both
 from .scene import Scene
-from .solution import CrossCheck, Solution, Source, Table, grid_decimals, transit_decimals
+from .solution import (
+    GRID_COLUMNS,
+    TRANSIT_COLUMNS,
+    CrossCheck,
+    Solution,
+    Source,
+    Table,
+    grid_decimals,
+    transit_decimals,
+)
 
 FINER_BITS = 16  # how much finer the published run is than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that a jitter of the pilot does not show
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last digit printed
 MAX_RAISES = 6
 
-GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
-TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
 _OF_ZERO = (0, 1, 2, 3, 5, 7)  # of t, x, y, z, vx, vy, vz, ax
 
 

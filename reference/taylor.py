@@ -29,6 +29,7 @@ from .precision import NumberType
 hy.install_custom_numpy_mem_handler()
 
 STEPS_PER_LOOK = 64  # how often a run reports its progress
+TIME_BITS = 64  # a step's exact times are read with so many bits below twice the precision
 _TYPES = {"double": float, "long_double": np.longdouble, "real": hy.real}
 
 
@@ -40,6 +41,7 @@ class Numbers:
         self.type: Any = _TYPES[number.name]
         self.dtype: Any = {"double": np.float64, "long_double": np.longdouble, "real": hy.real}[number.name]
         self.keywords: dict[str, Any] = {"prec": number.prec} if number.name == "real" else {}
+        self._twos: dict[int, Any] = {}
 
     def of(self, value: Any) -> Any:
         """An mpf, int or Fraction as the nearest number of the type."""
@@ -59,7 +61,9 @@ class Numbers:
 
     def power_of_two(self, exponent: int) -> Any:
         """2**exponent, exactly."""
-        return self.of(Fraction(2) ** exponent)
+        if exponent not in self._twos:
+            self._twos[exponent] = self.of(Fraction(2) ** exponent)
+        return self._twos[exponent]
 
     def fixed(self, values: Any, scale: int) -> list[int]:
         """Each number of an array times 2**scale as an integer (cut off below one)."""
@@ -173,6 +177,23 @@ class Zero:
     state: Any
 
 
+@dataclass(frozen=True)
+class Polynomials:
+    """Taylor polynomials of one step of `momentum`: n and h H as polynomials of s = (t - begin)/h, 0 <= s <= 1.
+
+    Attributes:
+        begin: start of the step in s, exact.
+        h: its length in s, exact.
+        bits: coefficients are integers over 2**bits.
+        rows: six lists of coefficients, lowest order first.
+    """
+
+    begin: Fraction
+    h: Fraction
+    bits: int
+    rows: tuple[list[int], ...]
+
+
 class Stepper:
     """heyoka's integrator, one step at a time, with the events of the last step and dense output.
 
@@ -227,6 +248,7 @@ class Stepper:
         self.compile_s = time.process_time() - begun
         self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
         self._sign: Any = None
+        self._powers: tuple[Any, Any] = (None, None)
 
     @property
     def time(self) -> Any:
@@ -245,7 +267,9 @@ class Stepper:
             IntegrationError: heyoka says anything but success.
         """
         self.found.clear()
-        outcome, _ = self._ta.step(limit)
+        self._checked(self._ta.step(limit)[0])
+
+    def _checked(self, outcome: Any) -> None:
         if outcome not in (hy.taylor_outcome.success, hy.taylor_outcome.time_limit):
             raise IntegrationError(f"heyoka stopped at t = {float(self.time)} s with outcome {outcome}.")
         if not np.isfinite(self._ta.state.astype(float)).all():
@@ -281,6 +305,30 @@ class Stepper:
         taken = np.array(self._ta.tc)
         self.back(start)
         return taken, h
+
+    def expand(self, limit: Any, bits: int) -> Polynomials:
+        """One step, at most `limit` seconds long, with its Taylor polynomials; stays exact in time."""
+        begun = self._exact_time()
+        self._checked(self._ta.step(limit, True)[0])
+        h = self._exact_time() - begun
+        if (h, bits) != self._powers[0]:
+            self._powers = ((h, bits), self._row_powers(h, bits))
+        scaled = (self._ta.tc * self._powers[1]).ravel()
+        whole = [int(c) for c in scaled]
+        width = self.order + 1
+        return Polynomials(begun, h, bits, tuple(whole[i : i + width] for i in range(0, len(whole), width)))
+
+    def _row_powers(self, h: Fraction, bits: int) -> Any:
+        """h**k 2**bits for the coefficients of n and h**(k+1) 2**bits for those of H, shape (6, order + 1)."""
+        step, powers = self.numbers.of(h), [self.numbers.power_of_two(bits)]
+        for _ in range(self.order + 1):
+            powers.append(powers[-1] * step)
+        half = len(self._variables) // 2
+        return np.array([powers[:-1]] * half + [powers[1:]] * half)
+
+    def _exact_time(self) -> Fraction:
+        scale = 2 * self.number.prec + TIME_BITS
+        return Fraction(sum(self.numbers.fixed(np.array(self._ta.dtime), scale)), 1 << scale)
 
     def propagate(self, times: Sequence[Any], report: Callable[[float], None] | None = None) -> Any:
         """States at increasing times (the first is the present), shape (times, variables), without events."""

@@ -1,0 +1,147 @@
+"""heyoka's own run as the candidate of a proof: the Taylor polynomials of every step, from a process of its own.
+
+The proof takes them as they come, so that both cores work, and the pipe holds the run back if it is ahead.
+Nothing here is trusted: what is wrong with a polynomial, the proof measures.
+"""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import os
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from .errors import FoucaultError, IntegrationError
+from .mechanics import FORMULATIONS
+from .precision import real
+from .runs import SPARE_BITS, Plan, Run, start_of
+from .scene import Inputs
+
+GUARD_BITS = 16  # coefficients carry this much below the run's epsilon
+BATCH = 32  # steps sent at once
+SHRINK = 0.995  # of the step heyoka would take, before it is cut to few bits
+STEP_BITS = 6  # mantissa of a step: equal steps share their scaled constants, and times stay short
+
+
+@dataclass
+class Feed:
+    """Starts heyoka in `momentum` at a precision, hands on its polynomials, and keeps what the run computed.
+
+    Attributes:
+        inputs: the scene's exact inputs.
+        times: output times in s; the run goes one step beyond the last.
+    """
+
+    inputs: Inputs
+    times: tuple[Fraction, ...]
+    _child: Any = field(default=None, repr=False)
+    _open: Iterator[Any] = field(default_factory=lambda: iter(()), repr=False)
+    _done: Run | None = field(default=None, repr=False)
+
+    def __call__(self, prec: int) -> Iterator[Any]:
+        """The polynomials of a run at `prec` bits, in order from t = 0."""
+        self.stop()
+        spawn = multiprocessing.get_context("spawn")
+        receiver, sender = spawn.Pipe(duplex=False)
+        given = (self.inputs, self.times, prec, sender, os.getpid())
+        self._child = spawn.Process(target=_child, args=given, daemon=True)
+        self._child.start()
+        sender.close()
+        self._open = self._received(receiver)
+        return self._open
+
+    def finished(self) -> Run:
+        """What the last run computed at `times`."""
+        for _ in self._open:
+            pass
+        if self._done is None:
+            raise IntegrationError("heyoka's process ended without its states.")
+        return self._done
+
+    def _received(self, receiver: Any) -> Iterator[Any]:
+        while True:
+            try:
+                message = receiver.recv()
+            except EOFError:
+                raise IntegrationError("heyoka's process ended without an answer.") from None
+            if isinstance(message, Run):
+                self._done = message
+                return
+            if isinstance(message, BaseException):
+                raise message
+            yield from message
+
+    def stop(self) -> None:
+        """End the process."""
+        if self._child is not None:
+            self._child.terminate()
+            self._child.join()
+
+
+def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Iterator[Any]:
+    """The polynomials of a run at `prec` bits and, last of all, the `Run` with the states at `times`."""
+    from . import taylor
+
+    plan = Plan(inputs, "momentum", real(prec), times, transits=False)
+    ctx, k, n, v = start_of(inputs, plan.number)
+    stepper = taylor.Stepper(FORMULATIONS["momentum"], k, n, v, ctx, plan.number)
+    grid = [stepper.numbers.of(t) for t in times]
+    begun = time.process_time()
+    states, limit, ahead = [stepper.state], stepper.numbers.of(times[-1]), False
+    while not ahead:
+        ahead = stepper.time > grid[-1]
+        step = stepper.expand(limit, prec + GUARD_BITS)
+        yield step
+        while len(states) < len(grid) and grid[len(states)] <= stepper.time:
+            states.append(stepper.sample(grid[len(states)]))
+        limit = stepper.numbers.of(_next_step(step))
+    array = np.array(states, dtype=stepper.numbers.dtype)
+    yield Run(
+        plan=plan,
+        scale=prec + SPARE_BITS,
+        grid=taylor.cartesian(stepper, array, prec + SPARE_BITS).rows,
+        zeros=None,
+        directions=[],
+        order=stepper.order,
+        steps=stepper.steps,
+        terms=stepper.terms,
+        tension=taylor.least_tension(stepper, array),
+        compile_s=stepper.compile_s,
+        cpu_s=time.process_time() - begun,
+    )
+
+
+def _next_step(step: Any) -> Fraction:
+    """About the step that heyoka's rule would take next (its own choice limits it anyway), with a short mantissa.
+
+    The rule: h = ρ exp(-2 - 0.7/(p - 1)), ρ the smaller of |c_k|^(-1/k) of the last two orders.
+    """
+    order = len(step.rows[0]) - 1
+    sizes = {k: max(abs(row[k]).bit_length() for row in step.rows) - step.bits for k in (order - 1, order)}
+    reach = min(-size / k for k, size in sizes.items()) - (2 + 0.7 / (order - 1)) * math.log2(math.e)
+    mantissa, exponent = math.frexp(float(step.h) * 2**reach * SHRINK)
+    return Fraction(int(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
+
+
+def _child(inputs: Inputs, times: tuple[Fraction, ...], prec: int, sender: Any, parent: int) -> None:
+    batch: list[Any] = []
+    try:
+        for item in expand(inputs, times, prec):
+            batch.append(item)
+            if len(batch) == BATCH:
+                if os.getppid() != parent:
+                    os._exit(1)  # the parent was killed: nobody proves this run
+                sender.send(batch)
+                batch = []
+        sender.send(batch[:-1])
+        sender.send(batch[-1])
+    except FoucaultError as error:
+        sender.send(IntegrationError(str(error)))
+    except (KeyboardInterrupt, BrokenPipeError):
+        os._exit(1)
