@@ -1,7 +1,8 @@
-"""heyoka's own run as the candidate of a proof: the Taylor polynomials of every step, from a process of its own.
+"""heyoka's own run as the candidate of a proof: its Taylor polynomials, from a process of its own.
 
-The proof takes them as they come, so that both cores work, and the pipe holds the run back if it is ahead.
-Nothing here is trusted: what is wrong with a polynomial, the proof measures.
+A polynomial serves both sides of its centre, so that of two steps one is sent. The proof takes them as they
+come: both cores work, and the pipe holds the run back if it is ahead. Nothing here is trusted: what is wrong
+with a polynomial, the proof measures.
 """
 
 from __future__ import annotations
@@ -10,10 +11,10 @@ import math
 import multiprocessing
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +23,9 @@ from .mechanics import FORMULATIONS
 from .precision import real
 from .runs import SPARE_BITS, Plan, Run, start_of
 from .scene import Inputs
+
+if TYPE_CHECKING:
+    from .taylor import Polynomials
 
 GUARD_BITS = 16  # coefficients carry this much below the run's epsilon
 BATCH = 32  # steps sent at once
@@ -45,7 +49,7 @@ class Feed:
     _done: Run | None = field(default=None, repr=False)
 
     def __call__(self, prec: int) -> Iterator[Any]:
-        """The polynomials of a run at `prec` bits, in order from t = 0."""
+        """The steps to prove of a run at `prec` bits, in order from t = 0."""
         self.stop()
         spawn = multiprocessing.get_context("spawn")
         receiver, sender = spawn.Pipe(duplex=False)
@@ -84,8 +88,8 @@ class Feed:
             self._child.join()
 
 
-def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Iterator[Any]:
-    """The polynomials of a run at `prec` bits and, last of all, the `Run` with the states at `times`."""
+def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Generator[Polynomials, None, Run]:
+    """The polynomials of a run at `prec` bits from t = 0 to one step beyond the last time; returns its `Run`."""
     from . import taylor
 
     plan = Plan(inputs, "momentum", real(prec), times, transits=False)
@@ -100,9 +104,9 @@ def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Iterator[A
         yield step
         while len(states) < len(grid) and grid[len(states)] <= stepper.time:
             states.append(stepper.sample(grid[len(states)]))
-        limit = stepper.numbers.of(_next_step(step))
+        limit = stepper.numbers.of(_next_step(step, stepper.order))
     array = np.array(states, dtype=stepper.numbers.dtype)
-    yield Run(
+    return Run(
         plan=plan,
         scale=prec + SPARE_BITS,
         grid=taylor.cartesian(stepper, array, prec + SPARE_BITS).rows,
@@ -117,30 +121,35 @@ def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Iterator[A
     )
 
 
-def _next_step(step: Any) -> Fraction:
+def _next_step(step: Polynomials, order: int) -> Fraction:
     """About the step that heyoka's rule would take next (its own choice limits it anyway), with a short mantissa.
 
     The rule: h = ρ exp(-2 - 0.7/(p - 1)), ρ the smaller of |c_k|^(-1/k) of the last two orders.
     """
-    order = len(step.rows[0]) - 1
-    sizes = {k: max(abs(row[k]).bit_length() for row in step.rows) - step.bits for k in (order - 1, order)}
-    reach = min(-size / k for k, size in sizes.items()) - (2 + 0.7 / (order - 1)) * math.log2(math.e)
+    reach = min(-step.log2_largest(k) / k for k in (order - 1, order)) - (2 + 0.7 / (order - 1)) * math.log2(math.e)
     mantissa, exponent = math.frexp(float(step.h) * 2**reach * SHRINK)
     return Fraction(int(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
 
 
 def _child(inputs: Inputs, times: tuple[Fraction, ...], prec: int, sender: Any, parent: int) -> None:
+    from .enclosure import pair
+
     batch: list[Any] = []
+    done: list[Run] = []
+
+    def chain() -> Iterator[Polynomials]:
+        done.append((yield from expand(inputs, times, prec)))
+
     try:
-        for item in expand(inputs, times, prec):
-            batch.append(item)
+        for step in pair(chain()):
+            batch.append(step)
             if len(batch) == BATCH:
                 if os.getppid() != parent:
                     os._exit(1)  # the parent was killed: nobody proves this run
                 sender.send(batch)
                 batch = []
-        sender.send(batch[:-1])
-        sender.send(batch[-1])
+        sender.send(batch)
+        sender.send(done[0])
     except FoucaultError as error:
         sender.send(IntegrationError(str(error)))
     except (KeyboardInterrupt, BrokenPipeError):

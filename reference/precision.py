@@ -74,8 +74,12 @@ def bits_of(digits: float) -> int:
 
 def fixed_decimal(value: Fraction, decimals: int) -> str:
     """`value` rounded to nearest (ties to even) with `decimals` digits after the point, never "-0"."""
-    scaled = round(value * 10**decimals)
-    sign, digits = ("-" if scaled < 0 else ""), str(abs(scaled)).rjust(decimals + 1, "0")
+    return point(round(value * 10**decimals), decimals)
+
+
+def point(whole: int, decimals: int) -> str:
+    """An integer with the decimal point `decimals` digits from its right, never "-0"."""
+    sign, digits = ("-" if whole < 0 else ""), str(abs(whole)).rjust(decimals + 1, "0")
     return sign + (f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits)
 
 

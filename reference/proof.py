@@ -6,8 +6,7 @@ cheapest type that serves, has to find the same transits.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -48,10 +47,6 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], report: Report | N
     radius = _usual_unit(growth, scene.run.digits) / 2**ROUNDING_BITS
     feed = Feed(scene.exact, times)
 
-    def chain(bits: int) -> Iterator[Any]:
-        for made in feed(bits - GUARD_BITS):
-            yield enclosure.Expansion(made.begin, made.h, made.bits, made.rows)
-
     try:
         for _ in range(ROUNDING_TRIES):
             proved = enclosure.enclose(
@@ -59,7 +54,7 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], report: Report | N
                 times,
                 radius=radius,
                 transits=scene.run.transits,
-                candidate=chain,
+                candidate=lambda bits: feed(bits - GUARD_BITS),
                 workers=1,
                 progress=report and _scaled(report, span),
             )
@@ -119,17 +114,14 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], proved: Any, feed: Run,
 
 
 def _table(columns: tuple[str, ...], rows: Sequence[Sequence[Any]], scale: int) -> Table:
-    """Middles and half-widths of intervals, as integers."""
+    """Middles and half-widths of intervals, as integers; rounded outwards."""
     values, errors = [], []
     for row in rows:
-        middles = [round((x.low + x.high) / 2 * 2**scale) for x in row]
-        values.append(tuple(middles))
-        errors.append(
-            tuple(
-                math.ceil(max(x.high * 2**scale - middle, middle - x.low * 2**scale))
-                for x, middle in zip(row, middles, strict=True)
-            )
-        )
+        lows = [(x.low.numerator << scale) // x.low.denominator for x in row]
+        highs = [-((-x.high.numerator << scale) // x.high.denominator) for x in row]
+        middles = tuple((low + high) // 2 for low, high in zip(lows, highs, strict=True))
+        values.append(middles)
+        errors.append(tuple(high - middle for high, middle in zip(highs, middles, strict=True)))
     return Table(columns, scale, values, errors)
 
 

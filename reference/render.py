@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from .errors import UnreachableError
-from .precision import fixed_decimal, rounded_up
+from .precision import fixed_decimal, point, rounded_up
 from .scene import Scene
 from .solution import Solution, Table, grid_decimals, transit_decimals
 
@@ -50,21 +50,25 @@ def decimals_of(solution: Solution) -> tuple[dict[str, int], dict[str, int]]:
 
 def _printed(table: Table, decimals: dict[str, int], proven: bool) -> list[tuple[str, ...]]:
     """Every number rounded to its column's digits; where it is proven, both ends of its interval must round alike."""
-    shift = 1 << table.scale
+    units = [10 ** decimals[name] for name in table.columns]
     rows = []
     for values, errors in zip(table.values, table.errors, strict=True):
-        row = []
-        for name, value, error in zip(table.columns, values, errors, strict=True):
-            text = fixed_decimal(Fraction(value, shift), decimals[name])
-            if proven and not (
-                fixed_decimal(Fraction(value - error, shift), decimals[name])
-                == text
-                == fixed_decimal(Fraction(value + error, shift), decimals[name])
+        whole = [_nearest(value * unit, table.scale) for value, unit in zip(values, units, strict=True)]
+        texts = tuple(point(n, decimals[name]) for n, name in zip(whole, table.columns, strict=True))
+        if proven:
+            for n, value, error, unit, name, text in zip(
+                whole, values, errors, units, table.columns, texts, strict=True
             ):
-                raise UndecidedRounding(name, text)
-            row.append(text)
-        rows.append(tuple(row))
+                low, high = (_nearest((value + side * error) * unit, table.scale) for side in (-1, 1))
+                if not low == n == high:
+                    raise UndecidedRounding(name, text)
+        rows.append(texts)
     return rows
+
+
+def _nearest(value: int, scale: int) -> int:
+    """The integer nearest to value / 2**scale (ties upwards)."""
+    return (value + (1 << scale >> 1)) >> scale
 
 
 class UndecidedRounding(UnreachableError):

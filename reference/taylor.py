@@ -179,19 +179,28 @@ class Zero:
 
 @dataclass(frozen=True)
 class Polynomials:
-    """Taylor polynomials of one step of `momentum`: n and h H as polynomials of s = (t - begin)/h, 0 <= s <= 1.
+    """Taylor polynomials of one step of `momentum`: n and h H as polynomials of s = (time - t)/h.
 
     Attributes:
-        begin: start of the step in s, exact.
+        t: start of the step in s, exact.
         h: its length in s, exact.
         bits: coefficients are integers over 2**bits.
-        rows: six lists of coefficients, lowest order first.
+        scaled: coefficients times 2**bits, not yet integers, shape (6, order + 1).
     """
 
-    begin: Fraction
+    t: Fraction
     h: Fraction
     bits: int
-    rows: tuple[list[int], ...]
+    scaled: Any = field(repr=False)
+
+    @property
+    def coefficients(self) -> tuple[list[int], ...]:
+        """Six rows of integers, lowest order first; made when asked for, which costs a sixth of a step."""
+        return tuple([int(c) for c in row] for row in self.scaled)
+
+    def log2_largest(self, order: int) -> int:
+        """The power of two above the coefficients of an order."""
+        return max(abs(int(c)).bit_length() for c in self.scaled[:, order]) - self.bits
 
 
 class Stepper:
@@ -313,10 +322,7 @@ class Stepper:
         h = self._exact_time() - begun
         if (h, bits) != self._powers[0]:
             self._powers = ((h, bits), self._row_powers(h, bits))
-        scaled = (self._ta.tc * self._powers[1]).ravel()
-        whole = [int(c) for c in scaled]
-        width = self.order + 1
-        return Polynomials(begun, h, bits, tuple(whole[i : i + width] for i in range(0, len(whole), width)))
+        return Polynomials(begun, h, bits, self._ta.tc * self._powers[1])
 
     def _row_powers(self, h: Fraction, bits: int) -> Any:
         """h**k 2**bits for the coefficients of n and h**(k+1) 2**bits for those of H, shape (6, order + 1)."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
 from operator import mul
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from flint import ctx, fmpz_poly
@@ -44,19 +44,39 @@ def from_rates(t: Fraction, h: Fraction, bits: int, coefficients: Iterable[list[
     return Expansion(t, h, bits, (*rows[:3], *([c * n // d for c in row] for row in rows[3:])))
 
 
-def rescaled(e: Expansion, ratio: Fraction) -> Expansion:
+class Series(Protocol):
+    """What is needed of an expansion; its coefficients are asked for only where they serve."""
+
+    @property
+    def t(self) -> Fraction:
+        """Centre."""
+
+    @property
+    def h(self) -> Fraction:
+        """Step."""
+
+    @property
+    def bits(self) -> int:
+        """Coefficients are integers over 2^bits."""
+
+    @property
+    def coefficients(self) -> tuple[list[int], ...]:
+        """Six rows."""
+
+
+def rescaled(e: Series, ratio: Fraction) -> Expansion:
     """The same expansion in s / ratio; the ratio is a multiple of 1/GRAIN."""
     factor, shift = int(ratio * GRAIN), GRAIN.bit_length() - 1
-    powers = [factor**k for k in range(max(map(len, e.coefficients)) + 1)]
-    rows = ([c * f >> shift * k for k, (c, f) in enumerate(zip(row, powers, strict=False))] for row in e.coefficients)
-    lines = list(rows)
+    given = e.coefficients
+    powers = [factor**k for k in range(max(map(len, given)) + 1)]
+    lines = [[c * f >> shift * k for k, (c, f) in enumerate(zip(row, powers, strict=False))] for row in given]
     speed = [[c * factor >> shift for c in row] for row in lines[3:]]
     return Expansion(e.t, ratio * e.h, e.bits, (*lines[:3], *speed))
 
 
-def pair(chain: Iterable[Expansion]) -> Iterator[Step]:
+def pair(chain: Iterable[Series]) -> Iterator[Step]:
     """Steps that cover the chain, each from one expansion used on both sides where neighbours allow it."""
-    before: Expansion | None = None
+    before: Series | None = None
     for e in chain:
         if before is None:
             before = e
@@ -77,7 +97,7 @@ def pair(chain: Iterable[Expansion]) -> Iterator[Step]:
         yield _one_sided(before)
 
 
-def _one_sided(e: Expansion) -> Step:
+def _one_sided(e: Series) -> Step:
     return Step(e.t, e.h, Fraction(0), Fraction(1), e.bits, e.coefficients)
 
 

@@ -43,7 +43,8 @@ WORTH = 500  # oscillation times below which a helper costs more than it saves
 TINY = -1e9  # logarithm of a width that is 0
 PARTS = ("candidate", "defect", "bound", "transits")
 
-Source = Iterable[Expansion] | Callable[[int], Iterable[Expansion]]
+Chain = Iterable[Expansion] | Iterable[Step]
+Source = Chain | Callable[[int], Chain]
 State = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
 
@@ -112,8 +113,8 @@ def enclose(
         times: output times in s, from 0 on, increasing.
         radius: wanted half-width, m for positions and m/s for velocities.
         transits: also enclose all zeros of xdot.
-        candidate: expansions in a chain from t = 0, or a function of the precision in bits that makes such a chain
-            (only then can a second attempt be made); None for the package's own recurrence.
+        candidate: expansions in a chain from t = 0, or what `pair` made of them, or a function of the precision in
+            bits that gives either (only then can a second attempt be made); None for the package's own recurrence.
         workers: processes that may be used, this one included; None for one a core.
         progress: called with the part of the time span done.
         method: "radius" or "columns"; None for what is likely to be cheaper.
@@ -197,19 +198,21 @@ class _Run:
     def prove(self, candidate: Source | None, radius: Fraction) -> Enclosure:
         """Run all steps; refuse a result that is wider than `radius`."""
         bits, order = self.plan.bits, self.plan.order
-        source: Iterator[Expansion] = iter(())
+        steps: Iterator[Step] = iter(())
         if candidate is not None:
-            given = iter(candidate(bits) if callable(candidate) else candidate)
+            given: Iterator[Any] = iter(candidate(bits) if callable(candidate) else candidate)
             first = next(given, None)
             if first is None:
                 raise UnreachableError("enclosure: the candidate is empty.")
-            source, bits, order = chain([first], given), first.bits, len(first.coefficients[0]) - 1
+            bits, order = first.bits, len(first.coefficients[0]) - 1
+            whole = chain([first], given)
+            steps = whole if isinstance(first, Step) else pair(whole)
         self.world = world = World(self.inputs, bits + GUARD_BITS)
         if candidate is None:
-            source = Recurrence(world, bits, order).chain(self.plan.first)
+            steps = pair(Recurrence(world, bits, order).chain(self.plan.first))
         self.clock.lap("bound")
         scan = Scan(world) if self.transits and not world.still else None
-        states, count = self._steps(self._until(pair(source)), scan, bits)
+        states, count = self._steps(self._until(steps), scan, bits)
         found = (scan.finish() if self.end else []) if scan else None
         self.clock.lap("transits")
         widths = [[(i.high - i.low) / 2 for i in row] for row in states]
