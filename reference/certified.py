@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from .manifest import Bounds
+from .precision import outward
 from .render import GRID_HEADER, Sheet, scene_inputs
 from .scene import LEVELS
 from .solution import Solution
@@ -23,7 +24,8 @@ _MEANING = dict(
 
 def certified_page(solution: Solution, grid: Sheet, transits: Sheet, bounds: Bounds, verdict: str) -> str:
     """Inputs, certified values, difficulty and how to score."""
-    return "\n".join([*_inputs(solution), *_states(grid), *_accuracy(bounds, transits, verdict), *_how_to(solution)])
+    accuracy = [*_accuracy(bounds, transits, verdict), *_undecided(solution)]
+    return "\n".join([*_inputs(solution), *_states(grid), *accuracy, *_how_to(solution)])
 
 
 def _inputs(solution: Solution) -> list[str]:
@@ -72,6 +74,13 @@ def _accuracy(bounds: Bounds, transits: Sheet, verdict: str) -> list[str]:
         lines += [f"  {word:5} t = {row[1]} s, direction {row[2]}, bound {row[-1]} s" for word, row in ends]
         lines += [f"  largest bound on a time {bounds.transit_s} s"]
     return lines
+
+
+def _undecided(solution: Solution) -> list[str]:
+    return [
+        f"  possible transit in [{outward(low, -1)}, {outward(high, 1)}] s ({parity} number of zeros): not decided"
+        for low, high, parity in solution.possible
+    ]
 
 
 def _how_to(solution: Solution) -> list[str]:

@@ -37,7 +37,7 @@ from .manifest import (
     RunRecord,
 )
 from .mechanics import invariant
-from .precision import bits_of, context, fixed_decimal, rounded_up, to_fraction, to_mpf
+from .precision import bits_of, context, fixed_decimal, outward, rounded_up, to_fraction, to_mpf
 from .render import Sheet, binary64_sheet, grid_sheet, largest_bound, scene_inputs, transits_sheet
 from .scene import Scene, data_root, is_scene_id, parse_scene
 from .solution import Solution
@@ -86,8 +86,7 @@ def render(solution: Solution) -> dict[str, str]:
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
         transits=verdict,
         possible=[
-            Possible(from_s=f"{float(a):.17g}", to_s=f"{float(b):.17g}", parity=parity)
-            for a, b, parity in solution.possible
+            Possible(from_s=outward(a, -1), to_s=outward(b, 1), parity=parity) for a, b, parity in solution.possible
         ],
         invariant=Invariant(h_m2_s2=initial, drift_m2_s2=drift),
         equations=Equations(formulation=run.formulation, lines=lines, left_out=left_out),

@@ -83,6 +83,12 @@ def point(whole: int, decimals: int) -> str:
     return sign + (f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits)
 
 
+def outward(value: Fraction, side: int, decimals: int = 20) -> str:
+    """The end of an interval, rounded down (side -1) or up (side 1)."""
+    whole = value * 10**decimals
+    return point(math.floor(whole) if side < 0 else math.ceil(whole), decimals)
+
+
 def decimals_for(largest: Fraction, digits: int) -> int:
     """Digits after the point so that a column whose largest size is `largest` has `digits` significant ones."""
     return max(0, digits - 1 - magnitude(largest)) if largest else digits
