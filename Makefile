@@ -11,7 +11,7 @@ golden: .venv/ready
 	$(BIN)/foucault verify paris
 
 test: lint
-	$(BIN)/python -m pytest -q --cov --cov-report=term-missing:skip-covered --cov-fail-under=95
+	$(BIN)/python -m pytest -q -n 2 --cov --cov-report=term-missing:skip-covered --cov-fail-under=95
 
 lint: .venv/ready
 	$(BIN)/ruff check .

@@ -234,7 +234,6 @@ class Stepper:
         self.found: list[Zero] = []
         self.steps = 0
         system = System.build(formulation, self.constants)
-        self._looks = [system.xdot, system.xddot]
         self._variables = [name for name, _ in system.equations]
         keywords = dict(self.numbers.keywords)
         if tol is not None:
@@ -254,9 +253,11 @@ class Stepper:
         self._ta: Any = hy.taylor_adaptive(
             system.equations, np.array(start, dtype=self.numbers.dtype), fp_type=self.numbers.type, **keywords
         )
+        if events:
+            looks = [system.xdot, system.xddot]
+            self._look = hy.cfunc(looks, self._variables, fp_type=self.numbers.type, **self.numbers.keywords)
         self.compile_s = time.process_time() - begun
         self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
-        self._sign: Any = None
         self._powers: tuple[Any, Any] = (None, None)
 
     @property
@@ -300,12 +301,9 @@ class Stepper:
         self.found.clear()
 
     def look(self, state: Any) -> tuple[float, float]:
-        """Velocity and acceleration over l of the x coordinate, in binary64 but with the right sign of xdot."""
-        if self._sign is None:
-            compiled = hy.cfunc(self._looks, self._variables, fp_type=self.numbers.type, **self.numbers.keywords)
-            self._sign = lambda s: tuple(map(float, compiled(s)))
-        seen: tuple[float, float] = self._sign(state)
-        return seen
+        """Velocity and acceleration over l of the x coordinate (with events), in binary64 but with the right signs."""
+        xdot, xddot = self._look(state)
+        return float(xdot), float(xddot)
 
     def coefficients(self) -> tuple[Any, Any]:
         """Taylor coefficients at t = 0 of every variable (shape (variables, order + 1)), and a step h; stays at 0."""
