@@ -6,7 +6,6 @@ import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from enum import StrEnum
-from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -145,7 +144,8 @@ def generate(
     as_json: AsJson = False,
 ) -> None:
     """Solve a scene and write its golden dataset."""
-    from .golden import check_target, default_folder, write
+    from .golden import read_manifest
+    from .publish import check_target, default_folder, write
 
     asked = {"t_end": t_end, "digits": digits, "level": level, "transits": "false" if no_transits else None}
     changes = [*(set_ or ()), *(f"run.{key}={value}" for key, value in asked.items() if value is not None)]
@@ -159,8 +159,6 @@ def generate(
         solution = solve(scene, report=report)
     write(solution, folder)
     count = len(solution.directions)
-    from .golden import read_manifest
-
     bound = read_manifest(folder).bounds.position_m
     checks_s = sum(check.cpu_s for check in solution.checks) + sum(
         (solution.proof.cpu_s if solution.proof else {}).values()
@@ -199,9 +197,9 @@ def verify(
     as_json: AsJson = False,
 ) -> None:
     """Check datasets: schema, hashes, physics; with --recompute the same bytes again."""
-    from .golden import golden_folder
+    from .golden import golden_folder, read_manifest, scene_of
+    from .publish import recompute as recomputed
     from .verify import problems_of
-    from .verify import recompute as recomputed
 
     folders = [golden_folder(path) for path in paths or ()] or sorted((data_root() / "golden").glob("[a-z]*"))
     if not folders:
@@ -210,7 +208,7 @@ def verify(
     for folder in folders:
         problems = problems_of(folder)
         if recompute and not problems:
-            with progress(folder.name, float(Fraction(86400))) as report:
+            with progress(folder.name, float(scene_of(read_manifest(folder)).exact.t_end)) as report:
                 problems = recomputed(folder, report)
         rows.append({"path": str(folder), "ok": not problems, "problems": problems})
         if not as_json:

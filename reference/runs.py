@@ -18,6 +18,7 @@ from .mechanics import FORMULATIONS
 from .precision import GUARD_BITS, NumberType, context
 from .scene import Inputs
 from .transits import march, quiet_start, xdot_vanishes, zero_at_release
+from .watch import watched_log
 
 SPARE_BITS = 80  # fixed-point values carry this much below the run's epsilon, for amplitudes far below l
 WORTH_A_PROCESS = 4.0  # estimated CPU seconds from which a second process pays for its start
@@ -84,7 +85,7 @@ def run(plan: Plan, report: Report | None = None) -> Run:
     stepper = taylor.Stepper(model, k, n, v, ctx, plan.number, events=watching)
     times = [stepper.numbers.of(t) for t in plan.times]
     found: list[taylor.Zero] = []
-    with taylor.watched_log() as watch:
+    with watched_log() as watch:
         multiplicity = zero_at_release(n, v)
         quiet = quiet_start(stepper, multiplicity) if watching and multiplicity else None
         begun = time.process_time()
@@ -132,6 +133,7 @@ def run_both(first: Plan, second: Plan, expected_s: float, report: Report | None
     child = spawn.Process(target=_child, args=(second, sender, reached, os.getpid()), daemon=True)
     child.start()
     sender.close()
+    answer: Run | BaseException | None = None
     try:
         one = run(first, report and (lambda t: report((t + reached.value) / 2)))
         while report is not None and not receiver.poll(0.2):
@@ -140,9 +142,10 @@ def run_both(first: Plan, second: Plan, expected_s: float, report: Report | None
     except EOFError:
         raise IntegrationError("the process of the confirming run ended without an answer.") from None
     finally:
-        child.terminate()
+        if answer is None:
+            child.terminate()
         child.join()
-    if isinstance(answer, BaseException):
+    if not isinstance(answer, Run):
         raise answer
     return one, answer
 

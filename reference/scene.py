@@ -330,6 +330,11 @@ def data_root() -> Path:
     return here / "data" if (here / "data").is_dir() else here.parent / "data"
 
 
+def in_checkout() -> bool:
+    """True where scenes and golden datasets are those of a source checkout, which `generate` may renew."""
+    return data_root().parent != Path(__file__).resolve().parent
+
+
 def scene_ids() -> list[str]:
     """Ids of the scenes that come with the project, sorted."""
     return sorted(path.stem for path in (data_root() / "scenes").glob("*.toml"))

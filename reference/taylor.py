@@ -8,11 +8,8 @@ hits beyond 128 bits and is switched off for `real`.
 
 from __future__ import annotations
 
-import os
-import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -79,37 +76,6 @@ def _rounded(top: int, bottom: int, prec: int) -> tuple[int, int]:
     if abs(scaled) >= 1 << prec:
         shift, scaled = shift + 1, scaled / 2
     return round(scaled), shift
-
-
-@dataclass
-class Watch:
-    """What heyoka wrote to its log: its only sign that an event may be lost."""
-
-    handle: Any
-    seen: int = 0
-
-    def fresh(self) -> bool:
-        """True if a line came since the last look."""
-        size = os.fstat(self.handle.fileno()).st_size
-        changed, self.seen = size > self.seen, size
-        return changed
-
-
-@contextmanager
-def watched_log() -> Iterator[Watch]:
-    """Redirect the process's stdout, where heyoka logs, into a file; what others wrote is passed on."""
-    saved = os.dup(1)
-    with tempfile.TemporaryFile() as handle:
-        os.dup2(handle.fileno(), 1)
-        try:
-            yield Watch(handle)
-        finally:
-            os.dup2(saved, 1)
-            os.close(saved)
-            handle.seek(0)
-            for line in handle:
-                if b"[heyoka-" not in line:
-                    os.write(1, line)
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,8 @@ from .errors import IntegrationError
 from .mechanics import cross, force
 
 if TYPE_CHECKING:
-    from .taylor import Stepper, Watch, Zero
+    from .taylor import Stepper, Zero
+    from .watch import Watch
 
 MAX_LOOKS = 6  # steps are retaken this often before a run is given up
 SHORTER = Fraction(79, 128)  # retaken steps are cut by this: no simple ratio, so that no edge returns

@@ -19,10 +19,11 @@ import pytest
 from conftest import make_scene
 
 import reference
-from reference import golden
+from reference import golden, publish
 from reference.errors import DatasetError, InputError
-from reference.golden import MANIFEST, check_target, default_folder, load, render, write
+from reference.golden import MANIFEST, load
 from reference.manifest import json_schema
+from reference.publish import check_target, default_folder, render, write
 from reference.verify import problems_of
 
 NAMES = {MANIFEST, "grid.csv", "transits.csv", "grid.binary64.csv", "transits.binary64.csv", "certified.txt"}
@@ -161,7 +162,7 @@ def test_a_target_that_is_something_else_is_left_alone(tmp_path):
 def test_a_dataset_that_fails_its_own_checks_is_not_put_in_place(dataset, solution, monkeypatch):
     before = {path.name: path.read_bytes() for path in dataset.iterdir()}
     broken = {**render(solution), "grid.csv": "t,x\n"}
-    monkeypatch.setattr(golden, "render", lambda _: broken)
+    monkeypatch.setattr(publish, "render", lambda _: broken)
     with pytest.raises(DatasetError):
         write(solution, dataset)
     assert {path.name: path.read_bytes() for path in dataset.iterdir()} == before
@@ -172,7 +173,7 @@ def test_an_older_dataset_is_replaced_also_where_folders_cannot_be_swapped(datas
     shorter = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level="computed")
     write(shorter, dataset)
     assert load(dataset).manifest.digits == 8
-    monkeypatch.setattr(golden, "_exchange", lambda *_: False)
+    monkeypatch.setattr(publish, "_exchange", lambda *_: False)
     write(solution, dataset)
     assert load(dataset).manifest.digits == 25
     assert [path.name for path in dataset.parent.iterdir()] == ["paris"]
@@ -188,18 +189,20 @@ def test_what_a_killed_process_left_is_cleared_and_what_a_living_one_holds_is_no
     assert alive.exists()
 
 
-def test_only_a_scene_as_it_stands_goes_to_the_shipped_place():
+def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch):
     scene = reference.load_scene("paris")
     assert default_folder(scene, as_shipped=True).parts[-3:] == ("data", "golden", "paris")
     assert default_folder(scene, as_shipped=False) == Path("golden/paris")
     binary = scene.with_values(["inputs=binary64"])
     assert default_folder(binary, as_shipped=True).name == "paris.binary64"
+    monkeypatch.setattr(publish, "in_checkout", lambda: False)
+    assert default_folder(scene, as_shipped=True) == Path("golden/paris")
 
 
 WRITER = """
 import sys, reference
 from pathlib import Path
-from reference.golden import write
+from reference.publish import write
 solution = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level="computed")
 print("ready", flush=True)
 while True:

@@ -16,8 +16,9 @@ import reference
 from reference import enclosure, proof
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.expansions import Feed, expand
-from reference.golden import load, write
+from reference.golden import load
 from reference.precision import real
+from reference.publish import write
 from reference.render import grid_sheet, transits_sheet
 from reference.runs import Plan, run
 from reference.verify import problems_of

@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 
 import reference
+from reference.publish import recompute
 from reference.scene import data_root
-from reference.verify import problems_of, recompute
+from reference.verify import problems_of
 
 SHIPPED = sorted(path.name for path in (data_root() / "golden").glob("[a-z]*"))
 

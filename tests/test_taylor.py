@@ -14,7 +14,8 @@ from reference.errors import IntegrationError
 from reference.mechanics import FORMULATIONS
 from reference.precision import DOUBLE, LONG_DOUBLE, real
 from reference.runs import start_of
-from reference.taylor import Stepper, System, cartesian, equations_text, least_tension, watched_log
+from reference.taylor import Stepper, System, cartesian, equations_text, least_tension
+from reference.watch import watched_log
 
 
 def stepper_of(scene, number, name="momentum", **keywords) -> Stepper:

@@ -13,8 +13,9 @@ from test_taylor import stepper_of
 from reference.errors import IntegrationError
 from reference.precision import DOUBLE, LONG_DOUBLE, real
 from reference.runs import Plan, run, start_of
-from reference.taylor import Numbers, Stepper, System, watched_log
+from reference.taylor import Numbers, Stepper, System
 from reference.transits import march, quiet_start, xdot_vanishes, zero_at_release
+from reference.watch import watched_log
 
 
 def bare_heyoka(scene, number, t_end, first_step=None):
