@@ -114,7 +114,7 @@ def doctored(monkeypatch, change):
 
 def test_what_cannot_be_decided_is_said_and_its_row_left_out(monkeypatch, tmp_path):
     def doubt(proved):
-        unsure = replace(proved.transits[3], kind="possible", parity="odd", direction=0)
+        unsure = replace(proved.transits[3], parity="odd", direction=0)
         return replace(proved, transits=[*proved.transits[:3], unsure, *proved.transits[4:]])
 
     doctored(monkeypatch, doubt)

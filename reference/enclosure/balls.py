@@ -1,11 +1,9 @@
 """TRUSTED. Balls, vectors and norms; a name of a size stands for an upper bound."""
 
-from __future__ import annotations
-
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, fmpq, fmpz, fmpz_poly
+from flint import arb, fmpq, fmpz
 
 from .shapes import Interval
 
@@ -35,10 +33,8 @@ def interval(x: arb) -> Interval:
 
 
 def integer(x: arb, bits: int) -> fmpz:
-    """The integer below mid(x) 2^bits."""
-    man, exp = x.mid().man_exp()
-    shift = int(exp) + bits
-    return man << shift if shift >= 0 else man >> -shift
+    """An integer near x 2^bits."""
+    return (x * (fmpz(1) << bits)).mid().floor().unique_fmpz() or fmpz(0)
 
 
 def fixed(values: Vector, bits: int) -> tuple[list[fmpz], arb]:
@@ -73,16 +69,7 @@ def size(a: Vector) -> arb:
     return upper(upper(sum((x.abs_upper() ** 2 for x in a), arb(0))).sqrt())
 
 
-def norm(f: fmpz_poly, first: int = 1) -> int:
-    """At least Σ|coefficient|: in blocks of doubling length, length times largest."""
-    total, width = 0, first
-    while f.length():
-        total += min(width, f.length()) << f.truncate(width).height_bits()
-        f, width = f.right_shift(width), 2 * width
-    return total
-
-
-def norm3(f: Vector, bits: int, first: int = 0) -> arb:
-    """Sup norm on |s| <= 1 of three polynomials over 2^bits; blocks start anew at `first`."""
-    sums = [norm(x.truncate(first), first or 1) + norm(x.right_shift(first)) for x in f]
+def norm3(f: Vector, bits: int) -> arb:
+    """Sup norm on |s| <= 1 of three integer polynomials over 2^bits: Σ|coefficient| of each."""
+    sums = [sum(map(abs, x.coeffs()), fmpz(0)) for x in f]
     return upper(arb(fmpz(sum(n * n for n in sums)).isqrt() + 1) / (fmpz(1) << bits))

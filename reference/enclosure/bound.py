@@ -3,8 +3,6 @@
 Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H. A name of a size is an upper bound.
 """
 
-from __future__ import annotations
-
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
@@ -19,6 +17,8 @@ class World:
     """The scene at `prec` bits, from its exact inputs alone; what is exactly 0 stays so."""
 
     def __init__(self, inputs: Any, prec: int) -> None:
+        if inputs.drag < 0 or inputs.length <= 0:
+            raise ArithmeticError("not a pendulum: the theorems take a length > 0 and a drag >= 0")
         self.prec = prec
         with ctx.workprec(prec):
             turn = fmpq(inputs.latitude.numerator, inputs.latitude.denominator) / 180
@@ -68,10 +68,7 @@ class Scaled:
         return add(cross(p, self.ci), cross(K, self.wi))
 
 
-@lru_cache(maxsize=16)
-def scaled(world: World, h: Fraction, bits: int) -> Scaled:
-    """The constants for steps of length h, kept for the next."""
-    return Scaled(world, h, bits)
+scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each other
 
 
 class Piece:
@@ -80,15 +77,13 @@ class Piece:
     def __init__(self, world: World, step: Step) -> None:
         if not -1 <= step.low < step.high <= 1 or step.h <= 0:
             raise ArithmeticError("a step must lie in -1 <= s <= 1, where its sizes hold")
-        self.step, self.k = step, scaled(world, step.h, step.bits)
+        self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)
         self.polys, self.unit = [fmpz_poly(c) for c in step.coefficients], fmpz(1) << step.bits
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
     def values(self, s: Any) -> Vector:
         """Balls of p(s), K(s)."""
-        if isinstance(s, Fraction):
-            s = fmpz(s.numerator) if s.denominator == 1 else ball(s)
-        return [arb(f(s) if isinstance(s, fmpz) else arb_poly(f)(s)) / self.unit for f in self.polys]
+        return [arb_poly(f)(ball(s) if isinstance(s, Fraction) else s) / self.unit for f in self.polys]
 
     def sizes(self) -> Sizes:
         """The defect, in integers but for the radii of the constants (section 6)."""
@@ -96,14 +91,14 @@ class Piece:
         order, scale = max(f.length() for f in self.polys), 2 * bits
         d1 = [f.derivative() * unit - t for f, t in zip(p, cross(add(K, times(-1, k.wi)), p), strict=True)]
         d2 = [f.derivative() * unit - t for f, t in zip(K, k.torque(p, K), strict=True)]
-        if k.gi[0]:
+        if any(k.gi):
             along, drag = dot(k.gi[1:], p), add(times(k.gi[0], K), times(-unit, k.gi[1:]))
             d2, scale = add(times(unit, add(d2, drag)), times(along, p)), 3 * bits
         with ctx.workprec(SHORT):
             size_p, size_k = norm3(p, bits), norm3(K, bits)
-            first = upper(norm3(d1, 2 * bits, order - 1) + k.omega_off * size_p)
+            first = upper(norm3(d1, 2 * bits) + k.omega_off * size_p)
             off = k.c_off * size_p + k.omega_off * size_k + k.drag_off * (size_k + 1 + size_p**2)
-            return Sizes(first, upper(norm3(d2, scale, order - 1) + off), size_p, size_k, upper(2 * order * first))
+            return Sizes(first, upper(norm3(d2, scale) + off), size_p, size_k, upper(2 * order * first))
 
 
 def growth(k: Scaled, size_p: arb) -> arb:
@@ -131,8 +126,8 @@ class Carried:
         """Values at the start of `piece`, and how far each is from the end of the step before."""
         if piece.begin != self.time:
             raise ArithmeticError("steps must join")
-        here, end = (piece.values(s) for s in (piece.step.low, piece.step.high))
-        here, end = ([*x[:3], *times(1 / piece.k.h, x[3:])] for x in (here, end))
+        ends = map(piece.values, (piece.step.low, piece.step.high))
+        here, end = ([*x[:3], *times(1 / piece.k.h, x[3:])] for x in ends)
         jump = [(a - b).abs_upper() for a, b in zip(here, self.last, strict=True)]
         self.time, self.last = piece.end, end
         return here, jump
@@ -153,11 +148,10 @@ class Radius(Carried):
             start, source = upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.world.w0), d.d2 / k.w + d.d1
             tau = tau + 2 * span * d.p * d.d1
             most = kappa + span * (d.p * d.d2 + d.k * d.d1 + gw * d.p * tau)
-            first = (1 + d.k / k.w) * start + kappa / k.w + span * source
-            far = upper(first * (span * growth(k, d.p)).exp())  # Theorem N: |e| <= far
+            # Theorem N: |e| <= far
+            far = upper(((1 + d.k / k.w) * start + kappa / k.w + span * source) * (span * growth(k, d.p)).exp())
             rate = (k.below.max(k.above + (k.speed + k.w * far) ** 2) + ck * far + gw * d.p) / (2 * k.w)
-            b = (ck * tau / 2 + most * d.k) / k.w + source
-            self.eta = upper((start + span * b) * (span * rate).exp())
+            self.eta = upper((start + span * ((ck * tau / 2 + most * d.k) / k.w + source)) * (span * rate).exp())
             return tube(k, d, self.eta, k.w * self.eta + most + d.k * self.eta)
 
 

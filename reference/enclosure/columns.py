@@ -3,12 +3,10 @@
 The columns are proposals: integers over 2^FINE, so exact whatever floats they came from.
 """
 
-from __future__ import annotations
-
 from flint import arb, arb_mat, arb_poly, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, Vector, add, ball, cross, dot, norm3, times, upper
-from .bound import Carried, Piece, Scaled, World, growth, tube
+from .bound import Carried, Piece, World, growth, tube
 from .shapes import Sizes, Tube
 
 FINE = 50  # bits of a column's coefficients
@@ -32,11 +30,9 @@ class Columns(Carried):
             moved, self.carried = inverse * self.carried, matrix(columns, ball(step.high), k.h)
             pairs = [(moved[i, j].abs_upper() * self.z[j], inverse[i, j].abs_upper() * slack[j]) for i, j in GRID]
             self.z = [upper(sum((a + b for a, b in pairs[6 * i : 6 * i + 6]), arb(0))) for i in range(6)]
-            near = Scaled(self.world, step.h, CUT_BITS)
         with ctx.workprec(SHORT):
-            zp, zk, d1, d2 = arb(0), arb(0), d.d1, d.d2
-            for z, sizes in zip(self.z, residuals(near, piece, d, columns), strict=True):
-                zp, zk, d1, d2 = add([zp, zk, d1, d2], times(z, sizes))
+            rows = [times(z, sizes) for z, sizes in zip(self.z, residuals(piece, d, columns), strict=True)]
+            zp, zk, d1, d2 = add([arb(0), arb(0), d.d1, d.d2], *rows)
             d1, d2, span = d1 + zp * zk, d2 + k.drag_size * k.omega_size * zp**2, ball(step.high - step.low)
             left = upper(span * (d2 / k.w + d1) * (span * growth(k, d.p + zp)).exp())
             self.rest = [left] * 3 + [upper(left * self.world.w0)] * 3
@@ -52,22 +48,22 @@ def matrix(columns: list[Vector], s: arb, h: arb) -> arb_mat:
     return arb_mat(6, 6, [*values[:18], *times(1 / h, values[18:])])
 
 
-def residuals(k: Scaled, piece: Piece, d: Sizes, columns: list[Vector]) -> list[list[arb]]:
+def residuals(piece: Piece, d: Sizes, columns: list[Vector]) -> list[list[arb]]:
     """For each column |Wp|, |WK|, |R1|, |R2|; p and K are cut, and what they lose is charged."""
-    down, unit = piece.step.bits - CUT_BITS, fmpz(1) << CUT_BITS
-    short = [fmpz_poly([int(x) >> down for x in f.truncate(CUT).coeffs()]) for f in piece.polys]
-    lost = [f - g * (fmpz(1) << down) for f, g in zip(piece.polys, short, strict=True)]
-    lost_p, lost_k = (norm3(part, piece.step.bits) for part in (lost[:3], lost[3:]))
-    p, turn, gw, out = short[:3], add(short[3:], times(-1, k.wi)), k.drag_size * k.omega_size, []
-    for column in columns:
-        P, K, scale = column[:3], column[3:], CUT_BITS + FINE
+    step, down, scale, out = piece.step, piece.step.bits - CUT_BITS, CUT_BITS + FINE, []
+    rows = tuple([c >> down for c in row[:CUT]] for row in step.coefficients)
+    near = Piece(piece.world, step._replace(bits=CUT_BITS, coefficients=rows))
+    lost = [f - g * (fmpz(1) << down) for f, g in zip(piece.polys, near.polys, strict=True)]
+    lost_p, lost_k = norm3(lost[:3], step.bits), norm3(lost[3:], step.bits)
+    k, p, turn = near.k, near.polys[:3], add(near.polys[3:], times(-1, near.k.wi))
+    for P, K in ((column[:3], column[3:]) for column in columns):
         size_p, size_k = norm3(P, FINE), norm3(K, FINE)
-        r1 = add([f.derivative() * unit for f in P], cross(p, K), cross(P, turn))
-        r2 = add([f.derivative() * unit for f in K], times(-1, k.torque(P, K)))
-        if k.gi[0]:
-            r2 = add(times(unit, add(r2, times(k.gi[0], K))), times(dot(k.gi[1:], P), p), times(dot(k.gi[1:], p), P))
-            scale += CUT_BITS
-        e1 = norm3(r1, CUT_BITS + FINE) + size_k * lost_p + size_p * (lost_k + k.omega_off)
-        e2 = norm3(r2, scale) + size_p * k.c_off + size_k * k.omega_off + 2 * gw * size_p * lost_p
-        out.append([size_p, size_k, e1, e2 + k.drag_off * (size_k + 2 * (d.p + lost_p) * size_p)])
+        r1 = add([f.derivative() * near.unit for f in P], cross(p, K), cross(P, turn))
+        r2 = add([f.derivative() * near.unit for f in K], times(-1, k.torque(P, K)))
+        # with drag, terms of third degree: zero without
+        drag = add(times(k.gi[0] * near.unit, K), times(dot(k.gi[1:], P), p), times(dot(k.gi[1:], p), P))
+        e1 = norm3(r1, scale) + size_k * lost_p + size_p * (lost_k + k.omega_off)
+        e2 = norm3(add(times(near.unit, r2), drag), scale + CUT_BITS) + size_p * k.c_off + size_k * k.omega_off
+        e2 += 2 * k.drag_size * k.omega_size * size_p * lost_p + k.drag_off * (size_k + 2 * (d.p + lost_p) * size_p)
+        out.append([size_p, size_k, e1, e2])
     return out

@@ -1,6 +1,7 @@
 """The run: method, order and precision from scene and digits, defects on all cores, more bits when needed.
 
-Nothing here enters a bound. It hands every step to the trusted functions, which check that steps join.
+Nothing here makes a bound: it hands every step, with the defect that belongs to it, to the trusted functions, which
+check that steps join.
 """
 
 from __future__ import annotations
@@ -233,7 +234,9 @@ class _Run:
         """The steps up to the end of the run, the last one cut there."""
         for step in steps:
             if step.centre + step.h * step.high >= self.end:
-                yield step._replace(high=max((self.end - step.centre) / step.h, step.low + Fraction(1, 1 << 20)))
+                high = (self.end - step.centre) / step.h
+                # a run of no time ends where it starts, and a step must have a length
+                yield step._replace(high=high if high > step.low else step.low + Fraction(1, 1 << 20))
                 return
             yield step
         raise UnreachableError(f"enclosure: the candidate ends before {float(self.end):g} s.")

@@ -21,7 +21,6 @@ class Interval:
 class EnclosedTransit:
     """A zero of xdot ("one"), or an interval that may hold some ("possible"); SI units."""
 
-    kind: str
     parity: str  # "one"; of a possible one "odd" (so at least one), "even" or "unknown"
     direction: int  # +1 where xdot goes from - to +, 0 if not known
     t: Interval
@@ -30,6 +29,11 @@ class EnclosedTransit:
     z: Interval
     vy: Interval
     ax: Interval
+
+    @property
+    def kind(self) -> str:
+        """Whether it is proved to be a single zero: "one", or "possible"."""
+        return "one" if self.parity == "one" else "possible"
 
 
 class Step(NamedTuple):
@@ -63,10 +67,9 @@ class Tube(NamedTuple):
 
 
 class Leaf(NamedTuple):
-    """A part of a step: `way` is the sign of xdot (E, no zero), of xddot (M, monotone), or 0 (R, undecided)."""
+    """A part of a step where xdot may be 0: `bend` is the sign of xddot (M, monotone), or 0 (R, undecided)."""
 
-    kind: str
-    way: int
+    bend: int
     low: arb
     high: arb
     slope: Any

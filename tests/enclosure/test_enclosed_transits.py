@@ -6,14 +6,14 @@ from itertools import pairwise
 import mpmath as mp
 import numpy as np
 import pytest
-from flint import arb
+from flint import arb, ctx
 from oracle import PARIS, carry, doubles, scene, steps
 from scipy.integrate import solve_ivp
 
 from reference.enclosure import enclose
 from reference.enclosure.bound import Piece, World
-from reference.enclosure.shapes import Step, Tube
-from reference.enclosure.transits import Scan
+from reference.enclosure.shapes import Leaf, Step, Tube
+from reference.enclosure.transits import Scan, Slope, contract
 
 
 def scan(inputs, proposal, columns=False):
@@ -148,6 +148,25 @@ def test_two_zeros_that_are_close_are_told_apart():
     assert [t.direction for t in found] == [-1, 1]
     for t, root in zip(found, (Fraction(4, 3) - Fraction(1, 1000), Fraction(4, 3) + Fraction(1, 1000)), strict=True):
         assert abs(middle(t.t) - root) < Fraction(1, 10**35)
+
+
+def test_a_step_shorter_than_the_precision_is_refused():
+    world, third = World(scene(), 128), Fraction(1, 3)
+    step = Step(Fraction(1), Fraction(1), third, third + Fraction(1, 2**200), 128, ([0, 1 << 128], *[[0]] * 5))
+    with pytest.raises(ArithmeticError, match="too short"):
+        Scan(world).advance(Piece(world, step), Tube(arb(0), arb(0), arb(0), arb(0)))
+
+
+def test_newton_asks_nothing_about_times_outside_of_its_leaves():
+    world = World(scene(), 128)
+    with ctx.workprec(world.prec):
+        row = [0, 1 << 128, 1 << 127]  # xdot = 1 + s
+        piece = Piece(world, Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 5)))
+        slope, third = Slope(piece, Tube(arb(0), arb(0), arb(0), arb(0))), arb(1) / 3
+        # a leaf narrower than a ball: whether the middle of the ball lies in it is not known
+        leaf, time = Leaf(1, third, third, slope), 1 + third
+        assert contract([leaf], time, time).overlaps(time)
+        assert contract([Leaf(1, arb(0), third, slope)], slope.time(arb(0)), time) is None
 
 
 def test_a_parabola_that_stays_clear_has_no_zero():

@@ -16,6 +16,7 @@ from reference.enclosure import enclose
 from reference.enclosure.bound import Piece, Radius, World
 from reference.enclosure.candidate import ColumnSource, Recurrence, pair
 from reference.enclosure.columns import Columns
+from reference.enclosure.shapes import Step
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth
@@ -36,8 +37,10 @@ def exact_errors(inputs, piece, world, ratios):
         state = run.sol(centre + h * s)
         r, v, a = (x / length for x in (state[:3], state[3:], rates(0, state)[3:]))
         H = np.cross(r, v + np.cross(omega, r)) * h
-        p, K, p1 = (np.array([f.deriv(n)(s) if n else f(s) for f in part]) for part, n in
-                    ((polys[:3], 0), (polys[3:], 0), (polys[:3], 1)))
+        p, K, p1 = (
+            np.array([f.deriv(n)(s) if n else f(s) for f in part])
+            for part, n in ((polys[:3], 0), (polys[3:], 0), (polys[:3], 1))
+        )
         p2 = np.array([f.deriv(2)(s) for f in polys[:3]])
         pairs = (r - p, H - K, v * h - p1, a * h * h - p2)
         ratios.append([float(np.linalg.norm(x)) for x in pairs])
@@ -209,6 +212,21 @@ def test_a_release_that_may_be_on_the_horizontal_is_refused():
         World(scene(x="67", y="0", vx="1"), 128)
     with pytest.raises(ArithmeticError):
         World(scene(x="70", y="0"), 128)
+
+
+def test_a_drag_below_the_last_bit_still_counts_where_rotation_lifts_it_above():
+    """γ rounds to 0 but γΩ does not: its torque, -γΩ at p = K = 0, must not be lost."""
+    bits, drag = 64, Fraction(9, 10 * 2**64)
+    inputs = scene(length="1000", drag=drag, rotation_rate="1000", equatorial_radius="1e-9")
+    rows = ([1], *[[0]] * 5)
+    step = Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, rows)
+    assert Piece(World(inputs, 192), step).sizes().d2 > float(drag) * 999
+
+
+@pytest.mark.parametrize("change", [{"drag": "-0.001"}, {"length": "-67"}])
+def test_what_the_theorems_do_not_cover_is_refused(change):
+    with pytest.raises(ArithmeticError, match="theorems"):
+        World(scene(**change), 128)
 
 
 def test_steps_that_do_not_join_or_overreach_are_refused():

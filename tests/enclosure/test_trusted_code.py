@@ -1,0 +1,63 @@
+"""What has to be read to believe a proof: how much it is, and that nothing in it rounds on its own."""
+
+import ast
+import io
+import tokenize
+from pathlib import Path
+
+import pytest
+
+import reference.enclosure
+
+HOME = Path(reference.enclosure.__file__).parent
+TRUSTED = ("balls", "bound", "columns", "transits")
+BUDGET = 299  # lines of code: less than 300
+BARE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
+SCOPES = (ast.Module, ast.ClassDef, ast.FunctionDef)
+
+
+def source(name):
+    return (HOME / f"{name}.py").read_text(encoding="utf-8")
+
+
+def code_lines(text):
+    """Lines that carry code: not blank, not comment, not docstring."""
+    lines = set()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type not in BARE:
+            lines.update(range(token.start[0], token.end[0] + 1))
+    for scope in ast.walk(ast.parse(text)):
+        if isinstance(scope, SCOPES) and ast.get_docstring(scope) is not None:
+            lines.difference_update(range(scope.body[0].lineno, scope.body[0].end_lineno + 1))
+    return len(lines)
+
+
+def test_lines_are_counted_without_what_is_not_code():
+    text = '"""Doc\nstring."""\n\n# comment\nx = [\n    1,\n]\n\n\ndef f():\n    """Doc."""\n    return x  # why\n'
+    assert code_lines(text) == 5
+
+
+def test_trusted_code_stays_within_its_budget():
+    counts = {name: code_lines(source(name)) for name in TRUSTED}
+    assert sum(counts.values()) <= BUDGET, counts
+
+
+@pytest.mark.parametrize("name", TRUSTED)
+def test_trusted_code_says_so_and_holds_no_floating_point(name):
+    tree = ast.parse(source(name))
+    assert ast.get_docstring(tree).startswith("TRUSTED.")
+    for node in ast.walk(tree):
+        assert not (isinstance(node, ast.Constant) and isinstance(node.value, float | complex)), node.lineno
+        assert not (isinstance(node, ast.Name) and node.id == "float"), node.lineno
+        modules = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+        modules += [node.module] if isinstance(node, ast.ImportFrom) else []
+        assert not {"math", "cmath", "numpy", "mpmath", "scipy", "decimal", "heyoka"} & set(modules), node.lineno
+
+
+@pytest.mark.parametrize("name", TRUSTED)
+def test_trusted_code_imports_nothing_untrusted(name):
+    allowed = {"__future__", "collections.abc", "fractions", "functools", "typing", "flint", "shapes", *TRUSTED}
+    for node in ast.walk(ast.parse(source(name))):
+        if isinstance(node, ast.ImportFrom):
+            assert node.module in allowed, node.module
+        assert not isinstance(node, ast.Import)
