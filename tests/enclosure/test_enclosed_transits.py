@@ -166,7 +166,7 @@ def test_newton_asks_nothing_about_times_outside_of_its_leaves():
         # a leaf narrower than a ball: whether the middle of the ball lies in it is not known
         leaf, time = Leaf(1, third, third, slope), 1 + third
         assert contract([leaf], time, time).overlaps(time)
-        assert contract([Leaf(1, arb(0), third, slope)], slope.time(arb(0)), time) is None
+        assert contract([Leaf(1, arb(0), third, slope)], arb(1), time) is None
 
 
 def test_a_parabola_that_stays_clear_has_no_zero():
