@@ -8,21 +8,21 @@ with a polynomial, the proof measures.
 from __future__ import annotations
 
 import math
-import multiprocessing
-import os
 import time
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .errors import FoucaultError, IntegrationError
+from .errors import IntegrationError
 from .mechanics import FORMULATIONS
 from .precision import real
 from .runs import SPARE_BITS, Plan, Run, start_of
 from .scene import Inputs
+from .worker import Emit, Worker
 
 if TYPE_CHECKING:
     from .taylor import Polynomials
@@ -44,20 +44,15 @@ class Feed:
 
     inputs: Inputs
     times: tuple[Fraction, ...]
-    _child: Any = field(default=None, repr=False)
+    _worker: Worker | None = field(default=None, repr=False)
     _open: Iterator[Any] = field(default_factory=lambda: iter(()), repr=False)
     _done: Run | None = field(default=None, repr=False)
 
     def __call__(self, prec: int) -> Iterator[Any]:
         """The steps to prove of a run at `prec` bits, in order from t = 0."""
         self.stop()
-        spawn = multiprocessing.get_context("spawn")
-        receiver, sender = spawn.Pipe(duplex=False)
-        given = (self.inputs, self.times, prec, sender, os.getpid())
-        self._child = spawn.Process(target=_child, args=given, daemon=True)
-        self._child.start()
-        sender.close()
-        self._open = self._received(receiver)
+        self._worker = Worker(_proposals, self.inputs, self.times, prec)
+        self._open = self._received(self._worker)
         return self._open
 
     def finished(self) -> Run:
@@ -68,24 +63,17 @@ class Feed:
             raise IntegrationError("heyoka's process ended without its states.")
         return self._done
 
-    def _received(self, receiver: Any) -> Iterator[Any]:
-        while True:
-            try:
-                message = receiver.recv()
-            except EOFError:
-                raise IntegrationError("heyoka's process ended without an answer.") from None
-            if isinstance(message, Run):
-                self._done = message
-                return
-            if isinstance(message, BaseException):
-                raise message
-            yield from message
+    def _received(self, worker: Worker) -> Iterator[Any]:
+        for item in worker:
+            if isinstance(item, Run):
+                self._done = item
+            else:
+                yield from item
 
     def stop(self) -> None:
         """End the process."""
-        if self._child is not None:
-            self._child.terminate()
-            self._child.join()
+        if self._worker is not None:
+            self._worker.stop()
 
 
 def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Generator[Polynomials, None, Run]:
@@ -131,26 +119,15 @@ def _next_step(step: Polynomials, order: int) -> Fraction:
     return Fraction(int(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
 
 
-def _child(inputs: Inputs, times: tuple[Fraction, ...], prec: int, sender: Any, parent: int) -> None:
+def _proposals(emit: Emit, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> None:
     from .enclosure import pair
 
-    batch: list[Any] = []
     done: list[Run] = []
 
     def chain() -> Iterator[Polynomials]:
         done.append((yield from expand(inputs, times, prec)))
 
-    try:
-        for step in pair(chain()):
-            batch.append(step)
-            if len(batch) == BATCH:
-                if os.getppid() != parent:
-                    os._exit(1)  # the parent was killed: nobody proves this run
-                sender.send(batch)
-                batch = []
-        sender.send(batch)
-        sender.send(done[0])
-    except FoucaultError as error:
-        sender.send(IntegrationError(str(error)))
-    except (KeyboardInterrupt, BrokenPipeError):
-        os._exit(1)
+    steps = pair(chain())
+    while batch := list(islice(steps, BATCH)):
+        emit(batch)
+    emit(done[0])

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -19,8 +19,10 @@ from .precision import GUARD_BITS, NumberType, context
 from .scene import Inputs
 from .transits import march, quiet_start, xdot_vanishes, zero_at_release
 from .watch import watched_log
+from .worker import Emit, Worker
 
 SPARE_BITS = 80  # fixed-point values carry this much below the run's epsilon, for amplitudes far below l
+REPORT_S = 0.2  # how often the second process says how far it is
 WORTH_A_PROCESS = 4.0  # estimated CPU seconds from which a second process pays for its start
 
 Report = Callable[[float], None]
@@ -127,38 +129,42 @@ def run_both(first: Plan, second: Plan, expected_s: float, report: Report | None
         one = run(first, report and (lambda t: report(t / 2)))
         end = float(first.times[-1])
         return one, run(second, report and (lambda t: report((end + t) / 2)))
-    spawn = multiprocessing.get_context("spawn")
-    receiver, sender = spawn.Pipe(duplex=False)
-    reached = spawn.Value("d", 0.0)
-    child = spawn.Process(target=_child, args=(second, sender, reached, os.getpid()), daemon=True)
-    child.start()
-    sender.close()
-    answer: Run | BaseException | None = None
+    worker = Worker(_second, second)
+    came: list[Any] = [0.0]
     try:
-        one = run(first, report and (lambda t: report((t + reached.value) / 2)))
-        while report is not None and not receiver.poll(0.2):
-            report((float(first.times[-1]) + reached.value) / 2)
-        answer = receiver.recv()
-    except EOFError:
-        raise IntegrationError("the process of the confirming run ended without an answer.") from None
+        reader = threading.Thread(target=_collect, args=(worker, came), daemon=True)
+        reader.start()
+        one = run(first, report and (lambda t: report((t + _reached(came)) / 2)))
+        while reader.is_alive():
+            reader.join(0.2)
+            if report is not None:
+                report((float(first.times[-1]) + _reached(came)) / 2)
     finally:
-        if answer is None:
-            child.terminate()
-        child.join()
-    if not isinstance(answer, Run):
-        raise answer
-    return one, answer
+        worker.stop()
+    if not isinstance(came[-1], Run):
+        raise came[-1]
+    return one, came[-1]
 
 
-def _child(plan: Plan, sender: Any, reached: Any, parent: int) -> None:
-    def report(t: float) -> None:
-        reached.value = t
-        if os.getppid() != parent:
-            os._exit(1)  # the parent was killed: nobody waits for this run
-
+def _collect(worker: Worker, came: list[Any]) -> None:
     try:
-        sender.send(run(plan, report))
-    except FoucaultError as error:
-        sender.send(IntegrationError(str(error)))
-    except KeyboardInterrupt:
-        os._exit(1)
+        for item in worker:
+            came.append(item)
+    except (FoucaultError, OSError, ValueError) as error:  # the last two: the pipe was closed by an interrupt
+        came.append(error)
+
+
+def _reached(came: list[Any]) -> float:
+    return next((item for item in reversed(came) if isinstance(item, float)), 0.0)
+
+
+def _second(emit: Emit, plan: Plan) -> None:
+    shown = time.monotonic()
+
+    def report(t: float) -> None:
+        nonlocal shown
+        if time.monotonic() - shown > REPORT_S:
+            shown = time.monotonic()
+            emit(t)
+
+    emit(run(plan, report))

@@ -203,11 +203,11 @@ def test_a_feed_that_dies_is_an_error_and_leaves_no_process(paris):
     feed = Feed(paris.exact, (Fraction(0), Fraction(86400)))
     steps = feed(160)
     next(steps)
-    feed._child.kill()
+    feed._worker.kill()
     with pytest.raises(IntegrationError, match="ended without"):
         feed.finished()
     feed.stop()
-    assert not feed._child.is_alive()
+    assert not feed._worker.alive
 
 
 def test_an_error_in_the_feeds_process_arrives(paris):

@@ -9,8 +9,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text()
 
@@ -34,19 +32,17 @@ def test_it_fits_on_150_lines_and_has_commands():
     assert len(commands()) >= 5
 
 
-@pytest.mark.parametrize(("command", "shown"), commands(), ids=[command for command, _ in commands()])
-def test_every_command_prints_what_the_readme_shows(command, shown, tmp_path_factory):
-    place = tmp_path_factory.getbasetemp() / "readme"
-    place.mkdir(exist_ok=True)
+def test_every_command_in_its_turn_prints_what_the_readme_shows(tmp_path):
     path = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
-    here = command.replace("/tmp/", f"{place}/")
-    done = subprocess.run(
-        here, shell=True, capture_output=True, text=True, check=False, cwd=ROOT, env={**os.environ, **path}
-    )
-    got = (done.stdout + done.stderr).replace(f"{place}/", "/tmp/")
-    lines = shown.splitlines(keepends=True)
-    pattern = "".join("(?:.*\n)*?" if line == "…\n" else re.escape(line) for line in lines)
-    assert re.fullmatch(pattern, got), got
+    for command, shown in commands():
+        here = command.replace("/tmp/", f"{tmp_path}/")
+        done = subprocess.run(
+            here, shell=True, capture_output=True, text=True, check=False, cwd=ROOT, env={**os.environ, **path}
+        )
+        got = (done.stdout + done.stderr).replace(f"{tmp_path}/", "/tmp/")
+        lines = shown.splitlines(keepends=True)
+        pattern = "".join("(?:.*\n)*?" if line == "…\n" else re.escape(line) for line in lines)
+        assert re.fullmatch(pattern, got), f"{command}\n{got}"
 
 
 def test_the_python_in_the_readme_runs_and_prints_what_it_shows():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from dataclasses import replace
 from fractions import Fraction
 
@@ -213,3 +215,19 @@ def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
         for reading in ("decimal", "binary64")
     ]
     assert 1e-14 < abs(np.subtract(*ends)) < 5e-12
+
+
+SCRIPT = """
+import reference, reference.runs
+reference.runs.WORTH_A_PROCESS = 0.0
+for level in ("confirmed", "enclosed"):
+    solution = reference.solve(reference.load_scene("paris"), t_end="120", digits=20, level=level)
+    print(level, len(solution.directions))
+"""
+
+
+def test_a_plain_script_without_a_main_guard_may_use_both_cores(tmp_path):
+    script = tmp_path / "mine.py"
+    script.write_text(SCRIPT)
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("confirmed 14\nenclosed 14\n", "")
