@@ -20,7 +20,7 @@ import numpy as np
 from .errors import IntegrationError
 from .mechanics import FORMULATIONS
 from .precision import real
-from .runs import SPARE_BITS, Plan, Run, start_of
+from .runs import Plan, Run, result, start_of
 from .scene import Inputs
 from .worker import Emit, Worker
 
@@ -93,20 +93,7 @@ def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Generator[
         while len(states) < len(grid) and grid[len(states)] <= stepper.time:
             states.append(stepper.sample(grid[len(states)]))
         limit = stepper.numbers.of(_next_step(step, stepper.order))
-    array = np.array(states, dtype=stepper.numbers.dtype)
-    return Run(
-        plan=plan,
-        scale=prec + SPARE_BITS,
-        grid=taylor.cartesian(stepper, array, prec + SPARE_BITS).rows,
-        zeros=None,
-        directions=[],
-        order=stepper.order,
-        steps=stepper.steps,
-        terms=stepper.terms,
-        tension=taylor.least_tension(stepper, array),
-        compile_s=stepper.compile_s,
-        cpu_s=time.process_time() - begun,
-    )
+    return result(plan, stepper, np.array(states, dtype=stepper.numbers.dtype), None, begun)
 
 
 def _next_step(step: Polynomials, order: int) -> Fraction:

@@ -8,7 +8,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from .scene import Inputs
 from .transits import march, quiet_start, xdot_vanishes, zero_at_release
 from .watch import watched_log
 from .worker import Emit, Worker
+
+if TYPE_CHECKING:
+    from . import taylor
 
 SPARE_BITS = 80  # fixed-point values carry this much below the run's epsilon, for amplitudes far below l
 REPORT_S = 0.2  # how often the second process says how far it is
@@ -97,16 +100,30 @@ def run(plan: Plan, report: Report | None = None) -> Run:
             states = stepper.propagate(times, report)
             if watch.fresh():
                 raise IntegrationError("heyoka wrote a warning to its log during a run without events.")
-    scale = plan.number.prec + SPARE_BITS
-    grid = taylor.cartesian(stepper, states, scale)
-    met = taylor.cartesian(stepper, np.array([zero.state for zero in found], dtype=stepper.numbers.dtype), scale)
-    moments = stepper.numbers.fixed(np.array([zero.t for zero in found], dtype=stepper.numbers.dtype), scale)
+    return result(plan, stepper, states, found if watching else None, begun)
+
+
+def result(plan: Plan, stepper: taylor.Stepper, states: Any, zeros: list[taylor.Zero] | None, begun: float) -> Run:
+    """The states and zeros of a stepper that has reached the end, in SI units.
+
+    Args:
+        plan: what was to be run.
+        stepper: after its last step.
+        states: at the plan's times, shape (times, variables).
+        zeros: of xdot; None if not looked for.
+        begun: `time.process_time()` when the steps began.
+    """
+    from . import taylor
+
+    scale, dtype = plan.number.prec + SPARE_BITS, stepper.numbers.dtype
+    met = taylor.cartesian(stepper, np.array([zero.state for zero in zeros or ()], dtype=dtype), scale).rows
+    moments = stepper.numbers.fixed(np.array([zero.t for zero in zeros or ()], dtype=dtype), scale)
     return Run(
         plan=plan,
         scale=scale,
-        grid=grid.rows,
-        zeros=[(t, *row) for t, row in zip(moments, met.rows, strict=True)] if watching else None,
-        directions=[zero.direction for zero in found],
+        grid=taylor.cartesian(stepper, states, scale).rows,
+        zeros=None if zeros is None else [(t, *row) for t, row in zip(moments, met, strict=True)],
+        directions=[zero.direction for zero in zeros or ()],
         order=stepper.order,
         steps=stepper.steps,
         terms=stepper.terms,
