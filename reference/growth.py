@@ -16,7 +16,7 @@ from .runs import Plan, run
 from .scene import Inputs
 from .solution import grid_decimals
 
-MARGIN_BITS = 10  # a run aims this far below the last digit, so that rounding is rarely in doubt
+MARGIN_BITS = 14  # a run aims this far below the last digit, so that rounding is rarely in doubt
 CLOSE_TRANSIT_BITS = 12  # what the time of a day's worst conditioned transit loses against xdot
 ESTIMATE_FACTOR = 16  # a single run's error is estimated from the pilot's, with this in hand
 LEAST_ULPS = 4  # and is never estimated below this many units in the last place

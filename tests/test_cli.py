@@ -211,7 +211,7 @@ def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
     with subprocess.Popen(
         words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT, start_new_session=True
     ) as process:
-        time.sleep(4)
+        time.sleep(8)  # well into the run, also on a busy machine
         process.send_signal(signal.SIGINT)
         _, err = process.communicate(timeout=30)
     assert process.returncode not in (0, None)
