@@ -32,7 +32,7 @@ from .manifest import (
 from .precision import outward, rounded_up
 from .render import binary64_sheet, grid_sheet, largest_bound, scene_inputs, transits_sheet
 from .runs import Report
-from .scene import Scene, data_root, in_checkout
+from .scene import Scene, data_root, in_checkout, load_scene, scene_ids
 from .solution import Solution
 from .solver import solve
 from .verify import invariant_drift, problems_of
@@ -138,12 +138,26 @@ def _version(package: str) -> str:
 
 
 def command(scene: Scene) -> str:
-    """The command that makes the dataset of a scene."""
-    run = scene.run
-    parts = ["foucault", "generate", scene.id, "--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
+    """The command that makes the dataset: of a scene that ships, with what was changed in it, or of its file."""
+    run, shipped = scene.run, scene.id in scene_ids()
+    parts = ["foucault", "generate", scene.id if shipped else f"{scene.id}.toml"]
+    parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
     parts += [] if run.transits else ["--no-transits"]
-    parts += [] if scene.inputs == "decimal" else ["--set", f"inputs={scene.inputs}"]
+    if shipped:
+        parts += [word for change in _changes(scene, load_scene(scene.id)) for word in ("--set", change)]
     return " ".join(parts)
+
+
+def _changes(scene: Scene, shipped: Scene) -> list[str]:
+    """What was set in a shipped scene, other than by options of their own."""
+    before, now = scene_inputs(shipped), scene_inputs(scene)
+    changed = [
+        f"{section}.{key}={value}"
+        for section, table in now.items()
+        for key, value in table.items()
+        if before[section].get(key) != value and (section != "run" or key == "grid_step")
+    ]
+    return changed if scene.inputs == shipped.inputs else [*changed, f"inputs={scene.inputs}"]
 
 
 def default_folder(scene: Scene, as_shipped: bool) -> Path:

@@ -13,18 +13,18 @@ from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal, cast
+from typing import Annotated, Any, Literal, cast, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError
 
 from .errors import InputError
 
-LEVELS = ("computed", "self_consistent", "confirmed", "enclosed")
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
 MAX_EXPONENT = 400  # keeps a typing slip such as 1e999999999 from filling the memory
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
+LEVELS: tuple[Level, ...] = get_args(Level)
 Reading = Literal["decimal", "binary64"]
 
 _ID = re.compile(r"[a-z][a-z0-9_]*")

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .precision import decimals_for
 from .runs import Run
-from .scene import Scene
+from .scene import Level, Scene
 
 Array = npt.NDArray[np.float64]
 
@@ -172,7 +172,7 @@ class Solution:
     possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
 
     @property
-    def level(self) -> str:
+    def level(self) -> Level:
         """How far the numbers can be trusted: one of `scene.LEVELS`."""
         return self.scene.run.level
 

@@ -180,7 +180,6 @@ class Stepper:
         ctx: that context.
         number: type to compute in.
         events: whether to detect the zeros of xdot.
-        tol: relative tolerance as a power of two; None for the type's own epsilon.
     """
 
     def __init__(
@@ -193,7 +192,6 @@ class Stepper:
         number: NumberType,
         *,
         events: bool = False,
-        tol: int | None = None,
     ) -> None:
         self.number, self.numbers, self.formulation = number, Numbers(number), formulation
         self.constants = constants.converted(self.numbers.of)
@@ -202,8 +200,6 @@ class Stepper:
         system = System.build(formulation, self.constants)
         self._variables = [name for name, _ in system.equations]
         keywords = dict(self.numbers.keywords)
-        if tol is not None:
-            keywords["tol"] = self.numbers.power_of_two(tol)
         if events:
             found = self.found  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
 

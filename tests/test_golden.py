@@ -229,3 +229,14 @@ def test_bounds_cover_the_rounding_to_the_printed_digits(dataset):
     coarsest = min(manifest.decimals["grid"][name] for name in "xyz")
     assert Fraction(manifest.bounds.position_m) >= Fraction(1, 2 * 10**coarsest)
     assert math.isfinite(float(manifest.bounds.position_m))
+
+
+def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
+    plain = "foucault generate paris --t-end 86400 --digits 40 --level confirmed"
+    assert publish.command(paris) == plain
+    changed = paris.with_values(["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"])
+    sets = "--set site.latitude=0 --set release.vx=1 --set run.grid_step=600 --set inputs=binary64"
+    assert publish.command(changed) == f"{plain} {sets}"
+    words = [word for word in publish.command(changed).split() if "=" in word]
+    assert paris.with_values(words) == changed
+    assert publish.command(make_scene("mine")).startswith("foucault generate mine.toml --t-end")

@@ -133,10 +133,6 @@ def test_the_disk_cache_is_off_for_real_where_it_never_hits(paris):
     assert not hy.llvm_state.get_diskcache_enabled()
 
 
-def test_a_tolerance_of_its_own_changes_the_order(paris):
-    assert stepper_of(paris, real(160), tol=-80).order < stepper_of(paris, real(160)).order
-
-
 def test_no_states_give_no_rows(paris):
     stepper = stepper_of(paris, DOUBLE)
     assert cartesian(stepper, np.array([]), 100).rows == []
