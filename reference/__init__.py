@@ -15,6 +15,7 @@ from .errors import DatasetError, FoucaultError, InputError, IntegrationError, U
 from .scene import Scene, load_scene, parse_scene, scene_ids
 
 if TYPE_CHECKING:
+    from .flow import integrate, trajectory
     from .golden import Golden, load
     from .solution import Solution
     from .solver import solve
@@ -28,14 +29,23 @@ __all__ = [
     "Scene",
     "Solution",
     "UnreachableError",
+    "integrate",
     "load",
     "load_scene",
     "parse_scene",
     "scene_ids",
     "solve",
+    "trajectory",
 ]
 
-_LAZY = {"Golden": "golden", "load": "golden", "Solution": "solution", "solve": "solver"}
+_LAZY = {
+    "Golden": "golden",
+    "Solution": "solution",
+    "integrate": "flow",
+    "load": "golden",
+    "solve": "solver",
+    "trajectory": "flow",
+}
 
 
 def __getattr__(name: str) -> Any:

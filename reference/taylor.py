@@ -93,12 +93,20 @@ class System:
         """Expressions of a formulation; `constants` are numbers of the run's type, or variables."""
         state = hy.make_vars(*formulation.variables)
         n, v = formulation.cartesian(state, constants, hy)
-        if isinstance(formulation, mechanics.Lagrangian):
-            rates = _euler_lagrange(formulation, state, constants)
-        else:
-            rates = list(formulation.derivatives(state, constants, hy))
-        equations = [(name, rate + hy.expression(0.0)) for name, rate in zip(state, rates, strict=True)]
+        equations = _equations(state, rates(formulation, constants)(state, hy))
         return cls(formulation, constants, equations, v[0], mechanics.acceleration(n, v, constants)[0])
+
+
+def rates(formulation: Formulation, constants: Constants) -> Callable[[Any, Any], Sequence[Any]]:
+    """A formulation's derivatives as a function of state and functions."""
+    if isinstance(formulation, mechanics.Lagrangian):
+        return lambda state, _: _euler_lagrange(formulation, state, constants)
+    return lambda state, functions: formulation.derivatives(state, constants, functions)
+
+
+def _equations(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]]:
+    """Pairs as heyoka wants them, also where a rate is the int 0."""
+    return [(name, rate + hy.expression(0.0)) for name, rate in zip(state, rates, strict=True)]
 
 
 def _euler_lagrange(formulation: mechanics.Lagrangian, state: Any, constants: Constants) -> list[Any]:
@@ -350,3 +358,66 @@ def least_tension(stepper: Stepper, states: Any) -> float:
     n, v = stepper.formulation.cartesian(columns, stepper.constants, np)
     pull = mechanics.tension(n, v, stepper.constants)
     return float(np.min(np.asarray(pull).astype(float)))
+
+
+class Flow:
+    """Any autonomous system, given generically, in heyoka: what the model's own `Stepper` is not needed for.
+
+    Args:
+        variables: names of the state's variables.
+        derivatives: `derivatives(state, functions)` or, with parameters, `derivatives(state, functions, parameters)`;
+            `functions` offers sqrt, sin, cos.
+        number: type to compute in.
+        tolerance: relative error of a step; the type's epsilon if None.
+        parameters: how many parameters there are. If any, the derivative of the state with respect to the first
+            of them is integrated as well, by the first-order variational equations.
+    """
+
+    def __init__(
+        self,
+        variables: Sequence[str],
+        derivatives: Callable[..., Sequence[Any]],
+        number: NumberType,
+        *,
+        tolerance: float | None = None,
+        parameters: int = 0,
+    ) -> None:
+        self.numbers = Numbers(number)
+        state = [hy.expression(name) for name in variables]
+        known = ([hy.par[i] for i in range(parameters)],) if parameters else ()
+        system: Any = _equations(state, derivatives(tuple(state), hy, *known))
+        if parameters:
+            system = hy.var_ode_sys(system, [hy.par[0]], order=1)
+        keywords = dict(self.numbers.keywords)
+        if tolerance is not None:
+            keywords["tol"] = self.numbers.of(Fraction(tolerance))
+        hy.llvm_state.set_diskcache_enabled(number.name != "real")
+        begun = time.process_time()
+        idle = [self.numbers.of(0)] * len(state)
+        self._ta: Any = hy.taylor_adaptive(system, idle, fp_type=self.numbers.type, **keywords)
+        self.compile_s = time.process_time() - begun
+        self.steps = 0
+
+    def from_zero(self, start: Sequence[Any], times: Sequence[Any], parameters: Sequence[Any] = ()) -> Any:
+        """States at increasing times (the first is 0), shape (times, variables).
+
+        With parameters `start` holds the state and then its derivative with respect to the first one, and so
+        does each row.
+
+        Raises:
+            IntegrationError: heyoka says anything but success, or a state is not finite.
+        """
+        ta = self._ta
+        ta.time = self.numbers.of(0)
+        ta.state[:] = start
+        if len(parameters):
+            ta.pars[:] = parameters
+        if len(times) == 1:
+            return ta.state.copy()[None, :]
+        outcome, _, _, steps, _, states = ta.propagate_grid(np.array(times, dtype=self.numbers.dtype))
+        self.steps += int(steps)
+        if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
+            raise IntegrationError(f"heyoka stopped at t = {float(ta.time)} s with outcome {outcome}.")
+        if not np.isfinite(states.astype(float)).all():
+            raise IntegrationError("the state became infinite or not a number.")
+        return states
