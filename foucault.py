@@ -4,8 +4,15 @@ from __future__ import annotations
 
 import sys
 
-from reference.cli import app
+import typer
+
+from compare.cli import app as judges
+from reference.cli import app as makers
 from reference.errors import FoucaultError
+
+app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None)
+app.add_typer(makers)
+app.add_typer(judges)
 
 
 def main() -> None:

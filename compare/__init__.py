@@ -1,1 +1,34 @@
-"""Judges of others: score a program's output, study error against run time, look for what breaks."""
+"""Judges of others: score a program's output, study error against run time, look for what breaks.
+
+>>> import compare
+>>> score = compare.assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
+>>> score.verdict
+'agrees'
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .candidate import Candidate
+    from .score import Score, score
+    from .testing import assert_agrees
+    from .trajectory import read
+
+__all__ = ["Candidate", "Score", "assert_agrees", "read", "score"]
+
+_LAZY = {
+    "Candidate": "candidate",
+    "Score": "score",
+    "assert_agrees": "testing",
+    "read": "trajectory",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is used when it is used."""
+    if name not in _LAZY:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f".{_LAZY[name]}", __name__), name)

@@ -11,12 +11,12 @@ Whatever comes is bounded: bytes, rows and the length of a line. What is wrong i
 
 from __future__ import annotations
 
+import contextlib
 import io
 import math
 import sys
 import zipfile
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
 from typing import BinaryIO
@@ -26,76 +26,14 @@ import numpy as np
 from reference import InputError
 from reference.solution import Array
 
-COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
+from .candidate import COLUMNS, HEADER_ADVICE, Candidate
+
 MAX_BYTES = 1 << 30
 MAX_ROWS = 5_000_000
 MAX_LINE = 1 << 16
 CHUNK = 1 << 22
+LOOKED_AT = 50  # rows of a chunk in which longer numbers than a double's are looked for
 DOUBLE_DIGITS = 17  # numbers with more carry what a double does not
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A trajectory to be judged.
-
-    Attributes:
-        name: where it came from.
-        t: times in s, shape (rows,), strictly increasing, from 0 on.
-        columns: x, y and any of z, vx, vy, vz in m and m/s, each of shape (rows,).
-        rest: what the doubles of `columns` lack against longer printed numbers; empty if nothing.
-        transits: times of xdot = 0 that came with it, or None.
-        notes: what a reader ought to know.
-    """
-
-    name: str
-    t: Array = field(repr=False)
-    columns: dict[str, Array] = field(repr=False)
-    rest: dict[str, Array] = field(default_factory=dict, repr=False)
-    transits: Array | None = field(default=None, repr=False)
-    notes: tuple[str, ...] = ()
-
-    @property
-    def extended(self) -> bool:
-        """True if some number has more digits than a double holds."""
-        return bool(self.rest)
-
-    @classmethod
-    def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
-        """From arrays, after checking them.
-
-        Raises:
-            InputError: a missing column, unequal lengths, a number that is not finite, times that do not increase.
-        """
-        for wanted in ("x", "y"):
-            if wanted not in columns:
-                raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {wanted}", _HEADER_ADVICE)
-        if not len(t):
-            raise InputError(name, "no rows", "at least one row", "Is the output empty?")
-        for word, column in (("t", t), *columns.items()):
-            if column.ndim != 1 or len(column) != len(t):
-                raise InputError(
-                    f"{name}: {word}", f"shape {column.shape}", f"one-dimensional, {len(t)} numbers as in t"
-                )
-            if not np.isfinite(column).all():
-                row = int(np.argmin(np.isfinite(column)))
-                raise InputError(
-                    f"{name}: {word}", f"{column[row]} in row {row + 1}", "a finite number", "The run failed there?"
-                )
-        if t[0] < 0:
-            raise InputError(f"{name}: t", f"{t[0]:.17g} in row 1", "times from 0 on")
-        steps = np.diff(t)
-        if (steps <= 0).any():
-            row = int(np.argmax(steps <= 0))
-            raise InputError(
-                f"{name}: t",
-                f"{t[row + 1]:.17g} in row {row + 2} after {t[row]:.17g}",
-                "strictly increasing times",
-                "Sort the rows and drop repeated times.",
-            )
-        return cls(name, t, columns, **more)  # type: ignore[arg-type]
-
-
-_HEADER_ADVICE = "The first line names the columns: t, x, y and, if there, z, vx, vy, vz."
 
 
 def read(source: str | Path) -> Candidate:
@@ -147,7 +85,7 @@ def _from_npz(data: io.BytesIO, name: str) -> Candidate:
         if array.dtype.kind not in "fiu":
             raise InputError(f"{name}: {key}", f"dtype {array.dtype}", "real numbers")
     if "t" not in kept:
-        raise InputError(name, f"arrays {', '.join(kept) or 'of other names'}", "an array t", _HEADER_ADVICE)
+        raise InputError(name, f"arrays {', '.join(kept) or 'of other names'}", "an array t", HEADER_ADVICE)
     wide = {key: array for key, array in kept.items() if key in COLUMNS and array.dtype.itemsize > 8}
     double = {key: np.asarray(array, dtype=np.float64) for key, array in kept.items()}
     rest = {key: np.asarray(array - double[key].astype(array.dtype), dtype=np.float64) for key, array in wide.items()}
@@ -175,7 +113,7 @@ class _Text:
             self._take(lines)
         if self.words is None:
             raise InputError(
-                self.name, "no header and no rows", "a CSV file, foucPend's output, or .npz", _HEADER_ADVICE
+                self.name, "no header and no rows", "a CSV file, foucPend's output, or .npz", HEADER_ADVICE
             )
         table = np.concatenate(self.blocks) if self.blocks else np.empty((0, len(self.kept)))
         columns = {word: np.ascontiguousarray(table[:, i]) for i, word in enumerate(self.kept)}
@@ -258,13 +196,11 @@ class _Text:
                 return True
         words = [word.strip().strip('"').lower() for word in text.split(",")]
         if any(_is_number(word) for word in words):
-            raise InputError(f"{self.name}: first line", text[:80], "a header that names the columns", _HEADER_ADVICE)
+            raise InputError(f"{self.name}: first line", text[:80], "a header that names the columns", HEADER_ADVICE)
         for word in ("t", "x", "y"):
             if words.count(word) != 1:
                 got = "none" if word not in words else f"{words.count(word)} of them"
-                raise InputError(
-                    f"{self.name}: header", f"{got} in {text[:80]!r}", f"one column {word}", _HEADER_ADVICE
-                )
+                raise InputError(f"{self.name}: header", f"{got} in {text[:80]!r}", f"one column {word}", HEADER_ADVICE)
         for word in COLUMNS:
             if words.count(word) > 1:
                 raise InputError(f"{self.name}: header", text[:80], f"one column {word} at most")
@@ -279,27 +215,24 @@ class _Text:
 
     def _parse(self, lines: list[str], numbers: list[int]) -> None:
         assert self.words is not None
-        width = len(self.words)
-        split = [line.split(",") for line in lines] if self.comma else [line.split() for line in lines]
-        for fields, number in zip(split, numbers, strict=True):
-            if len(fields) != width:
-                raise InputError(
-                    f"{self.name}: line {number}", f"{len(fields)} fields", f"{width}", "Is the line cut off?"
-                )
+        width, separator = len(self.words), "," if self.comma else None
         where = [self.words.index(word) for word in self.kept]
-        texts = [[fields[i] for i in where] for fields in split]
         try:
-            block = np.array([list(map(float, row)) for row in texts])
-            plain = not any("_" in text for row in texts for text in row)
+            even = {line.count(",") if self.comma else len(line.split()) - 1 for line in lines} == {width - 1}
+            block = np.loadtxt(lines, delimiter=separator, usecols=where, comments=None, ndmin=2) if even else None
         except ValueError:
-            plain = False
-        if not plain:
-            self._blame(texts, numbers)
-        if len(lines) + len(self.blocks) and self.blocks:
+            block = None
+        if block is None:
+            self._blame(lines, numbers)
+            raise InputError(self.name, "a number that cannot be read", "decimal numbers")
+        if self.blocks:
             self._ordered(self.blocks[-1][-1, 0], block[0, 0], numbers[0])
         self.blocks.append(block)
-        longest = max(len(text) for text in texts[-1])
-        self.rests.append(_rests(texts, block) if longest > DOUBLE_DIGITS else np.zeros((1, 1)))
+        looked_at = [lines[i].split(separator) for i in range(0, len(lines), 1 + len(lines) // LOOKED_AT)]
+        if any(_digits(fields[i]) > DOUBLE_DIGITS for fields in looked_at for i in where[1:]):
+            self.rests.append(_rests([line.split(separator) for line in lines], where, block))
+        else:
+            self.rests.append(np.broadcast_to(0.0, block.shape))
 
     def _ordered(self, before: float, after: float, line: int) -> None:
         """Refuse a stream whose times stand still as soon as that is seen, not after a gigabyte."""
@@ -308,12 +241,21 @@ class _Text:
                 f"{self.name}: line {line}", f"t = {after:.17g} after {before:.17g}", "strictly increasing times"
             )
 
-    def _blame(self, texts: list[list[str]], numbers: list[int]) -> None:
-        for row, number in zip(texts, numbers, strict=True):
-            for word, text in zip(self.kept, row, strict=True):
-                if not _is_number(text):
+    def _blame(self, lines: list[str], numbers: list[int]) -> None:
+        """Find the line that does not read as the others do."""
+        assert self.words is not None
+        for line, number in zip(lines, numbers, strict=True):
+            fields = line.split("," if self.comma else None)
+            if len(fields) != len(self.words):
+                raise InputError(
+                    f"{self.name}: line {number}",
+                    f"{len(fields)} fields",
+                    f"{len(self.words)} as in the first line",
+                    "Is the line cut off?",
+                )
+            for word, text in zip(self.words, fields, strict=True):
+                if word in ("t", *COLUMNS) and not _is_number(text):
                     raise InputError(f"{self.name}: line {number}: {word}", repr(text[:40]), "a number")
-        raise InputError(self.name, "a number that cannot be read", "decimal numbers")
 
 
 def _is_number(text: str) -> bool:
@@ -326,21 +268,26 @@ def _is_number(text: str) -> bool:
     return True
 
 
-def _rests(texts: list[list[str]], block: Array) -> Array:
+def _digits(text: str) -> int:
+    """Significant digits of a printed number."""
+    return sum(map(str.isdigit, text.lower().partition("e")[0].strip().lstrip("+-0.")))
+
+
+def _rests(split: list[list[str]], where: list[int], block: Array) -> Array:
     """What the doubles lack against the printed numbers, where these have more digits; same shape."""
     rest = np.zeros_like(block)
-    for i, row in enumerate(texts):
-        for j, text in enumerate(row):
-            if sum(map(str.isdigit, text.lower().partition("e")[0])) > DOUBLE_DIGITS and math.isfinite(block[i, j]):
-                rest[i, j] = float(Fraction(text.strip()) - Fraction(block[i, j]))
+    for i, fields in enumerate(split):
+        for j, k in enumerate(where):
+            if math.isfinite(block[i, j]) and _digits(fields[k]) > DOUBLE_DIGITS:
+                rest[i, j] = float(Fraction(fields[k].strip()) - Fraction(block[i, j]))
     return rest
 
 
 def read_transits(source: str | Path) -> Array:
     """Times of xdot = 0 from a CSV file in which only the column t is needed (or "-")."""
     try:
-        stream = sys.stdin.buffer if str(source) == "-" else Path(source).open("rb")
-        with stream:
+        with contextlib.ExitStack() as stack:
+            stream = sys.stdin.buffer if str(source) == "-" else stack.enter_context(Path(source).open("rb"))
             data = stream.read(MAX_BYTES + 1)
     except OSError as error:
         raise InputError("--transits", str(source), "a readable CSV file", f"{error.strerror}.") from None

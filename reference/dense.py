@@ -53,11 +53,11 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
         within: how near to the truth to come, relative to the cord length; what was reached is in `bound_m`.
 
     Raises:
-        InputError: a time is not finite, or outside of the dataset.
+        InputError: a time is not finite, or outside of the dataset and more than a grid step beyond its end.
     """
     wanted = np.unique(np.asarray(times, dtype=np.float64).ravel())
     grid = [Fraction(text) for text in golden.decimals("t")]
-    _check(wanted, grid[-1])
+    _check(wanted, 2 * grid[-1] - grid[-2])
     scale = float(golden.scene.exact.length)
     for number in TYPES:
         states, rest, missed = _marched(golden, grid, wanted, number)

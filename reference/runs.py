@@ -76,8 +76,13 @@ def start_of(inputs: Inputs, number: NumberType) -> tuple[Any, Constants, Vector
     return ctx, k, n, v
 
 
-def run(plan: Plan, report: Report | None = None) -> Run:
+def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[taylor.Stepper], None] | None = None) -> Run:
     """Integrate a plan.
+
+    Args:
+        plan: what to run.
+        report: called with the simulated time reached, in s.
+        look_ahead: called before the first step; leaves the stepper as it was, or raises.
 
     Raises:
         IntegrationError: heyoka warned or stopped, or transits contradict each other.
@@ -89,6 +94,8 @@ def run(plan: Plan, report: Report | None = None) -> Run:
     watching = plan.transits and not xdot_vanishes(n, v, k)
     stepper = taylor.Stepper(model, k, n, v, ctx, plan.number, events=watching)
     times = [stepper.numbers.of(t) for t in plan.times]
+    if look_ahead is not None:
+        look_ahead(stepper)
     found: list[taylor.Zero] = []
     with watched_log() as watch:
         multiplicity = zero_at_release(n, v)

@@ -71,7 +71,7 @@ class Sensitivity:
         """Derivative of start, constants and length with respect to one input."""
         ctx, inputs, value = self._ctx, self.scene.exact, self.values[name]
         nudge = _NUDGE * max(abs(value), Fraction(1))
-        ahead, behind = (_parts(_with(inputs, name, value + side * nudge), ctx) for side in (1, -1))
+        ahead, behind = (_parts(with_value(inputs, name, value + side * nudge), ctx) for side in (1, -1))
         return np.array([float(to_fraction(p - q) / (2 * nudge)) for p, q in zip(ahead, behind, strict=True)])
 
     def _along(self, slope: Array) -> Array:
@@ -95,7 +95,8 @@ class Sensitivity:
     def _flow(self) -> Any:
         from . import taylor
 
-        return taylor.Flow(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=1 + 2 * _CONSTANTS)
+        count = 1 + 2 * _CONSTANTS
+        return taylor.Flow(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True)
 
 
 def _rates(state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
@@ -113,8 +114,8 @@ def _parts(inputs: Inputs, ctx: Any) -> list[Any]:
     return [ctx.mpf(part) for part in (*_MODEL.start(n, v, k, ctx), *k.turn[1:], *k.pull[1:], k.drag, k.length)]
 
 
-def _with(inputs: Inputs, name: str, value: Fraction) -> Inputs:
-    """The inputs with one of `Sensitivity.values` replaced."""
+def with_value(inputs: Inputs, name: str, value: Fraction) -> Inputs:
+    """The inputs with one of `Sensitivity.values` replaced; no check, so that a mistake can be asked about."""
     section, key = name.split(".")
     changed: dict[str, Any] = {key: value}
     if key == "inverse_flattening":

@@ -304,6 +304,13 @@ class Stepper:
         scale = 2 * self.number.prec + TIME_BITS
         return Fraction(sum(self.numbers.fixed(np.array(self._ta.dtime), scale)), 1 << scale)
 
+    def race(self, end: Any, steps: int) -> int:
+        """Go on towards `end` without output or checks, at most so many steps; how many were taken."""
+        outcome, _, _, taken, _, _ = self._ta.propagate_until(end, max_steps=steps)
+        if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
+            raise IntegrationError(f"Lengths, forces or rates of the scene are too far apart for {self.number}: {outcome}.")
+        return int(taken)
+
     def propagate(self, times: Sequence[Any], report: Callable[[float], None] | None = None) -> Any:
         """States at increasing times (the first is the present), shape (times, variables), without events."""
         if len(times) == 1:
@@ -369,8 +376,9 @@ class Flow:
             `functions` offers sqrt, sin, cos.
         number: type to compute in.
         tolerance: relative error of a step; the type's epsilon if None.
-        parameters: how many parameters there are. If any, the derivative of the state with respect to the first
-            of them is integrated as well, by the first-order variational equations.
+        parameters: how many parameters there are.
+        varied: whether the derivative of the state with respect to the first parameter is integrated as well, by
+            the first-order variational equations.
     """
 
     def __init__(
@@ -381,27 +389,28 @@ class Flow:
         *,
         tolerance: float | None = None,
         parameters: int = 0,
+        varied: bool = False,
     ) -> None:
         self.numbers = Numbers(number)
         state = [hy.expression(name) for name in variables]
         known = ([hy.par[i] for i in range(parameters)],) if parameters else ()
         system: Any = _equations(state, derivatives(tuple(state), hy, *known))
-        if parameters:
+        if varied:
             system = hy.var_ode_sys(system, [hy.par[0]], order=1)
         keywords = dict(self.numbers.keywords)
         if tolerance is not None:
             keywords["tol"] = self.numbers.of(Fraction(tolerance))
         hy.llvm_state.set_diskcache_enabled(number.name != "real")
         begun = time.process_time()
-        idle = [self.numbers.of(0)] * len(state)
+        idle = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)
         self._ta: Any = hy.taylor_adaptive(system, idle, fp_type=self.numbers.type, **keywords)
         self.compile_s = time.process_time() - begun
         self.steps = 0
 
-    def from_zero(self, start: Sequence[Any], times: Sequence[Any], parameters: Sequence[Any] = ()) -> Any:
+    def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = ()) -> Any:
         """States at increasing times (the first is 0), shape (times, variables).
 
-        With parameters `start` holds the state and then its derivative with respect to the first one, and so
+        Where varied, `start` holds the state and then its derivative with respect to the first parameter, and so
         does each row.
 
         Raises:

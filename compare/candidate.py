@@ -1,0 +1,74 @@
+"""A trajectory to be judged: arrays that were checked, wherever they came from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from reference import InputError
+from reference.solution import Array
+
+COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
+HEADER_ADVICE = "The first line names the columns: t, x, y and, if there, z, vx, vy, vz."
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A trajectory to be judged.
+
+    Attributes:
+        name: where it came from.
+        t: times in s, shape (rows,), strictly increasing, from 0 on.
+        columns: x, y and any of z, vx, vy, vz in m and m/s, each of shape (rows,).
+        rest: what the doubles of `columns` lack against longer printed numbers; empty if nothing.
+        transits: times of xdot = 0 that came with it, or None.
+        notes: what a reader ought to know.
+    """
+
+    name: str
+    t: Array = field(repr=False)
+    columns: dict[str, Array] = field(repr=False)
+    rest: dict[str, Array] = field(default_factory=dict, repr=False)
+    transits: Array | None = field(default=None, repr=False)
+    notes: tuple[str, ...] = ()
+
+    @property
+    def extended(self) -> bool:
+        """True if some number has more digits than a double holds."""
+        return bool(self.rest)
+
+    @classmethod
+    def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
+        """From arrays, after checking them.
+
+        Raises:
+            InputError: a missing column, unequal lengths, a number that is not finite, times that do not increase.
+        """
+        for wanted in ("x", "y"):
+            if wanted not in columns:
+                raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {wanted}", HEADER_ADVICE)
+        if not len(t):
+            raise InputError(name, "no rows", "at least one row", "Is the output empty?")
+        for word, column in (("t", t), *columns.items()):
+            if column.ndim != 1 or len(column) != len(t):
+                raise InputError(
+                    f"{name}: {word}", f"shape {column.shape}", f"one-dimensional, {len(t)} numbers as in t"
+                )
+            if not np.isfinite(column).all():
+                row = int(np.argmin(np.isfinite(column)))
+                raise InputError(
+                    f"{name}: {word}", f"{column[row]} in row {row + 1}", "a finite number", "The run failed there?"
+                )
+        if t[0] < 0:
+            raise InputError(f"{name}: t", f"{t[0]:.17g} in row 1", "times from 0 on")
+        steps = np.diff(t)
+        if (steps <= 0).any():
+            row = int(np.argmax(steps <= 0))
+            raise InputError(
+                f"{name}: t",
+                f"{t[row + 1]:.17g} in row {row + 2} after {t[row]:.17g}",
+                "strictly increasing times",
+                "Sort the rows and drop repeated times.",
+            )
+        return cls(name, t, columns, **more)  # type: ignore[arg-type]

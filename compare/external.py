@@ -1,0 +1,185 @@
+"""Runs somebody's program: bounded in time and output, killed whole, timed by CPU and wall clock."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+import shlex
+import signal
+import statistics
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import BinaryIO
+
+from reference import InputError, Scene
+from reference.constants import release
+from reference.precision import context
+
+from .trajectory import MAX_BYTES
+
+TIMEOUT_S = 600.0
+REPEATS = 3
+LONG_S = 20.0  # a program that takes longer than this is timed once, by the run that is scored
+_TAIL = 400  # characters of stderr that a message quotes
+_PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
+
+
+@dataclass(frozen=True)
+class Timing:
+    """What a program took.
+
+    Attributes:
+        cpu_s: median CPU seconds of the repeats, children included.
+        wall_s: median wall-clock seconds.
+        runs: how many repeats; the first run of all is a warm-up and not among them.
+        spread: largest minus smallest CPU time, over the median.
+    """
+
+    cpu_s: float
+    wall_s: float
+    runs: int
+    spread: float
+
+
+def placeholders(scene: Scene) -> dict[str, str]:
+    """The words in braces that a command may use, with the scene's values: as written there, or 17 digits."""
+    ctx = context(120)
+    position, velocity = release(scene.exact, ctx)
+    words = {
+        name: repr(float(value))
+        for name, value in zip(("x0", "y0", "z0", "vx0", "vy0", "vz0"), (*position, *velocity), strict=True)
+    }
+    given = scene.release.model_dump(exclude_none=True)
+    words |= {f"{name}0": text for name, text in given.items() if f"{name}0" in words}
+    words |= {name: given.get(name, "0") for name in ("angle", "azimuth", "angle_rate", "azimuth_rate")}
+    words |= scene.pendulum.model_dump() | scene.site.model_dump()
+    return words | {"t_end": scene.run.t_end, "grid_step": scene.run.grid_step}
+
+
+def arguments(command: str, scene: Scene) -> list[str]:
+    """The command's words with the placeholders filled in; no shell is between.
+
+    Raises:
+        InputError: an unknown placeholder, unbalanced quotes, or nothing.
+    """
+    known = placeholders(scene)
+    try:
+        words = shlex.split(command)
+    except ValueError as error:
+        raise InputError("--run", command, "a command with balanced quotes", f"{error}.") from None
+    if not words:
+        raise InputError("--run", command, "a command")
+
+    def value(match: re.Match[str]) -> str:
+        if match[1] not in known:
+            raise InputError(
+                "--run", match[0], f"one of {', '.join(f'{{{word}}}' for word in known)}", "Correct the placeholder."
+            )
+        return known[match[1]]
+
+    return [_PLACEHOLDER.sub(value, word) for word in words]
+
+
+def run_program(
+    words: list[str], timeout_s: float = TIMEOUT_S, max_bytes: int = MAX_BYTES
+) -> tuple[BinaryIO, float, float]:
+    """Run a program once; returns what it wrote to stdout (a file at its start), CPU and wall seconds.
+
+    Raises:
+        InputError: it cannot be started, fails, takes too long or writes too much; nothing of it runs on then.
+    """
+    begun = time.monotonic()
+    with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as stack:
+        output = stack.enter_context(tempfile.TemporaryFile())
+        try:
+            process = subprocess.Popen(
+                words, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, start_new_session=True
+            )
+        except OSError as error:
+            raise InputError("--run", words[0], "a program that can be started", f"{error.strerror}.") from None
+        limits = _Limits(process, output, errors, timeout_s, max_bytes)
+        try:
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+        except BaseException:
+            limits.kill()
+            process.wait()
+            raise
+        finally:
+            limits.over.set()
+            _kill_group(process.pid)  # what it left running in the background
+        wall, tail = time.monotonic() - begun, _tail(errors)
+        if limits.reason:
+            raise InputError("--run", shlex.join(words), limits.reason, tail)
+        if process.returncode:
+            raise InputError("--run", f"exit status {process.returncode} of {shlex.join(words)}", "exit status 0", tail)
+        output.seek(0)
+        stack.pop_all()  # the caller closes it
+    return output, usage.ru_utime + usage.ru_stime, wall
+
+
+class _Limits:
+    """Watches a process and kills its group where it goes beyond its time or its output."""
+
+    def __init__(
+        self, process: subprocess.Popen[bytes], output: BinaryIO, errors: BinaryIO, timeout_s: float, max_bytes: int
+    ) -> None:
+        self.reason = ""
+        self.over = threading.Event()
+        self._process = process
+        watch = threading.Thread(target=self._watch, args=(output, errors, timeout_s, max_bytes), daemon=True)
+        watch.start()
+
+    def _watch(self, output: BinaryIO, errors: BinaryIO, timeout_s: float, max_bytes: int) -> None:
+        end = time.monotonic() + timeout_s
+        while not self.over.wait(0.02):
+            if time.monotonic() > end:
+                self.reason = f"a program that ends within {timeout_s:g} s (--timeout)"
+            elif max(os.fstat(output.fileno()).st_size, os.fstat(errors.fileno()).st_size) > max_bytes:
+                self.reason = f"at most {max_bytes} bytes of output"
+            if self.reason:
+                self.kill()
+                return
+
+    def kill(self) -> None:
+        _kill_group(self._process.pid)
+
+
+def _kill_group(group: int) -> None:
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(group, signal.SIGKILL)
+
+
+def _tail(errors: BinaryIO) -> str:
+    size = errors.seek(0, os.SEEK_END)
+    errors.seek(max(0, size - _TAIL))
+    text = errors.read().decode(errors="replace").strip()
+    return f"It said: {text}" if text else "It said nothing on stderr."
+
+
+def timed(
+    words: list[str],
+    timeout_s: float = TIMEOUT_S,
+    repeats: int = REPEATS,
+    report: Callable[[int], None] | None = None,
+) -> tuple[BinaryIO, Timing]:
+    """Run a program once as a warm-up, whose output is returned, and `repeats` times for the clock."""
+    output, cpu, wall = run_program(words, timeout_s)
+    if wall > LONG_S or repeats == 0:
+        return output, Timing(cpu, wall, 1, 0.0)
+    runs = []
+    for i in range(repeats):
+        if report is not None:
+            report(i)
+        again, *took = run_program(words, timeout_s)
+        again.close()
+        runs.append(took)
+    cpus = [took[0] for took in runs]
+    median = statistics.median(cpus)
+    spread = (max(cpus) - min(cpus)) / median if median else 0.0
+    return output, Timing(median, statistics.median(took[1] for took in runs), len(runs), spread)

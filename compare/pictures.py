@@ -1,0 +1,76 @@
+"""Pictures of scores (matplotlib, extra `plot`)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference import InputError
+
+from .score import Score
+
+# Okabe and Ito's colours, told apart by the colour-blind; the line styles tell them apart in grey
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+STYLES = ("-", "--", "-.", ":")
+
+
+def pyplot() -> Any:
+    """Import matplotlib without a window.
+
+    Raises:
+        InputError: it is not installed.
+    """
+    try:
+        import matplotlib
+    except ImportError:
+        raise InputError(
+            "--plot", "no matplotlib", "the extra plot", "pip install 'foucault-reference[plot]'."
+        ) from None
+    matplotlib.use("Agg")
+    matplotlib.rcParams["svg.hashsalt"] = "foucault"  # the same picture has the same bytes
+    matplotlib.rcParams["svg.fonttype"] = "none"
+    from matplotlib import pyplot as plt
+
+    return plt
+
+
+def error_picture(scores: Sequence[Score], path: Path) -> None:
+    """Position error of each candidate against time, with the reference's bound as a band."""
+    plt = pyplot()
+    figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
+    bound = max(made.errors.bound_m for made in scores)
+    top = max([10 * bound, *(made.errors.max_m for made in scores)])
+    for i, made in enumerate(scores):
+        t, error = _thinned(made.errors.t, np.maximum(made.errors.position, bound / 30))
+        style = {"color": COLOURS[i % len(COLOURS)], "linestyle": STYLES[i % len(STYLES)], "linewidth": 1.2}
+        axes.plot(t, error, label=Path(made.candidate.name).name, **style)
+    axes.axhspan(bound / 30, bound, color="0.85", label=f"bound of the reference, {bound:.1e} m")
+    tolerance = min(made.tolerance_m for made in scores)
+    if tolerance < 100 * top:
+        axes.axhline(
+            tolerance, color="0.4", linewidth=0.8, linestyle=(0, (1, 2)), label=f"tolerance, {tolerance:.1e} m"
+        )
+    axes.set(yscale="log", ylim=(bound / 30, 3 * top), xlabel="t in s", ylabel="position error in m")
+    axes.set_title(f"{scores[0].scene.id}: error against time", loc="left")
+    axes.legend(frameon=False, fontsize="small", loc="best")
+    axes.spines[["top", "right"]].set_visible(False)
+    _save(figure, path)
+    plt.close(figure)
+
+
+def _thinned(t: Any, error: Any, points: int = 2000) -> tuple[Any, Any]:
+    """The largest error in each of many equal parts: what the eye would see of more."""
+    if len(t) <= points:
+        return t, error
+    edges = np.linspace(0, len(t), points + 1).astype(int)[:-1]
+    return t[edges], np.maximum.reduceat(error, edges)
+
+
+def _save(figure: Any, path: Path) -> None:
+    try:
+        figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None, dpi=150)
+    except (OSError, ValueError) as error:
+        raise InputError("--plot", str(path), "a path that ends in .svg, .png or .pdf", f"{error}.") from None

@@ -1,0 +1,84 @@
+"""A score in words, for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from .score import Score
+
+NAMED = 3  # missed, extra or shifted transits that are named each
+
+
+def lines(made: Score) -> Iterator[str]:
+    """The verdict line by line."""
+    errors = made.errors
+    yield f"{made.candidate.name} {made.verdict} with {made.scene.id} ({_span(made)})"
+    yield from _row("largest error", f"{errors.max_m:.3g} m", _largest(made))
+    yield from _row("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth))
+    scale = f"largest error over the amplitude {errors.amplitude_m:.4g} m; at the end, relative: scd {errors.scd:.1f}"
+    yield from _row("digits (mescd)", f"{errors.digits:.1f}", scale)
+    row, component = errors.worst
+    expected = float(errors.truth.states[row, "xyz".index(component)])
+    got = float(made.candidate.columns[component][row])
+    yield from _row("worst", f"{component} at t = {errors.t[row]:.10g} s", f"expected {expected:.17g}, got {got:.17g}")
+    turn = np.degrees(made.ellipse.largest_turn)
+    yield from _row("swing plane, phase", f"{turn:.3g} degrees, {made.ellipse.largest_delay:.3g} s", "fitted")
+    if made.drifts:
+        words = {"h_m2_s2": "h by {:.3g} m²/s²", "length_m": "|r| - l by {:.3g} m"}
+        yield from _row("drifts", ", ".join(words[name].format(value) for name, value in made.drifts.items()))
+    yield from _transit_lines(made)
+    if made.timing is not None:
+        took = made.timing
+        yield from _row(
+            "took", f"{took.cpu_s:.3g} CPU s, {took.wall_s:.3g} s", f"median of {took.runs} after a warm-up"
+        )
+    yield from _row("inputs read as", made.scene.inputs, made.why_inputs)
+    yield from _row("reference", f"{made.golden.manifest.level}", f"here within {errors.bound_m:.2g} m")
+    if made.diagnosis is not None:
+        yield made.diagnosis.text
+    elif errors.max_m > made.tolerance_m and not made.at_bound:
+        yield "No single mistake that is known here explains 99 % of the error."
+    for note in made.candidate.notes:
+        yield f"Note: {note}."
+
+
+def _row(name: str, value: str, remark: str = "") -> Iterator[str]:
+    yield f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
+
+
+def _span(made: Score) -> str:
+    t, end = made.errors.t, made.scene.run.t_end
+    return f"{len(t)} rows, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s"
+
+
+def _largest(made: Score) -> str:
+    errors = made.errors
+    if made.at_bound:
+        return "at or below the reference's bound"
+    allowed = f"tolerance {made.tolerance_m:.3g} m"
+    if not made.input_floor_m:
+        return f"{allowed}; the inputs are doubles as they stand"
+    ratio = errors.max_m / made.input_floor_m
+    return f"{allowed}; {ratio:.2g} times the input floor of {made.input_floor_m:.2g} m"
+
+
+def _growth(exponent: float | None) -> str:
+    return "" if exponent is None else f"grows like t^{exponent:.2f}"
+
+
+def _transit_lines(made: Score) -> Iterator[str]:
+    found = made.transits
+    if found is None:
+        return
+    worst = f"largest error {found.max_error_s:.3g} s, weighed by |ax|: {found.max_conditioned_m:.3g} m"
+    yield from _row("transits", f"{found.matched} matched, {len(found.missed)} missed, {len(found.extra)} extra", worst)
+    for word, times in (("missed", found.missed), ("extra", found.extra)):
+        if times:
+            shown = ", ".join(f"{t:.6f}" for t in times[:NAMED])
+            yield from _row(f"  {word} at", shown + (" …" if len(times) > NAMED else "") + " s")
+    shifted = found.shifted(made.tolerance_m)
+    if shifted:
+        shown = ", ".join(f"{t:.6f} s by {error:.2g} s" for t, error in shifted[:NAMED])
+        yield from _row("  shifted", shown + (" …" if len(shifted) > NAMED else ""), f"{len(shifted)} in all")
