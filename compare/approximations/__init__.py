@@ -1,0 +1,99 @@
+"""Every analytic or truncated model of the seeds, one idea a file, each scored against the reference.
+
+>>> from compare.approximations import approximation
+>>> from reference import load_scene
+>>> approximation("linear_g").trajectory(load_scene("paris"), [0.0, 16.4]).shape
+(2, 6)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+
+from reference import InputError
+
+from .approximation import Approximation, Motion, Order, Printed, Quantity
+
+__all__ = [
+    "APPROXIMATIONS",
+    "Approximation",
+    "Motion",
+    "Order",
+    "Printed",
+    "Quantity",
+    "approximation",
+    "motions",
+    "quantities",
+]
+
+_MODULES = {
+    "mathar_items": (
+        "mathar_item_1",
+        "mathar_item_1_variant",
+        "mathar_item_2",
+        "mathar_item_3",
+        "mathar_item_4",
+        "mathar_item_5",
+        "mathar_items_1_2",
+        "mathar_items_1_to_5",
+    ),
+    "mathar_linear": ("linear_g", "linear_apparent", "linear_recentred", "linear_anharmonic"),
+    "linear_3d": ("linear_3d",),
+    "gastebois_general": ("gastebois_general",),
+    "gastebois_small": ("gastebois_6_1", "gastebois_6_2", "gastebois_6_3"),
+    "three_methods": ("method_1", "method_2", "method_3"),
+    "planar": ("planar",),
+    "conical": ("conical",),
+    "rest_angle": ("rest_equation", "rest_series_1", "rest_series_2", "rest_series_3", "rest_triangle"),
+    "apparent_gravity": ("apparent_gravity",),
+    "frequency": (
+        "frequency_harmonic",
+        "frequency_planar",
+        "frequency_turntable",
+        "frequency_apparent",
+        "frequency_anharmonic",
+    ),
+    "precession": ("precession_sine", "precession_tilted", "precession_spherical"),
+}
+_MODULE_OF = {word: module for module, words in _MODULES.items() for word in words}
+_QUANTITIES = ("rest_angle", "apparent_gravity", "frequency", "precession")
+
+
+class _Registry(Mapping[str, Approximation]):
+    """Approximations by id, each module imported where one of its own is first looked up."""
+
+    def __getitem__(self, word: str) -> Approximation:
+        module = import_module(f".{_MODULE_OF[word]}", __name__)
+        found: dict[str, Approximation] = {made.id: made for made in module.APPROXIMATIONS}
+        return found[word]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_MODULE_OF)
+
+    def __len__(self) -> int:
+        return len(_MODULE_OF)
+
+
+APPROXIMATIONS: Mapping[str, Approximation] = _Registry()
+
+
+def approximation(word: str) -> Approximation:
+    """One approximation by its id.
+
+    Raises:
+        InputError: no such id.
+    """
+    if word not in _MODULE_OF:
+        raise InputError("approximation", word, "an approximation's id", f"Known ids: {', '.join(_MODULE_OF)}.")
+    return APPROXIMATIONS[word]
+
+
+def motions() -> tuple[str, ...]:
+    """Ids of the approximations that give a trajectory."""
+    return tuple(word for word, module in _MODULE_OF.items() if module not in _QUANTITIES)
+
+
+def quantities() -> tuple[str, ...]:
+    """Ids of the approximations that give one number."""
+    return tuple(word for word, module in _MODULE_OF.items() if module in _QUANTITIES)

@@ -1,0 +1,70 @@
+"""The conical pendulum, Ω = 0: a circle at constant height."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from reference import Scene
+
+from .approximation import Array, Motion, Order
+from .case import Case, below, under_gravity
+
+_CONICAL_ENOUGH = 0.1  # how far the release may be from the speed and the direction of the circle
+
+_CIRCLE = (  # cos φ = 0.8, one radian a second
+    "pendulum.length=12.25",
+    "site.gravity=9.8",
+    "release.x=7.35",
+    "release.y=0",
+    "release.vy=7.35",
+)
+
+
+def _circle(case: Case) -> tuple[Any, Any]:
+    """Radius in m and angular velocity in rad/s, sqrt(g/(l cos φ)) in the sense of the release."""
+    ctx, (x, y, z), (vx, vy, _) = case.ctx, case.position, case.velocity
+    return ctx.hypot(x, y), ctx.sign(x * vy - y * vx) * ctx.sqrt(case.gravity / -z)
+
+
+def _path(scene: Scene, times: Array) -> Array:
+    case = Case.of(scene)
+    x, y, z = (float(part) for part in case.position)
+    _, omega = _circle(case)
+    place = complex(x, y) * np.exp(1j * float(omega) * times)
+    speed = 1j * float(omega) * place
+    still = np.zeros_like(times)
+    return np.column_stack((place.real, place.imag, still + z, speed.real, speed.imag, still))
+
+
+def _refused(scene: Scene) -> str | None:
+    reason = below(scene) or under_gravity(scene)
+    if reason:
+        return reason
+    case = Case.of(scene)
+    radius, omega = _circle(case)
+    x, y, _ = case.position
+    wanted = (-y * omega, x * omega)
+    miss = case.ctx.hypot(case.velocity[0] - wanted[0], case.velocity[1] - wanted[1])
+    if not radius or not omega or miss > _CONICAL_ENOUGH * radius * abs(omega):
+        return "It goes round in a circle: give a velocity across x, y of about sqrt(g/|z|) times their distance"
+    return None
+
+
+APPROXIMATIONS = (
+    Motion(
+        id="conical",
+        title="conical pendulum without the Foucault effect",
+        where="Mathar section III, limit of Ω to 0, and [23]: angular velocity sqrt(g/(l cos φ))",
+        domain="any cone below the suspension, released with the speed of the circle, no rotation",
+        drops="Ω",
+        orders=(
+            Order("amplitude", None, (7.35,), ("site.rotation_rate=0", *_CIRCLE)),
+            Order("rotation_rate", 1, (1e-5, 2e-5, 4e-5, 8e-5), ("site.equatorial_radius=0", *_CIRCLE)),
+        ),
+        refuses=_refused,
+        path=_path,
+        rest=lambda scene: (0, 0, -Case.of(scene).length),
+    ),
+)

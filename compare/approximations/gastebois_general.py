@@ -1,0 +1,57 @@
+"""Gastebois 7.2: a spherical pendulum of any amplitude in uniform apparent gravity, with the Coriolis force.
+
+His θ and φ, counted from the plumb line and from east to north, are singular there. Seen along the scene's axes his
+system is the model without the centrifugal gradient: apparent gravity is `pull` at the suspension, everywhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from reference import Scene
+from reference.constants import Constants, scaled
+from reference.mechanics import FORMULATIONS
+
+from .approximation import Array, Motion, Order
+from .carried import integrated
+from .case import Case
+
+
+def uniform(k: Constants) -> Constants:
+    """The model's constants with the apparent gravity of the suspension everywhere."""
+    return replace(k, centrifugal=(0, 0, 0, 0))
+
+
+def hanging(scene: Scene) -> Any:
+    """His point of rest, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
+    case = Case.of(scene)
+    return (0, -case.length * case.ctx.sin(case.tilt), -case.length * case.ctx.cos(case.tilt))
+
+
+def _path(scene: Scene, times: Array) -> Array:
+    case, model = Case.of(scene), FORMULATIONS["spin"]
+    n, v = scaled(case.position, case.length), scaled(case.velocity, case.length)
+    k = uniform(case.k)
+    states = integrated(model.variables, model.derivatives, model.start(n, v, k, case.ctx), k, times)
+    place, speed = model.cartesian(tuple(states.T), k, np)
+    return np.column_stack((*place, *speed)) * float(case.length)
+
+
+APPROXIMATIONS = (
+    Motion(
+        id="gastebois_general",
+        title="any amplitude in uniform apparent gravity",
+        where="Gastebois 7.2, with g_a and λ_a of 4.2",
+        domain="any amplitude; a day",
+        drops="the centrifugal gradient: Ω² times distances of the order of l",
+        orders=(
+            Order("amplitude", None, (0.5, 8.0, 66.0), ("site.rotation_rate=0",)),
+            Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4, 4e-4), (), 0.5),
+        ),
+        path=_path,
+        rest=hanging,
+    ),
+)

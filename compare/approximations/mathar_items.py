@@ -1,0 +1,201 @@
+"""Mathar, section VI: the full equations (43) with one kind of term left out at a time, integrated as they then stand.
+
+Items 1 and 4 and the variant only change constants of the model; items 2, 3 and 5 change (43) itself. Written over
+the cord length, with |z| as `depth`, and with g and the terms in R folded into k.pull as everywhere in the project.
+
+All five items together do not give (51)-(52) yet: the diagonal of (43) keeps y² + l² and x² + l². To drop these
+squares too is one more step, of the same order, which the paper takes without saying so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+from reference import IntegrationError, Scene
+from reference.constants import Constants, scaled
+from reference.mechanics import Functions, State, minus, plus, times
+
+from .approximation import Array, Motion, Order
+from .carried import integrated
+from .case import Case, hung
+
+VARIABLES = ("x", "y", "vx", "vy")
+VARIANT = "variant of item 1"
+Item = int | str
+
+_STILL = ("site.rotation_rate=0",)
+_ON_AXIS = ("site.equatorial_radius=0",)  # R = 0: the point of rest stays below the suspension
+_AMPLITUDES = (0.5, 1.0, 2.0, 4.0)
+_RATES = (1e-5, 2e-5, 4e-5, 8e-5)
+
+
+def derivatives(state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()) -> State:
+    """(43) without the terms of items 2, 3, 5; with no item it is `reference.mechanics.Plane`.
+
+    Args:
+        state: x, y, vx, vy over the cord length.
+        k: constants; items 1 and 4 are in them (`truncated`).
+        functions: elementary functions of the number type.
+        items: what is left out.
+    """
+    x, y, vx, vy = state
+    depth = 1 if 5 in items else functions.sqrt(1 - x * x - y * y)  # item 5: z becomes l
+    cube, fourth = depth * depth * depth, depth * depth * depth * depth
+    area = x * vy - y * vx
+    centripetal = 0 if 3 in items else vx * vx + vy * vy - area * area  # item 3: (33), (39) keep g only
+    drive = minus(centripetal, times(cube, k.pull[2]))
+    _, north, up = k.turn
+    _, yy, yz, zz = k.centrifugal
+    beta_x = plus(
+        times(x, drive),  # (33)
+        times(-2, fourth, up, vy),  # (34)
+        times(2, y, vy, north, cube),
+        times(-1, x, fourth, yy),  # (35)
+        times(-1, x, y, cube, yz),
+    )
+    beta_y = plus(
+        times(y, drive),  # (39)
+        times(2, fourth, up, vx),  # (40)
+        times(-2, y, vx, north, cube),
+        times(fourth, minus(times(y, minus(zz, yy)), k.pull[1])),  # (41)
+        times(cube, yz, depth * depth - y * y),
+    )
+    crossed = 0 if 2 in items else x * y  # item 2: no outer diagonal
+    ax = minus(times(crossed, beta_y), (y * y + depth * depth) * beta_x) / fourth
+    ay = minus(times(crossed, beta_x), (x * x + depth * depth) * beta_y) / fourth
+    return (vx, vy, minus(ax, times(k.drag, vx)), minus(ay, times(k.drag, vy)))
+
+
+def truncated(k: Constants, items: frozenset[Item]) -> Constants:
+    """The constants without what items 1 (or its variant) and 4 leave out."""
+    if 1 in items:
+        k = replace(k, pull=(0, 0, times(-1, k.gravity)), centrifugal=(0, 0, 0, 0))
+    if VARIANT in items:  # ḡ = g - RΩ² cos φ
+        k = replace(k, pull=(0, 0, k.pull[2]), centrifugal=(0, 0, 0, 0))
+    if 4 in items:
+        k = replace(k, turn=(0, 0, k.turn[2]))
+    return k
+
+
+def path(scene: Scene, grid: Array, items: frozenset[Item]) -> Array:
+    """Rows of (43) without the terms of `items`."""
+    case = Case.of(scene)
+    n, v = scaled(case.position, case.length), scaled(case.velocity, case.length)
+    start, k = (n[0], n[1], v[0], v[1]), truncated(case.k, items)
+    try:
+        states = integrated(VARIABLES, partial(derivatives, items=items), start, k, grid)
+    except IntegrationError as error:
+        raise IntegrationError(f"{error} (43) ends where the bob comes to the horizontal.") from None
+    x, y, vx, vy = (states * float(case.length)).T
+    return hung(x, y, vx, vy, case.length)
+
+
+def _above(scene: Scene) -> str | None:
+    angles = scene.exact.angles
+    high = angles is not None and angles[0] >= 90
+    return "(43) holds below the suspension only: give release.angle under 90" if high else None
+
+
+def _suspension(scene: Scene) -> Any:
+    case = Case.of(scene)
+    return (0, 0, -case.length)
+
+
+def _motion(
+    word: str, items: tuple[Item, ...], title: str, drops: str, domain: str, orders: tuple[Order, ...]
+) -> Motion:
+    vertical = 1 in items or VARIANT in items
+    rest: Callable[[Scene], Any] | None = _suspension if vertical else None
+    names = ", ".join(str(item) for item in items)
+    return Motion(
+        id=word,
+        title=title,
+        where=f"Mathar (43), section VI, {'item ' if isinstance(items[0], int) else ''}{names}",
+        domain=domain,
+        drops=drops,
+        orders=orders,
+        refuses=_above,
+        path=partial(path, items=frozenset(items)),
+        rest=rest,
+    )
+
+
+_SQUARE_IN_RATE = Order("rotation_rate", 2, _RATES, ("release.x=3e-3", "release.y=4e-3"))
+_CUBE_IN_AMPLITUDE = Order("amplitude", 3, _AMPLITUDES, _STILL)
+_CORIOLIS = (
+    Order("amplitude", 2, (0.5, 1.0, 2.0, 4.0), (*_ON_AXIS, "site.rotation_rate=1e-3")),
+    Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4, 8e-4), _ON_AXIS),
+)
+
+APPROXIMATIONS = (
+    _motion(
+        "mathar_item_1",
+        (1,),
+        "Mathar's equations without the terms in Ω²",
+        "β of (35), (41): centrifugal force, tilt of the plumb line; of relative size RΩ²/g = 3e-3, not 5e-9",
+        "any amplitude below the suspension; slow rotation",
+        (_SQUARE_IN_RATE,),
+    ),
+    _motion(
+        "mathar_item_1_variant",
+        (VARIANT,),
+        "Mathar's equations without the terms in Ω², gravity less RΩ² cos φ",
+        "β of (35), (41) apart from the term in R cos φ: the tilt of the plumb line remains out",
+        "any amplitude below the suspension; slow rotation; best at the equator",
+        (_SQUARE_IN_RATE,),
+    ),
+    _motion(
+        "mathar_item_2",
+        (2,),
+        "Mathar's equations without the outer diagonal -xy",
+        "the matrix elements -xy of (43)",
+        "small amplitudes",
+        (_CUBE_IN_AMPLITUDE,),
+    ),
+    _motion(
+        "mathar_item_3",
+        (3,),
+        "Mathar's equations with gravity alone in β0",
+        "the velocities in (33), (39): the centripetal pull of the cord",
+        "small amplitudes",
+        (_CUBE_IN_AMPLITUDE,),
+    ),
+    _motion(
+        "mathar_item_4",
+        (4,),
+        "Mathar's equations without Ω cos φ",
+        "the terms with cos φ of (34), (40): the Coriolis force of the north component of Ω",
+        "small amplitudes",
+        _CORIOLIS,
+    ),
+    _motion(
+        "mathar_item_5",
+        (5,),
+        "Mathar's equations with z replaced by l",
+        "the change of z along the sphere",
+        "small amplitudes",
+        (_CUBE_IN_AMPLITUDE,),
+    ),
+    _motion(
+        "mathar_items_1_2",
+        (1, 2),
+        "both approximations of the paper's program, foucPend -a 3",
+        "the terms in Ω² and the outer diagonal",
+        "small amplitudes, slow rotation",
+        (_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
+    ),
+    _motion(
+        "mathar_items_1_to_5",
+        (1, 2, 3, 4, 5),
+        "Mathar's five items together",
+        "everything of section VI, but the diagonal of (43) still holds x² + l² and y² + l²",
+        "small amplitudes, slow rotation",
+        (_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
+    ),
+)
+
+PROGRAM_BITS = {1: "mathar_item_2", 2: "mathar_item_1", 3: "mathar_items_1_2"}
+"""The value of foucPend's switch -a (appendix A) and the approximation that it stands for; 0 is the full model."""

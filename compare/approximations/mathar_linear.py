@@ -1,0 +1,107 @@
+"""Mathar (51)-(52), the harmonic pendulum on a turntable, and what section VII makes of it step by step.
+
+All four are Gastebois' closed solution 6.1 with other constants: gravity g or g', the centre of the swing, and the
+frequency. In print (51)-(52) lost hats and dots; dimensions and the limit of (43) leave no doubt about the right form.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from reference import Scene
+from reference.mechanics import dot
+
+from .approximation import Array, Motion, Order, Printed
+from .case import Case, at_rest, below, under_gravity
+from .oscillator import swung
+
+_SMALL = ("release.x=3e-3", "release.y=4e-3")
+_CUBE_IN_AMPLITUDE = Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",))
+_SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), _SMALL)
+_ABOUT_REST = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_radius=0",), 1e-3)
+
+
+def slow_down(case: Case) -> Any:
+    """2K/π, how much longer than harmonic the period is: K of modulus sin(φ0/2), φ0 from the point of rest."""
+    cosine = dot(case.position, case.rest) / case.length
+    return 2 * case.ctx.ellipk((1 - cosine) / 2) / case.ctx.pi
+
+
+def _with_gravity(scene: Scene, times: Array) -> Array:
+    case = Case.of(scene)
+    return swung(case, case.gravity, case.ctx.zero, times)
+
+
+def _with_apparent_gravity(scene: Scene, times: Array) -> Array:
+    case = Case.of(scene)
+    return swung(case, case.apparent_gravity, case.ctx.zero, times)
+
+
+def _about_rest(scene: Scene, times: Array) -> Array:
+    case = Case.of(scene)
+    return swung(case, case.apparent_gravity, _north_of_rest(case), times)
+
+
+def _slowed(scene: Scene, times: Array) -> Array:
+    case = Case.of(scene)
+    return swung(case, case.apparent_gravity, _north_of_rest(case), times, slow_down(case))
+
+
+def _north_of_rest(case: Case) -> Any:
+    return case.ctx.mpf(case.rest[1]) * case.length
+
+
+def _suspension(scene: Scene) -> Any:
+    return (0, 0, -Case.of(scene).length)
+
+
+def _refused(check: Callable[[Scene], str | None]) -> Callable[[Scene], str | None]:
+    return lambda scene: check(scene) or under_gravity(scene)
+
+
+APPROXIMATIONS = (
+    Motion(
+        id="linear_g",
+        title="harmonic pendulum on a turntable",
+        where="Mathar (51)-(52)",
+        domain="small amplitudes, slow rotation; seconds, for the plumb line is not vertical",
+        drops="Ω² (so the tilt and strength of the apparent gravity), all powers of x/l and y/l beyond the first",
+        orders=(_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
+        refuses=_refused(below),
+        printed=Printed("ẍ = -x̂ ĝ + 2 Ω sin φ ŷ", "x̂'' = -x̂ ĝ + 2 Ω sin φ ŷ', each with a hat and ŷ with its dot"),
+        path=_with_gravity,
+        rest=_suspension,
+    ),
+    Motion(
+        id="linear_apparent",
+        title="harmonic pendulum on a turntable, apparent gravity",
+        where="Mathar (51)-(52) with g' of (48), section VII",
+        domain="small amplitudes; the frequency fits for hours, the centre does not",
+        drops="the tilt of the plumb line, the centrifugal gradient, all powers of x/l and y/l beyond the first",
+        orders=(_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
+        refuses=_refused(below),
+        path=_with_apparent_gravity,
+        rest=_suspension,
+    ),
+    Motion(
+        id="linear_recentred",
+        title="harmonic pendulum on a turntable, about the point of rest",
+        where="Mathar (51)-(52) with g' of (48), about the point of section V",
+        domain="small amplitudes; an hour",
+        drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the anharmonic slow-down",
+        orders=(_ABOUT_REST, _CUBE_IN_AMPLITUDE),
+        refuses=_refused(below),
+        path=_about_rest,
+    ),
+    Motion(
+        id="linear_anharmonic",
+        title="the same with the slow-down of the anharmonic plane pendulum",
+        where="Mathar section VII, fifth frequency: 2K(sin(φ0/2))/π, where 4K is printed",
+        domain="amplitudes of some degrees, released at rest; a day",
+        drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the overtones of the swing",
+        orders=(_ABOUT_REST, _CUBE_IN_AMPLITUDE),
+        refuses=_refused(at_rest),
+        path=_slowed,
+    ),
+)

@@ -1,0 +1,85 @@
+"""The plane pendulum, Ω = 0, in Jacobi's elliptic functions: the green curves of Mathar, figure 7."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from reference import Scene
+
+from .approximation import Array, Motion, Order
+from .case import Case, under_gravity, without_drag
+
+_SMALLEST = 1e-20  # terms of the series below this are nothing in binary64
+
+
+def sn_cn(u: Array, modulus: Any, ctx: Any) -> tuple[Array, Array]:
+    """K sn(u) and k cn(u), k the modulus, by their Fourier series in the nome (DLMF 22.11.1, 22.11.2).
+
+    With q the nome and v = π u/(2 K(k)), k sn = (2π/K) Σ q^(n+1/2)/(1 - q^(2n+1)) sin((2n+1) v) and k cn has a plus
+    sign below and a cosine; for a swing of 170° fourteen terms are left.
+    """
+    quarter = ctx.ellipk(modulus**2)
+    nome = ctx.qfrom(k=modulus)
+    v = float(ctx.pi / (2 * quarter)) * u
+    sn, cn = np.zeros_like(u), np.zeros_like(u)
+    power, odd = ctx.sqrt(nome), 1
+    while power > _SMALLEST:
+        square = nome**odd
+        sn += float(2 * ctx.pi / quarter * power / (1 - square)) * np.sin(odd * v)
+        cn += float(2 * ctx.pi / quarter * power / (1 + square)) * np.cos(odd * v)
+        power, odd = power * nome, odd + 2
+    return sn, cn
+
+
+def _path(scene: Scene, times: Array) -> Array:
+    """sin(φ/2) = k sn(K + ω0 t), φ' = 2 k ω0 cn(K + ω0 t), k = sin(φ0/2), ω0² = g/l."""
+    case = Case.of(scene)
+    ctx, (x, y, z) = case.ctx, case.position
+    aside = ctx.hypot(x, y)
+    modulus = ctx.sin(ctx.atan2(aside, -z) / 2)
+    omega = ctx.sqrt(case.gravity / case.length)
+    u = float(ctx.ellipk(modulus**2)) + float(omega) * times
+    half_sine, rate = sn_cn(u, modulus, ctx)
+    rate = 2 * float(omega) * rate
+    sine, cosine = 2 * half_sine * np.sqrt(1 - half_sine**2), 1 - 2 * half_sine**2
+    length = float(case.length)
+    toward = (float(x / aside), float(y / aside)) if aside else (1.0, 0.0)
+    out, speed = length * sine, length * cosine * rate
+    return np.column_stack(
+        (
+            out * toward[0],
+            out * toward[1],
+            -length * cosine,
+            speed * toward[0],
+            speed * toward[1],
+            length * sine * rate,
+        )
+    )
+
+
+def _refused(scene: Scene) -> str | None:
+    if not scene.exact.at_rest:
+        return "It swings in the plane of a release at rest: leave out the velocity"
+    if scene.exact.angles is not None and scene.exact.angles[0] == 180:
+        return "It stands upright: give release.angle under 180"
+    return without_drag(scene) or under_gravity(scene)
+
+
+APPROXIMATIONS = (
+    Motion(
+        id="planar",
+        title="plane pendulum without the Foucault effect",
+        where="Mathar section VII and figure 7 (Ω = 0): period 4 sqrt(l/g) K(sin(φ0/2))",
+        domain="any amplitude, released at rest, no rotation",
+        drops="Ω",
+        orders=(
+            Order("amplitude", None, (0.5, 8.0, 66.0), ("site.rotation_rate=0",)),
+            Order("rotation_rate", 1, (1e-5, 2e-5, 4e-5, 8e-5), ("site.equatorial_radius=0",)),
+        ),
+        refuses=_refused,
+        path=_path,
+        rest=lambda scene: (0, 0, -Case.of(scene).length),
+    ),
+)

@@ -1,0 +1,104 @@
+"""The period of the swing plane's precession T_f, in s: Gastebois 4.1, 4.2, 6.3. T_p is 2π/Ω."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from reference import Scene
+
+from . import measure
+from .approximation import Order, Printed, Quantity
+from .case import Case, Level, at_rest, below, under_gravity
+from .gastebois_small import small_angles
+
+_AT_POLE = ("site.latitude=90", "site.rotation_rate=2e-3")
+_SMALL = 1e-2
+
+
+def _turning(scene: Scene) -> str | None:
+    still = not scene.exact.rotation_rate or not scene.exact.latitude
+    return (
+        "The plane does not turn: a rotation and a latitude other than 0"
+        if still
+        else below(scene) or under_gravity(scene)
+    )
+
+
+def _let_go(scene: Scene) -> str | None:
+    return _turning(scene) or at_rest(scene)
+
+
+def _sine(scene: Scene) -> Any:
+    """T_p/sin λ."""
+    case = Case.of(scene)
+    return abs(2 * case.ctx.pi / (case.rate * case.sin))
+
+
+def _tilted(scene: Scene) -> Any:
+    """T_p/sin λ_a, λ_a = λ + α."""
+    case = Case.of(scene)
+    return abs(2 * case.ctx.pi / (case.rate * case.ctx.sin(case.apparent_latitude)))
+
+
+def _spherical(scene: Scene) -> Any:
+    """T_p/sin λ_a (1 + 3/8 r0²/L0²), r0 from the plumb line."""
+    case = Case.of(scene)
+    x, y, _ = Level.tilted(-case.tilt, case.ctx).inward(case.position)
+    return _tilted(scene) * (1 + 3 * (x**2 + y**2) / (8 * case.length**2))
+
+
+def _swing_over_sine(scene: Scene) -> Any:
+    """T/sin λ_a with the period T of the swing, as 6.3 prints it."""
+    case = Case.of(scene)
+    _, omega, _ = small_angles(case)
+    return abs(2 * case.ctx.pi / (omega * case.ctx.sin(case.apparent_latitude)))
+
+
+def _quantity(
+    word: str, title: str, where: str, drops: str, orders: tuple[Order, ...], formula: Any, **more: Any
+) -> Any:
+    return Quantity(
+        id=word,
+        title=title,
+        where=where,
+        domain="small angles, away from the equator; the mean over a half turn",
+        drops=drops,
+        orders=orders,
+        formula=formula,
+        truth=measure.precession_period,
+        unit="s",
+        **{"refuses": _turning} | more,
+    )
+
+
+APPROXIMATIONS = (
+    _quantity(
+        "precession_sine",
+        "precession period T_p/sin λ",
+        "Gastebois 4.1",
+        "the centrifugal force, the amplitude",
+        (Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), _SMALL), Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE)),
+        _sine,
+    ),
+    _quantity(
+        "precession_tilted",
+        "precession period T_p/sin λ_a, with the tilt of the plumb line",
+        "Gastebois 4.2, 6.3",
+        "the centrifugal gradient, the amplitude",
+        (
+            Order("rotation_rate", 2, (2e-3, 4e-3, 8e-3), ("site.equatorial_radius=0",), _SMALL),
+            Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE),
+        ),
+        _tilted,
+        printed=Printed("T_f = 2π/Ωz = T/sin λ_a", "T_f = T_p/sin λ_a: T is the period of the swing", _swing_over_sine),
+    ),
+    _quantity(
+        "precession_spherical",
+        "precession period with the drift of the spherical pendulum, T_p/sin λ_a (1 + 3/8 r0²/L0²)",
+        "Gastebois 6.3",
+        "the fourth power of the amplitude; the centrifugal gradient, which changes the ellipse that drifts",
+        (Order("amplitude", 4, (4.0, 8.0, 16.0), _AT_POLE),),
+        _spherical,
+        refuses=_let_go,
+    ),
+)

@@ -1,0 +1,123 @@
+"""The third document: ẍ + (g/L) x = 2 ω sin α ẏ and its partner, solved in three ways.
+
+They are one motion, that of `linear_g`; each is computed here by its own route, so that they check each other.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from reference import Scene
+
+from .approximation import Array, Motion, Order, Printed
+from .case import Case, below, hung, under_gravity
+
+
+def _numbers(scene: Scene) -> tuple[Case, float, float]:
+    """The case, ω̃ = (g/L + ω_p²)^(1/2) and ω sin α."""
+    case = Case.of(scene)
+    turn = case.rate * case.sin
+    return case, float(case.ctx.sqrt(case.gravity / case.length + turn**2)), float(turn)
+
+
+def _rotating_frame(scene: Scene, times: Array) -> Array:
+    """Method 1: x' = x cos ω_p t - y sin ω_p t, y' = x sin ω_p t + y cos ω_p t; x, y oscillate, ω_p = -ω sin α.
+
+    The primed coordinates are the ground's: it is into their equations of motion that the document substitutes.
+    """
+    case, w, turn = _numbers(scene)
+    (x0, y0, _), (vx0, vy0, _) = (tuple(map(float, v)) for v in (case.position, case.velocity))
+    p = -turn
+    cos, sin, c, s = np.cos(w * times), np.sin(w * times), np.cos(p * times), np.sin(p * times)
+    x, vx = x0 * cos + (vx0 + p * y0) / w * sin, (vx0 + p * y0) * cos - x0 * w * sin
+    y, vy = y0 * cos + (vy0 - p * x0) / w * sin, (vy0 - p * x0) * cos - y0 * w * sin
+    across, along = vx - p * y, vy + p * x
+    return hung(x * c - y * s, x * s + y * c, across * c - along * s, across * s + along * c, case.length)
+
+
+def _coriolis_theorem(scene: Scene, times: Array, squared: Any = None) -> Array:
+    """Method 2: the vector x in a frame turning at ω_p = -ω sin α k, where ẋ = ẋ' + ω_p × x'."""
+    case, w, turn = _numbers(scene)
+    w = w if squared is None else float(np.sqrt(squared(case)))
+    rotate = np.array([[0.0, turn], [-turn, 0.0]])  # ω_p ×
+    start = np.array([float(part) for part in case.position[:2]])
+    speed = np.array([float(part) for part in case.velocity[:2]]) - rotate @ start
+    seen = np.outer(start, np.cos(w * times)) + np.outer(speed / w, np.sin(w * times))
+    rate = np.outer(speed, np.cos(w * times)) - np.outer(start * w, np.sin(w * times)) + rotate @ seen
+    cos, sin = np.cos(turn * times), np.sin(turn * times)
+
+    def ground(v: Any) -> Any:
+        return cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]
+
+    (x, y), (vx, vy) = ground(seen), ground(rate)
+    return hung(x, y, vx, vy, case.length)
+
+
+def _one_error_mended(scene: Scene, times: Array) -> Array:
+    """Method 2 with the double cross product mended and F_eff left as printed: ω̃² = g/L - ω_p²."""
+    return _coriolis_theorem(scene, times, lambda case: case.gravity / case.length - (case.rate * case.sin) ** 2)
+
+
+def _complex_variable(scene: Scene, times: Array, sign: int = 1) -> Array:
+    """Method 3: z = w exp(-i ω_P t), w = A sin ω̃t + B cos ω̃t, ω_P = ω sin α."""
+    case, w, turn = _numbers(scene)
+    p = sign * turn
+    b = complex(case.position[0], case.position[1])
+    a = (complex(case.velocity[0], case.velocity[1]) + 1j * p * b) / w
+    wave, rate = a * np.sin(w * times) + b * np.cos(w * times), w * (a * np.cos(w * times) - b * np.sin(w * times))
+    back = np.exp(-1j * p * times)
+    z, speed = back * wave, back * (rate - 1j * p * wave)
+    return hung(z.real, z.imag, speed.real, speed.imag, case.length)
+
+
+def _complex_variable_as_concluded(scene: Scene, times: Array) -> Array:
+    return _complex_variable(scene, times, -1)
+
+
+_SMALL = ("release.x=3e-3", "release.y=4e-3")
+_ORDERS = (
+    Order("rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), _SMALL),
+    Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",)),
+)
+
+
+def _motion(number: int, title: str, path: Any, printed: Printed | None) -> Motion:
+    return Motion(
+        id=f"method_{number}",
+        title=title,
+        where=f"third document, method {number}",
+        domain="small amplitudes, slow rotation; seconds, for the plumb line is not vertical",
+        drops="the centrifugal force, the vertical motion, all powers of x/L beyond the first",
+        orders=_ORDERS,
+        refuses=lambda scene: below(scene) or under_gravity(scene),
+        printed=printed,
+        path=path,
+        rest=lambda scene: (0, 0, -Case.of(scene).length),
+    )
+
+
+APPROXIMATIONS = (
+    _motion(1, "harmonic pendulum by an explicit rotating frame", _rotating_frame, None),
+    _motion(
+        2,
+        "harmonic pendulum by the Coriolis theorem",
+        _coriolis_theorem,
+        Printed(
+            "-m ω_p × (ω_p × x') = -m ω_p² x', and F_eff with ẋ' for ẋ: two errors that cancel",
+            "+m ω_p² x', and ẋ = ẋ' + ω_p × x' in F_eff; with one error alone ω̃² is off by 2 ω_p²",
+            _one_error_mended,
+        ),
+    ),
+    _motion(
+        3,
+        "harmonic pendulum by a complex variable",
+        _complex_variable,
+        Printed(
+            "the conclusion says ω_P = -ω sin α",
+            "z = w exp(-i ω_P t) needs ω_P = +ω sin α, as the method says; -ω sin α is the frame's angular velocity",
+            _complex_variable_as_concluded,
+        ),
+    ),
+)
