@@ -1,0 +1,123 @@
+"""Scenes × methods: digits kept, or the letter of how it failed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from reference import InputError
+
+from .drawing import BAND, FAINT, INK, PAPER, sheet, svg_text
+
+# status: letter, what it means
+CLASSES = {
+    "silently_wrong": ("W", "silently wrong"),
+    "not_finite": ("N", "NaN or infinity"),
+    "gave_up": ("G", "gave up"),
+    "out_of_time": ("T", "out of time"),
+    "missed_transits": ("M", "missed transits"),
+    "refused": ("R", "refused"),
+    "not_installed": ("–", "not installed"),
+}
+LOUD = "silently_wrong"
+_LOUD_COLOUR, _QUIET_COLOUR = "#D55E00", "#F2C9A8"
+_BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")  # few digits … many: darker in grey too
+_DARK_FROM = 3  # blues that carry white text
+_CELL = 0.27  # inches
+_MARGINS = (2.3, 1.9)  # inches for names
+_CHARACTER = 0.27  # width of a character in cells
+_LEAST_COLUMNS, _KEY_ROWS = 15, 5.5  # cells that the key needs
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One field of the map.
+
+    Attributes:
+        row: the scene.
+        column: the method, with what else tells columns apart.
+        status: `ok`, or a word of `CLASSES`.
+        digits: kept, of an `ok` cell.
+    """
+
+    row: str
+    column: str
+    status: str
+    digits: float | None = None
+
+    @property
+    def mark(self) -> str:
+        """What stands in it: whole digits kept, or the letter of its class."""
+        if self.status in CLASSES:
+            return CLASSES[self.status][0]
+        return "?" if self.digits is None else f"{int(max(0.0, self.digits))}"
+
+
+def heat_map(cells: Sequence[Cell], steps: Sequence[float] = (3, 6, 9, 12, 15)) -> str:
+    """The map: rows and columns in the order in which they come; a field that is not in `cells` stays empty.
+
+    Args:
+        cells: any number, at least one.
+        steps: digits at which the colour changes, five of them.
+
+    Raises:
+        InputError: nothing to draw, or an unknown status.
+    """
+    if not cells:
+        raise InputError("cells", "none", "at least one")
+    unknown = next((cell for cell in cells if cell.status not in CLASSES and cell.status != "ok"), None)
+    if unknown is not None:
+        raise InputError("status", unknown.status, f"ok or one of {', '.join(CLASSES)}")
+    rows, columns = (
+        list(dict.fromkeys(names)) for names in zip(*[(one.row, one.column) for one in cells], strict=True)
+    )
+    size = (_MARGINS[0] + _CELL * max(len(columns), _LEAST_COLUMNS), _MARGINS[1] + _CELL * (len(rows) + _KEY_ROWS))
+    with sheet(size) as (figure, grid):
+        axes = grid[0, 0]
+        wide = max(len(columns), _LEAST_COLUMNS)
+        axes.set(xlim=(0, wide), ylim=(len(rows) + _KEY_ROWS, 0), aspect="equal")
+        for cell in cells:
+            _field(axes, columns.index(cell.column), rows.index(cell.row), cell.mark, *_colours(cell, steps))
+        _key(axes, len(rows) + 0.7, wide, {cell.status for cell in cells}, steps)
+        axes.set_xticks(
+            [i + 0.5 for i in range(len(columns))], columns, rotation=55, rotation_mode="anchor", ha="left", fontsize=8
+        )
+        axes.set_yticks([i + 0.5 for i in range(len(rows))], rows, fontsize=8)
+        axes.tick_params(length=0, top=False, labeltop=True, labelbottom=False, bottom=False, pad=2)
+        axes.spines[:].set_visible(False)
+        wrong = sum(cell.status == LOUD for cell in cells)
+        return svg_text(figure, "map", f"{len(rows)} scenes by {len(columns)} methods; silently wrong: {wrong}.", "map")
+
+
+def _colours(cell: Cell, steps: Sequence[float]) -> tuple[str, str]:
+    """Of the field and of what stands in it."""
+    if cell.status == "ok":
+        level = sum((cell.digits or 0.0) >= step for step in steps)
+        return _BLUES[level], PAPER if level >= _DARK_FROM else "#10202c"
+    if cell.status == "not_installed":
+        return BAND, FAINT
+    return (_LOUD_COLOUR, "#000000") if cell.status == LOUD else (_QUIET_COLOUR, "#3a1c05")
+
+
+def _field(axes: Any, x: float, y: float, mark: str, colour: str, ink: str) -> None:
+    axes.fill([x, x + 0.94, x + 0.94, x], [y, y, y + 0.94, y + 0.94], color=colour, linewidth=0)
+    weight = "bold" if mark == CLASSES[LOUD][0] else "normal"
+    axes.text(x + 0.47, y + 0.5, mark, ha="center", va="center_baseline", fontsize=7.5, color=ink, weight=weight)
+
+
+def _key(axes: Any, y: float, wide: float, present: set[str], steps: Sequence[float]) -> None:
+    """What the fields mean, below the map."""
+    for i, digits in enumerate([0.0, *steps]):
+        cell = Cell("", "", "ok", digits)
+        _field(axes, i, y, cell.mark, *_colours(cell, steps))
+    axes.text(len(steps) + 1.3, y + 0.5, "digits kept, at least", fontsize=8, va="center_baseline", color=INK)
+    x = 0.0
+    for status in [word for word in CLASSES if word in present]:
+        letter, meaning = CLASSES[status]
+        needs = 1.7 + _CHARACTER * len(meaning)
+        if x == 0.0 or x + needs > wide:
+            x, y = 0.0, y + 1.2
+        _field(axes, x, y, letter, *_colours(Cell("", "", status), steps))
+        axes.text(x + 1.2, y + 0.5, meaning, fontsize=8, va="center_baseline", color=INK)
+        x += needs
