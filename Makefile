@@ -30,7 +30,7 @@ lint: .venv/ready
 
 # For maintainers: pin again (needs uv).
 lock:
-	uv pip compile pyproject.toml --universal --python-version 3.11 --extra enclose --extra test --extra build \
+	uv pip compile pyproject.toml --universal --python-version 3.11 --extra enclose --extra methods --extra plot --extra test --extra build \
 	  --generate-hashes --no-emit-index-url --no-header --no-annotate -q -o requirements.lock
 
 clean:

@@ -54,18 +54,27 @@ def size(value: Value) -> Any:
 
 
 def shown(value: Value, digits: int = SHOWN) -> str:
-    """A value as text: a number, or components in brackets."""
-    texts = [str(MP.nstr(MP.mpmathify(part), digits)) for part in parts(value)]
+    """A value as text: a number, or components in brackets; what is zero to all digits compared is "0"."""
+    texts = [_shown(MP.mpmathify(part), digits) for part in parts(value)]
     return texts[0] if len(texts) == 1 else f"({', '.join(texts)})"
 
 
-def derivative(function: Callable[[Any], Value], at: Any = 0, order: int = 1) -> Value:
+def _shown(part: Any, digits: int) -> str:
+    return "0" if abs(part) < MP.mpf(10) ** -AGREE_DIGITS else str(MP.nstr(part, digits)).removesuffix(".0")
+
+
+def derivative(function: Callable[[Any], Any], at: Any = 0, order: int = 1) -> Any:
     """A function's derivative of a given order, to all digits: differences at a precision raised enough."""
-    at = MP.mpf(at)
-    here = function(at)
-    if not isinstance(here, tuple):
-        return MP.diff(function, at, order)
-    return tuple(MP.diff(lambda s, i=i: function(s)[i], at, order) for i in range(len(here)))
+    return MP.diff(function, MP.mpf(at), order)
+
+
+def vector_derivative(function: Callable[[Any], Vector], at: Any = 0, order: int = 1) -> Vector:
+    """The derivative of a vector."""
+
+    def component(i: int) -> Callable[[Any], Any]:
+        return lambda s: function(s)[i]
+
+    return tuple(derivative(component(i), at, order) for i in range(len(function(MP.mpf(at)))))
 
 
 def dot(a: Vector, b: Vector) -> Any:

@@ -1,6 +1,6 @@
 """Random points to evaluate a formula at: a pendulum, a planet and a state whose numbers are all of order one.
 
-At such a point no term hides behind another, as RΩ² hides behind g on the Earth: what differs shows in the first digits.
+At such a point no term hides behind another, as RΩ² hides behind g on the Earth: what differs shows at once.
 """
 
 from __future__ import annotations
@@ -148,5 +148,5 @@ def paris() -> Point:
     numbers = {"radius": "6378137", "altitude": "0", "latitude": "48.846111", "length": "67", "gravity": "9.80665",
                "rate": "7.292115e-5", "x": "0.3", "y": "0.4"}  # fmt: skip
     given = {name: mpf(text) for name, text in numbers.items()}
-    blank = {name: MP.zero for name in _RANGES} | {"mass": MP.one}
+    blank = dict.fromkeys(_RANGES, MP.zero) | {"mass": MP.one}
     return Point(**(blank | given | {"flattening": 1 / mpf("298.257223564")}))

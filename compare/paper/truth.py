@@ -11,7 +11,7 @@ from typing import Any
 
 from reference.mechanics import acceleration, rest_position
 
-from .digits import MP, Vector, add, cos, cross, derivative, dot, scale, sin, sqrt, tan
+from .digits import MP, Vector, add, cos, cross, derivative, dot, scale, sin, sqrt, tan, vector_derivative
 from .points import Point
 
 Coordinates = Callable[[Point, Any, Any], Vector]
@@ -62,7 +62,7 @@ def by_plane(p: Point, x: Any, y: Any) -> Vector:
 
 def velocity(p: Point, coordinates: Coordinates, q: Vector, v: Vector, rate: Any = None, t: Any = 0) -> Vector:
     """Velocity in axes that do not turn, of coordinates q that change at the rates v."""
-    return derivative(lambda s: place(p, coordinates(p, q[0] + v[0] * s, q[1] + v[1] * s), t + s, rate))
+    return vector_derivative(lambda s: place(p, coordinates(p, q[0] + v[0] * s, q[1] + v[1] * s), t + s, rate))
 
 
 def square_speed(p: Point, coordinates: Coordinates, q: Vector, v: Vector, rate: Any = None, t: Any = 0) -> Any:
@@ -102,7 +102,7 @@ def in_rate(function: Callable[[Any], Any], power: int) -> Any:
 def horizontal_acceleration(p: Point) -> Vector:
     """X'' and y'' of the reference's model at this point."""
     n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
-    return tuple(p.length * part for part in acceleration(n, v, p.k)[:2])  # type: ignore[arg-type]
+    return tuple(p.length * part for part in acceleration(n, v, p.k)[:2])
 
 
 def rest(p: Point) -> Vector:

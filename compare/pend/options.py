@@ -1,0 +1,142 @@
+"""The program's switches, their defaults, and the scene that they make."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+
+from pydantic import ValidationError
+
+from reference import InputError, Scene, parse_scene
+from reference.scene import Run
+
+DEFAULTS = {
+    "x": "0",
+    "y": "0",
+    "l": "67",
+    "v": "0",
+    "L": "48.846111",
+    "T": "86400",
+    "t": "0.1",
+    "s": "1",
+    "g": "9.80665",
+    "O": "7.292115e-5",
+    "f": "298.257223564",
+    "h": "0",
+    "r": "6.378137e6",
+    "R": "4",
+    "a": "0",
+}
+METHOD_OF = {"4": "rk4", "5": "rkng56", "6": "rkng67"}
+MAX_STEPS = 1_000_000_000
+
+# where the value of a switch goes in a scene, which checks it
+_FIELDS = {
+    "x": "release.x",
+    "y": "release.y",
+    "v": "release.vx",
+    "l": "pendulum.length",
+    "L": "site.latitude",
+    "h": "site.altitude",
+    "g": "site.gravity",
+    "O": "site.rotation_rate",
+    "r": "site.equatorial_radius",
+    "f": "site.inverse_flattening",
+    "T": "run.t_end",
+    "t": "run.grid_step",
+}
+_SWITCHES = {field: switch for switch, field in _FIELDS.items()}
+
+
+@dataclass(frozen=True)
+class Options:
+    """What is to be run.
+
+    Attributes:
+        scene: pendulum, site and release; its numbers are the doubles next to what was typed.
+        step: of the integration, s.
+        steps: whole steps up to T.
+        skip: steps from one snapshot to the next.
+        method: id of the integrator.
+        bits: of -a.
+        exact: take the reference instead.
+    """
+
+    scene: Scene
+    step: Fraction
+    steps: int
+    skip: int
+    method: str
+    bits: int
+    exact: bool
+
+    @classmethod
+    def parse(cls, given: Mapping[str, str], exact: bool = False) -> Options:
+        """Check the switches; those that are not given have the program's defaults.
+
+        Args:
+            given: values by letter, as typed.
+            exact: what --exact says.
+
+        Raises:
+            InputError: naming the switch.
+        """
+        unknown = [switch for switch in given if switch not in DEFAULTS]
+        if unknown:
+            raise InputError(f"-{unknown[0]}", given[unknown[0]], "one of -" + " -".join(DEFAULTS))
+        if exact:
+            for switch, why in (("R", "uses no Runge-Kutta scheme"), ("a", "knows the full theory only")):
+                if given.get(switch, DEFAULTS[switch]) != DEFAULTS[switch]:
+                    raise InputError(f"-{switch}", given[switch], "nothing beside --exact", f"The reference {why}.")
+        values = DEFAULTS | dict(given)
+        skip, bits = _whole("s", values["s"], 1, None), _whole("a", values["a"], 0, 3)
+        if values["R"] not in METHOD_OF:
+            raise InputError("-R", values["R"], "4, 5 or 6", "4: Runge-Kutta; 5: RKN-G 5(6); 6: RKN-G 6(7).")
+        scene = _scene(values)
+        inputs = scene.exact
+        steps = int(inputs.t_end / inputs.grid_step * (1 + Fraction(1, 10**12)))  # 0.3 holds three doubles 0.1
+        if not 1 <= steps <= MAX_STEPS:
+            raise InputError("-t", values["t"], f"1 to {MAX_STEPS} steps up to T = {values['T']} s", "Change -t or -T.")
+        return cls(scene, inputs.grid_step, steps, skip, METHOD_OF[values["R"]], bits, exact)
+
+
+def _whole(switch: str, text: str, low: int, high: int | None) -> int:
+    upper = "" if high is None else f" to {high}"
+    try:
+        value = int(text)
+    except ValueError:
+        value = low - 1
+    if value < low or (high is not None and value > high):
+        raise InputError(f"-{switch}", text, f"a whole number from {low}{upper}")
+    return value
+
+
+def _scene(values: Mapping[str, str]) -> Scene:
+    document: dict[str, dict[str, str]] = {"release": {"vy": "0"}}
+    for switch, field in _FIELDS.items():
+        section, _, key = field.partition(".")
+        document.setdefault(section, {})[key] = values[switch]
+    run = document.pop("run")
+    for key in run:
+        try:
+            Run(**{key: run[key]})
+        except ValidationError:
+            raise InputError(f"-{_SWITCHES[f'run.{key}']}", run[key], "a number above 0, in s") from None
+    try:
+        scene = parse_scene({"id": "pend", "inputs": "binary64", **document})
+    except InputError as error:
+        raise _renamed(error, values) from None
+    # not parsed with the rest: a scene's limit on rows is none for a program that prints them one by one
+    return scene.model_copy(update={"run": Run(**run)})
+
+
+def _renamed(error: InputError, values: Mapping[str, str]) -> InputError:
+    """The same complaint, naming the switch."""
+    if error.field in _SWITCHES:
+        switch = _SWITCHES[error.field]
+        return InputError(f"-{switch}", values[switch], error.expected, error.advice)
+    if error.field == "release":
+        x, y = values["x"], values["y"]
+        return InputError("-x, -y", f"{x}, {y}", f"a point below the suspension: x² + y² < l² = {values['l']}²")
+    return error
