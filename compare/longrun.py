@@ -37,13 +37,13 @@ ITEMS: tuple[Item, ...] = (
     ("heyoka_double", "space", 2.0**-52),
     ("heyoka_long_double", "momentum", 2.0**-63),
     ("heyoka_long_double", "space", 2.0**-63),
-    ("heyoka_real128", "momentum", 113),
+    ("heyoka_real128", "momentum", 2.0**-112),
     ("limbs", "momentum", 100),
-    ("gauss_legendre", "spin", 0.5),
+    ("gauss_legendre", "momentum", 4.0),
     ("rkng67", "plane", 0.25),
     ("rk4", "plane", 0.05),
-    ("numbalsoda_dop853", "momentum", 1e-14),
-    ("rebound_bs", "momentum", 1e-14),
+    ("numbalsoda_dop853", "space", 1e-14),
+    ("rebound_bs", "space", 1e-12),
 )
 
 
@@ -152,7 +152,11 @@ def grown(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item])
             continue
         errors = truth.position_errors(outcome)
         t = truth.times[: len(errors)]
-        emit(Growth(name, formulation, setting, outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m))
+        emit(
+            Growth(
+                name, formulation, setting, outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m
+            )
+        )
 
 
 def laws(rows: Sequence[Growth]) -> Iterator[str]:

@@ -22,6 +22,7 @@ from .journal import Journal
 from .lane import lane
 from .measure import Row, ladder
 from .methods import METHODS
+from .swing import suited
 from .truth import golden_of
 
 LIMIT_S = 8.0  # CPU seconds of one run; what would take longer is extrapolated from a part of the span
@@ -73,8 +74,13 @@ class Study:
         }
 
 
-def plan(methods: Sequence[str] | None, formulations: bool) -> list[Item]:
-    """What to measure: each method over its ladder in the formulation that suits it, and the formulations.
+def plan(scene: Scene, methods: Sequence[str] | None = None, formulations: bool = True) -> list[Item]:
+    """What to measure: each method over its settings in the formulation that suits it, and the formulations.
+
+    Args:
+        scene: whose swing steps are scaled to, and whose motion a formulation must carry.
+        methods: ids; all if None.
+        formulations: whether to compare the formulations in one method as well.
 
     Raises:
         InputError: an unknown method.
@@ -82,15 +88,11 @@ def plan(methods: Sequence[str] | None, formulations: bool) -> list[Item]:
     items: list[Item] = []
     for name in methods or METHODS:
         method = METHODS[name]
-        items += [(name, method.formulations[0], setting) for setting in method.ladder]
+        items += [(name, suited(scene, method.formulations), setting) for setting in method.settings(scene)]
     if formulations and (methods is None or FORMULATIONS_OF in methods):
-        ladder_ = METHODS[FORMULATIONS_OF].ladder
-        items += [
-            (FORMULATIONS_OF, word, setting)
-            for word in FORMULATIONS
-            for setting in ladder_
-            if word in METHODS[FORMULATIONS_OF].formulations
-        ]
+        one = METHODS[FORMULATIONS_OF]
+        words = [word for word in FORMULATIONS if word in one.formulations]
+        items += [(FORMULATIONS_OF, word, setting) for word in words for setting in one.settings(scene)]
     return list(dict.fromkeys(items))
 
 
@@ -115,7 +117,7 @@ def study(
         report: called with rows done, rows in all and what runs now.
         announce: told when the truth has to be solved.
     """
-    todo = list(items or plan(None, True))
+    todo = list(items or plan(scene))
     problem = scene.with_values(["inputs=binary64"])
     golden = golden_of(problem, digits or problem.run.digits, announce)
     journal = Journal(kept, _recipe(problem, limit_s))

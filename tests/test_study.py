@@ -71,7 +71,7 @@ def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pyt
 
 
 def test_a_study_goes_on_where_it_stopped_and_gives_the_same_front(short: Scene, tmp_path: Path) -> None:
-    items = [item for item in plan(["rk4", "heyoka_double", "gauss_legendre"], False) if item[2] != 0.002]
+    items = [item for item in plan(short, ["rk4", "heyoka_double", "gauss_legendre"], False) if item[2] != 0.002]
     seen: list[str] = []
     kept = tmp_path / "rows.jsonl"
     first = study(short, items=items[:4], kept=kept)

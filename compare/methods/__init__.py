@@ -1,0 +1,74 @@
+"""Integrators of the paper and of others behind one interface, each declared in a file of its own.
+
+>>> from compare.methods import METHODS, available
+>>> METHODS["rk4"].title
+'classical Runge-Kutta, order 4'
+
+A method makes a problem ready and hands back the work, so that whoever measures can time the work alone:
+
+    problem = Problem.of(reference.load_scene("paris"), "plane")
+    work = METHODS["rk4"].prepare(problem, 0.01)    # imports and compiles
+    outcome = work()                                # integrates
+    outcome.states                                  # x, y, z, vx, vy, vz at problem.times
+
+A method is imported when it is asked for, and its library when it prepares something.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+
+from reference.errors import InputError
+
+from ..problem import Problem
+from .external import external
+from .method import Exact, Method, Outcome, Work, available
+
+__all__ = ["EXTERNAL", "METHODS", "Exact", "Method", "Outcome", "Problem", "Work", "available", "external"]
+
+EXTERNAL = "external: "  # before a command, which then is a method
+
+_HOMES = {
+    "rk4": ("rk4",),
+    "rkng56": ("rkng56",),
+    "rkng67": ("rkng67",),
+    "rkmk4": ("rkmk4",),
+    "gauss_legendre": ("gauss_legendre",),
+    "heyoka": ("heyoka_double", "heyoka_long_double", "heyoka_real128", "heyoka_real"),
+    "limbs": ("limbs",),
+    "scipy": ("scipy_rk45", "scipy_dop853", "scipy_radau", "scipy_bdf", "scipy_lsoda"),
+    "numbalsoda": ("numbalsoda_dop853", "numbalsoda_lsoda"),
+    "sundials": ("cvode_adams", "cvode_bdf"),
+    "rebound": ("rebound_bs", "rebound_ias15"),
+    "diffrax": ("diffrax_dopri8",),
+    "mpmath": ("mpmath_odefun",),
+}
+_HOME_OF = {name: home for home, inside in _HOMES.items() for name in inside}
+
+
+class _Registry(Mapping[str, Method]):
+    """Methods by id, in the order of the documentation; a module is imported when one of its methods is asked for."""
+
+    def __getitem__(self, name: str) -> Method:
+        if name.startswith(EXTERNAL):
+            from .external import external
+
+            return external(name.removeprefix(EXTERNAL), name=name)
+        if name not in _HOME_OF:
+            raise InputError("method", name, "a method's id", f"Known ids: {', '.join(_HOME_OF)}.")
+        home = import_module(f".{_HOME_OF[name]}", __name__)
+        declared: tuple[Method, ...] = getattr(home, "METHODS", None) or (home.METHOD,)
+        return next(method for method in declared if method.id == name)
+
+    def __contains__(self, name: object) -> bool:
+        return name in _HOME_OF
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_HOME_OF)
+
+    def __len__(self) -> int:
+        return len(_HOME_OF)
+
+
+METHODS: Mapping[str, Method] = _Registry()

@@ -1,0 +1,78 @@
+"""diffrax's Dopri8 in binary64, on one thread of the processor, the right-hand side compiled by JAX.
+
+The relative tolerance is the one asked for, the absolute one that times the smallest of the variables' swings.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+
+from ..problem import Problem
+from .method import Method, Outcome, Work, outcome
+
+ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
+
+
+def prepare(problem: Problem, setting: float) -> Work:
+    """Compile the whole integration; the work is its second run."""
+    os.environ.setdefault("XLA_FLAGS", ONE_THREAD)
+    os.environ.setdefault("JAX_PLATFORMS", "cpu")
+    import diffrax
+    import jax
+    import jax.numpy as jnp
+
+    jax.config.update("jax_enable_x64", True)
+    parameters = dict(problem.system.parameters)
+    solver = diffrax.Dopri8()
+    controller = diffrax.PIDController(rtol=setting, atol=setting * float(problem.sizes.min()))
+
+    def rhs(_: Any, y: Any, __: Any) -> Any:
+        return jnp.stack([jnp.asarray(part) for part in problem.system.rates(tuple(y), jnp, parameters)])
+
+    def integrate(start: Any, times: Any) -> Any:
+        found = diffrax.diffeqsolve(
+            diffrax.ODETerm(rhs),
+            solver,
+            t0=0.0,
+            t1=times[-1],
+            dt0=None,
+            y0=start,
+            saveat=diffrax.SaveAt(ts=times),
+            stepsize_controller=controller,
+            max_steps=None,
+            throw=False,
+        )
+        return found.ys, found.stats["num_steps"], found.result == diffrax.RESULTS.successful
+
+    start, times = jnp.asarray(problem.start), jnp.asarray(problem.times)
+    compiled = jax.jit(integrate).lower(start, times).compile()
+    stages = solver.tableau.num_stages - int(solver.tableau.fsal)
+
+    def work() -> Outcome:
+        if len(problem.times) == 1:
+            return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
+        ys, taken, successful = compiled(start, times)
+        states, steps = np.array(ys), int(taken)
+        reason = "" if successful else "diffrax gave up"
+        if not successful:
+            states = states[: int(np.isfinite(states).all(axis=1).sum())]
+        return outcome(problem, states, steps=steps, rhs_evaluations=steps * stages + 1, reason=reason)
+
+    return work
+
+
+METHOD = Method(
+    id="diffrax_dopri8",
+    title="Dormand-Prince 8(7), diffrax on JAX",
+    setting="tolerance",
+    ladder=(1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
+    source="P. Kidger, On Neural Differential Equations (2021); P. J. Prince and J. R. Dormand (1981)",
+    licence="Apache-2.0",
+    prepare=prepare,
+    formulations=("space", "momentum", "spin", "plane", "angles"),
+    requires=("diffrax",),
+    extra="methods-jax",
+)

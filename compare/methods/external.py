@@ -1,0 +1,93 @@
+"""Somebody's own program as a method: a command, run by `compare.external`, whose output is read as a candidate.
+
+The command may use the placeholders of `foucault score --run`, and {setting} for what a study varies. It has to
+print the scene's grid times; `{t_end}` and `{grid_step}` are those of the problem's times.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reference.errors import InputError
+from reference.scene import Scene
+
+from ..problem import Array, Problem
+from .method import Method, Outcome, Setting, Work, failed
+
+SAME_TIME = 1e-9  # relative: decimals that a program prints for a time that is no short decimal
+
+
+def external(
+    command: str, *, name: str = "external", setting: Setting = "step", ladder: tuple[float, ...] = (0.01,)
+) -> Method:
+    """A method from a command.
+
+    Args:
+        command: with placeholders in braces; `{setting}` is the step, tolerance or precision.
+        name: its id in tables.
+        setting: what is varied.
+        ladder: settings from loose to tight; one if the command does not use it.
+    """
+    return Method(
+        id=name,
+        title=command,
+        setting=setting,
+        ladder=ladder,
+        source="the user's",
+        licence="the user's",
+        prepare=lambda problem, value: _prepare(problem, value, command),
+        formulations=("momentum",),
+        dense=False,
+    )
+
+
+def _prepare(problem: Problem, value: float, command: str) -> Work:
+    from ..external import arguments, run_program
+    from ..trajectory import read_stream
+
+    words = arguments(command.replace("{setting}", repr(value)), _scene(problem))
+
+    def work() -> Outcome:
+        try:
+            output, cpu_s, _ = run_program(words)
+            with output:
+                read = read_stream(output, "the program's output")
+            states = _at(problem, read.t, read.columns)
+        except InputError as error:  # for a study a program that fails is a row that says so
+            return failed(problem, str(error))
+        if not len(states):
+            return failed(problem, "the output does not begin at t = 0")
+        whole = len(states) == len(problem.times)
+        return Outcome(
+            status="ok" if whole else "gave_up",
+            reason="" if whole else "the output lacks a grid time",
+            reached_t=float(problem.times[len(states) - 1]),
+            steps=None,
+            rhs_evaluations=None,
+            cartesian=lambda: states,
+            cpu_s=cpu_s,
+        )
+
+    return work
+
+
+def _scene(problem: Problem) -> Scene:
+    """The scene with the end and the grid step of the problem's times."""
+    times = problem.times.tolist()
+    if len(times) < 2:
+        raise InputError("times", times, "at least one output time after 0")
+    return problem.scene.with_values([f"run.t_end={times[-1]!r}", f"run.grid_step={times[1] - times[0]!r}"])
+
+
+def _at(problem: Problem, t: Array, columns: dict[str, Array]) -> Array:
+    """The rows at the problem's times, as far as all of them are there; what is not printed is completed."""
+    places = np.clip(np.searchsorted(t, problem.times * (1 - SAME_TIME)), 0, len(t) - 1)
+    there = np.abs(t[places] - problem.times) <= SAME_TIME * problem.times
+    kept = {name: column[places] for name, column in columns.items()}
+    x, y = kept["x"], kept["y"]
+    nothing = np.full(len(x), np.nan)  # a velocity that was not printed is not known
+    vx, vy = kept.get("vx", nothing), kept.get("vy", nothing)
+    z = kept.get("z", -np.sqrt(np.maximum(problem.constants.length**2 - x * x - y * y, 0.0)))
+    vz = kept.get("vz", -(x * vx + y * vy) / z)
+    rows = len(there) if there.all() else int(np.argmin(there))
+    return np.array([x, y, z, vx, vy, vz]).T[:rows].copy()

@@ -1,0 +1,178 @@
+"""Gauss-Legendre collocation, order 16: symplectic, time-symmetric, and it keeps every quadratic invariant.
+
+In `momentum` that is n·n, H·n and, without drag, the energy: whatever the step, the bob stays on the sphere and on
+its energy. The stages are found by fixed-point iteration, begun from the polynomial of the step before and ended
+where rounding ends it; sums over steps are compensated (Hairer, Lubich, Wanner, Geometric Numerical Integration,
+IV.2, VIII.5, VIII.6).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from reference.precision import context
+
+from ..problem import Array, Problem
+from .fixed_step import steps_between
+from .method import Method, Outcome, Work, outcome
+from .tableau import TableauError
+
+STAGES = 8
+MOST_ITERATIONS = 60
+CONVERGED = 1e-9  # relative change of the stages below which it may only be rounding that keeps them moving
+_BITS = 200
+
+_MARCH = """
+@nb.njit("Tuple((int64, int64, int64))(float64[::1], float64[::1], float64[::1], int64[::1], float64[:, ::1],"
+         "float64[:, ::1], float64[::1], float64[:, ::1], float64[::1])", **OPTIONS)
+def march(y, k, times, counts, states, a, b, ahead, sizes):
+    ${unpack_parameters}
+    x, lost = y.copy(), np.zeros(${size})
+    slopes, guess, z, f = np.zeros((${stages}, ${size})), np.zeros((${stages}, ${size})), y.copy(), np.zeros(${size})
+    ${f}= derivatives(${y}${c})
+    for i in range(${stages}):
+        slopes[i] = f
+    steps, calls = 0, 1
+    for row in range(1, len(times)):
+        h = (times[row] - times[row - 1]) / counts[row]
+        for _ in range(counts[row]):
+            if steps > 0:
+                for i in range(${stages}):
+                    for d in range(${size}):
+                        guess[i, d] = 0.0
+                        for j in range(${stages}):
+                            guess[i, d] += ahead[i, j] * slopes[j, d]
+                slopes, guess = guess, slopes
+            before, settled = np.inf, False
+            for _ in range(${most}):
+                change = 0.0
+                for i in range(${stages}):
+                    for d in range(${size}):
+                        sum = 0.0
+                        for j in range(${stages}):
+                            sum += a[i, j] * slopes[j, d]
+                        z[d] = x[d] + h * sum
+                    ${f}= derivatives(${z}${c})
+                    for d in range(${size}):
+                        change = max(change, abs(h * (f[d] - slopes[i, d])) / sizes[d])
+                        slopes[i, d] = f[d]
+                calls += ${stages}
+                if change == 0.0 or (change < ${converged} and change >= before):
+                    settled = True
+                    break
+                if not np.isfinite(change):
+                    break
+                before = change
+            if not settled:
+                return row, steps, calls
+            for d in range(${size}):
+                sum = 0.0
+                for j in range(${stages}):
+                    sum += b[j] * slopes[j, d]
+                add = h * sum + lost[d]
+                moved = x[d] + add
+                lost[d] = add - (moved - x[d])
+                x[d] = moved
+            steps += 1
+        states[row] = x
+    return len(times), steps, calls
+"""
+
+
+@dataclass(frozen=True)
+class Collocation:
+    """A collocation method at the Gauss points, rounded once: a_ij, b_j, and the stages of the step that follows.
+
+    Attributes:
+        a: shape (stages, stages).
+        b: shape (stages,).
+        ahead: weights of a step's slopes in the guess for the next step's, shape (stages, stages).
+    """
+
+    a: Array
+    b: Array
+    ahead: Array
+
+
+@cache
+def gauss(stages: int) -> Collocation:
+    """The Gauss-Legendre method of order 2 stages.
+
+    Raises:
+        TableauError: the quadrature does not have that order.
+    """
+    ctx = context(_BITS)
+    roots = [
+        ctx.findroot(lambda x: ctx.legendre(stages, x), guess) for guess in np.polynomial.legendre.leggauss(stages)[0]
+    ]
+    nodes = [(1 + root) / 2 for root in roots]
+    basis = [_cardinal(ctx, nodes, j) for j in range(stages)]
+
+    def integral(coefficients: list[Any], end: Any) -> Any:
+        return sum(c * end ** (i + 1) / (i + 1) for i, c in enumerate(coefficients))
+
+    def value(coefficients: list[Any], at: Any) -> Any:
+        return sum(c * at**i for i, c in enumerate(coefficients))
+
+    b = [integral(row, ctx.mpf(1)) for row in basis]
+    for order in range(1, 2 * stages + 1):
+        residual = abs(sum(w * c ** (order - 1) for w, c in zip(b, nodes, strict=True)) - ctx.mpf(1) / order)
+        if residual > ctx.mpf(2) ** (-_BITS // 2):
+            raise TableauError(f"Gauss-Legendre with {stages} stages", order, residual)
+    a = [[integral(row, c) for row in basis] for c in nodes]
+    ahead = [[value(row, 1 + c) for row in basis] for c in nodes]
+    return Collocation(np.array(a, dtype=float), np.array(b, dtype=float), np.array(ahead, dtype=float))
+
+
+def _cardinal(ctx: Any, nodes: list[Any], j: int) -> list[Any]:
+    """Coefficients, lowest power first, of the polynomial that is 1 at node j and 0 at the others."""
+    made = [ctx.mpf(1)]
+    for i, node in enumerate(nodes):
+        if i != j:
+            gap = nodes[j] - node
+            raised, lowered = [ctx.mpf(0), *made], [*(c * node for c in made), ctx.mpf(0)]
+            made = [(up - down) / gap for up, down in zip(raised, lowered, strict=True)]
+    return made
+
+
+def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
+    """Fixed step of `setting` seconds."""
+    from ..compiled import compiled, elements, fill, function_text, names, unpacked
+
+    size, parameters = len(problem.start), len(problem.system.parameters)
+    texts = {name: elements(name, size) for name in ("y", "z", "f")}
+    texts |= {"stages": str(stages), "size": str(size), "most": str(MOST_ITERATIONS), "converged": repr(CONVERGED)}
+    texts |= {"c": names("c", parameters), "unpack_parameters": unpacked("c", "k", parameters)}
+    march = compiled(function_text(problem.system.program, "derivatives") + fill(_MARCH, **texts)).march
+    method, counts = gauss(stages), steps_between(problem.times, setting)
+
+    def work() -> Outcome:
+        states = np.empty((len(problem.times), size))
+        states[0] = problem.start
+        rows, steps, calls = march(
+            problem.start, problem.parameters, problem.times, counts, states, method.a, method.b, method.ahead,
+            problem.sizes,
+        )  # fmt: skip
+        reason = "" if rows == len(states) else "the iteration for the stages does not converge: shorten the step"
+        return outcome(problem, states[:rows], steps=steps, rhs_evaluations=calls, reason=reason)
+
+    return work
+
+
+METHOD = Method(
+    id="gauss_legendre",
+    title="Gauss-Legendre with 8 stages, order 16, symplectic",
+    setting="step",
+    ladder=(12, 10, 8, 6, 5, 4, 3),
+    source="J. C. Butcher, Math. Comp. 18 (1964) 50; J. M. Sanz-Serna, BIT 28 (1988) 877",
+    licence="this project's",
+    prepare=prepare,
+    formulations=("momentum", "spin", "space", "plane", "angles"),
+    dense=False,
+    requires=("numba",),
+    extra="methods",
+)

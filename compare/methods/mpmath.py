@@ -1,0 +1,69 @@
+"""mpmath's `odefun`: a Taylor method for any right-hand side, in any precision, on one page of Python. Slow."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+from reference.constants import constants, release, scaled
+from reference.mechanics import FORMULATIONS
+from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
+
+from ..problem import Array, Problem
+from .method import Exact, Method, Outcome, Work
+
+SPARE_BITS = 64
+
+
+def prepare(problem: Problem, setting: float) -> Work:
+    """Set up contexts of `setting` bits; the work is the series and their sums."""
+    import numpy as np
+
+    prec = int(setting)
+    ctx, finer_ctx = context(prec), context(prec + GUARD_BITS)
+    model = FORMULATIONS[problem.formulation]
+    exact = constants(problem.scene.exact, finer_ctx)
+    n, v = (scaled(vector, exact.length) for vector in release(problem.scene.exact, finer_ctx))
+    k = exact.converted(ctx.mpf)
+    start = [ctx.mpf(value) for value in model.start(n, v, exact, finer_ctx)]
+    times = [to_mpf(Fraction(t), ctx) for t in problem.times.tolist()]
+
+    def work() -> Outcome:
+        calls = 0
+
+        def rhs(_: Any, state: Sequence[Any]) -> list[Any]:
+            nonlocal calls
+            calls += 1
+            return list(model.derivatives(state, k, ctx))
+
+        solution = ctx.odefun(rhs, 0, start)
+        states = [solution(t) for t in times]
+
+        def rows() -> list[list[Any]]:
+            moved = [model.cartesian(state, k, ctx) for state in states]
+            return [[part * k.length for part in (*position, *velocity)] for position, velocity in moved]
+
+        def cartesian() -> Array:
+            return np.array([[float(value) for value in row] for row in rows()])
+
+        def fixed() -> Exact:
+            scale = prec + SPARE_BITS
+            return Exact(scale, [tuple(int(to_fraction(value) * 2**scale) for value in row) for row in rows()])
+
+        return Outcome("ok", "", float(problem.times[-1]), None, calls, cartesian, fixed)
+
+    return work
+
+
+METHOD = Method(
+    id="mpmath_odefun",
+    title="Taylor series from the right-hand side alone, mpmath",
+    setting="precision",
+    ladder=(53, 113),
+    source="F. Johansson et al., mpmath",
+    licence="BSD-3-Clause",
+    prepare=prepare,
+    formulations=("momentum", "space", "spin", "plane", "angles"),
+    longest_s=60.0,
+)

@@ -1,0 +1,99 @@
+"""DOP853 and LSODA compiled from Fortran and C, by way of numbalsoda: no Python between the steps.
+
+Its absolute tolerance is one number for all variables: the tolerance asked for times the smallest of their
+swings; the relative one is the tolerance itself. Its wheel is built from source and wants a Fortran compiler.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import Any
+
+import numpy as np
+
+from ..problem import Problem
+from .method import TRACEABLE, Method, Outcome, Work, outcome
+from .native import listened
+
+MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
+
+_RATES = """
+@nb.cfunc("void(float64, CPointer(float64), CPointer(float64), CPointer(float64))", **OPTIONS)
+def rates(t, y, dy, k):
+    k[${counter}] += 1.0
+    ${dy}= derivatives(${y}${k})
+"""
+
+
+def prepare(problem: Problem, setting: float, code: str) -> Work:
+    """Compile the right-hand side; the work is the library's integration."""
+    os.environ.setdefault("GFORTRAN_UNBUFFERED_PRECONNECTED", "y")  # else its words come when the process ends
+    from numbalsoda import driver, driver_dop853
+
+    from ..compiled import compiled, elements, fill, function_text
+
+    variables, parameters = len(problem.start), len(problem.parameters)
+    used = len(problem.system.parameters)
+    places = {"y": elements("y", variables), "dy": elements("dy", variables), "k": elements("k", used)}
+    wrapper = fill(_RATES, counter=str(parameters), **places)
+    address = compiled(function_text(problem.system.program, "derivatives") + wrapper).rates.address
+    integrate = {"dop853": driver_dop853.dop853_wrapper, "lsoda": driver.lsoda_wrapper}[code]
+    absolute = setting * float(problem.sizes.min())
+
+    def work() -> Outcome:
+        rows = len(problem.times)
+        states, success = np.full((rows, variables), np.nan), np.array(999, np.int32)
+        states[0], start = problem.start, problem.start.copy()
+        data = np.append(problem.parameters, 0.0)
+        pointers: list[Any] = [array.ctypes.data for array in (start, data, problem.times, states, success)]
+        with listened() as said:
+            if rows > 1:
+                integrate(
+                    address, variables, pointers[0], pointers[1], rows, pointers[2], pointers[3],
+                    setting, absolute, MOST_STEPS, pointers[4],
+                )  # fmt: skip
+        calls = int(data[-1])
+        if rows == 1 or success == 1:
+            return outcome(problem, states, steps=None, rhs_evaluations=calls, reason=said.text)
+        finite = np.isfinite(states).all(axis=1)
+        reached = rows if finite.all() else int(np.argmin(finite))
+        reason = said.text or f"numbalsoda's {code} gave up"
+        return outcome(problem, states[:reached], steps=None, rhs_evaluations=calls, reason=reason)
+
+    return work
+
+
+def _declared(code: str, title: str, source: str, licence: str, ladder: tuple[float, ...], *, stiff: bool) -> Method:
+    return Method(
+        id=f"numbalsoda_{code}",
+        title=title,
+        setting="tolerance",
+        ladder=ladder,
+        source=source,
+        licence=licence,
+        prepare=lambda problem, setting: prepare(problem, setting, code),
+        formulations=("space", *(word for word in TRACEABLE if word != "space")) if code == "dop853" else TRACEABLE,
+        stiff=stiff,
+        requires=("numbalsoda", "numba"),
+        extra="methods-fortran",
+    )
+
+
+METHODS = (
+    _declared(
+        "dop853",
+        "Dormand-Prince 8(5,3), compiled",
+        "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
+        "MIT and BSD",
+        (1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
+        stiff=False,
+    ),
+    _declared(
+        "lsoda",
+        "Adams and BDF with automatic switching, compiled",
+        "L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136; liblsoda",
+        "MIT",
+        (1e-7, 1e-8, 1e-10, 1e-12, 1e-13),
+        stiff=True,
+    ),
+)

@@ -1,0 +1,184 @@
+"""REBOUND's Bulirsch-Stoer method and IAS15, with forces compiled to C functions. GPL: used only if installed.
+
+Bulirsch-Stoer solves the system as an `ode` of REBOUND's, with eps_rel the tolerance asked for and eps_abs that
+times the smallest of the variables' swings. IAS15 moves one particle at n = r/l under the accelerations of the
+formulation `space`; its tolerance is `epsilon`, 1e-9 by REBOUND's own choice. Steps end on the output times.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..problem import Array, Problem
+from .method import Method, Outcome, Work, outcome
+
+_POINTER = """
+@nb.extending.intrinsic
+def pointer(typing, address):
+    def generated(context, builder, signature, arguments):
+        return builder.inttoptr(arguments[0], context.get_value_type(nb.types.voidptr))
+    return nb.types.voidptr(address), generated
+
+
+@nb.njit(**OPTIONS)
+def at(base, offset, count):
+    # count doubles behind the pointer that stands at an offset of a structure
+    words = nb.carray(base, (offset // 8 + 1,), np.int64)
+    return nb.carray(pointer(words[offset // 8]), (count,), np.float64)
+
+"""
+
+_ODE = """
+@nb.cfunc("void(voidptr, CPointer(float64), CPointer(float64), float64)", **OPTIONS)
+def rates(ode, dy, y, t):
+    k = at(ode, ${ref}, ${parameters} + 1)
+    k[${parameters}] += 1.0
+    ${dy}= derivatives(${y}${k})
+"""
+
+_FORCES = """
+@nb.cfunc("void(voidptr)", **OPTIONS)
+def rates(simulation):
+    k = at(simulation, ${extras}, ${parameters} + 1)
+    k[${parameters}] += 1.0
+    p = at(simulation, ${particles}, 9)
+    x, y, z, ax, ay, az = derivatives(${y}${k})
+    p[6] += ax
+    p[7] += ay
+    p[8] += az
+"""
+
+
+def prepare_bs(problem: Problem, setting: float) -> Work:
+    """Compile the right-hand side; the work makes a simulation and integrates."""
+    import rebound
+
+    size = len(problem.start)
+    rates = _compiled(problem, _ODE, y="y", dy="dy", ref=rebound.ODE.ref.offset)
+
+    def work() -> Outcome:
+        data = np.append(problem.parameters, 0.0)
+        simulation = rebound.Simulation()
+        simulation.integrator = "bs"
+        simulation.integrator.eps_rel = setting
+        simulation.integrator.eps_abs = setting * float(problem.sizes.min())
+        simulation.dt = _first_step(problem)
+        ode = simulation.create_ode(length=size, needs_nbody=False)
+        ode.ref = data.ctypes.data
+        ode._derivatives = rebound.ode.ODEDER(rates.address)  # the public setter would call it through Python
+
+        def state() -> Array:  # REBOUND swaps the array that it steps from with the one it steps to
+            return np.ctypeslib.as_array(ode.y, (size,))
+
+        state()[:] = problem.start
+        return _march(problem, simulation, state, data)
+
+    return work
+
+
+def prepare_ias15(problem: Problem, setting: float) -> Work:
+    """Compile the forces; the work makes a simulation and integrates."""
+    import rebound
+
+    fields = rebound.Simulation
+    rates = _compiled(problem, _FORCES, y="p", extras=fields.extras.offset, particles=fields._particles.offset)
+
+    def work() -> Outcome:
+        data = np.append(problem.parameters, 0.0)
+        simulation = rebound.Simulation()
+        simulation.integrator = "ias15"
+        simulation.integrator.epsilon = setting
+        simulation.gravity = "none"
+        simulation.dt = _first_step(problem)
+        simulation.extras = data.ctypes.data
+        simulation._additional_forces = rebound.simulation.AFF(rates.address)
+        simulation.force_is_velocity_dependent = 1
+        simulation.add(**dict(zip(("x", "y", "z", "vx", "vy", "vz"), problem.start.tolist(), strict=True)))
+        return _march(problem, simulation, lambda: [*simulation.particles[0].xyz, *simulation.particles[0].vxyz], data)
+
+    return work
+
+
+def _compiled(problem: Problem, template: str, y: str, dy: str = "", **offsets: int) -> Any:
+    from ..compiled import compiled, elements, fill, function_text
+
+    size, parameters = len(problem.start), len(problem.parameters)
+    texts = {name: str(offset) for name, offset in offsets.items()}
+    texts |= {"y": elements(y, size), "dy": elements(dy, size), "k": elements("k", len(problem.system.parameters))}
+    body = function_text(problem.system.program, "derivatives") + _POINTER
+    return compiled(body + fill(template, parameters=str(parameters), **texts)).rates
+
+
+def _first_step(problem: Problem) -> float:
+    """A hundredth of the time of a small swing, in s; the method takes it from there."""
+    strength = float(np.linalg.norm(np.array(problem.constants.pull, dtype=float)))
+    return min(0.01 / math.sqrt(strength) if strength else 1.0, float(problem.times[-1]) or 1.0)
+
+
+def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Array) -> Outcome:
+    """Integrate to every output time, until the simulation complains or leaves the finite numbers."""
+    import rebound
+
+    failures = (RuntimeError, rebound.GenericError, rebound.NoParticles, rebound.Escape)
+    states, reason, rows = np.empty((len(problem.times), len(problem.start))), "", 1
+    states[0] = problem.start
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        for span in np.diff(problem.times).tolist():
+            simulation.t = 0.0  # it adds up its steps: at 86400 s their rounding alone would cost 6e-10 m
+            try:
+                simulation.integrate(span)
+            except failures as error:
+                reason = str(error)
+                break
+            states[rows] = state()
+            rows += 1
+            if not np.isfinite(states[rows - 1]).all():
+                break
+    reason = reason or "; ".join(dict.fromkeys(str(entry.message) for entry in said))
+    steps = int(simulation.steps_done)
+    return outcome(problem, states[:rows], steps=steps, rhs_evaluations=int(data[-1]), reason=reason)
+
+
+def _declared(
+    name: str, title: str, source: str, ladder: tuple[float, ...], prepare: Callable[[Problem, float], Work],
+    formulations: tuple[str, ...],
+) -> Method:  # fmt: skip
+    return Method(
+        id=name,
+        title=title,
+        setting="tolerance",
+        ladder=ladder,
+        source=source,
+        licence="GPL-3.0",
+        prepare=prepare,
+        formulations=formulations,
+        dense=False,
+        requires=("rebound", "numba"),
+        extra="methods-gpl",
+    )
+
+
+METHODS = (
+    _declared(
+        "rebound_bs",
+        "Gragg-Bulirsch-Stoer, REBOUND",
+        "H. Rein and S.-F. Liu, Astron. Astrophys. 537 (2012) A128",
+        (1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
+        prepare_bs,
+        ("space", "momentum", "spin", "plane", "angles"),
+    ),
+    _declared(
+        "rebound_ias15",
+        "IAS15, Gauss-Radau of order 15, REBOUND",
+        "H. Rein and D. S. Spiegel, Mon. Not. R. Astron. Soc. 446 (2015) 1424",
+        (1e-1, 1e-3, 1e-6, 1e-9),
+        prepare_ias15,
+        ("space",),
+    ),
+)

@@ -1,0 +1,106 @@
+"""SciPy's `solve_ivp` with a compiled right-hand side and, for the implicit methods, a compiled Jacobian.
+
+The tolerance t asked for is rtol = t and atol = t times each variable's swing, so that a variable which passes
+zero is held to the same part of its amplitude as one which does not. Output at the times asked comes from each
+method's own interpolant, as `t_eval` gives it.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+
+from ..problem import Problem
+from .method import TRACEABLE, Method, Outcome, Work, outcome
+
+LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning
+IMPLICIT = ("Radau", "BDF", "LSODA")
+
+
+def prepare(problem: Problem, setting: float, code: str) -> Work:
+    """Compile the right-hand side; the work is `solve_ivp`."""
+    from scipy.integrate import solve_ivp
+
+    keywords: dict[str, Any] = {"method": code, "rtol": setting, "atol": setting * problem.sizes}
+    if code in IMPLICIT:
+        keywords["jac"] = problem.jacobian
+    rhs, end = problem.rhs, float(problem.times[-1])
+    if len(problem.times) > 1:  # imports what the method imports late
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            solve_ivp(rhs, (0.0, end * 1e-12), problem.start, **keywords)
+
+    def work() -> Outcome:
+        if len(problem.times) == 1:
+            return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            found = solve_ivp(rhs, (0.0, end), problem.start, t_eval=problem.times, **keywords)
+        words = [str(found.message)] if found.status < 0 else []
+        reason = "; ".join(dict.fromkeys([*words, *(str(entry.message) for entry in said)]))
+        return outcome(problem, found.y.T.copy(), steps=None, rhs_evaluations=int(found.nfev), reason=reason)
+
+    return work
+
+
+def _declared(name: str, code: str, title: str, source: str, ladder: tuple[float, ...], *, stiff: bool) -> Method:
+    first = "momentum" if code == "LSODA" else "space"  # in `space` it takes rounding for stiffness
+    return Method(
+        id=name,
+        title=title,
+        setting="tolerance",
+        ladder=ladder,
+        source=source,
+        licence="BSD-3-Clause",
+        prepare=lambda problem, setting: prepare(problem, setting, code),
+        formulations=(first, *(word for word in TRACEABLE if word != first)),
+        stiff=stiff,
+        requires=("scipy", "numba"),
+        extra="methods",
+    )
+
+
+METHODS = (
+    _declared(
+        "scipy_rk45",
+        "RK45",
+        "Dormand-Prince 5(4), SciPy",
+        "J. R. Dormand and P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19",
+        (1e-7, 1e-8, 1e-9, 1e-10),
+        stiff=False,
+    ),
+    _declared(
+        "scipy_dop853",
+        "DOP853",
+        "Dormand-Prince 8(5,3), SciPy",
+        "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
+        (1e-6, 1e-8, 1e-10, 1e-12, LEAST_RTOL),
+        stiff=False,
+    ),
+    _declared(
+        "scipy_radau",
+        "Radau",
+        "Radau IIA, order 5, implicit, SciPy",
+        "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II",
+        (1e-6, 1e-7, 1e-8),
+        stiff=True,
+    ),
+    _declared(
+        "scipy_bdf",
+        "BDF",
+        "backward differentiation, orders 1 to 5, SciPy",
+        "L. F. Shampine and M. W. Reichelt, SIAM J. Sci. Comput. 18 (1997) 1",
+        (1e-8, 1e-9, 1e-10),
+        stiff=True,
+    ),
+    _declared(
+        "scipy_lsoda",
+        "LSODA",
+        "Adams and BDF with automatic switching, SciPy",
+        "L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136",
+        (1e-8, 1e-10, 1e-12),
+        stiff=True,
+    ),
+)

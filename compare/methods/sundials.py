@@ -1,0 +1,68 @@
+"""CVODE of SUNDIALS by way of scikit-sundae: Adams and BDF of variable order, steps and iterations in C.
+
+Both iterate with Newton's method and a dense Jacobian, as the library has it. The right-hand side and the Jacobian
+are compiled, but called through Python, a microsecond each. The tolerance t asked for is
+rtol = t and atol = t times each variable's swing. Output at the times asked is CVODE's own interpolant.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..problem import Array, Problem
+from .method import Method, Outcome, Work, outcome
+from .native import listened
+
+MOST_STEPS = 100_000_000  # between two output times
+
+
+def prepare(problem: Problem, setting: float, code: str) -> Work:
+    """Compile the right-hand side and make the solver; the work is its `solve`."""
+    from sksundae.cvode import CVODE
+
+    rates, slopes, k = problem.rates.rhs_into, problem.slopes.jacobian_into, problem.parameters
+
+    def rhs(t: float, y: Array, dy: Array) -> None:
+        rates(y, k, dy)
+
+    def jacobian(t: float, y: Array, dy: Array, matrix: Array) -> None:
+        slopes(y, k, matrix)
+
+    solver = CVODE(
+        rhs, method=code, rtol=setting, atol=setting * problem.sizes, max_num_steps=MOST_STEPS, jacfn=jacobian
+    )
+
+    def work() -> Outcome:
+        times = problem.times
+        if len(times) == 1:
+            return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
+        asked = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])  # two mean every step
+        with listened():  # it prints what its message says
+            found = solver.solve(asked, problem.start)
+        states = np.array(found.y)[np.isin(found.t, times)]
+        reason = "" if found.success else str(found.message)
+        return outcome(problem, states, steps=None, rhs_evaluations=int(found.nfev), reason=reason)
+
+    return work
+
+
+def _declared(code: str, title: str, *, stiff: bool) -> Method:
+    return Method(
+        id=f"cvode_{code.lower()}",
+        title=title,
+        setting="tolerance",
+        ladder=(1e-8, 1e-10, 1e-12, 1e-14),
+        source="A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363",
+        licence="BSD-3-Clause",
+        prepare=lambda problem, setting: prepare(problem, setting, code),
+        formulations=("momentum", "space", "spin", "plane", "angles"),
+        stiff=stiff,
+        requires=("sksundae", "numba"),
+        extra="methods",
+    )
+
+
+METHODS = (
+    _declared("Adams", "Adams, orders 1 to 12, CVODE", stiff=False),
+    _declared("BDF", "backward differentiation, orders 1 to 5, CVODE", stiff=True),
+)

@@ -1,0 +1,113 @@
+"""What goes wrong is an outcome with a status, a reason and the rows that were reached; nothing is raised."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+from conftest import make_scene
+from method_cases import case
+
+from compare.methods import METHODS, Problem, available, external
+from reference import InputError
+
+
+def over_the_horizontal():
+    """Falls from 80 degrees so fast that it passes the horizontal, which `plane` cannot follow."""
+    return make_scene(
+        inputs="binary64",
+        pendulum={"length": "1"},
+        release={"angle": "80", "azimuth": "20", "angle_rate": "300"},
+        run={"t_end": "4", "grid_step": "0.01"},
+    )
+
+
+def checked(name):
+    if available(METHODS[name]):
+        pytest.skip("not installed")
+    return METHODS[name]
+
+
+FIXED = ["rk4", "rkng56", "rkng67", "gauss_legendre"]
+
+
+@pytest.mark.parametrize("name", [*FIXED, "scipy_lsoda", "numbalsoda_lsoda", "rebound_bs"])
+def test_a_formulation_that_ends_at_the_horizontal_ends_the_run(name):
+    problem = Problem.of(over_the_horizontal(), "plane")
+    done = checked(name).prepare(problem, METHODS[name].settings(problem.scene)[1])()
+    assert done.status in ("gave_up", "not_finite")
+    assert done.reason
+    assert done.reached_t < problem.times[-1]
+    assert len(done.states) == np.searchsorted(problem.times, done.reached_t) + 1
+    assert np.isfinite(done.states).all()
+
+
+def test_a_tolerance_that_scipy_raises_is_said():
+    problem = Problem.of(case("steep").scene, "momentum", [0.0, 1.0])
+    done = checked("scipy_dop853").prepare(problem, 1e-17)()
+    assert done.status == "ok"
+    assert "rtol" in done.reason
+
+
+def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd):
+    problem = Problem.of(case("steep").scene, "momentum")
+    done = checked("numbalsoda_lsoda").prepare(problem, 1e-17)()
+    assert done.status == "gave_up"
+    assert done.reason
+    assert capfd.readouterr() == ("", "")
+
+
+def test_a_step_too_long_for_the_implicit_equations_is_said():
+    problem = Problem.of(case("steep").scene, "momentum")
+    done = checked("gauss_legendre").prepare(problem, 2.0)()
+    assert done.status == "gave_up"
+    assert "shorten the step" in done.reason
+    assert done.reached_t == 0
+
+
+def test_an_unstable_step_ends_in_numbers_that_are_not_finite():
+    scene = make_scene(pendulum={"length": "1", "drag": "1000"}, run={"t_end": "10", "grid_step": "1"})
+    done = checked("rk4").prepare(Problem.of(scene, "momentum"), 0.01)()
+    assert done.status == "not_finite"
+    assert done.reached_t < 10
+
+
+def program(body):
+    return f'{sys.executable} -c "{body}" {{x0}} {{t_end}} {{grid_step}} {{setting}}'
+
+
+def test_a_program_of_somebody_else_is_a_method_too():
+    body = (
+        "import sys; x, t, g, s = map(float, sys.argv[1:]); n = round(t / g); print('t,x,y');"
+        " [print(i * g, x + s, 0.4, sep=',') for i in range(n + 1)]"
+    )
+    problem = Problem.of(make_scene(run={"t_end": "3", "grid_step": "1"}), "momentum")
+    done = external(program(body), ladder=(0.5,)).prepare(problem, 0.5)()
+    assert (done.status, done.reached_t) == ("ok", 3.0)
+    np.testing.assert_allclose(done.states[:, :2], [[0.8, 0.4]] * 4)
+    np.testing.assert_allclose(done.states[:, 2], -np.sqrt(67**2 - 0.8**2 - 0.4**2))
+    assert np.isnan(done.states[:, 3:]).all()
+    assert done.cpu_s > 0
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        ("raise SystemExit(3)", "exit status 3"),
+        ("print('t,x,y'); print('0,0.3,0.4'); print('1,0.3,nan')", "finite"),
+        ("print('t,x,y'); print('0,0.3,0.4'); print('1,0.3,0.4')", "lacks a grid time"),
+        ("print('t,x,y'); print('1,0.3,0.4')", "begin at t = 0"),
+    ],
+)
+def test_a_program_that_fails_is_an_outcome_with_its_reason(body, reason):
+    problem = Problem.of(make_scene(run={"t_end": "3", "grid_step": "1"}), "momentum")
+    done = external(program(body)).prepare(problem, 1.0)()
+    assert done.status == "gave_up"
+    assert reason in done.reason
+
+
+def test_a_command_with_an_unknown_placeholder_is_a_mistake_of_the_users():
+    problem = Problem.of(make_scene(run={"t_end": "3", "grid_step": "1"}), "momentum")
+    with pytest.raises(InputError, match="nonsense"):
+        external("prog {nonsense}").prepare(problem, 1.0)
