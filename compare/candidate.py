@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,7 +11,8 @@ from reference import InputError
 from reference.solution import Array
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
-HEADER_ADVICE = "The first line names the columns: t, x, y and, if there, z, vx, vy, vz."
+LARGEST = 1e100  # beyond this the run has blown up, and squares are near the end of the doubles
+HEADER_ADVICE = "The first line names the columns, separated by commas: t, x, y and, if there, z, vx, vy, vz."
 
 
 @dataclass(frozen=True)
@@ -21,7 +23,7 @@ class Candidate:
         name: where it came from.
         t: times in s, shape (rows,), strictly increasing, from 0 on.
         columns: x, y and any of z, vx, vy, vz in m and m/s, each of shape (rows,).
-        rest: what the doubles of `columns` lack against longer printed numbers; empty if nothing.
+        rest: what the doubles of t and `columns` lack against more precise numbers; empty if nothing.
         transits: times of xdot = 0 that came with it, or None.
         notes: what a reader ought to know.
     """
@@ -48,18 +50,21 @@ class Candidate:
         for wanted in ("x", "y"):
             if wanted not in columns:
                 raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {wanted}", HEADER_ADVICE)
+        for word, column in (("t", t), *columns.items()):
+            if column.ndim != 1 or len(column) != t.size:
+                expected = "a one-dimensional array" + ("" if word == "t" else f" of {t.size} numbers, as t")
+                raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
+            strange = ~(np.abs(column) <= LARGEST)  # NaN as well
+            if strange.any():
+                row = int(np.argmax(strange))
+                raise InputError(
+                    f"{name}: {word}",
+                    f"{column[row]} in row {row + 1}",
+                    f"a finite number below {LARGEST:g} in size",
+                    "The run failed there: score the rows before it, or mend it.",
+                )
         if not len(t):
             raise InputError(name, "no rows", "at least one row", "Is the output empty?")
-        for word, column in (("t", t), *columns.items()):
-            if column.ndim != 1 or len(column) != len(t):
-                raise InputError(
-                    f"{name}: {word}", f"shape {column.shape}", f"one-dimensional, {len(t)} numbers as in t"
-                )
-            if not np.isfinite(column).all():
-                row = int(np.argmin(np.isfinite(column)))
-                raise InputError(
-                    f"{name}: {word}", f"{column[row]} in row {row + 1}", "a finite number", "The run failed there?"
-                )
         if t[0] < 0:
             raise InputError(f"{name}: t", f"{t[0]:.17g} in row 1", "times from 0 on")
         steps = np.diff(t)
@@ -72,3 +77,20 @@ class Candidate:
                 "Sort the rows and drop repeated times.",
             )
         return cls(name, t, columns, **more)  # type: ignore[arg-type]
+
+
+def candidate_of(name: str, arrays: Mapping[str, Array], transits: Array | None = None) -> Candidate:
+    """From arrays of real numbers by name, t among them; what long doubles have beyond doubles is kept.
+
+    Raises:
+        InputError: as `Candidate.of`.
+    """
+    near = {key: np.asarray(array, dtype=np.float64) for key, array in arrays.items()}
+    rest = {}
+    for key, array in arrays.items():
+        if array.dtype.itemsize > 8 and np.isfinite(near[key]).all():
+            spare = np.asarray(array - near[key].astype(array.dtype), dtype=np.float64)
+            if spare.any():
+                rest[key] = spare
+    columns = {key: near[key] for key in COLUMNS if key in near}
+    return Candidate.of(name, near["t"], columns, rest=rest, transits=transits)

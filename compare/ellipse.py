@@ -18,7 +18,9 @@ import numpy as np
 from reference.solution import Array
 
 BLOCKS = 48  # parts of the run in which turn and delay are fitted
+FEWEST = 3  # rows of a run: with fewer there is no fit, or nothing that checks it
 ROWS = 12  # at least in a part: one row has as many equations as unknowns
+MOST_ROWS = 240  # of a part that are looked at: more tell nothing new
 TURNS = 4  # times the candidate is turned back and fitted again, so that a large turn is found too
 
 
@@ -31,14 +33,14 @@ class EllipseErrors:
     delay: Array
 
     @property
-    def largest_turn(self) -> float:
-        """In radians."""
-        return float(np.abs(self.turn).max()) if len(self.turn) else 0.0
+    def largest_turn(self) -> float | None:
+        """In radians; None if there were too few rows to fit."""
+        return float(np.abs(self.turn).max()) if len(self.turn) else None
 
     @property
-    def largest_delay(self) -> float:
-        """In s."""
-        return float(np.abs(self.delay).max()) if len(self.delay) else 0.0
+    def largest_delay(self) -> float | None:
+        """In s; None if there were too few rows to fit."""
+        return float(np.abs(self.delay).max()) if len(self.delay) else None
 
 
 def ellipse_errors(t: Array, truth: Array, error: Array, rest: tuple[float, float]) -> EllipseErrors:
@@ -50,8 +52,11 @@ def ellipse_errors(t: Array, truth: Array, error: Array, rest: tuple[float, floa
         error: candidate minus truth in x and y, shape (rows, 2), in m.
         rest: x and y of the rest position in m.
     """
+    if len(t) < FEWEST:
+        return EllipseErrors(np.empty(0), np.empty(0), np.empty(0))
     parts = np.array_split(np.arange(len(t)), max(1, min(BLOCKS, len(t) // ROWS)))
-    found = [_fitted(truth[part], error[part], rest) for part in parts]
+    looked_at = [part[:: -(-len(part) // MOST_ROWS)] for part in parts]
+    found = [_fitted(truth[part], error[part], rest) for part in looked_at]
     middle = np.array([float(np.mean(t[part])) for part in parts])
     return EllipseErrors(middle, np.array([turn for turn, _ in found]), np.array([delay for _, delay in found]))
 

@@ -12,7 +12,7 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import BinaryIO
 
@@ -20,13 +20,13 @@ from reference import InputError, Scene
 from reference.constants import release
 from reference.precision import context
 
-from .trajectory import MAX_BYTES
+from .lines import MAX_BYTES
 
 TIMEOUT_S = 600.0
 REPEATS = 3
 LONG_S = 20.0  # a program that takes longer than this is timed once, by the run that is scored
 _TAIL = 400  # characters of stderr that a message quotes
-_PLACEHOLDER = re.compile(r"\{([^{}]*)\}")
+_PLACEHOLDER = re.compile(r"\{(\{\w+\})\}|\{(\w+)\}")  # {{word}} stands for {word} itself
 
 
 @dataclass(frozen=True)
@@ -36,14 +36,16 @@ class Timing:
     Attributes:
         cpu_s: median CPU seconds of the repeats, children included.
         wall_s: median wall-clock seconds.
-        runs: how many repeats; the first run of all is a warm-up and not among them.
+        runs: how many runs that is the median of.
         spread: largest minus smallest CPU time, over the median.
+        warm: whether a run before them, whose output is scored, warmed up.
     """
 
     cpu_s: float
     wall_s: float
     runs: int
     spread: float
+    warm: bool = True
 
 
 def placeholders(scene: Scene) -> dict[str, str]:
@@ -76,11 +78,12 @@ def arguments(command: str, scene: Scene) -> list[str]:
         raise InputError("--run", command, "a command")
 
     def value(match: re.Match[str]) -> str:
-        if match[1] not in known:
-            raise InputError(
-                "--run", match[0], f"one of {', '.join(f'{{{word}}}' for word in known)}", "Correct the placeholder."
-            )
-        return known[match[1]]
+        if match[1]:
+            return match[1]
+        if match[2] not in known:
+            words = ", ".join(f"{{{word}}}" for word in known)
+            raise InputError("--run", match[0], f"one of {words}", f"Write {{{match[0]}}} for {match[0]} itself.")
+        return known[match[2]]
 
     return [_PLACEHOLDER.sub(value, word) for word in words]
 
@@ -104,7 +107,8 @@ def run_program(
             raise InputError("--run", words[0], "a program that can be started", f"{error.strerror}.") from None
         limits = _Limits(process, output, errors, timeout_s, max_bytes)
         try:
-            _, status, usage = os.wait4(process.pid, 0)
+            with _terminable():
+                _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
         except BaseException:
             limits.kill()
@@ -150,6 +154,26 @@ class _Limits:
         _kill_group(self._process.pid)
 
 
+@contextlib.contextmanager
+def _terminable() -> Iterator[None]:
+    """Turn a SIGTERM or SIGHUP into an exception, so that the program does not outlive this process."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, _: object) -> None:
+        raise SystemExit(128 + number)
+
+    numbers = [n for n in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(n) is signal.SIG_DFL]
+    for number in numbers:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number in numbers:
+            signal.signal(number, signal.SIG_DFL)
+
+
 def _kill_group(group: int) -> None:
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(group, signal.SIGKILL)
@@ -171,7 +195,7 @@ def timed(
     """Run a program once as a warm-up, whose output is returned, and `repeats` times for the clock."""
     output, cpu, wall = run_program(words, timeout_s)
     if wall > LONG_S or repeats == 0:
-        return output, Timing(cpu, wall, 1, 0.0)
+        return output, Timing(cpu, wall, 1, 0.0, warm=False)
     runs = []
     for i in range(repeats):
         if report is not None:

@@ -42,8 +42,8 @@ class Hypothesis:
     states: Callable[[Array], Array]
 
 
-def hypotheses(scene: Scene, model: Variants) -> Iterator[Hypothesis]:
-    """Every named mistake that makes a difference to the scene, likely ones first."""
+def hypotheses(scene: Scene, model: Variants, *, approximations: bool = True) -> Iterator[Hypothesis]:
+    """Every named mistake that makes a difference to the scene, likely ones first; the approximations last."""
     inputs = scene.exact
     for name, says, changed in _changed_inputs(inputs):
         if changed != inputs:
@@ -52,7 +52,8 @@ def hypotheses(scene: Scene, model: Variants) -> Iterator[Hypothesis]:
         yield Hypothesis(name, says, partial(model.states, inputs, alter=alter))
     for name, says, turn in _CHANGED_ROWS:
         yield Hypothesis(name, says, partial(_turned, turn, model, inputs))
-    yield from _approximations(scene)
+    if approximations:
+        yield from _approximations(scene)
 
 
 def _turned(turn: Callable[[Array], Array], model: Variants, inputs: Inputs, times: Array) -> Array:

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from reference import Scene
-from reference.constants import constants
+from reference import Golden, Scene
+from reference.constants import Constants, constants
 from reference.dense import Dense
-from reference.mechanics import invariant
+from reference.mechanics import acceleration, invariant
 from reference.precision import context
 from reference.scene import Inputs
 from reference.solution import Array
@@ -33,8 +33,10 @@ class Errors:
         t: times in s, shape (rows,).
         components: candidate minus truth per column that the candidate has, in m or m/s.
         position: distance from the truth in m over the position columns that it has, shape (rows,).
+        truth: at those times.
         bound_m: how far the truth itself may be off.
         amplitude_m: the truth's largest distance from the vertical, the scale of the digits.
+        speed_m_s: the truth's largest speed, the scale of the digits of velocities.
     """
 
     t: Array = field(repr=False)
@@ -43,6 +45,7 @@ class Errors:
     truth: Dense = field(repr=False)
     bound_m: float
     amplitude_m: float
+    speed_m_s: float
 
     @property
     def max_m(self) -> float:
@@ -62,25 +65,43 @@ class Errors:
 
     @property
     def digits(self) -> float:
-        """mescd, mixed error significant correct digits: -log10 of the largest error over the amplitude.
-
-        Never more than the truth's bound allows.
-        """
+        """-log10 of the largest position error of the run over the amplitude; never beyond the truth's bound."""
         return -math.log10(max(self.max_m, self.bound_m) / self.amplitude_m)
 
     @property
-    def scd(self) -> float:
-        """Significant correct digits at the end: -log10 of the largest relative error of x and y there."""
-        relative = [
-            max(abs(float(self.components[name][-1])), self.bound_m) / abs(float(self.truth.states[-1, i]))
-            for i, name in enumerate(("x", "y"))
-            if self.truth.states[-1, i]
-        ]
-        return -math.log10(max(relative)) if relative else 0.0
+    def scd(self) -> float | None:
+        """Significant correct digits: -log10 of the largest relative error of any component at the end.
+
+        As in the Test Set for IVP Solvers (Mazzia and Magherini); components whose truth is 0, as far as it
+        is known, are left out.
+        """
+        return self._digits_at_the_end(0.0, 0.0)
+
+    @property
+    def mescd(self) -> float | None:
+        """Mixed error significant correct digits: -log10 of max |error| / (a + |truth|) over components at the end.
+
+        As in the Test Set for IVP Solvers, where a is atol/rtol; here it is the amplitude, for velocities the
+        largest speed.
+        """
+        return self._digits_at_the_end(self.amplitude_m, self.speed_m_s)
+
+    def _digits_at_the_end(self, of_position: float, of_velocity: float) -> float | None:
+        found = []
+        for i, name in enumerate(COLUMNS):
+            known = self.bound_m * (1.0 if i < 3 else self.speed_m_s / self.amplitude_m)
+            truth = abs(float(self.truth.states[-1, i]))
+            size = (truth if truth > known else 0.0) + (of_position if i < 3 else of_velocity)
+            if name not in self.components or not size:
+                continue
+            error = max(abs(float(self.components[name][-1])), known)
+            if error:
+                found.append(error / size)
+        return -math.log10(max(found)) if found else None
 
     @property
     def worst(self) -> tuple[int, str]:
-        """Row and component of the largest single error in position."""
+        """Row and component of the largest error in position."""
         row = int(np.argmax(self.position))
         return row, max(
             (name for name in ("x", "y", "z") if name in self.components),
@@ -96,6 +117,7 @@ class Errors:
         t, error = self.t[kept], np.maximum.accumulate(self.position[kept])
         edges = np.geomspace(t[0], t[-1], ENVELOPES)
         at = np.unique(np.searchsorted(t, edges, side="right") - 1)
+        at = at[at >= 0]
         return float(np.polyfit(np.log(t[at]), np.log(error[at]), 1)[0]) if len(at) > 2 else None
 
     def ellipse(self, rest: tuple[float, float]) -> EllipseErrors:
@@ -104,17 +126,40 @@ class Errors:
         return ellipse_errors(self.t, self.truth.states, error, rest)
 
 
-def errors_of(candidate: Candidate, truth: Dense) -> Errors:
-    """Subtract the truth, evaluated at the candidate's times, from the candidate."""
+def errors_of(candidate: Candidate, truth: Dense, golden: Golden) -> Errors:
+    """Subtract the truth, evaluated at the candidate's times, from the candidate.
+
+    Args:
+        candidate: with a double and what it lacks per number.
+        truth: at its times.
+        golden: where the truth comes from; the scales are those of its whole grid, whatever the candidate's rows.
+    """
+    late = candidate.rest.get("t")
+    rates = None if late is None else _rates(truth.states, _constants(golden.scene))
     components = {}
     for i, name in enumerate(COLUMNS):
-        if name in candidate.columns:
-            difference = (candidate.columns[name] - truth.states[:, i]) - truth.rest[:, i]
-            components[name] = difference + candidate.rest[name] if name in candidate.rest else difference
-    with np.errstate(over="ignore"):
-        position = np.sqrt(sum(components[name] ** 2 for name in ("x", "y", "z") if name in components))
-    amplitude = float(np.hypot(truth.states[:, 0], truth.states[:, 1]).max())
-    return Errors(candidate.t, components, np.asarray(position), truth, truth.bound_m, amplitude or 1.0)
+        if name not in candidate.columns:
+            continue
+        difference = (candidate.columns[name] - truth.states[:, i]) - truth.rest[:, i]
+        difference = difference + candidate.rest[name] if name in candidate.rest else difference
+        components[name] = difference if late is None or rates is None else difference - rates[:, i] * late
+    position = np.sqrt(sum(components[name] ** 2 for name in ("x", "y", "z") if name in components))
+    aside = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
+    amplitude = max(float(part.max()) for part in aside) or float(golden.scene.exact.length)
+    moving = [np.column_stack([golden.vx, golden.vy, golden.vz]), truth.states[:, 3:]]
+    speed = max(float(np.sqrt((part**2).sum(axis=1)).max()) for part in moving)
+    return Errors(candidate.t, components, np.asarray(position), truth, truth.bound_m, amplitude, speed)
+
+
+def _constants(scene: Scene | Inputs) -> Constants:
+    return constants(scene.exact if isinstance(scene, Scene) else scene, context(80)).converted(float)
+
+
+def _rates(states: Array, k: Constants) -> Array:
+    """Velocity and acceleration, shape (rows, 6), in m/s and m/s²."""
+    n, v = (tuple(part.T / k.length) for part in (states[:, :3], states[:, 3:]))
+    bent = acceleration(n, v, k)
+    return np.hstack([states[:, 3:], np.column_stack(bent) * k.length])
 
 
 def drifts(candidate: Candidate, scene: Scene | Inputs) -> dict[str, float]:
@@ -122,12 +167,12 @@ def drifts(candidate: Candidate, scene: Scene | Inputs) -> dict[str, float]:
     inputs = scene.exact if isinstance(scene, Scene) else scene
     found: dict[str, float] = {}
     have = candidate.columns
-    k = constants(inputs, context(80)).converted(float)
+    k = _constants(inputs)
     if "z" not in have:
         return found
     n = tuple(have[name] / k.length for name in ("x", "y", "z"))
-    radius = np.sqrt(n[0] ** 2 + n[1] ** 2 + n[2] ** 2)
-    found["length_m"] = float(np.abs((radius - 1) * k.length).max())
+    square = n[0] ** 2 + n[1] ** 2 + n[2] ** 2
+    found["length_m"] = float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())
     if all(name in have for name in ("vx", "vy", "vz")) and not inputs.drag:
         v = tuple(have[name] / k.length for name in ("vx", "vy", "vz"))
         # R²Ω²/2 is constant and a million times larger than what varies: it is left out, not cancelled

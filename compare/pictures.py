@@ -15,6 +15,7 @@ from .score import Score
 # Okabe and Ito's colours, told apart by the colour-blind; the line styles tell them apart in grey
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 STYLES = ("-", "--", "-.", ":")
+SUFFIXES = (".svg", ".png", ".pdf")
 
 
 def pyplot() -> Any:
@@ -35,6 +36,19 @@ def pyplot() -> Any:
     from matplotlib import pyplot as plt
 
     return plt
+
+
+def check_target(path: Path) -> None:
+    """Refuse a picture that could not be written, before anything is computed.
+
+    Raises:
+        InputError: no matplotlib, an ending that is no picture's, or no folder to write to.
+    """
+    pyplot()
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError("--plot", str(path), f"a path that ends in {', '.join(SUFFIXES)}")
+    if path.is_dir() or not path.absolute().parent.is_dir():
+        raise InputError("--plot", str(path), "a file in a folder that exists")
 
 
 def error_picture(scores: Sequence[Score], path: Path) -> None:

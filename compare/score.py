@@ -6,13 +6,12 @@ import hashlib
 import json
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from reference import Golden, Scene
+from reference import Golden, InputError, Scene
 from reference.constants import constants
 from reference.dense import WITHIN
 from reference.mechanics import rest_position
@@ -27,12 +26,10 @@ from .ellipse import EllipseErrors
 from .external import Timing
 from .metrics import Errors, drifts, errors_of
 from .transits import TransitErrors, transit_errors
-from .truth import DIGITS, FINE, golden_of, truth_at
+from .truth import DIGITS, FINE, Report, golden_of, truth_at
 
 TOLERANCE = 1e-6  # of the amplitude, where no tolerance is given
 FLOOR_TIMES = 289
-
-READINGS = ("auto", "decimal", "binary64")
 
 
 @dataclass(frozen=True)
@@ -52,6 +49,8 @@ class Score:
         transits: how its transits compare, or None.
         timing: what the program took, or None.
         diagnosis: what explains the error, or None.
+        looked: whether a diagnosis was looked for.
+        notes: what a reader ought to know besides.
     """
 
     candidate: Candidate
@@ -65,15 +64,27 @@ class Score:
     drifts: dict[str, float]
     transits: TransitErrors | None = None
     timing: Timing | None = None
-    diagnosis: Diagnosis | None = field(default=None)
+    diagnosis: Diagnosis | None = None
+    looked: bool = False
+    notes: tuple[str, ...] = ()
+
+    @property
+    def allowed_m(self) -> float:
+        """The tolerance and what the reference itself may be off by: it never judges finer than its own bound."""
+        return self.tolerance_m + self.errors.bound_m
+
+    @property
+    def off_path(self) -> bool:
+        """True if a position is off by more than is allowed."""
+        return self.errors.max_m > self.allowed_m
 
     @property
     def agrees(self) -> bool:
-        """True if every position and every transit is within the tolerance, and no transit is missed or extra."""
-        if self.errors.max_m > self.tolerance_m:
-            return False
+        """True if every position and every transit is within what is allowed, and no transit is missed or extra."""
         found = self.transits
-        return found is None or not (found.missed or found.extra or found.max_conditioned_m > self.tolerance_m)
+        return not self.off_path and (
+            found is None or not (found.missed or found.extra or found.max_conditioned_m > self.allowed_m)
+        )
 
     @property
     def verdict(self) -> str:
@@ -95,6 +106,7 @@ def score(
     inputs: str = "auto",
     explain: bool = True,
     announce: Callable[[str], None] | None = None,
+    report: Report | None = None,
 ) -> Score:
     """Hold a candidate against the truth of a scene.
 
@@ -106,16 +118,20 @@ def score(
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
         explain: whether to look for the reason where it disagrees.
         announce: told what takes long.
+        report: called with the simulated time reached, in s, where the scene has to be solved.
 
     Raises:
-        InputError: a time of the candidate is outside the scene's span.
+        InputError: a time of the candidate is outside the scene's span, or a tolerance that is not positive.
         UnreachableError: the scene cannot be solved.
     """
+    if tolerance is not None and not 0 < tolerance < math.inf:
+        raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
     read_as, why = _reading(candidate, scene, inputs)
-    golden = golden_of(read_as, scene.run.digits if candidate.extended else DIGITS, announce)
-    errors = errors_of(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN))
+    golden = golden_of(read_as, scene.run.digits if candidate.extended else DIGITS, announce, report)
+    errors = errors_of(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
     allowed = TOLERANCE * errors.amplitude_m if tolerance is None else tolerance
     times = candidate.transits if transits is None else transits
+    unjudged = None if times is None else _unjudged(golden)
     made = Score(
         candidate=candidate,
         scene=read_as,
@@ -126,10 +142,11 @@ def score(
         input_floor_m=input_floor(scene, float(candidate.t[-1])),
         ellipse=errors.ellipse(_rest(scene)),
         drifts=drifts(candidate, read_as),
-        transits=None if times is None else _transits(times, golden, float(candidate.t[-1])),
+        transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
+        notes=candidate.notes + ((unjudged,) if unjudged else ()),
     )
-    if explain and errors.max_m > allowed and not made.at_bound:
-        return replace(made, diagnosis=diagnose(candidate, errors, read_as, None))
+    if explain and made.off_path:
+        return replace(made, diagnosis=diagnose(candidate, errors, read_as), looked=True)
     return made
 
 
@@ -155,12 +172,33 @@ def _rest(scene: Scene) -> tuple[float, float]:
     return float(x * k.length), float(y * k.length)
 
 
-def _transits(times: Array, golden: Golden, until: float) -> TransitErrors:
+def _unjudged(golden: Golden) -> str | None:
+    """Why the candidate's transits cannot be judged, or None."""
+    said = golden.manifest.transits
+    if said == "not asked for":
+        return "the scene asks for no transits (run.transits): the candidate's were not judged"
+    return f"{said}: the candidate's transits were not judged" if said == "xdot is identically zero" else None
+
+
+def _transits(times: Array, golden: Golden, errors: Errors, tolerance_m: float) -> TransitErrors:
     k = constants(golden.scene.exact, context(80)).converted(float)
-    omega = math.sqrt(math.hypot(k.pull[1], k.pull[2]))
+    omega = max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), errors.speed_m_s / k.length)
+    end = float(golden.scene.exact.t_end)
+    judged = times[
+        (times > 0) & (times <= end)
+    ]  # a release at rest is no transit, nor is what the truth has not reached
+    for interval in golden.manifest.possible:
+        judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
     truth = golden.transits
-    begun = times[times > 0] if len(times) and times[0] == 0 else times  # a release at rest is no transit
-    return transit_errors(begun, truth["t"], truth["ax"], omega, until)
+    return transit_errors(
+        judged,
+        truth["t"],
+        truth["ax"],
+        omega,
+        min(float(errors.t[-1]), end),
+        tolerance_m=tolerance_m,
+        xdot=lambda at: truth_at(golden, at).states[:, 3],
+    )
 
 
 def input_floor(scene: Scene, until: float) -> float:
@@ -175,62 +213,4 @@ def input_floor(scene: Scene, until: float) -> float:
         moved = sensitivity(decimal, times).rounding()[:, :3]
         path.write_text(repr(float(np.sqrt((moved**2).sum(axis=1)).max())))
 
-    return float(kept("floor", f"{recipe}.txt", make).read_text())
-
-
-def document(made: Score) -> dict[str, Any]:
-    """A score as the JSON document of the contract."""
-    errors, found = made.errors, made.transits
-    row, component = errors.worst
-    column = made.candidate.columns[component]
-    expected = errors.truth.states[row, "xyz".index(component)]
-    shown: dict[str, Any] = {
-        "scene": made.scene.id,
-        "candidate": made.candidate.name,
-        "verdict": made.verdict,
-        "inputs": made.scene.inputs,
-        "why_inputs": made.why_inputs,
-        "rows": len(errors.t),
-        "covered_s": [float(errors.t[0]), float(errors.t[-1])],
-        "max_error_m": errors.max_m,
-        "rms_error_m": errors.rms_m,
-        "end_error_m": errors.end_m,
-        "at_or_below_bound": made.at_bound,
-        "digits": errors.digits,
-        "scd": errors.scd,
-        "scale_m": errors.amplitude_m,
-        "tolerance_m": made.tolerance_m,
-        "input_floor_m": made.input_floor_m,
-        "error_over_floor": errors.max_m / made.input_floor_m if made.input_floor_m else None,
-        "growth_exponent": errors.growth,
-        "swing_plane_error_deg": float(np.degrees(made.ellipse.largest_turn)),
-        "phase_error_s": made.ellipse.largest_delay,
-        "h_drift_m2_s2": made.drifts.get("h_m2_s2"),
-        "length_drift_m": made.drifts.get("length_m"),
-        "worst": {
-            "t": float(errors.t[row]),
-            "component": component,
-            "expected": float(expected),
-            "got": float(column[row]),
-        },
-        "transits": None,
-        "reference": {"level": made.golden.manifest.level, "bound_m": errors.bound_m},
-        "diagnosis": None,
-        "notes": list(made.candidate.notes),
-    }
-    if found is not None:
-        shown["transits"] = {
-            "matched": found.matched,
-            "missed": len(found.missed),
-            "extra": len(found.extra),
-            "shifted": len(found.shifted(made.tolerance_m)),
-            "max_error_s": found.max_error_s,
-            "max_conditioned_error_m": found.max_conditioned_m,
-            "missed_at": found.missed,
-            "extra_at": found.extra,
-        }
-    if made.timing is not None:
-        shown["timing"] = vars(made.timing)
-    if made.diagnosis is not None:
-        shown["diagnosis"] = vars(made.diagnosis)
-    return shown
+    return kept("floor", f"{recipe}.txt", make, lambda path: float(path.read_text()))

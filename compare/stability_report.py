@@ -111,7 +111,8 @@ def page_text(cells: Sequence[Cell], runs: Sequence[Growth], machine: dict[str, 
     if measured:
         lines = [Line(f"{run.method}, {run.formulation}", np.array(run.t), np.array(run.error_m)) for run in measured]
         caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
-        parts.append(section("Long runs", figure(error_growth(lines, max(run.bound_m for run in measured)), caption), findings(laws(runs))))
+        picture = figure(error_growth(lines, max(run.bound_m for run in measured)), caption)
+        parts.append(section("Long runs", picture, findings(laws(runs))))
     parts.append(section("Measured on", facts(machine)))
     return page(
         "Stiff and extreme scenes: what breaks, and when",

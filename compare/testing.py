@@ -1,8 +1,9 @@
 """For others' tests: assert that a trajectory is right, and a pytest fixture that does the same.
 
->>> import numpy as np
 >>> from compare import assert_agrees
->>> assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
+>>> score = assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
+>>> score.errors.max_m < 1e-12
+True
 """
 
 from __future__ import annotations
@@ -12,8 +13,9 @@ import numpy.typing as npt
 
 from reference import InputError, Scene, load_scene
 
-from .candidate import COLUMNS, Candidate
+from .candidate import COLUMNS, candidate_of
 from .score import Score, score
+from .transit_times import checked_transits
 
 
 def assert_agrees(
@@ -42,15 +44,17 @@ def assert_agrees(
         AssertionError: with time, component, expected, got, difference and what was allowed.
         InputError: arrays of the wrong shape, or numbers that are not finite.
     """
-    rows = np.asarray(states, dtype=np.float64)
+    rows, times = np.asarray(states), np.asarray(t)
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
         raise InputError("states", f"shape {rows.shape}", "shape (rows, 2), (rows, 3) or (rows, 6)")
-    times = np.asarray(t, dtype=np.float64)
-    columns = {name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}
+    for name, array in (("t", times), ("states", rows)):
+        if array.dtype.kind not in "fiu":
+            raise InputError(name, f"dtype {array.dtype}", "real numbers")
+    given = {"t": times, **{name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}}
     found = scene if isinstance(scene, Scene) else load_scene(scene)
-    zeros = None if transits is None else np.asarray(transits, dtype=np.float64)
+    zeros = None if transits is None else checked_transits(np.asarray(transits, dtype=np.float64), "transits")
     made = score(
-        Candidate.of("states", times, columns),
+        candidate_of("states", given),
         found,
         transits=zeros,
         tolerance=tolerance,
@@ -73,9 +77,9 @@ def message(made: Score) -> str:
         f"  expected   {expected!r}",
         f"  got        {got!r}",
         f"  difference {float(errors.components[component][row]):+.3e} m",
-        f"  position error {errors.max_m:.3e} m, allowed {made.tolerance_m:.3e} m",
+        f"  position error {errors.max_m:.3e} m, allowed {made.allowed_m:.3e} m",
     ]
-    if found is not None and (found.missed or found.extra or found.max_conditioned_m > made.tolerance_m):
+    if found is not None and (found.missed or found.extra or found.max_conditioned_m > made.allowed_m):
         said.append(f"  transits: {found.matched} matched, missed at {found.missed[:3]}, extra at {found.extra[:3]},")
         said.append(f"  largest error {found.max_error_s:.3e} s, weighed by |ax| {found.max_conditioned_m:.3e} m")
     return "\n".join(said)

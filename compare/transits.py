@@ -2,15 +2,20 @@
 
 A transit where the swing plane passes north-south has a small |ax|, and its time is as ill-conditioned. So an
 error of a time is weighed by |ax|/ω: it becomes the distance in m that the bob's motion would have to be off by.
+By the same weight two transits may vanish together, or two appear, without a fault: those are undecided.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from reference.solution import Array
+
+ASKED = 1000  # extra transits at which the truth is evaluated; with more of them none is excused
 
 
 @dataclass(frozen=True)
@@ -20,9 +25,10 @@ class TransitErrors:
     Attributes:
         errors_s: candidate minus truth per matched transit.
         conditioned_m: the same times |ax|/ω.
-        missed: times of the truth's transits that no transit of the candidate is near.
-        extra: times of the candidate's transits that are near none.
+        missed: times of the truth's transits that the candidate lacks.
+        extra: times of the candidate's transits that the truth lacks.
         at: times of the matched ones.
+        undecided: times of missed and extra ones that a motion within the tolerance may have or not.
     """
 
     errors_s: Array = field(repr=False)
@@ -30,6 +36,7 @@ class TransitErrors:
     missed: list[float]
     extra: list[float]
     at: Array = field(repr=False)
+    undecided: list[float] = field(default_factory=list)
 
     @property
     def matched(self) -> int:
@@ -52,42 +59,74 @@ class TransitErrors:
         return list(zip(self.at[off].tolist(), self.errors_s[off].tolist(), strict=True))
 
 
-def transit_errors(found: Array, truth: Array, ax: Array, omega: float, until: float) -> TransitErrors:
+def transit_errors(
+    found: Array,
+    truth: Array,
+    ax: Array,
+    omega: float,
+    until: float,
+    *,
+    tolerance_m: float = 0.0,
+    xdot: Callable[[Array], Array] | None = None,
+) -> TransitErrors:
     """Match a candidate's transits with the truth's.
 
     Args:
         found: the candidate's times, increasing, in s.
         truth: the truth's times, increasing, in s.
         ax: d²x/dt² there in m/s².
-        omega: angular frequency of small swings in rad/s.
+        omega: angular frequency of the motion in rad/s.
         until: where the candidate ends, in s: later transits are not missed.
+        tolerance_m: a weighed error that is no fault, in m.
+        xdot: the truth's velocity in m/s at increasing times; without it no extra transit is excused.
     """
-    spare = 0.0 if not len(truth) else 0.5 * float(np.median(np.diff(truth, prepend=0.0)))
-    inside = truth <= until
-    windows = _windows(truth, spare)
-    owner = np.full(len(truth), -1)
-    extra = []
-    first = 0
-    for i, t in enumerate(found):
-        while first < len(truth) and truth[first] + windows[first] < t:
-            first += 1
-        near = [k for k in range(first, min(first + 2, len(truth))) if abs(truth[k] - t) <= windows[k] and owner[k] < 0]
-        if near:
-            owner[min(near, key=lambda k: abs(truth[k] - t))] = i
-        else:
-            extra.append(float(t))
+    owner = _owners(found, truth)
     matched = owner >= 0
     errors = found[owner[matched]] - truth[matched]
-    near_end = truth > until - np.minimum(windows, spare)  # a transit at the very end may lie just beyond the last row
-    missed = truth[inside & ~matched & ~near_end].tolist()
-    weighed = errors * np.abs(ax[matched]) / omega if omega else np.zeros_like(errors)
-    return TransitErrors(errors, weighed, missed, extra, truth[matched])
+    weight = np.abs(ax) / omega if omega else np.zeros_like(ax)
+    missed = np.flatnonzero(~matched & (truth <= until))
+    extra = np.setdiff1d(np.arange(len(found)), owner[matched])
+    excused = _vanishing(missed, truth, weight, until, tolerance_m)
+    spurious = np.zeros(len(extra), dtype=bool)
+    if xdot is not None and 0 < len(extra) <= ASKED and omega:
+        spurious = np.abs(xdot(found[extra])) / omega <= tolerance_m
+    return TransitErrors(
+        errors,
+        errors * weight[matched],
+        truth[missed[~excused]].tolist(),
+        found[extra[~spurious]].tolist(),
+        truth[matched],
+        sorted([*truth[missed[excused]].tolist(), *found[extra[spurious]].tolist()]),
+    )
 
 
-def _windows(truth: Array, spare: float) -> Array:
-    """Half the distance to the nearer neighbour, per transit; at most `spare`."""
-    gaps = np.diff(truth)
-    before = np.concatenate([[np.inf], gaps])
-    after = np.concatenate([gaps, [np.inf]])
-    nearer: Array = np.minimum(before, after) / 2
-    return np.minimum(nearer, spare) if spare else nearer
+def _owners(found: Array, truth: Array) -> npt.NDArray[np.int64]:
+    """Per transit of the truth which of the candidate's is its own; -1 if none."""
+    owner = np.full(len(truth), -1)
+    if not len(truth) or not len(found):
+        return owner
+    spare = 0.5 * float(np.median(np.diff(truth, prepend=0.0)))
+    first = min(len(found), len(truth))
+    if len(found) <= len(truth) and (np.abs(found - truth[:first]) <= spare).all():
+        owner[:first] = np.arange(first)  # one to one, in order, however close a pair
+        return owner
+    cell = np.searchsorted((truth[1:] + truth[:-1]) / 2, found)
+    distance = np.abs(found - truth[cell])
+    for i in np.argsort(distance, kind="stable"):
+        if distance[i] <= spare and owner[cell[i]] < 0:
+            owner[cell[i]] = i
+    return owner
+
+
+def _vanishing(
+    missed: npt.NDArray[np.int64], truth: Array, weight: Array, until: float, tolerance_m: float
+) -> npt.NDArray[np.bool_]:
+    """Which missed transits are missed in a pair that a shift within the tolerance takes away, or lie at the end."""
+    excused = (until - truth[missed]) * weight[missed] <= tolerance_m
+    pairs = np.flatnonzero(np.diff(missed) == 1)
+    for i in pairs:
+        k = missed[i]
+        depth = weight[k] * (truth[k + 1] - truth[k]) / 4  # of the parabola between two zeros of that slope
+        if depth <= tolerance_m:
+            excused[i] = excused[i + 1] = True
+    return excused

@@ -4,52 +4,75 @@ from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from reference import Golden, Scene, load
+from reference import DatasetError, Golden, InputError, Scene, load
 from reference.dense import WITHIN, Dense, dense
-from reference.publish import write
 from reference.scene import data_root
 from reference.solution import Array
 
-from .cache import cache_folder, kept
+from . import cache
 
 DIGITS = 22  # of a dataset solved only to judge programs in double
+MADE = b"dense 2"  # changes with what `reference.dense` gives, so that older entries are made again
 FINE = 2.0**-110  # how near the truth is evaluated for candidates with more digits than a double
 
 Report = Callable[[float], None]
 
 
-def golden_of(scene: Scene, digits: int = DIGITS, announce: Callable[[str], None] | None = None) -> Golden:
+def golden_of(
+    scene: Scene,
+    digits: int = DIGITS,
+    announce: Callable[[str], None] | None = None,
+    report: Report | None = None,
+) -> Golden:
     """The dataset that solves a scene: the one that ships, or one that is solved now and kept in the cache.
 
     Args:
         scene: whose problem, reading and span are wanted.
-        digits: what a new dataset is solved to; transits are found if the scene asks for them.
+        digits: what is wanted at least; transits are found if the scene asks for them.
         announce: told when a scene has to be solved.
+        report: called with the simulated time reached, in s.
 
     Raises:
         UnreachableError: the scene cannot be solved to the digits.
     """
     for folder in shipped(scene):
         golden = load(folder)
-        if solves(golden, scene):
+        if solves(golden, scene) and golden.manifest.digits >= digits:
             return golden
-    document = scene.with_values([f"run.digits={digits}", "run.level=confirmed"]).model_dump(mode="json")
-    problem = {key: document[key] for key in ("inputs", "pendulum", "site", "release", "run")}
-    name = hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
-    folder = cache_folder("golden") / f"{scene.id}-{name}"
-    if not folder.exists():
-        if announce is not None:
-            announce(f"no golden dataset has this problem: solving it to {digits} digits, once")
-        from reference import solve
+    wanted = scene.with_values([f"run.digits={digits}", "run.level=confirmed"])
+    name = f"{scene.id}-{_problem(wanted)}"
+    path = cache.found("golden", name)
+    if path is not None:
+        try:
+            return load(path)
+        except (DatasetError, InputError):
+            shutil.rmtree(path, ignore_errors=True)  # damaged: solved again
+    return load(_solved(wanted, name, announce, report))
 
-        write(solve(scene.with_values([f"run.digits={digits}", "run.level=confirmed"])), folder)
-    return load(folder)
+
+def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, report: Report | None) -> Path:
+    from reference import solve
+    from reference.publish import write
+
+    folder = cache.writable("golden")
+    if announce is not None:
+        lasting = "once" if cache.is_lasting(folder) else f"for this run only: {cache.root()} cannot be written"
+        announce(f"no golden dataset has the problem of {scene.id}: solving it to {scene.run.digits} digits, {lasting}")
+    return write(solve(scene, report=report), folder / name)
+
+
+def _problem(scene: Scene) -> str:
+    """A word for what is solved; names, titles and flags are no part of it."""
+    document = scene.model_dump(mode="json")
+    problem = {key: document[key] for key in ("inputs", "pendulum", "site", "release", "run")}
+    return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
 
 
 def shipped(scene: Scene) -> list[Path]:
@@ -69,7 +92,7 @@ def solves(golden: Golden, scene: Scene) -> bool:
 
 def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
     """The truth at a candidate's times, kept for the next candidate with the same times."""
-    recipe: Any = hashlib.sha256((golden.path / "manifest.json").read_bytes())
+    recipe: Any = hashlib.sha256(MADE + (golden.path / "manifest.json").read_bytes())
     recipe.update(np.ascontiguousarray(times).tobytes() + repr(within).encode())
 
     def make(path: Path) -> None:
@@ -79,6 +102,9 @@ def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
                 stream, t=found.t, states=found.states, rest=found.rest, bound_m=found.bound_m, number=found.number
             )
 
-    path = kept("dense", f"{recipe.hexdigest()[:32]}.npz", make)
+    return cache.kept("dense", f"{recipe.hexdigest()[:32]}.npz", make, _read_dense)
+
+
+def _read_dense(path: Path) -> Dense:
     with np.load(path, allow_pickle=False) as arrays:
         return Dense(arrays["t"], arrays["states"], arrays["rest"], float(arrays["bound_m"]), str(arrays["number"]))

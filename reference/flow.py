@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from .constants import Constants, constants, release, scaled
+from .errors import InputError
 from .mechanics import FORMULATIONS
 from .precision import DOUBLE, GUARD_BITS, NumberType, context
 from .scene import Inputs, Scene
@@ -116,7 +117,13 @@ class Variants:
 
         Returns:
             x, y, z in m and vx, vy, vz in m/s, shape (times, 6).
+
+        Raises:
+            InputError: the release is beyond the cord's reach.
+            IntegrationError: no success; no numbers then.
         """
+        if inputs.position is not None and inputs.position[0] ** 2 + inputs.position[1] ** 2 >= inputs.length**2:
+            raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
         k = constants(inputs, self._ctx)
         n, v = (scaled(vector, k.length) for vector in release(inputs, self._ctx))
         k = (k if alter is None else alter(k)).converted(float)

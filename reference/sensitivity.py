@@ -25,7 +25,7 @@ _POSITION = ("x", "y", "vx", "vy")
 _ANGLES = ("angle", "azimuth", "angle_rate", "azimuth_rate")
 _PREC = 320
 _NUDGE = Fraction(1, 1 << 100)  # central differences in 320 bits: exact to about 2**-200
-_TOLERANCE = 1e-12  # of the tangents; their use is to three digits
+_TOLERANCE = 1e-11  # of the tangents; their use is to three digits
 _MODEL = FORMULATIONS["momentum"]
 _CONSTANTS = 5  # Ωy, Ωz, cy, cz, γ
 

@@ -308,7 +308,9 @@ class Stepper:
         """Go on towards `end` without output or checks, at most so many steps; how many were taken."""
         outcome, _, _, taken, _, _ = self._ta.propagate_until(end, max_steps=steps)
         if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
-            raise IntegrationError(f"Lengths, forces or rates of the scene are too far apart for {self.number}: {outcome}.")
+            raise IntegrationError(
+                f"Lengths, forces or rates of the scene are too far apart for {self.number}: {outcome}."
+            )
         return int(taken)
 
     def propagate(self, times: Sequence[Any], report: Callable[[float], None] | None = None) -> Any:

@@ -7,7 +7,10 @@ import os
 import re
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 README = (ROOT / "README.md").read_text()
@@ -52,12 +55,14 @@ def test_the_python_in_the_readme_runs_and_prints_what_it_shows():
     assert runner.summarize(verbose=False).failed == 0
 
 
-def test_the_packages_own_example_is_true():
-    import reference
-
-    assert doctest.testmod(reference).failed == 0
+@pytest.mark.parametrize(
+    "module", ["reference", "compare", "compare.testing", "compare.methods", "compare.approximations"]
+)
+def test_the_packages_own_examples_are_true(module):
+    result = doctest.testmod(import_module(module))
+    assert result.attempted and not result.failed
 
 
 def test_every_module_the_readme_names_exists():
     for name in re.findall(r"`(\w+\.py)`", README):
-        assert (ROOT / name).exists() or (ROOT / "reference" / name).exists(), name
+        assert any((ROOT / folder / name).exists() for folder in ("", "reference", "compare")), name

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -36,6 +38,18 @@ def test_a_library_has_one_door(library, door):
     users = [path.relative_to(ROOT).as_posix() for path in SOURCES if library in imported(path)]
     assert users
     assert all(user.startswith(door) for user in users), users
+
+
+HEAVY = ("heyoka", "flint", "scipy", "matplotlib", "numba")
+
+
+@pytest.mark.parametrize(
+    "script", ["import compare, reference", "import foucault; foucault.app(['--help'], standalone_mode=False)"]
+)
+def test_starting_loads_nothing_heavy(script):
+    code = f"import sys\n{script}\nprint('loaded', [name for name in {HEAVY} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout.splitlines()[-1] == "loaded []"
 
 
 def test_every_scene_has_its_own_file_named_by_its_id():
