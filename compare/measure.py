@@ -185,8 +185,9 @@ class Bench:
 
     def _measured(self, base: Row, method: Method) -> Row:
         times = self.truth.times
+        longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
         begun = time.process_time()
-        probe_times = times[: max(LEAST_ROWS, len(times) // PROBE)]
+        probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
         probe = method.prepare(self._problem(base, probe_times), base.setting)
         compile_s = time.process_time() - begun
         tried, probe_s = _timed(probe)
@@ -195,10 +196,9 @@ class Bench:
             return self._failed(base, tried, probe_s)
         probe_s = min(probe_s, _timed(probe)[1]) if probe_s < self.limit_s / PROBE else probe_s
         expected = probe_s * float(times[-1] / probe_times[-1])
-        within = min(1.0, (method.longest_s or math.inf) / float(times[-1]))
+        rows = min(len(times), longest)
         if expected > self.limit_s:
-            within = min(within, self.limit_s / 4 / expected)
-        rows = len(times) if within == 1.0 else max(LEAST_ROWS, int(within * len(times)))
+            rows = min(rows, max(LEAST_ROWS, int(self.limit_s / 4 / expected * len(times))))
         if rows <= len(probe_times):
             return self._finished(base, tried, [probe_s], probe_times)
         begun = time.process_time()

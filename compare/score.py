@@ -127,7 +127,8 @@ def score(
     if tolerance is not None and not 0 < tolerance < math.inf:
         raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
     read_as, why = _reading(candidate, scene, inputs)
-    golden = golden_of(read_as, scene.run.digits if candidate.extended else DIGITS, announce, report)
+    digits, until = scene.run.digits if candidate.extended else DIGITS, float(candidate.t[-1])
+    golden = golden_of(read_as, digits, announce, report, until)
     errors = errors_of(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
     allowed = TOLERANCE * errors.amplitude_m if tolerance is None else tolerance
     times = candidate.transits if transits is None else transits

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import shutil
 from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +33,7 @@ def golden_of(
     digits: int = DIGITS,
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
+    until: float | None = None,
 ) -> Golden:
     """The dataset that solves a scene: the one that ships, or one that is solved now and kept in the cache.
 
@@ -38,6 +42,7 @@ def golden_of(
         digits: what is wanted at least; transits are found if the scene asks for them.
         announce: told when a scene has to be solved.
         report: called with the simulated time reached, in s.
+        until: a new dataset need not go further than the first grid time from here on, in s.
 
     Raises:
         UnreachableError: the scene cannot be solved to the digits.
@@ -46,7 +51,7 @@ def golden_of(
         golden = load(folder)
         if solves(golden, scene) and golden.manifest.digits >= digits:
             return golden
-    wanted = scene.with_values([f"run.digits={digits}", "run.level=confirmed"])
+    wanted = _shortened(scene, until).with_values([f"run.digits={digits}", "run.level=confirmed"])
     name = f"{scene.id}-{_problem(wanted)}"
     path = cache.found("golden", name)
     if path is not None:
@@ -55,6 +60,15 @@ def golden_of(
         except (DatasetError, InputError):
             shutil.rmtree(path, ignore_errors=True)  # damaged: solved again
     return load(_solved(wanted, name, announce, report))
+
+
+def _shortened(scene: Scene, until: float | None) -> Scene:
+    """The scene up to the first grid time that is not before `until`."""
+    if until is None:
+        return scene
+    rows = max(1, math.ceil(Fraction(until) / Fraction(scene.run.grid_step)))
+    end = rows * Decimal(scene.run.grid_step)
+    return scene.with_values([f"run.t_end={end}"]) if end < Decimal(scene.run.t_end) else scene
 
 
 def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, report: Report | None) -> Path:

@@ -92,6 +92,9 @@ def trajectory(
     return np.asarray(rows.T.astype(float))
 
 
+MAX_STEPS = 3_000_000  # of a variant: a guess that is stiffer than the scene is not followed for ever
+
+
 class Variants:
     """The model compiled once with every constant open, in double: what other inputs or constants would give.
 
@@ -129,7 +132,7 @@ class Variants:
         k = (k if alter is None else alter(k)).converted(float)
         start = [float(value) for value in self._MODEL.start(n, v, k, self._ctx)]
         open_ = [float(value) for value in (*k.turn[1:], *k.pull[1:], *k.centrifugal, k.drag)]
-        rows = self._flow.from_zero(start, times, open_)
+        rows = self._flow.from_zero(start, times, open_, MAX_STEPS)
         n_rows, spin = rows[:, :3], rows[:, 3:]
         return np.hstack([n_rows, np.cross(spin, n_rows)]) * float(k.length)
 

@@ -15,7 +15,17 @@ from fractions import Fraction
 from typing import Any
 
 from .errors import UnreachableError
-from .growth import MARGIN_BITS, MAX_PREC, Growth, bits_in, disagreement, largest_of, measure_growth
+from .growth import (
+    MARGIN_BITS,
+    MAX_PREC,
+    MAX_STEPS,
+    Growth,
+    bits_in,
+    disagreement,
+    effort,
+    largest_of,
+    measure_growth,
+)
 from .precision import LONG_DOUBLE, cheapest_type, real
 from .runs import Plan, Report, Run, run, run_both
 from .scene import Scene
@@ -85,6 +95,7 @@ def solve(
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: Report | None) -> Solution:
     prec = growth.bits_for(scene.run.digits, _span(scene), checked=False)
+    _check_reach(growth, prec, scene.run.digits)
     number = cheapest_type(_rounded(prec) if prec > LONG_DOUBLE.prec else prec)
     done = run(Plan(scene.exact, "momentum", number, times, scene.run.transits), report)
     return _assemble(scene, times, done, growth.estimates(number.prec), None, (), growth)
@@ -94,10 +105,9 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: R
     confirmed = scene.run.level == "confirmed"
     other = confirming_formulation(growth) if confirmed else "momentum"
     prec = _rounded(max(growth.bits_for(scene.run.digits, _span(scene), checked=True), LONG_DOUBLE.prec))
+    _check_reach(growth, prec, scene.run.digits)
     before: Fraction | None = None
     for _ in range(MAX_RAISES):
-        if prec > MAX_PREC:
-            break
         fine = Plan(scene.exact, "momentum", real(prec + FINER_BITS), times, scene.run.transits)
         coarse = replace(fine, formulation=other, number=real(prec))
         published, witness = run_both(fine, coarse, _expected_s(growth, prec), report)
@@ -110,11 +120,26 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: R
         if before is not None and max(grid_gap) >= before > 0:
             raise UnreachableError("Two formulations disagree, and a higher precision does not bring them together.")
         before = max(grid_gap)
-        prec = _rounded(prec + missing)
+        raised = _rounded(prec + missing)
+        if _out_of_reach(growth, raised):
+            break
+        prec = raised
     raise UnreachableError(
         f"Two runs up to {prec} bits do not agree to {scene.run.digits} digits.",
         "Ask for fewer digits or a shorter run; a transit that only grazes xdot = 0 cannot be decided this way.",
     )
+
+
+def _out_of_reach(growth: Growth, prec: int) -> bool:
+    return prec > MAX_PREC or effort(growth.steps, prec) > MAX_STEPS
+
+
+def _check_reach(growth: Growth, prec: int, digits: int) -> None:
+    if _out_of_reach(growth, prec):
+        raise UnreachableError(
+            f"{digits} digits take {prec} bits over about {growth.steps} steps, which is out of reach.",
+            "Ask for fewer digits (run.digits) or a shorter run (run.t_end).",
+        )
 
 
 def _span(scene: Scene) -> Fraction | None:

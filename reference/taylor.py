@@ -409,14 +409,15 @@ class Flow:
         self.compile_s = time.process_time() - begun
         self.steps = 0
 
-    def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = ()) -> Any:
+    def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0) -> Any:
         """States at increasing times (the first is 0), shape (times, variables).
 
         Where varied, `start` holds the state and then its derivative with respect to the first parameter, and so
         does each row.
 
         Raises:
-            IntegrationError: heyoka says anything but success, or a state is not finite.
+            IntegrationError: heyoka says anything but success, a state is not finite, or `max_steps` (0: any number)
+                do not suffice.
         """
         ta = self._ta
         ta.time = self.numbers.of(0)
@@ -425,7 +426,9 @@ class Flow:
             ta.pars[:] = parameters
         if len(times) == 1:
             return ta.state.copy()[None, :]
-        outcome, _, _, steps, _, states = ta.propagate_grid(np.array(times, dtype=self.numbers.dtype))
+        outcome, _, _, steps, _, states = ta.propagate_grid(
+            np.array(times, dtype=self.numbers.dtype), max_steps=max_steps
+        )
         self.steps += int(steps)
         if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
             raise IntegrationError(f"heyoka stopped at t = {float(ta.time)} s with outcome {outcome}.")

@@ -68,7 +68,10 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
         weight = stepper.numbers.power_of_two(-halvings)
         if head > 2 * sum((b * weight ** (j + 1) for j, b in enumerate(tail)), start=0 * head):
             return step / Fraction(2) ** halvings
-    raise IntegrationError("xdot does not leave zero at t = 0 in the working precision.")
+    raise IntegrationError(
+        "xdot does not leave zero at t = 0 in the working precision.",
+        "Where the bob stays at rest there are no transits: run.transits = false.",
+    )
 
 
 def march(
@@ -113,7 +116,10 @@ def march(
         except _Doubt as doubt:
             looks += 1
             if looks > MAX_LOOKS:
-                raise IntegrationError(f"zeros of xdot near t = {float(stepper.time)} s: {doubt}.") from None
+                raise IntegrationError(
+                    f"zeros of xdot near t = {float(stepper.time)} s: {doubt}.",
+                    "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false.",
+                ) from None
             limit = (stepper.time - before[-1][0][0]) * stepper.numbers.of(SHORTER**looks)
             mark, kept_states, kept_zeros = before[0]
             stepper.back(mark)

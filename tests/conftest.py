@@ -1,31 +1,17 @@
-"""What several tests need: small scenes, and constants at a precision."""
+"""Settings for every test, and the fixture that most of them want."""
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 from hypothesis import settings
+from small_scenes import make_scene
 
-from reference.constants import constants, release, scaled
-from reference.precision import context
-from reference.scene import Scene, load_scene, parse_scene
+from reference.scene import Scene, load_scene
 
 settings.register_profile("here", deadline=None, derandomize=True)
 settings.load_profile("here")
 
-
-def make_scene(scene_id: str = "test", **sections: Any) -> Scene:
-    """A scene from sections given as dicts; Paris where nothing is said."""
-    return parse_scene({"id": scene_id, "release": {"x": "0.3", "y": "0.4"}, **sections})
-
-
-def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
-    """Context, constants, n and v of a scene at a precision."""
-    ctx = context(prec)
-    k = constants(scene.exact, ctx)
-    position, velocity = release(scene.exact, ctx)
-    return ctx, k, scaled(position, k.length), scaled(velocity, k.length)
+__all__ = ["make_scene"]
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 from typer.testing import CliRunner
 
 from compare.candidate import Candidate

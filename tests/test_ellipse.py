@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 from compare.ellipse import ellipse_errors
 from reference.flow import Variants

@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 from compare.external import arguments, placeholders, run_program, timed
 from reference import InputError

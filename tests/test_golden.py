@@ -16,7 +16,7 @@ from pathlib import Path
 import jsonschema
 import numpy as np
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 import reference
 from reference import golden, publish

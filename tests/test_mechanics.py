@@ -7,7 +7,7 @@ import random
 import heyoka as hy
 import numpy as np
 import pytest
-from conftest import make_scene, model_at
+from small_scenes import make_scene, model_at
 
 from reference.constants import constants, release, scaled
 from reference.earth import axis_distance

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 from compare.candidate import COLUMNS, Candidate, candidate_of
 from compare.metrics import drifts, errors_of

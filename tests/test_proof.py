@@ -10,7 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 import reference
 from reference import enclosure, proof

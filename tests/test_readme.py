@@ -36,7 +36,10 @@ def test_it_fits_on_150_lines_and_has_commands():
 
 
 def test_every_command_in_its_turn_prints_what_the_readme_shows(tmp_path):
-    path = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    path = {
+        "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}",
+        "FOUCAULT_CACHE": str(tmp_path / "cache"),
+    }
     for command, shown in commands():
         here = command.replace("/tmp/", f"{tmp_path}/")
         done = subprocess.run(

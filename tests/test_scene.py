@@ -6,9 +6,9 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
-from conftest import make_scene
 from hypothesis import given
 from hypothesis import strategies as st
+from small_scenes import make_scene
 
 from reference.errors import InputError
 from reference.scene import Inputs, is_scene_id, load_scene, parse_scene, scene_ids

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 from reference import load, trajectory
 from reference.precision import LONG_DOUBLE

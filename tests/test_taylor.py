@@ -8,7 +8,7 @@ from fractions import Fraction
 import heyoka as hy
 import numpy as np
 import pytest
-from conftest import make_scene, model_at
+from small_scenes import make_scene, model_at
 
 from reference.errors import IntegrationError
 from reference.mechanics import FORMULATIONS

@@ -8,9 +8,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from conftest import make_scene
 from hypothesis import given
 from hypothesis import strategies as st
+from small_scenes import make_scene
 
 import compare.tracing
 from compare.problem import Problem, System

@@ -7,7 +7,7 @@ from fractions import Fraction
 import heyoka as hy
 import numpy as np
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 from test_taylor import stepper_of
 
 from reference.errors import IntegrationError

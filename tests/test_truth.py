@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 from compare import cache
 from compare.truth import golden_of, shipped, solves, truth_at
@@ -127,7 +127,7 @@ def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
     own = tmp_path / "long.toml"
     own.write_text('id = "long"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "864000"\n')
     rows = tmp_path / "rows.csv"
-    rows.write_text("t,x,y\n0,0.3,0.4\n")
+    rows.write_text("t,x,y\n0,0.3,0.4\n864000,0.3,0.4\n")
     words = [sys.executable, "-m", "foucault", "score", str(own), str(rows)]
     with subprocess.Popen(words, stderr=subprocess.PIPE, cwd=ROOT, start_new_session=True) as process:
         time.sleep(4)  # well into the solve, also on a busy machine

@@ -9,7 +9,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 import reference
 from reference.golden import MANIFEST

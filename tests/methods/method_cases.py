@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from conftest import make_scene
+from small_scenes import make_scene
 
 import reference
 from compare.methods import METHODS, Problem

@@ -6,8 +6,8 @@ import sys
 
 import numpy as np
 import pytest
-from conftest import make_scene
 from method_cases import case
+from small_scenes import make_scene
 
 from compare.methods import METHODS, Problem, available, external
 from reference import InputError

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from conftest import make_scene
+from small_scenes import make_scene
 
 import reference
 from compare.methods import METHODS, Problem, available, gauss_legendre, rk4, rkng56, rkng67
