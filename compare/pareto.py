@@ -182,10 +182,15 @@ def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[
 
 
 def sentences(document: dict[str, Any]) -> list[str]:
-    """What a reader takes home: the cheapest method at each error that is reached, against the paper's RK4."""
+    """What a reader takes home: the cheapest method at each error that is reached, and what a digit costs.
+
+    A ladder of precisions has nothing to say about large errors: there only the cost of digits is told.
+    """
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
-    found = [_sentence(rows, error_m, bound_m) for error_m in TARGETS_M]
-    return [sentence for sentence in found if sentence]
+    law = cost_of_digits(rows, bound_m)
+    coarse = {row.method for row in _measured(rows) if error_of(row, bound_m) > TARGETS_M[-1]}
+    found = [_sentence(rows, error_m, bound_m) for error_m in TARGETS_M] if coarse or law is None else []
+    return [sentence for sentence in (*found, cost_sentence(law) if law else "") if sentence]
 
 
 def _sentence(rows: Sequence[Row], error_m: float, bound_m: float) -> str:

@@ -19,7 +19,7 @@ from . import explanations as say
 from . import tables
 from .measure import Row
 from .page import Html, facts, figure, findings, join, page, paragraph, section, write_files
-from .pareto import cost_of_digits, cost_sentence, rows_of, sentences
+from .pareto import rows_of, sentences
 from .tables import text_table
 
 __all__ = ["csv_text", "json_text", "page_text", "text_table", "write_report"]
@@ -71,8 +71,7 @@ def _finite(value: Any) -> Any:
 def page_text(document: dict[str, Any]) -> str:
     """The page."""
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
-    law = cost_of_digits(rows, bound_m)
-    home = sentences(document) + ([cost_sentence(law)] if law else [])
+    home = sentences(document)
     failed = tables.failures(rows)
     parts = [
         section("What to take home", findings(home) if home else paragraph("No method reached 1e-3 m.")),
