@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from reference import FoucaultError, Scene, load, load_scene, parse_scene, scene_ids
+from reference import FoucaultError, Scene, UnreachableError, load, load_scene, parse_scene, scene_ids
 from reference.constants import constants
 from reference.precision import context
 from reference.worker import Emit
@@ -122,13 +122,20 @@ def stability(
     done = {cell.key: cell for cell in (Cell(**result) for result in journal)}
     total, found = len(cells) * len(scenes), []
     folders: dict[str, tuple[dict[str, Any], Path]] = {}
+    unsolved: dict[str, str] = {}
     for name in scenes:
         if report is not None:
             report(len(done), total, f"truth of {name}")
         scene = cut(load_scene(name))
-        folders[name] = (scene.model_dump(exclude_none=True), golden_of(scene, TRUTH_DIGITS).path)
+        try:
+            folders[name] = (scene.model_dump(exclude_none=True), golden_of(scene, TRUTH_DIGITS).path)
+        except UnreachableError as error:
+            unsolved[name] = f"The reference cannot solve it: {error}"
     for method, formulation, setting in cells:
         label = _label(method, formulation)
+        asked = _digits_asked(method, setting)
+        for name, reason in unsolved.items():
+            done[name, method, label] = Cell(name, method, label, "refused", None, asked, None, reason)
         todo = [name for name in scenes if (name, method, label) not in done]
         for cell in _cells(method, formulation, label, setting, [(name, *folders[name]) for name in todo], limit_s):
             if report is not None:

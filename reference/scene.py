@@ -21,6 +21,7 @@ from .errors import InputError
 
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
+SAME_TIME = Fraction(1, 1 << 30)  # of a grid step: times nearer than this differ by the rounding of the inputs only
 MAX_EXPONENT = 400  # keeps a typing slip such as 1e999999999 from filling the memory
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
@@ -224,10 +225,15 @@ class Inputs:
 
     @property
     def grid(self) -> list[Fraction]:
-        """Output times in s: 0, grid_step, 2 grid_step, …, and t_end as the last."""
+        """Output times in s: 0, grid_step, 2 grid_step, …, and t_end as the last.
+
+        Read as binary64, the last step may miss t_end by rounding alone: then t_end takes its place.
+        """
         whole = int(self.t_end / self.grid_step)
         times = [k * self.grid_step for k in range(whole + 1)]
-        return times if times[-1] == self.t_end else [*times, self.t_end]
+        if whole and self.t_end - times[-1] < self.grid_step * SAME_TIME:
+            times.pop()
+        return [*times, self.t_end]
 
     @property
     def at_rest(self) -> bool:

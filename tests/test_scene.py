@@ -151,3 +151,11 @@ def test_a_release_at_rest_is_known_as_such(paris):
     assert not paris.with_values(["release.vy=1e-30"]).exact.at_rest
     assert not make_scene(release={"angle": "10", "azimuth": "0", "azimuth_rate": "1"}).exact.at_rest
     assert isinstance(paris.exact, Inputs)
+
+
+def test_a_grid_read_as_binary64_does_not_come_to_its_end_twice():
+    scene = make_scene(inputs="binary64", run={"t_end": "0.2", "grid_step": "0.0005"})
+    grid = scene.exact.grid
+    assert len(grid) == 401
+    assert [float(t) for t in grid] == sorted({float(t) for t in grid})
+    assert grid[-1] == Fraction(0.2)
