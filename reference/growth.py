@@ -204,7 +204,7 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], growth: Growth | No
         if worst <= PARTED:
             ratio = worst / nudge
             return max(0.0, math.log10(ratio.numerator) - math.log10(ratio.denominator)) if ratio else 0.0
-        number = real(2 * max(number.prec, LONG_DOUBLE.prec))
+        number = LONG_DOUBLE if number is DOUBLE else real(2 * number.prec)
     raise UnreachableError(f"Twins part company wholly even at {MAX_PREC} bits.", "Ask for a shorter run: run.t_end.")
 
 
