@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,7 @@ from reference.precision import context
 from reference.worker import Emit
 
 from .character import Character, character
+from .grid import on_doubles
 from .journal import Journal
 from .lane import lane
 from .measure import EXTRAPOLATED, OK, Bench, Row, Truth
@@ -93,11 +95,10 @@ def cut(scene: Scene) -> Scene:
     k = constants(scene.exact, context(80)).converted(float)
     strength = math.hypot(float(k.pull[1]), float(k.pull[2]))
     swing = 2 * math.pi / math.sqrt(strength) if strength else math.inf
-    step = float(scene.exact.grid_step)
-    rows = max(2, min(int(float(scene.exact.t_end) / step), int(SWINGS * swing / step) if strength else 10**9))
-    t_end = scene.exact.grid_step * rows
-    asked = [f"run.t_end={float(t_end)!r}", "inputs=binary64", "run.transits=false"]
-    return scene.with_values(asked) if t_end < scene.exact.t_end else scene.with_values(asked[1:])
+    scene = on_doubles(scene.with_values(["inputs=binary64", "run.transits=false"]))
+    step, whole = scene.exact.grid_step, int(scene.exact.t_end / scene.exact.grid_step)
+    rows = max(2, min(whole, int(SWINGS * swing / float(step)))) if strength else whole
+    return scene.with_values([f"run.t_end={Decimal(scene.run.grid_step) * rows}"]) if rows < whole else scene
 
 
 def stability(

@@ -18,6 +18,7 @@ from typing import Any
 
 from reference import Golden, Scene
 
+from .grid import on_doubles
 from .journal import Journal
 from .lane import lane
 from .measure import Row, ladder
@@ -118,7 +119,7 @@ def study(
         announce: told when the truth has to be solved.
     """
     todo = list(items or plan(scene))
-    problem = scene.with_values(["inputs=binary64"])
+    problem = on_doubles(scene.with_values(["inputs=binary64"]))
     golden = golden_of(problem, digits or problem.run.digits, announce)
     journal = Journal(kept, _recipe(problem, limit_s))
     rows = {row.key: row for row in map(Row.parsed, journal)}
