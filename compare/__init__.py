@@ -12,15 +12,15 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .candidate import Candidate
-    from .score import Score, score
+    from .candidates.candidate import Candidate
+    from .score import Score
     from .testing import assert_agrees
     from .trajectory import read
 
-__all__ = ["Candidate", "Score", "assert_agrees", "read", "score"]
+__all__ = ["Candidate", "Score", "assert_agrees", "read"]
 
 _LAZY = {
-    "Candidate": "candidate",
+    "Candidate": "candidates.candidate",
     "Score": "score",
     "assert_agrees": "testing",
     "read": "trajectory",

@@ -18,8 +18,8 @@ from .paper.command import register as register_paper
 from .pend.command import register as register_pend
 
 if TYPE_CHECKING:
-    from .candidate import Candidate
-    from .external import Timing
+    from .candidates.candidate import Candidate
+    from .candidates.external import Timing
 
 MAX_REPEATS = 1000
 
@@ -82,19 +82,19 @@ def score(
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:
-        from .pictures import check_target
+        from .verdicts.pictures import check_target
 
         check_target(plot)
-    from .document import document
     from .score import score as judge
     from .trajectory import read, read_stream, read_transits
-    from .verdict import lines
+    from .verdicts.document import document
+    from .verdicts.verdict import lines
 
     zeros = None if transits is None else read_transits(transits)
     found: list[tuple[Candidate, Timing | None]] = [(read(name), None) for name in candidates or ()]
     made = []
     if run is not None:
-        from .external import arguments, timed
+        from .candidates.external import arguments, timed
 
         output, took = timed(arguments(run, scene), timeout, repeats)
         with output:
@@ -117,7 +117,7 @@ def score(
             )
         made.append(replace(result, timing=timing))
     if plot is not None:
-        from .pictures import error_picture
+        from .verdicts.pictures import error_picture
 
         error_picture(made, plot)
     if as_json:
@@ -205,7 +205,7 @@ def study(
     problem, digits = scene, None
     items = plan(scene, _listed(methods, "--methods", METHODS), not no_formulations)
     if precisions is not None:
-        from .precisions import bits_of, precision_items, precision_scene
+        from .measuring.precisions import bits_of, precision_items, precision_scene
 
         bits = bits_of(precisions)
         items = precision_items(bits)
@@ -226,7 +226,7 @@ def study(
 
 
 def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
-    from . import approximation_report
+    from .pages import approximation_report
 
     made = approximation_report.document(scene)
     if out is not None:
@@ -276,9 +276,9 @@ def stability(
     as_json: AsJson = False,
 ) -> None:
     """Every method on stiff and extreme scenes: digits kept, or how it failed; resumes with the same --out."""
-    from . import stability_report
-    from .longrun import over_thirty_days
+    from .measuring.longrun import over_thirty_days
     from .methods import METHODS
+    from .pages import stability_report
     from .stability import default_scenes
     from .stability import stability as measure
     from .study import machine, single_thread

@@ -19,8 +19,8 @@ from reference.precision import context
 from reference.scene import Inputs
 from reference.solution import Array
 
-from .candidate import COLUMNS, Candidate
-from .ellipse import EllipseErrors, ellipse_errors
+from .candidates.candidate import COLUMNS, Candidate
+from .verdicts.ellipse import EllipseErrors, ellipse_errors
 
 ENVELOPES = 40  # parts of the run whose largest error makes the curve that growth is fitted to
 

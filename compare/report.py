@@ -15,12 +15,12 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from . import explanations as say
-from . import tables
-from .measure import Row
-from .page import Html, facts, figure, findings, join, page, paragraph, section, write_files
-from .pareto import rows_of, sentences
-from .tables import text_table
+from .measuring.measure import Row
+from .pages import explanations as say
+from .pages import tables
+from .pages.page import Html, facts, figure, findings, join, page, paragraph, section, write_files
+from .pages.pareto import rows_of, sentences
+from .pages.tables import text_table
 
 __all__ = ["csv_text", "json_text", "page_text", "text_table", "write_report"]
 
@@ -101,7 +101,7 @@ def _lead(document: dict[str, Any]) -> Html:
 def _pictures(document: dict[str, Any], rows: Sequence[Row], bound_m: float) -> list[Html]:
     if importlib.util.find_spec("matplotlib") is None:
         return [section("Pictures", paragraph(say.NO_PICTURES))]
-    from . import charts
+    from .pages import charts
 
     made = [
         ("Error against CPU time", charts.overview(rows, bound_m), say.overview(rows)),

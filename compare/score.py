@@ -20,13 +20,13 @@ from reference.sensitivity import sensitivity
 from reference.solution import Array
 
 from .cache import kept
-from .candidate import Candidate
-from .diagnosis import Diagnosis, diagnose
-from .ellipse import EllipseErrors
-from .external import Timing
+from .candidates.candidate import Candidate
+from .candidates.external import Timing
 from .metrics import Errors, drifts, errors_of
-from .transits import TransitErrors, transit_errors
 from .truth import DIGITS, FINE, Report, golden_of, truth_at
+from .verdicts.diagnosis import Diagnosis, diagnose
+from .verdicts.ellipse import EllipseErrors
+from .verdicts.transits import TransitErrors, transit_errors
 
 TOLERANCE = 1e-6  # of the amplitude, where no tolerance is given
 FLOOR_TIMES = 289

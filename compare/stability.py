@@ -20,14 +20,14 @@ from reference.constants import constants
 from reference.precision import context
 from reference.worker import Emit
 
-from .character import Character, character
-from .grid import on_doubles
-from .journal import Journal
-from .lane import lane
-from .measure import EXTRAPOLATED, OK, Bench, Row, Truth
+from .equations.swing import suited
+from .measuring.character import Character, character
+from .measuring.grid import on_doubles
+from .measuring.journal import Journal
+from .measuring.lane import lane
+from .measuring.measure import EXTRAPOLATED, OK, Bench, Row, Truth
+from .measuring.reasons import reason_of
 from .methods import METHODS
-from .reasons import reason_of
-from .swing import suited
 from .truth import golden_of
 
 LIMIT_S = 3.0  # CPU seconds of a cell

@@ -18,12 +18,12 @@ from typing import Any
 
 from reference import Golden, Scene
 
-from .grid import on_doubles
-from .journal import Journal
-from .lane import lane
-from .measure import Row, ladder
+from .equations.swing import suited
+from .measuring.grid import on_doubles
+from .measuring.journal import Journal
+from .measuring.lane import lane
+from .measuring.measure import Row, ladder
 from .methods import METHODS
-from .swing import suited
 from .truth import golden_of
 
 LIMIT_S = 8.0  # CPU seconds of one run; what would take longer is extrapolated from a part of the span

@@ -13,9 +13,9 @@ import numpy.typing as npt
 
 from reference import InputError, Scene, load_scene
 
-from .candidate import COLUMNS, candidate_of
+from .candidates.candidate import COLUMNS, candidate_of
+from .candidates.transit_times import checked_transits
 from .score import Score, score
-from .transit_times import checked_transits
 
 
 def assert_agrees(

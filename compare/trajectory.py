@@ -11,11 +11,11 @@ from typing import BinaryIO
 
 from reference import InputError
 
-from .archive import read_archive
-from .candidate import Candidate
-from .lines import MAX_BYTES
-from .text import MAX_ROWS, Text
-from .transit_times import checked_transits, read_transits
+from .candidates.archive import read_archive
+from .candidates.candidate import Candidate
+from .candidates.lines import MAX_BYTES
+from .candidates.text import MAX_ROWS, Text
+from .candidates.transit_times import checked_transits, read_transits
 
 __all__ = ["MAX_BYTES", "MAX_ROWS", "checked_transits", "read", "read_stream", "read_transits"]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from compare import approximation_report
+from compare.pages import approximation_report
 from foucault import app
 from reference import InputError
 

@@ -6,13 +6,13 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from compare import charts
-from compare.charts.drawing import power_of_ten, sheet
-from compare.charts.families import FAMILIES, family_of, styles
-from compare.charts.labels import Label, place
-from compare.measure import Row
+from compare.measuring.measure import Row
 from compare.methods import METHODS
-from compare.pareto import curves
+from compare.pages import charts
+from compare.pages.charts.drawing import power_of_ten, sheet
+from compare.pages.charts.families import FAMILIES, family_of, styles
+from compare.pages.charts.labels import Label, place
+from compare.pages.pareto import curves
 from reference import InputError
 
 BOUND = 1e-40

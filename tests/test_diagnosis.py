@@ -16,10 +16,10 @@ import pytest
 from small_scenes import make_scene
 from typer.testing import CliRunner
 
-from compare.candidate import Candidate
-from compare.diagnosis import diagnose
+from compare.candidates.candidate import Candidate
 from compare.metrics import Errors
 from compare.score import Score, score
+from compare.verdicts.diagnosis import diagnose
 from foucault import app
 from reference import Scene, trajectory
 from reference.dense import Dense

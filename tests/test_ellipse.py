@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_scenes import make_scene
 
-from compare.ellipse import ellipse_errors
+from compare.verdicts.ellipse import ellipse_errors
 from reference.flow import Variants
 
 TIMES = np.linspace(0.0, 3600.0, 1801)
@@ -79,5 +79,5 @@ def test_thinning_a_part_changes_nothing(model, scene, monkeypatch):
     u = truth[:, :2] - REST
     error = 1e-3 * np.column_stack([-u[:, 1], u[:, 0]])
     whole = ellipse_errors(TIMES, truth, error, REST)
-    monkeypatch.setattr("compare.ellipse.MOST_ROWS", 15)
+    monkeypatch.setattr("compare.verdicts.ellipse.MOST_ROWS", 15)
     assert np.allclose(ellipse_errors(TIMES, truth, error, REST).turn, whole.turn, rtol=1e-6)

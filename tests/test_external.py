@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from small_scenes import make_scene
 
-from compare.external import arguments, placeholders, run_program, timed
+from compare.candidates.external import arguments, placeholders, run_program, timed
 from reference import InputError
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from compare.grid import on_doubles
+from compare.measuring.grid import on_doubles
 from compare.stability import cut
 from reference import load_scene, scene_ids
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from compare.journal import Journal
-from compare.lane import lane
+from compare.measuring.journal import Journal
+from compare.measuring.lane import lane
 from reference import InputError
 from reference.worker import Emit
 
@@ -28,7 +28,7 @@ def failed(item: str, late: bool, reason: str) -> str:
 
 
 def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("compare.lane.STARTING_S", 5.0)
+    monkeypatch.setattr("compare.measuring.lane.STARTING_S", 5.0)
     found = list(lane(answers, (7,), ["a", "dies", "b", "hangs", "c"], 0.5, failed))
     assert found == ["a 7", "dies failed: ended", "b 7", "hangs failed: late", "c 7"]
 

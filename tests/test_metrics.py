@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from small_scenes import make_scene
 
-from compare.candidate import COLUMNS, Candidate, candidate_of
+from compare.candidates.candidate import COLUMNS, Candidate, candidate_of
 from compare.metrics import drifts, errors_of
 from reference import load, trajectory
 from reference.dense import dense

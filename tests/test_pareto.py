@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import kendalltau, linregress
 
-from compare.measure import Row
-from compare.pareto import (
+from compare.measuring.measure import Row
+from compare.pages.pareto import (
     cost_at,
     cost_of_digits,
     cost_sentence,
@@ -23,7 +23,7 @@ from compare.pareto import (
     sentences,
     whole_evaluations,
 )
-from compare.power_law import power_law
+from compare.pages.power_law import power_law
 from reference import InputError
 
 BOUND = 1e-40

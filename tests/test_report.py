@@ -15,11 +15,11 @@ from pathlib import Path
 
 import pytest
 
-from compare import page as parts
 from compare import report
-from compare.measure import Row
-from compare.page import Column, Html, TableRow
-from compare.tables import cpu, setting, tidy
+from compare.measuring.measure import Row
+from compare.pages import page as parts
+from compare.pages.page import Column, Html, TableRow
+from compare.pages.tables import cpu, setting, tidy
 from reference import InputError
 
 VOID = {"meta", "br", "link", "path", "use"}
@@ -280,7 +280,7 @@ def test_a_row_of_a_table_has_a_cell_for_every_column():
 
 
 def test_neither_the_report_nor_its_parts_load_matplotlib():
-    code = "import compare.report, compare.page, compare.charts, sys; print('matplotlib' in sys.modules)"
+    code = "import compare.report, compare.pages.page, compare.pages.charts, sys; print('matplotlib' in sys.modules)"
     root = Path(report.__file__).parent.parent
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=root)
     assert found.stdout.strip() == "False"

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from compare.character import character
-from compare.longrun import Growth, laws
+from compare.measuring.character import character
+from compare.measuring.longrun import Growth, laws
 from compare.stability import Cell, cut, default_scenes, stability
 from foucault import app
 from reference import load_scene, trajectory

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-import compare.measure as measure
-from compare.measure import Bench, Row, Truth
+import compare.measuring.measure as measure
+from compare.measuring.measure import Bench, Row, Truth
+from compare.measuring.precisions import bits_of, precision_items, precision_scene
 from compare.methods import METHODS
-from compare.pareto import front_stability
-from compare.precisions import bits_of, precision_items, precision_scene
+from compare.pages.pareto import front_stability
 from compare.study import plan, study
 from compare.truth import golden_of
 from foucault import app

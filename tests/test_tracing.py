@@ -12,10 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from small_scenes import make_scene
 
-import compare.tracing
-from compare.problem import Problem, System
-from compare.tangent import differentiated
-from compare.tracing import TracingError, record
+import compare.equations.tracing
+from compare.equations.problem import Problem, System
+from compare.equations.tangent import differentiated
+from compare.equations.tracing import TracingError, record
 from reference import InputError, load_scene
 from reference.mechanics import FORMULATIONS
 
@@ -27,7 +27,7 @@ def problem(formulation, **sections):
 
 
 def test_the_example_in_the_module_runs():
-    assert doctest.testmod(compare.tracing).failed == 0
+    assert doctest.testmod(compare.equations.tracing).failed == 0
 
 
 @pytest.mark.parametrize("formulation", TRACED)

@@ -13,7 +13,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from compare.archive import MAX_UNPACKED
+from compare.candidates.archive import MAX_UNPACKED
 from compare.trajectory import MAX_ROWS, read, read_stream, read_transits
 from reference import InputError
 
@@ -145,7 +145,7 @@ def test_a_last_line_without_its_end_is_noted():
 
 
 def test_a_number_is_split_over_two_chunks_without_harm(monkeypatch):
-    monkeypatch.setattr("compare.lines.CHUNK", 7)
+    monkeypatch.setattr("compare.candidates.lines.CHUNK", 7)
     assert_read(read_stream(csv(), "run"))
 
 
@@ -355,6 +355,6 @@ def test_a_gigabyte_of_nothing_is_refused_in_bounded_memory(head, piece, said):
 
 
 def test_more_rows_than_are_judged_are_refused(monkeypatch):
-    monkeypatch.setattr("compare.text.MAX_ROWS", 2)
+    monkeypatch.setattr("compare.candidates.text.MAX_ROWS", 2)
     refused(csv(), "more than 2 rows")
     assert MAX_ROWS >= 1_000_000

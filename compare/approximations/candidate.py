@@ -6,7 +6,7 @@ import numpy as np
 
 from reference import InputError, Scene
 
-from ..candidate import COLUMNS, Candidate
+from ..candidates.candidate import COLUMNS, Candidate
 from . import Motion, approximation, motions
 
 

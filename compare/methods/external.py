@@ -1,4 +1,4 @@
-"""Somebody's own program as a method: a command, run by `compare.external`, whose output is read as a candidate.
+"""Somebody's own program as a method: a command, run by `candidates.external`, whose output is read as a candidate.
 
 The command may use the placeholders of `foucault score --run`, and {setting} for what a study varies. It has to
 print the scene's grid times; `{t_end}` and `{grid_step}` are those of the problem's times.
@@ -11,7 +11,7 @@ import numpy as np
 from reference.errors import InputError
 from reference.scene import Scene
 
-from ..problem import Array, Problem
+from ..equations.problem import Array, Problem
 from .method import Method, Outcome, Setting, Work, failed
 
 SAME_TIME = 1e-9  # relative: decimals that a program prints for a time that is no short decimal
@@ -42,7 +42,7 @@ def external(
 
 
 def _prepare(problem: Problem, value: float, command: str) -> Work:
-    from ..external import arguments, run_program
+    from ..candidates.external import arguments, run_program
     from ..trajectory import read_stream
 
     words = arguments(command.replace("{setting}", repr(value)), _scene(problem))

@@ -20,7 +20,7 @@ from reference.errors import IntegrationError
 from reference.mechanics import FORMULATIONS
 from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, context, real
 
-from ..problem import Array, Problem
+from ..equations.problem import Array, Problem
 from .method import Exact, Method, Outcome, Setting, Work, failed
 
 QUADRUPLE_BITS = 113

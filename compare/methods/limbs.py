@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..problem import Array, Problem
+from ..equations.problem import Array, Problem
 from .method import Exact, Method, Outcome, Work, failed
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from reference.scene import Scene
 
-from ..problem import Array, Problem
+from ..equations.problem import Array, Problem
 
 Setting = Literal["step", "tolerance", "precision"]
 Status = Literal["ok", "gave_up", "not_finite"]

@@ -10,7 +10,7 @@ from reference.constants import constants, release, scaled
 from reference.mechanics import FORMULATIONS
 from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
 
-from ..problem import Array, Problem
+from ..equations.problem import Array, Problem
 from .method import Exact, Method, Outcome, Work
 
 SPARE_BITS = 64

@@ -13,7 +13,7 @@ from typing import Any
 from reference.constants import Vector, is_zero
 from reference.mechanics import add, cross, dot, plus, scale, subtract, times
 
-from ..problem import Problem
+from ..equations.problem import Problem
 from .fixed_step import Derivatives, combined, moved, prepare_fixed
 from .method import Method, Work
 from .rk4 import TABLEAU

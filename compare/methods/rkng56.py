@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..problem import Problem
+from ..equations.problem import Problem
 from .fixed_step import nystrom, prepare_fixed
 from .method import Method, Work
 from .tableau import NystromTableau, fractions, triangle

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ..problem import Problem
+from ..equations.problem import Problem
 from .fixed_step import nystrom, prepare_fixed
 from .method import Method, Work
 from .tableau import NystromTableau, fractions, triangle

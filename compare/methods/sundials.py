@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..problem import Array, Problem
+from ..equations.problem import Array, Problem
 from .method import Method, Outcome, Work, outcome
 from .native import listened
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from reference import InputError, Scene, load_scene
 
+from ..equations.problem import Problem
 from ..methods import METHODS, available
-from ..problem import Problem
 from .digits import MP, acos, dot, mpf, pi, sin, sqrt
 from .mathar_frequency import slow_down
 from .mathar_rest import apparent_gravity

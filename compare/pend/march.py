@@ -13,8 +13,8 @@ from reference.constants import Constants, is_zero
 from reference.solution import Array
 
 from ..approximations.mathar_items import VARIABLES, derivatives, truncated
+from ..equations.problem import Problem, System
 from ..methods import METHODS, available
-from ..problem import Problem, System
 from .options import Options
 
 BLOCK = 100_000  # steps

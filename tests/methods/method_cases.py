@@ -9,8 +9,8 @@ import numpy as np
 from small_scenes import make_scene
 
 import reference
+from compare.equations.swing import suited
 from compare.methods import METHODS, Problem
-from compare.swing import suited
 from reference import Scene, Solution
 
 SECTIONS = {

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from method_cases import case
 
+from compare.equations.swing import suited
 from compare.methods import METHODS, available
 from compare.methods.method import Method
-from compare.swing import suited
 from reference import InputError
 
 # looser than the tight end of the ladder, which would take longer than a test may

@@ -75,7 +75,7 @@ def twice(x):
 
 
 def test_generated_code_is_kept_whole_and_renewed_where_it_was_damaged(tmp_path, monkeypatch):
-    from compare.compiled import compiled
+    from compare.equations.compiled import compiled
 
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
     compiled.cache_clear()
@@ -90,7 +90,7 @@ def test_generated_code_is_kept_whole_and_renewed_where_it_was_damaged(tmp_path,
 
 
 def test_where_nothing_can_be_kept_code_is_compiled_in_memory(tmp_path, monkeypatch):
-    from compare.compiled import compiled
+    from compare.equations.compiled import compiled
 
     blocked = tmp_path / "file"
     blocked.write_text("a file where a folder should be")

@@ -136,7 +136,7 @@ _CHANGED_ROWS: tuple[tuple[str, str, Callable[[Array], Array]], ...] = (
 
 def _approximations(scene: Scene) -> Iterator[Hypothesis]:
     """The truncated models of the seeds."""
-    from .approximations import APPROXIMATIONS, Motion
+    from ..approximations import APPROXIMATIONS, Motion
 
     for approximation in APPROXIMATIONS.values():
         if isinstance(approximation, Motion):

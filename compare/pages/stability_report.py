@@ -16,13 +16,13 @@ import numpy as np
 
 from reference import load_scene
 
+from ..measuring.longrun import Growth, laws
+from ..stability import WRONG, Cell
 from .charts import Growth as Line
 from .charts import error_growth, heat_map
 from .charts.heat_map import CLASSES
 from .charts.heat_map import Cell as Field
-from .longrun import Growth, laws
 from .page import Column, TableRow, facts, figure, findings, page, paragraph, section, table, write_files
-from .stability import WRONG, Cell
 
 CSV, JSON, PAGE = "rows.csv", "stability.json", "index.html"
 STIFF_METHODS = ("scipy_radau", "scipy_bdf", "scipy_lsoda", "cvode_bdf", "numbalsoda_lsoda")

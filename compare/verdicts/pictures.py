@@ -10,7 +10,7 @@ import numpy as np
 
 from reference import InputError
 
-from .score import Score
+from ..score import Score
 
 # Okabe and Ito's colours, told apart by the colour-blind; the line styles tell them apart in grey
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .score import Score
+from ..score import Score
 
 
 def document(made: Score) -> dict[str, Any]:

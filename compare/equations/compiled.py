@@ -18,7 +18,7 @@ from string import Template
 from types import ModuleType
 from typing import Any
 
-from .cache import root
+from ..cache import root
 from .tracing import FUNCTIONS, Program
 
 HEADER = f"""import numba as nb

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from ..measuring.measure import EXTRAPOLATED, Row
+from ..methods import METHODS
 from . import explanations as say
-from .measure import EXTRAPOLATED, Row
-from .methods import METHODS
 from .page import Column, Html, TableRow, strong, table
 from .pareto import TARGETS_M, Cost, cost_at, costs_at, curves, front, rows_of, sentences
 

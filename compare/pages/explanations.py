@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from .measure import REPEAT_S, REPEATS, Row
+from ..measuring.measure import REPEAT_S, REPEATS, Row
 from .pareto import curves
 
 LEAD = (

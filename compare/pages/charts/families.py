@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ...verdicts.pictures import COLOURS
 from ..pareto import Curve
-from ..pictures import COLOURS
 from .drawing import FAINT, INK
 
 _BLUE, _VERMILLION, _GREEN, _PURPLE, _ORANGE, _SKY, _ = COLOURS

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..measure import Row
+from ...measuring.measure import Row
+from ...verdicts.pictures import COLOURS
 from ..pareto import Curve, cost_of, curves, whole_evaluations
-from ..pictures import COLOURS
 from .drawing import FAINT, limits, logarithmic, sheet, svg_text
 from .families import MANY_DIGITS, family_of, line_style, styles
 from .labels import Label

@@ -17,11 +17,11 @@ import numpy as np
 from reference import FoucaultError, Golden, Scene, load, load_scene, parse_scene
 from reference.worker import Emit
 
+from ..methods import METHODS, Problem, available
+from ..truth import golden_of
 from .journal import Journal
 from .lane import lane
 from .measure import Truth
-from .methods import METHODS, Problem, available
-from .truth import golden_of
 
 SCENE = "paris_30d"
 TRUTH_DIGITS = 36  # so that 113 bits can be judged

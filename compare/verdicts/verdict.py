@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from itertools import islice
 
-from .score import Score
+from ..score import Score
 
 NAMED = 3  # missed, extra or shifted transits that are named each
 

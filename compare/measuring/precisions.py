@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from reference import InputError, Scene
 from reference.precision import DOUBLE_BITS, LONG_DOUBLE_BITS
 
-from .methods import METHODS
+from ..methods import METHODS
 
 SPAN_S = 600  # a longer scene is cut to this, unless an end is given: 512 bits take a thousand times a double's time
 MOST_BITS = 4096

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from reference import InputError
 
-from ..pictures import COLOURS
+from ...verdicts.pictures import COLOURS
 from ..power_law import power_law
 from .drawing import BAND, FAINT, logarithmic, sheet, svg_text
 from .families import line_style

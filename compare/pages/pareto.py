@@ -13,7 +13,7 @@ from typing import Any
 
 from reference import InputError
 
-from .measure import EXTRAPOLATED, OK, Row
+from ..measuring.measure import EXTRAPOLATED, OK, Row
 from .power_law import LEAST_POINTS, PowerLaw, power_law
 
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors that the sentences speak of

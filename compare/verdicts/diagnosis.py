@@ -24,9 +24,9 @@ from reference.scene import Inputs
 from reference.sensitivity import Sensitivity, sensitivity, with_value
 from reference.solution import Array
 
-from .candidate import Candidate
+from ..candidates.candidate import Candidate
+from ..metrics import Errors
 from .hypotheses import hypotheses
-from .metrics import Errors
 
 EXPLAINED = 0.99  # of the root mean square error, below which nothing is offered
 SURE = 0.9999  # of it, from which a named mistake is not held against fitted inputs

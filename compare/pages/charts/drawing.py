@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from ..pictures import pyplot
+from ...verdicts.pictures import pyplot
 
 # In a page these follow its light or dark scheme, through these names: the greys of the sheet, and the darkest colour
 INKS = {

@@ -13,10 +13,10 @@ import numpy as np
 
 from reference import Scene
 
-from .approximations import APPROXIMATIONS
-from .approximations.domain import error_table, quantity_table
-from .approximations.limits import LIMITS, SWEEP_S, LimitRow, limits, sweep
-from .approximations.picture import plot
+from ..approximations import APPROXIMATIONS
+from ..approximations.domain import error_table, quantity_table
+from ..approximations.limits import LIMITS, SWEEP_S, LimitRow, limits, sweep
+from ..approximations.picture import plot
 from .page import Column, TableRow, figure, page, paragraph, section, table, write_files
 
 CSV, JSON, PAGE = "rows.csv", "approximations.json", "index.html"

@@ -26,7 +26,7 @@ from reference.precision import context
 from reference.solution import GRID_COLUMNS, Array
 from reference.worker import Emit
 
-from .methods import METHODS, Method, Outcome, Problem, available
+from ..methods import METHODS, Method, Outcome, Problem, available
 
 PROBE = 64  # part of the span that is run first, to warm up and to estimate
 LEAST_ROWS = 4  # of the grid in any span
