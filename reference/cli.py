@@ -20,9 +20,11 @@ Level = StrEnum("Level", list(LEVELS))  # type: ignore[misc]  # the functional f
 
 
 class Engine(StrEnum):
-    """What integrates."""
+    """What integrates; auto is limbs where numba is installed."""
 
+    auto = "auto"
     heyoka = "heyoka"
+    limbs = "limbs"
 
 
 SceneWord = Annotated[str, typer.Argument(metavar="SCENE", help="A scene's id, or the path of a TOML file.")]
@@ -138,12 +140,13 @@ def generate(
     t_end: Annotated[str | None, typer.Option("--t-end", metavar="S", help="End of the run in s.")] = None,
     digits: Annotated[str | None, typer.Option("--digits", metavar="D", help="Digits of each column.")] = None,
     level: Annotated[Level | None, typer.Option("--level", metavar="L", help=", ".join(LEVELS))] = None,
-    engine: Annotated[Engine, typer.Option("--engine", help="What integrates.")] = Engine.heyoka,
+    engine: Annotated[Engine, typer.Option("--engine", help="What integrates.")] = Engine.auto,
     no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for xdot = 0.")] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
     """Solve a scene and write its golden dataset."""
+    from .engines import engine_of
     from .golden import read_manifest
     from .publish import check_target, default_folder, write
 
@@ -156,7 +159,7 @@ def generate(
     from .solver import solve
 
     with progress(scene.id, float(scene.exact.t_end)) as report:
-        solution = solve(scene, report=report)
+        solution = solve(scene, engine=engine.value, report=report)
     write(solution, folder)
     count = len(solution.directions)
     bound = read_manifest(folder).bounds.position_m
@@ -170,7 +173,7 @@ def generate(
                 "out": str(folder),
                 "level": solution.level,
                 "digits": scene.run.digits,
-                "engine": engine.value,
+                "engine": engine_of(solution.run.number),
                 "transits": count,
                 "bound_m": float(bound),
                 "cpu_s": solution.pilot_s + solution.run.cpu_s + checks_s,

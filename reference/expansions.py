@@ -1,4 +1,4 @@
-"""heyoka's own run as the candidate of a proof: its Taylor polynomials, from a process of its own.
+"""A run as the candidate of a proof: its Taylor polynomials, heyoka's from a process of its own, or those of limbs.
 
 A polynomial serves both sides of its centre, so that of two steps one is sent. The proof takes them as they
 come: both cores work, and the pipe holds the run back if it is ahead. Nothing here is trusted: what is wrong
@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .engines import HEYOKA, fastest
 from .errors import IntegrationError
 from .mechanics import FORMULATIONS
 from .precision import real
@@ -27,7 +28,10 @@ from .worker import Emit, Worker
 if TYPE_CHECKING:
     from .taylor import Polynomials
 
-GUARD_BITS = 16  # coefficients carry this much below the run's epsilon
+GUARD_BITS = 20  # coefficients carry this much below the run's epsilon
+ORDER_PER_BIT = (
+    0.5  # of a candidate in limbs: fewer steps to prove are worth a higher order than a run alone would take
+)
 BATCH = 32  # steps sent at once
 SHRINK = 0.995  # of the step heyoka would take, before it is cut to few bits
 STEP_BITS = 6  # mantissa of a step: equal steps share their scaled constants, and times stay short
@@ -35,15 +39,17 @@ STEP_BITS = 6  # mantissa of a step: equal steps share their scaled constants, a
 
 @dataclass
 class Feed:
-    """Starts heyoka in `momentum` at a precision, hands on its polynomials, and keeps what the run computed.
+    """Starts a run at a precision, hands on its polynomials, and keeps what it computed.
 
     Attributes:
         inputs: the scene's exact inputs.
         times: output times in s; the run goes one step beyond the last.
+        engine: limbs, whose run costs so little that it needs no process, or heyoka, in `momentum`.
     """
 
     inputs: Inputs
     times: tuple[Fraction, ...]
+    engine: str = HEYOKA
     _worker: Worker | None = field(default=None, repr=False)
     _open: Iterator[Any] = field(default_factory=lambda: iter(()), repr=False)
     _done: Run | None = field(default=None, repr=False)
@@ -51,9 +57,29 @@ class Feed:
     def __call__(self, prec: int) -> Iterator[Any]:
         """The steps to prove of a run at `prec` bits, in order from t = 0."""
         self.stop()
+        formulation, number = fastest(prec, self.engine)
+        if number.name == "limbs":
+            self._open = self._of_limbs(Plan(self.inputs, formulation, number, self.times, transits=False))
+            return self._open
         self._worker = Worker(_proposals, self.inputs, self.times, prec)
         self._open = self._received(self._worker)
         return self._open
+
+    @property
+    def workers(self) -> int | None:
+        """Processes that the proof may use besides: heyoka's run has one of its own."""
+        return 1
+
+    def _of_limbs(self, plan: Plan) -> Iterator[Any]:
+        from . import limbs
+        from .enclosure import pair
+
+        bits = plan.number.prec + GUARD_BITS
+
+        def chain() -> Iterator[limbs.Expansion]:
+            self._done = yield from limbs.expand(plan, round(ORDER_PER_BIT * bits))
+
+        return pair(chain())
 
     def finished(self) -> Run:
         """What the last run computed at `times`."""

@@ -156,6 +156,30 @@ class Momentum:
         return (*v, *torque)
 
 
+class Inertial:
+    """V = n' + Ω × n: n' = V - Ω × n, V' = c - Ω × V - n (V·V + n·c) - γ n'; off the sphere only while a step lasts."""
+
+    name = "inertial"
+    variables = ("nx", "ny", "nz", "Vx", "Vy", "Vz")
+
+    def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
+        """State of a bob at n with velocity v."""
+        return (*n, *add(v, cross(k.turn, n)))
+
+    def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
+        """N and V - Ω × n."""
+        n, whole = _halves(state)
+        return n, subtract(whole, cross(k.turn, n))
+
+    def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
+        """Lines of the class's docstring."""
+        n, whole = _halves(state)
+        _, v = self.cartesian(state, k, functions)
+        pull = plus(dot(whole, whole), dot(n, k.pull))
+        steady = subtract(k.pull, cross(k.turn, whole))
+        return (*v, *subtract(subtract(steady, scale(pull, n)), scale(k.drag, v)))
+
+
 class Space:
     """n'' = F - n (v·v + n·F): polynomial, but rounding leaves the sphere wherever the cord is pushed."""
 
@@ -313,7 +337,7 @@ class Lagrangian(Angles):
         return plus(kinetic, times(k.gravity, cp))
 
 
-_ALL: tuple[Formulation, ...] = (Momentum(), Space(), Spin(), Plane(), Angles(), Lagrangian())
+_ALL: tuple[Formulation, ...] = (Momentum(), Inertial(), Space(), Spin(), Plane(), Angles(), Lagrangian())
 FORMULATIONS: dict[str, Formulation] = {made.name: made for made in _ALL}
 
 

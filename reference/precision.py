@@ -25,7 +25,7 @@ class NumberType:
     prec: int
 
     def __str__(self) -> str:
-        return f"real({self.prec})" if self.name == "real" else self.name
+        return f"{self.name}({self.prec})" if self.name in ("real", "limbs") else self.name
 
 
 DOUBLE = NumberType("double", DOUBLE_BITS)
@@ -35,6 +35,11 @@ LONG_DOUBLE = NumberType("long_double", LONG_DOUBLE_BITS)
 def real(prec: int) -> NumberType:
     """Binary floating point (MPFR) of `prec` bits."""
     return NumberType("real", prec)
+
+
+def limbs(prec: int) -> NumberType:
+    """Digits of radix 2**22 that keep `prec` bits of a number as large as the swing (`reference.limbs`)."""
+    return NumberType("limbs", prec)
 
 
 def cheapest_type(prec: int) -> NumberType:

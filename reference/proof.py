@@ -1,7 +1,7 @@
-"""The level `enclosed`: balls that contain the truth, turned into digits; heyoka's runs are held against them.
+"""The level `enclosed`: balls that contain the truth, turned into digits; runs are held against them.
 
-The candidate is heyoka's own run, so the proof is one about that run; a second run with event detection, in the
-cheapest type that serves, has to find the same transits.
+The candidate is a run of heyoka or in limbs, so the proof is one about that run; a second run with heyoka's event
+detection, in the cheapest type that serves, has to find the same transits.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ ROUNDING_SLACK = 12  # bits that evaluating a run's polynomial may lose, by whic
 SCALE_BITS = 64  # of the tables' integers, below the smallest ball
 
 
-def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], report: Report | None) -> Solution:
+def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:
     """Enclose a scene's states and transits so tightly that every digit asked for is decided.
 
     Raises:
         InputError: python-flint is not installed.
         UnreachableError: balls small enough cannot be had; says what was reached.
-        IntegrationError: heyoka's run lies outside the enclosure.
+        IntegrationError: the run lies outside the enclosure.
     """
     try:
         from . import enclosure
@@ -45,7 +45,7 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], report: Report | N
     growth = measure_growth(scene.exact, times)
     span = float(times[-1])
     radius = _usual_unit(growth, scene.run.digits) / 2**ROUNDING_BITS
-    feed = Feed(scene.exact, times)
+    feed = Feed(scene.exact, times, engine)
 
     try:
         for _ in range(ROUNDING_TRIES):
@@ -55,7 +55,7 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], report: Report | N
                 radius=radius,
                 transits=scene.run.transits,
                 candidate=lambda bits: feed(bits - GUARD_BITS),
-                workers=1,
+                workers=feed.workers,
                 progress=report and _scaled(report, span),
             )
             try:
@@ -126,7 +126,7 @@ def _table(columns: tuple[str, ...], rows: Sequence[Sequence[Any]], scale: int) 
 
 
 def _checked_states(grid: Table, times: tuple[Fraction, ...], feed: Run) -> tuple[Fraction, ...]:
-    """How far heyoka's states are from the middles of the balls, per column, in m and m/s.
+    """How far the run's states are from the middles of the balls, per column, in m and m/s.
 
     Raises:
         IntegrationError: one lies outside its ball by more than the rounding of its evaluation.
@@ -138,7 +138,7 @@ def _checked_states(grid: Table, times: tuple[Fraction, ...], feed: Run) -> tupl
             gap = abs(Fraction(row[i], 2**feed.scale) - Fraction(middles[i], 2**grid.scale))
             gaps[i] = max(gaps[i], gap)
             if gap > Fraction(errors[i], 2**grid.scale) + rounding:
-                raise IntegrationError(f"heyoka's run is outside the enclosure at t = {float(t)} s in {name}.")
+                raise IntegrationError(f"the run is outside the enclosure at t = {float(t)} s in {name}.")
     return tuple(gaps)
 
 

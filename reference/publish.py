@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from .certified import certified_page
+from .engines import engine_of
 from .equations import lines_and_left_out
 from .errors import DatasetError, InputError
 from .golden import MANIFEST, read_manifest, scene_of
@@ -97,7 +98,7 @@ def render(solution: Solution) -> dict[str, str]:
         ],
         enclosure=_enclosure_record(solution),
         generator={name: _version(name) for name in ("foucault-reference", "heyoka", "mpmath")},
-        command=command(scene),
+        command=command(scene, run.number),
         files={
             name: FileRecord(bytes=len(text.encode()), sha256=hashlib.sha256(text.encode()).hexdigest())
             for name, text in files.items()
@@ -137,11 +138,12 @@ def _version(package: str) -> str:
         return "unknown"
 
 
-def command(scene: Scene) -> str:
+def command(scene: Scene, number: str) -> str:
     """The command that makes the dataset: of a scene that ships, with what was changed in it, or of its file."""
     run, shipped = scene.run, scene.id in scene_ids()
     parts = ["foucault", "generate", scene.id if shipped else f"{scene.id}.toml"]
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
+    parts += ["--engine", engine_of(number)]
     parts += [] if run.transits else ["--no-transits"]
     if shipped:
         parts += [word for change in _changes(scene, load_scene(scene.id)) for word in ("--set", change)]
@@ -250,7 +252,8 @@ def recompute(folder: Path, report: Report | None = None) -> list[str]:
     Raises:
         UnreachableError: it cannot be solved again.
     """
-    made = render(solve(scene_of(read_manifest(folder)), report=report))
+    manifest = read_manifest(folder)
+    made = render(solve(scene_of(manifest), engine=engine_of(manifest.run.number), report=report))
     return [
         f"{name}: recomputing gives other bytes"
         for name, text in made.items()

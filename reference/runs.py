@@ -85,8 +85,12 @@ def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[taylor.S
         look_ahead: called before the first step; leaves the stepper as it was, or raises.
 
     Raises:
-        IntegrationError: heyoka warned or stopped, or transits contradict each other.
+        IntegrationError: the integrator warned or stopped, or transits contradict each other.
     """
+    if plan.number.name == "limbs":
+        from . import limbs  # and numba as long
+
+        return limbs.run(plan, report)
     from . import taylor  # heyoka takes 0.2 s to import and is not needed to check or show a scene
 
     ctx, k, n, v = start_of(plan.inputs, plan.number)

@@ -14,6 +14,7 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+from . import engines
 from .errors import UnreachableError
 from .growth import (
     MARGIN_BITS,
@@ -26,7 +27,7 @@ from .growth import (
     largest_of,
     measure_growth,
 )
-from .precision import LONG_DOUBLE, cheapest_type, real
+from .precision import LONG_DOUBLE, real
 from .runs import Plan, Report, Run, run, run_both
 from .scene import Scene
 from .solution import (
@@ -60,6 +61,7 @@ def solve(
     level: str | None = None,
     t_end: str | None = None,
     transits: bool | None = None,
+    engine: str | None = None,
     report: Report | None = None,
 ) -> Solution:
     """Solve a scene to the digits and the level asked (the scene's own where not given).
@@ -70,6 +72,8 @@ def solve(
         level: one of `scene.LEVELS`.
         t_end: end of the run in s, as a decimal string.
         transits: whether to find every zero of xdot.
+        engine: "heyoka", "limbs" (many digits fast, needs numba), or None for limbs where it is installed. At the level
+            confirmed the run that confirms is always heyoka's.
         report: called with the simulated time reached, in s.
 
     Returns:
@@ -83,34 +87,39 @@ def solve(
     scene = scene.with_values(f"run.{key}={value}" for key, value in wanted.items() if value is not None)
     inputs, asked = scene.exact, scene.run
     times = tuple(inputs.grid)
+    engine = engines.chosen(engine)
     if asked.level == "enclosed":
         from .proof import solve_enclosed  # the proof is not imported unless the level asks for it
 
-        return solve_enclosed(scene, times, report)
+        return solve_enclosed(scene, times, engine, report)
     growth = measure_growth(inputs, times)
     if asked.level == "computed":
-        return _computed(scene, times, growth, report)
-    return _agreed(scene, times, growth, report)
+        return _computed(scene, times, growth, engine, report)
+    return _agreed(scene, times, growth, engine, report)
 
 
-def _computed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: Report | None) -> Solution:
+def _computed(
+    scene: Scene, times: tuple[Fraction, ...], growth: Growth, engine: str, report: Report | None
+) -> Solution:
     prec = growth.bits_for(scene.run.digits, _span(scene), checked=False)
     _check_reach(growth, prec, scene.run.digits)
-    number = cheapest_type(_rounded(prec) if prec > LONG_DOUBLE.prec else prec)
-    done = run(Plan(scene.exact, "momentum", number, times, scene.run.transits), report)
+    formulation, number = engines.fastest(_rounded(prec) if prec > LONG_DOUBLE.prec else prec, engine)
+    done = run(Plan(scene.exact, formulation, number, times, scene.run.transits), report)
     return _assemble(scene, times, done, growth.estimates(number.prec), None, (), growth)
 
 
-def _agreed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, report: Report | None) -> Solution:
+def _agreed(scene: Scene, times: tuple[Fraction, ...], growth: Growth, engine: str, report: Report | None) -> Solution:
     confirmed = scene.run.level == "confirmed"
-    other = confirming_formulation(growth) if confirmed else "momentum"
+    other = confirming_formulation(growth)
     prec = _rounded(max(growth.bits_for(scene.run.digits, _span(scene), checked=True), LONG_DOUBLE.prec))
     _check_reach(growth, prec, scene.run.digits)
     before: Fraction | None = None
     for _ in range(MAX_RAISES):
-        fine = Plan(scene.exact, "momentum", real(prec + FINER_BITS), times, scene.run.transits)
-        coarse = replace(fine, formulation=other, number=real(prec))
-        published, witness = run_both(fine, coarse, _expected_s(growth, prec), report)
+        formulation, number = engines.fastest(prec + FINER_BITS, engine)
+        fine = Plan(scene.exact, formulation, number, times, scene.run.transits)
+        checking = (other, real(prec)) if confirmed else engines.fastest(prec, engine)
+        coarse = replace(fine, formulation=checking[0], number=checking[1])
+        published, witness = run_both(fine, coarse, _expected_s(growth, fine), report)
         missing, grid_gap, zero_gap = _missing_bits(published, witness, scene.run.digits)
         if not missing:
             errors = tuple(2 * gap for gap in grid_gap)
@@ -150,9 +159,9 @@ def _rounded(prec: int) -> int:
     return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
 
 
-def _expected_s(growth: Growth, prec: int) -> float:
+def _expected_s(growth: Growth, plan: Plan) -> float:
     """CPU seconds of a `real` run, from the pilot's steps: 0.6 ms a step at 160 bits, growing with the square."""
-    return growth.steps * 6e-4 * (prec / 160) ** 2
+    return 0.0 if plan.number.name == "limbs" else growth.steps * 6e-4 * (plan.number.prec / 160) ** 2
 
 
 def _missing_bits(

@@ -233,10 +233,12 @@ def test_bounds_cover_the_rounding_to_the_printed_digits(dataset):
 
 def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     plain = "foucault generate paris --t-end 86400 --digits 40 --level confirmed"
-    assert publish.command(paris) == plain
+    assert publish.command(paris, "real(184)") == f"{plain} --engine heyoka"
+    assert publish.command(paris, "limbs(184)") == f"{plain} --engine limbs"
     changed = paris.with_values(["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"])
     sets = "--set site.latitude=0 --set release.vx=1 --set run.grid_step=600 --set inputs=binary64"
-    assert publish.command(changed) == f"{plain} {sets}"
-    words = [word for word in publish.command(changed).split() if "=" in word]
+    named = publish.command(changed, "double")
+    assert sets in named and named.startswith(plain)
+    words = [word for word in named.split() if "=" in word]
     assert paris.with_values(words) == changed
-    assert publish.command(make_scene("mine")).startswith("foucault generate mine.toml --t-end")
+    assert publish.command(make_scene("mine"), "double").startswith("foucault generate mine.toml --t-end")

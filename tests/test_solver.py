@@ -77,7 +77,12 @@ def test_the_bound_of_a_transit_is_the_error_of_xdot_over_ax(paris):
 
 def test_double_serves_where_few_digits_are_asked_and_real_where_many_are(paris):
     assert reference.solve(paris, t_end="60", digits=6, level="computed").run.number == "double"
-    assert reference.solve(paris, t_end="60", digits=30, level="computed").run.number.startswith("real")
+    many = {"t_end": "60", "digits": 30, "level": "computed"}
+    assert reference.solve(paris, **many, engine="heyoka").run.number.startswith("real")
+    assert reference.solve(paris, **many, engine="limbs").run.number.startswith("limbs")
+    assert reference.solve(paris, **many).run.number.startswith("limbs")  # the cheapest, where numba is installed
+    with pytest.raises(InputError, match="engine"):
+        reference.solve(paris, **many, engine="abacus")
 
 
 def test_arrays_are_the_nearest_doubles_of_the_exact_values(paris):

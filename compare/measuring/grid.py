@@ -22,7 +22,7 @@ def on_doubles(scene: Scene) -> Scene:
         return scene
     mantissa, exponent = math.frexp(float(inputs.grid_step))
     step = Fraction(round(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
-    rows = max(1, round(inputs.t_end / step))
+    rows = max(1, math.floor(inputs.t_end / step))
     return scene.with_values([f"run.grid_step={_decimal(step)}", f"run.t_end={_decimal(rows * step)}"])
 
 

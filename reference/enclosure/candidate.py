@@ -6,7 +6,7 @@ every second one of a chain has to be proved: `pair` joins them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fractions import Fraction
 from operator import mul
 from typing import Any, NamedTuple, Protocol
@@ -60,7 +60,7 @@ class Series(Protocol):
         """Coefficients are integers over 2^bits."""
 
     @property
-    def coefficients(self) -> tuple[list[int], ...]:
+    def coefficients(self) -> Sequence[list[int]]:
         """Six rows."""
 
 

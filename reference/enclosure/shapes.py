@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -44,7 +45,7 @@ class Step(NamedTuple):
     low: Fraction  # -1 <= low < high <= 1
     high: Fraction
     bits: int
-    coefficients: tuple[list[int], ...]
+    coefficients: Sequence[list[int]]
 
 
 class Sizes(NamedTuple):

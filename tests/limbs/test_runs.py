@@ -13,7 +13,7 @@ import pytest
 
 pytest.importorskip("numba")
 
-from conftest import make_scene
+from small_scenes import make_scene
 
 from reference import limbs
 from reference.errors import InputError, IntegrationError

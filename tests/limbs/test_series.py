@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("numba")
 
-from conftest import make_scene
+from small_scenes import make_scene
 
 from reference import limbs
 from reference.runs import Plan
