@@ -34,6 +34,7 @@ def golden_of(
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
     until: float | None = None,
+    level: str = "confirmed",
 ) -> Golden:
     """The dataset that solves a scene: the one that ships, or one that is solved now and kept in the cache.
 
@@ -43,6 +44,7 @@ def golden_of(
         announce: told when a scene has to be solved.
         report: called with the simulated time reached, in s.
         until: a new dataset need not go further than the first grid time from here on, in s.
+        level: of a new dataset.
 
     Raises:
         UnreachableError: the scene cannot be solved to the digits.
@@ -51,7 +53,7 @@ def golden_of(
         golden = load(folder)
         if solves(golden, scene) and golden.manifest.digits >= digits:
             return golden
-    wanted = _shortened(scene, until).with_values([f"run.digits={digits}", "run.level=confirmed"])
+    wanted = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
     name = f"{scene.id}-{_problem(wanted)}"
     path = cache.found("golden", name)
     if path is not None:

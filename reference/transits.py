@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 MAX_LOOKS = 6  # steps are retaken this often before a run is given up
 SHORTER = Fraction(79, 128)  # retaken steps are cut by this: no simple ratio, so that no edge returns
 DIP_BISECTIONS = 60
+AT_REST = "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
 
 
 class _Doubt(Exception):
@@ -70,7 +71,7 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
             return step / Fraction(2) ** halvings
     raise IntegrationError(
         "xdot does not leave zero at t = 0 in the working precision.",
-        "Where the bob stays at rest there are no transits: run.transits = false.",
+        AT_REST,
     )
 
 
@@ -118,7 +119,7 @@ def march(
             if looks > MAX_LOOKS:
                 raise IntegrationError(
                     f"zeros of xdot near t = {float(stepper.time)} s: {doubt}.",
-                    "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false.",
+                    AT_REST,
                 ) from None
             limit = (stepper.time - before[-1][0][0]) * stepper.numbers.of(SHORTER**looks)
             mark, kept_states, kept_zeros = before[0]

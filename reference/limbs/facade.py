@@ -15,7 +15,7 @@ from ..errors import InputError, IntegrationError
 from ..precision import NumberType
 from ..runs import Plan, Run
 from ..scene import Inputs
-from ..transits import xdot_vanishes, zero_at_release
+from ..transits import AT_REST, xdot_vanishes, zero_at_release
 from .digits import DIGIT_BITS, Array, aligned, fraction_bits, joined
 from .expansion import Expansion
 from .lanes import LANES
@@ -96,7 +96,9 @@ class March:
         if said == STUCK:
             raise IntegrationError(f"no step is short enough at t = {self.time} s.")
         if said == DOUBTFUL:
-            raise IntegrationError(f"zeros of xdot near t = {self.time} s: xdot touches zero within the precision.")
+            raise IntegrationError(
+                f"zeros of xdot near t = {self.time} s: xdot touches zero within the precision.", AT_REST
+            )
         return bool(said == GOOD)
 
     def _keep_zeros(self) -> None:
