@@ -78,6 +78,9 @@ def scenes(as_json: AsJson = False) -> None:
 def show(
     scene_word: SceneWord,
     equations: Annotated[bool, typer.Option("--equations", help="The compiled lines, and what was left out.")] = False,
+    sensitivity: Annotated[
+        bool, typer.Option("--sensitivity", help="How many digits the flow costs between release and end.")
+    ] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
@@ -88,6 +91,10 @@ def show(
         from .equations import lines_and_left_out
 
         document["equations"], document["left_out"] = lines_and_left_out(scene, "momentum")
+    if sensitivity:
+        from .growth import digits_lost
+
+        document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
     if as_json:
         emit(document)
         return
@@ -100,6 +107,10 @@ def show(
     for section, table in scene_inputs(scene).items():
         typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
+    if sensitivity:
+        lost = document["digits_lost"]
+        typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
+        typer.echo(f"  the inputs have to be right to n + {lost:.1f}")
     if equations:
         typer.echo("compiled (momentum form; n = r/l, H = n × (n' + Ω × n), c = pull/l):")
         for line in document["equations"]:

@@ -132,7 +132,7 @@ def _digits(value: int) -> int:
 class Run(_Table):
     """Time span and grid (s), digits asked for, level of trust, transits or not."""
 
-    t_end: Positive = "86400"
+    t_end: Annotated[Number, _within("0", "1e15", open_low=True)] = "86400"
     grid_step: Positive = "60"
     digits: Annotated[int, AfterValidator(_digits)] = 40
     level: Level = "confirmed"

@@ -229,3 +229,15 @@ def gone_within(group: int, seconds: float) -> bool:
             return True
         time.sleep(0.1)
     return False
+
+
+def test_show_says_how_many_digits_the_flow_costs(foucault):
+    said = json.loads(foucault("show", "two_radians", "--sensitivity", "--json")[1])
+    assert 2 < said["digits_lost"] < 4
+    assert f"the flow costs {said['digits_lost']:.1f} digits" in foucault("show", "two_radians", "--sensitivity")[1]
+
+
+def test_an_end_beyond_all_numbers_is_refused(foucault):
+    status, _, err = foucault("generate", "paris", "--t-end", "1e399")
+    assert status == 2
+    assert "run.t_end" in err
