@@ -115,7 +115,7 @@ def run_program(
             process.wait()
             raise
         finally:
-            limits.over.set()
+            limits.end()
             _kill_group(process.pid)  # what it left running in the background
         wall, tail = time.monotonic() - begun, _tail(errors)
         if limits.reason:
@@ -136,8 +136,14 @@ class _Limits:
         self.reason = ""
         self.over = threading.Event()
         self._process = process
-        watch = threading.Thread(target=self._watch, args=(output, errors, timeout_s, max_bytes), daemon=True)
-        watch.start()
+        watched = (output, errors, timeout_s, max_bytes)
+        self._thread = threading.Thread(target=self._watch, args=watched, daemon=True)
+        self._thread.start()
+
+    def end(self) -> None:
+        """Stop watching; when this returns nobody looks at the files any more."""
+        self.over.set()
+        self._thread.join()
 
     def _watch(self, output: BinaryIO, errors: BinaryIO, timeout_s: float, max_bytes: int) -> None:
         end = time.monotonic() + timeout_s
