@@ -109,7 +109,10 @@ def page_text(cells: Sequence[Cell], runs: Sequence[Growth], machine: dict[str, 
     ]
     measured = [run for run in runs if run.exponent is not None]
     if measured:
-        lines = [Line(f"{run.method}, {run.formulation}", np.array(run.t), np.array(run.error_m)) for run in measured]
+        lines = [
+            Line(f"{run.method}, {run.formulation}", np.array(run.t), np.array(run.error_m), run.exponent)
+            for run in measured
+        ]
         caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
         picture = figure(error_growth(lines, max(run.bound_m for run in measured)), caption)
         parts.append(section("Long runs", picture, findings(laws(runs))))

@@ -31,11 +31,13 @@ class Growth:
         label: of the line.
         t: times in s, increasing, shape (rows,).
         error: at these times, shape (rows,).
+        exponent: of its growth where that is known; fitted to the last decade of time if None.
     """
 
     label: str
     t: npt.NDArray[np.float64]
     error: npt.NDArray[np.float64]
+    exponent: float | None = None
 
     def so_far(self) -> tuple[list[float], list[float]]:
         """Times and the largest error up to them, at few enough points to draw."""
@@ -78,7 +80,7 @@ def error_growth(
         for i, (label, t, error) in enumerate(drawn):
             look = line_style(COLOURS[i % len(COLOURS)], i) | {"marker": ""}
             axes.plot(t, error, **look, zorder=3)
-            labels.append(Label(f"{label}{_slope(t, error)}", look["color"], t, error))
+            labels.append(Label(f"{label}{_slope(t, error, lines[i].exponent)}", look["color"], t, error))
         for end, low in fans:
             for slope, name in SLOPES:
                 x, y = [end / _FAN, end], [low, low * _FAN**slope]
@@ -90,8 +92,10 @@ def error_growth(
         return svg_text(figure, "growth", f"Error over time, log-log: {', '.join(label for label, *_ in drawn)}.")
 
 
-def _slope(t: Sequence[float], error: Sequence[float]) -> str:
-    """The fitted exponent of the last decade of time."""
+def _slope(t: Sequence[float], error: Sequence[float], known: float | None) -> str:
+    """The exponent, fitted to the last decade of time if it is not known."""
+    if known is not None:
+        return f", t^{known:.2f}"
     late = [(a, b) for a, b in zip(t, error, strict=True) if a >= t[-1] / 10]
     try:
         law = power_law([a for a, _ in late], [b for _, b in late])
