@@ -12,7 +12,7 @@ from reference.mechanics import plus, times
 
 from ..equations.problem import Array, Problem
 from ..equations.tracing import Program
-from .method import Outcome, Work, outcome
+from .method import Method, Outcome, Work, outcome
 from .tableau import NystromTableau, Tableau
 
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
@@ -117,6 +117,27 @@ def nystrom(tableau: NystromTableau) -> Step:
         return stage(Fraction(1), tableau.position_weights, tableau.velocity_weights)
 
     return step
+
+
+def nystrom_method(name: str, title: str, tableau: NystromTableau, ladder: tuple[float, ...], source: str) -> Method:
+    """The declaration of a Runge-Kutta-Nyström method with a fixed step; it wants a state (y, y')."""
+
+    def prepare(problem: Problem, setting: float) -> Work:
+        return prepare_fixed(problem, setting, nystrom(tableau), stages=len(tableau.c))
+
+    return Method(
+        id=name,
+        title=title,
+        setting="step",
+        ladder=ladder,
+        source=source,
+        licence="this project's",
+        prepare=prepare,
+        formulations=("plane", "space"),
+        dense=False,
+        requires=("numba",),
+        extra="methods",
+    )
 
 
 def combined(weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]], size: int) -> list[Any]:

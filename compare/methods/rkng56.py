@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from ..equations.problem import Problem
-from .fixed_step import nystrom, prepare_fixed
-from .method import Method, Work
+from .fixed_step import nystrom_method
 from .tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(
@@ -38,22 +36,10 @@ TABLEAU = NystromTableau(
 # (table, row, column, as printed): public copies have these where the conditions want the entry above
 MISPRINTS = (("position", 4, 0, "81/840"),)
 
-
-def prepare(problem: Problem, setting: float) -> Work:
-    """Fixed step of `setting` seconds."""
-    return prepare_fixed(problem, setting, nystrom(TABLEAU), stages=len(TABLEAU.c))
-
-
-METHOD = Method(
-    id="rkng56",
-    title="Runge-Kutta-Nyström-Fehlberg RKN-G 5(6), order 5",
-    setting="step",
-    ladder=(1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01),
-    source="E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 5",
-    licence="this project's",
-    prepare=prepare,
-    formulations=("plane", "space"),
-    dense=False,
-    requires=("numba",),
-    extra="methods",
+METHOD = nystrom_method(
+    "rkng56",
+    "Runge-Kutta-Nyström-Fehlberg RKN-G 5(6), order 5",
+    TABLEAU,
+    (1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01),
+    "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 5",
 )

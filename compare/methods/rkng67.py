@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ..equations.problem import Problem
-from .fixed_step import nystrom, prepare_fixed
-from .method import Method, Work
+from .fixed_step import nystrom_method
 from .tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(
@@ -79,22 +77,10 @@ MISPRINTS = (
     ("position", 9, 7, "1.6612294394931082916619461943874"),
 )
 
-
-def prepare(problem: Problem, setting: float) -> Work:
-    """Fixed step of `setting` seconds."""
-    return prepare_fixed(problem, setting, nystrom(TABLEAU), stages=len(TABLEAU.c))
-
-
-METHOD = Method(
-    id="rkng67",
-    title="Runge-Kutta-Nyström-Fehlberg RKN-G 6(7), order 6",
-    setting="step",
-    ladder=(2, 1, 0.5, 0.2, 0.1, 0.05, 0.02),
-    source="E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 6",
-    licence="this project's",
-    prepare=prepare,
-    formulations=("plane", "space"),
-    dense=False,
-    requires=("numba",),
-    extra="methods",
+METHOD = nystrom_method(
+    "rkng67",
+    "Runge-Kutta-Nyström-Fehlberg RKN-G 6(7), order 6",
+    TABLEAU,
+    (2, 1, 0.5, 0.2, 0.1, 0.05, 0.02),
+    "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 6",
 )

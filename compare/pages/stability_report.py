@@ -25,8 +25,6 @@ from .charts.heat_map import Cell as Field
 from .page import Column, TableRow, facts, figure, findings, page, paragraph, section, table, write_files
 
 CSV, JSON, PAGE = "rows.csv", "stability.json", "index.html"
-STIFF_METHODS = ("scipy_radau", "scipy_bdf", "scipy_lsoda", "cvode_bdf", "numbalsoda_lsoda")
-EXPLICIT_METHODS = ("scipy_rk45", "scipy_dop853", "cvode_adams", "numbalsoda_dop853")
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
 
 

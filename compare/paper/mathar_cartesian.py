@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from .digits import MP, Vector, cos, shown, sin
-from .judge import Check, Finding, Identity, Statement, component
+from .judge import Check, Finding, Identity, Statement
 from .points import Point, points
 from .truth import by_plane, euler_lagrange, horizontal_acceleration, in_rate
 
@@ -94,12 +94,6 @@ def _east_unbiased() -> Finding:
     p = points()[0].but(rate=MP.zero)
     gap = solved(p)[0] - solved(_swapped(p))[1]
     return Finding(abs(gap) < MP.mpf("1e-45"), f"x'' - (y'' with x and y exchanged) at Ω = 0: {shown(gap)}")
-
-
-def _beta(number: str, i: int, power: int, printed: str) -> Identity:
-    """The row of one coefficient, of the equation for x (0) or y (1)."""
-    formula = component((beta_x, beta_y)[i], power)
-    return Identity(f"mathar_{number}", f"{IV} ({number})", printed, formula, _coefficient(i, power))
 
 
 def checks() -> list[Check]:

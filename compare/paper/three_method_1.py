@@ -128,7 +128,3 @@ def checks() -> list[Check]:
 def _turned(s: Any) -> Point:
     here = paris()
     return here.but(rate=here.rate * s)
-
-
-def _tilde_by(p: Point, crossed: Any) -> Any:
-    return sqrt(p.gravity / p.length + crossed - axes_rate(p) ** 2)

@@ -18,7 +18,6 @@ from ..mechanics import add, cross
 from ..precision import GUARD_BITS, context
 from ..scene import Inputs
 from .digits import MOST_LIMBS, Array, fraction_bits, rows_of
-from .lanes import LANES
 from .series import Line
 from .step import GRAINS, MOST_GRAINS, Model
 
@@ -138,8 +137,3 @@ def _unit(k: Constants, v: Vector, ctx: Any) -> tuple[Fraction, int]:
     step = GUESS / rate if rate > 0 else 1.0
     mantissa, exponent = math.frexp(step)
     return Fraction(2) ** exponent, max(1, int(mantissa * GRAINS))
-
-
-def padded(count: int) -> Array:
-    """Rows for one number in each lane, with two to spare."""
-    return np.zeros(LANES * (count + 2))
