@@ -133,14 +133,14 @@ def _next_step(step: Polynomials, order: int) -> Fraction:
 
 
 def _proposals(emit: Emit, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> None:
-    from .enclosure import pair
+    from .enclosure import pair, turned
 
     done: list[Run] = []
 
     def chain() -> Iterator[Polynomials]:
         done.append((yield from expand(inputs, times, prec)))
 
-    steps = pair(chain())
+    steps = pair(turned(inputs, chain()))
     while batch := list(islice(steps, BATCH)):
         emit(batch)
     emit(done[0])

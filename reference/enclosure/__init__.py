@@ -4,8 +4,8 @@ Trusted, and in no need of anything else: `balls`, `bound`, `columns`, `transits
 proposes, and `run`, which chooses precision and hands steps on. Ends of intervals are fractions: no flint leaves here.
 """
 
-from .candidate import Expansion, from_rates, pair
+from .candidate import Expansion, pair, turned
 from .run import Cost, Enclosure, enclose
 from .shapes import EnclosedTransit, Interval, Step
 
-__all__ = ["Cost", "EnclosedTransit", "Enclosure", "Expansion", "Interval", "Step", "enclose", "from_rates", "pair"]
+__all__ = ["Cost", "EnclosedTransit", "Enclosure", "Expansion", "Interval", "Step", "enclose", "pair", "turned"]

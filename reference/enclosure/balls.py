@@ -3,12 +3,13 @@
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, fmpq, fmpz
+from flint import arb, arb_poly, fmpq, fmpz
 
 from .shapes import Interval
 
 SHORT = 64  # bits for bounds, where only the leading digits count
 HUGE = fmpz(1) << 64  # nothing that is larger says anything about a sphere of radius 1
+UNIT = arb(0, 1)  # all |s| <= 1
 Vector = list[Any]  # three balls, or three integer polynomials
 
 
@@ -27,9 +28,8 @@ def upper(x: arb) -> arb:
 def interval(x: arb) -> Interval:
     """The exact ends of a ball."""
     upper(abs(x) / HUGE)
-    (mid, e), (rad, f) = ([int(i) for i in part.man_exp()] for part in (x.mid(), x.rad()))
-    low = min(e, f, 0)
-    return Interval(*(Fraction((mid << (e - low)) + side * (rad << (f - low)), 1 << -low) for side in (-1, 1)))
+    ends = ((int(n), int(e)) for n, e in (x.lower().man_exp(), x.upper().man_exp()))
+    return Interval(*(Fraction(n << max(e, 0), 1 << max(-e, 0)) for n, e in ends))
 
 
 def integer(x: arb, bits: int) -> fmpz:
@@ -69,7 +69,6 @@ def size(a: Vector) -> arb:
     return upper(upper(sum((x.abs_upper() ** 2 for x in a), arb(0))).sqrt())
 
 
-def norm3(f: Vector, bits: int) -> arb:
-    """Sup norm on |s| <= 1 of three integer polynomials over 2^bits: Σ|coefficient| of each."""
-    sums = [sum(map(abs, x.coeffs()), fmpz(0)) for x in f]
-    return upper(arb(fmpz(sum(n * n for n in sums)).isqrt() + 1) / (fmpz(1) << bits))
+def norm(f: Vector, bits: int) -> arb:
+    """Sup norm on |s| <= 1 of integer polynomials over 2^bits, as a vector."""
+    return size([arb_poly(x)(UNIT) / (fmpz(1) << bits) for x in f])

@@ -7,14 +7,17 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any
 
-from flint import arb, arb_poly, ctx, fmpq, fmpz, fmpz_poly
+from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
-from .balls import SHORT, Vector, add, ball, cross, dot, fixed, interval, norm3, size, times, upper
+from .balls import SHORT, Vector, add, ball, cross, dot, fixed, interval, norm, size, times, upper
 from .shapes import Interval, Sizes, Step, Tube
 
 
 class World:
-    """The scene at `prec` bits, from its exact inputs alone; what is exactly 0 stays so."""
+    """The scene at `prec` bits, from its exact inputs alone; what is exactly 0 stays so.
+
+    Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z.
+    """
 
     def __init__(self, inputs: Any, prec: int) -> None:
         if inputs.drag < 0 or inputs.length <= 0:
@@ -26,12 +29,14 @@ class World:
             f, self.length, self.drag = ball(inputs.flattening), ball(inputs.length), ball(inputs.drag)
             normal = ball(inputs.equatorial_radius) / (1 - f * (2 - f) * sin * sin).sqrt()
             pull = rate * rate * (normal + ball(inputs.altitude)) * cos  # centrifugal, at the pivot
-            self.omega = [arb(0), rate * cos, rate * sin]
-            self.c = [arb(0), -sin * pull / self.length, (cos * pull - ball(inputs.gravity)) / self.length]
-            self.r, self.v = self._release(inputs)
-            self.H = cross(self.r, add(self.v, cross(self.omega, self.r)))
-            x, y, vx = (q.is_zero() for q in (self.r[0], self.r[1], self.v[0]))
-            at_rest, straight = all(q.is_zero() for q in self.v), (sin * cos).is_zero() or rate.is_zero()
+            self.tilt = (arb(1), arb(0)) if rate.is_zero() else (sin, cos)
+            self.omega = [arb(0), arb(0), rate]
+            weight = [arb(0), -sin * pull, cos * pull - ball(inputs.gravity)]
+            self.release = self._release(inputs)
+            self.c, self.r, v = (self.turned(a, 1) for a in (times(1 / self.length, weight), *self.release))
+            self.H = cross(self.r, add(v, cross(self.omega, self.r)))
+            x, y, vx = (q.is_zero() for q in (*self.release[0][:2], v[0]))
+            at_rest, straight = all(q.is_zero() for q in v), (sin * cos).is_zero() or rate.is_zero()
             self.slow, self.flat = vx, at_rest and x  # xdot(0) = 0 exactly; and xddot(0) = 0
             self.still = (vx and x and rate.is_zero()) or (at_rest and x and y and straight)  # xdot = 0 for ever
             c, w = size(self.c), size(self.omega)
@@ -39,6 +44,11 @@ class World:
             energy = dot(self.H, self.H) / 2 - dot(self.omega, self.H) - dot(self.c, self.r)
             self.speed = upper(w + upper(w**2 + 2 * (energy + c)).sqrt())  # |H| at any time
             self.below, self.above = upper(self.w0**2 + w**2 / 2 + energy), upper(c - self.w0**2)  # -+ (c·r - w0²)
+
+    def turned(self, a: Vector, way: int) -> Vector:
+        """East, north, up as x, m, w; with `way` -1 back."""
+        sin, cos = self.tilt
+        return [a[0], a[1] * sin - way * a[2] * cos, a[2] * sin + way * a[1] * cos]
 
     def _release(self, inputs: Any) -> tuple[Vector, Vector]:
         if inputs.position:
@@ -58,47 +68,48 @@ class Scaled:
         with ctx.workprec(world.prec):
             self.h, self.w = ball(h), world.w0 * ball(h)
             self.c, self.omega, self.drag = times(self.h**2, world.c), times(self.h, world.omega), self.h * world.drag
-            (self.ci, self.c_off), (self.wi, self.omega_off) = fixed(self.c, bits), fixed(self.omega, bits)
-            self.gi, self.drag_off = fixed([self.drag, *times(self.drag, self.omega)], bits)
+            self.whole, self.off = fixed([self.omega[2], self.omega[2] ** 2, self.drag, *self.c[1:]], bits)
             self.c_size, self.omega_size, self.drag_size = size(self.c), size(self.omega), upper(self.drag)
             self.speed, self.below, self.above = world.speed * self.h, world.below * self.h**2, world.above * self.h**2
 
-    def torque(self, p: Vector, K: Vector) -> Vector:
-        """The torque p × c + K × Ω, in integers."""
-        return add(cross(p, self.ci), cross(K, self.wi))
+    def force(self, r: Vector, v: Vector) -> Vector:
+        """The acceleration of a free bob, in balls."""
+        turn = add(cross(self.omega, r), times(2, v))
+        return add(self.c, times(-1, cross(self.omega, turn)), times(-self.drag, v))
 
 
 scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each other
 
 
 class Piece:
-    """A step with its polynomials."""
+    """A step with its polynomials p, p' and λ."""
 
     def __init__(self, world: World, step: Step) -> None:
         if not -1 <= step.low < step.high <= 1 or step.h <= 0:
             raise ArithmeticError("a step must lie in -1 <= s <= 1, where its sizes hold")
         self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)
-        self.polys, self.unit = [fmpz_poly(c) for c in step.coefficients], fmpz(1) << step.bits
+        *self.p, self.pull = map(fmpz_poly, step.coefficients)
+        self.v, self.unit = [f.derivative() for f in self.p], fmpz(1) << step.bits
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
-    def values(self, s: Any) -> Vector:
-        """Balls of p(s), K(s)."""
-        return [arb_poly(f)(ball(s) if isinstance(s, Fraction) else s) / self.unit for f in self.polys]
+    def values(self, s: arb) -> tuple[Vector, Vector]:
+        """Balls of p(s) and p'(s)."""
+        return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v]
 
     def sizes(self) -> Sizes:
-        """The defect, in integers but for the radii of the constants (section 6)."""
-        k, p, K, unit, bits = self.k, self.polys[:3], self.polys[3:], self.unit, self.step.bits
-        order, scale = max(f.length() for f in self.polys), 2 * bits
-        d1 = [f.derivative() * unit - t for f, t in zip(p, cross(add(K, times(-1, k.wi)), p), strict=True)]
-        d2 = [f.derivative() * unit - t for f, t in zip(K, k.torque(p, K), strict=True)]
-        if any(k.gi):
-            along, drag = dot(k.gi[1:], p), add(times(k.gi[0], K), times(-unit, k.gi[1:]))
-            d2, scale = add(times(unit, add(d2, drag)), times(along, p)), 3 * bits
+        """The defects, from integers but for the radii of the constants (section 6)."""
+        k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits
+        (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], self.pull - k.whole[1]
+        d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, self.pull), p, strict=True)]
+        d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
+        d, tau = add(d, times(drag, v)) if drag else d, dot(p, p) - unit * unit
         with ctx.workprec(SHORT):
-            size_p, size_k = norm3(p, bits), norm3(K, bits)
-            first = upper(norm3(d1, 2 * bits) + k.omega_off * size_p)
-            off = k.c_off * size_p + k.omega_off * size_k + k.drag_off * (size_k + 1 + size_p**2)
-            return Sizes(first, upper(norm3(d2, scale) + off), size_p, size_k, upper(2 * order * first))
+            t, t1, t2 = (norm([f], 2 * bits) for f in (tau, tau.derivative(), tau.derivative().derivative()))
+            size_p, v1, v2 = upper((1 + t).sqrt()), norm(v, bits), norm(a, bits)
+            defect = size_p * (norm(d, 2 * bits) + k.off * (3 * v1 + size_p + 1)) + k.drag_size * k.omega_size * t
+            speed, rate = v1 + k.omega_size * size_p, v2 + k.omega_size * v1
+            first, second = t * speed + t1 * size_p / 2, t1 * (speed + v1 / 2) + t * rate + t2 * size_p / 2
+            return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
 
 
 def growth(k: Scaled, size_p: arb) -> arb:
@@ -113,7 +124,7 @@ def tube(k: Scaled, d: Sizes, eta: arb, gamma: arb) -> Tube:
     torque = k.c_size * eta + k.omega_size * gamma + k.drag_size * gamma + gw * (1 + d.p) * eta + d.d2
     rate = d.p * k.c_size + d.k * k.omega_size + k.drag_size * d.k + gw * (1 + d.p**2) + d.d2
     a = torque + rate * eta + gamma * (turn * d.p + d.d1 + u) + turn * u + d.d1_rate
-    return Tube(upper(eta), upper(gamma), upper(u), upper(a))
+    return Tube(upper(eta), upper(u), upper(a))
 
 
 class Carried:
@@ -122,15 +133,14 @@ class Carried:
     def __init__(self, world: World) -> None:
         self.world, self.time, self.last = world, Fraction(0), [*world.r, *world.H]
 
-    def join(self, piece: Piece) -> tuple[Vector, Vector]:
-        """Values at the start of `piece`, and how far each is from the end of the step before."""
+    def join(self, piece: Piece) -> Vector:
+        """How far p and K at the start of `piece` are from the end of the step before."""
         if piece.begin != self.time:
             raise ArithmeticError("steps must join")
-        ends = map(piece.values, (piece.step.low, piece.step.high))
-        here, end = ([*x[:3], *times(1 / piece.k.h, x[3:])] for x in ends)
-        jump = [(a - b).abs_upper() for a, b in zip(here, self.last, strict=True)]
-        self.time, self.last = piece.end, end
-        return here, jump
+        ends = (piece.values(ball(s)) for s in (piece.step.low, piece.step.high))
+        here, end = ([*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))] for p, v in ends)
+        self.time, self.last, before = piece.end, end, self.last
+        return [(a - b).abs_upper() for a, b in zip(here, before, strict=True)]
 
 
 class Radius(Carried):
@@ -141,34 +151,21 @@ class Radius(Carried):
     def advance(self, piece: Piece, d: Sizes) -> Tube:
         """Carry the bound over `piece`, whose sizes are `d`."""
         with ctx.workprec(self.world.prec):
-            k, (here, jump) = piece.k, self.join(piece)
-            tau, kappa = (dot(here, here) - 1).abs_upper(), (dot(here, here[3:]) * k.h).abs_upper()
+            k, jump = piece.k, self.join(piece)
         with ctx.workprec(SHORT):
             span, gw, ck = ball(piece.step.high - piece.step.low), k.drag_size * k.omega_size, k.c_size + d.k**2
             start, source = upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.world.w0), d.d2 / k.w + d.d1
-            tau = tau + 2 * span * d.p * d.d1
-            most = kappa + span * (d.p * d.d2 + d.k * d.d1 + gw * d.p * tau)
             # Theorem N: |e| <= far
-            far = upper(((1 + d.k / k.w) * start + kappa / k.w + span * source) * (span * growth(k, d.p)).exp())
+            far = upper(((1 + d.k / k.w) * start + span * source) * (span * growth(k, d.p)).exp())
             rate = (k.below.max(k.above + (k.speed + k.w * far) ** 2) + ck * far + gw * d.p) / (2 * k.w)
-            self.eta = upper((start + span * ((ck * tau / 2 + most * d.k) / k.w + source)) * (span * rate).exp())
-            return tube(k, d, self.eta, k.w * self.eta + most + d.k * self.eta)
+            self.eta = upper((start + span * (ck * d.tau / (2 * k.w) + source)) * (span * rate).exp())
+            return tube(k, d, self.eta, (k.w + d.k) * self.eta)
 
 
-def state(piece: Piece, t: Tube, s: Any) -> tuple[Vector, Vector]:
-    """Balls that contain the true r and H at `s`."""
-    x = piece.values(s)
-    return [a + arb(0, t.eta) for a in x[:3]], [a + arb(0, t.gamma) for a in x[3:]]
-
-
-def motion(k: Scaled, r: Vector, H: Vector) -> tuple[Vector, Vector, Vector]:
-    """The true first three derivatives of r, in scaled time, from r and H (section 7)."""
-    turn, along, g = add(H, times(-1, k.omega)), dot(k.omega, r), -k.drag
-    v = cross(turn, r)
-    H1 = add(cross(r, k.c), cross(H, k.omega), times(g, turn), times(g * along, r))
-    a = add(cross(H1, r), cross(turn, v))
-    H2 = add(cross(v, k.c), cross(H1, k.omega), times(g, H1), times(g * dot(k.omega, v), r), times(g * along, v))
-    return v, a, add(cross(H2, r), times(2, cross(H1, v)), cross(turn, a))
+def state(piece: Piece, t: Tube, s: arb) -> tuple[Vector, Vector]:
+    """Balls that contain the true r and r' at `s`."""
+    p, v = piece.values(s)
+    return [x + arb(0, t.eta) for x in p], [x + arb(0, t.u) for x in v]
 
 
 def output(world: World, piece: Piece, t: Tube, time: Fraction) -> list[Interval]:
@@ -176,6 +173,6 @@ def output(world: World, piece: Piece, t: Tube, time: Fraction) -> list[Interval
     with ctx.workprec(world.prec):
         if not piece.begin <= time <= piece.end:
             raise ArithmeticError("the tube holds on its own step only")
-        r, H = state(piece, t, (time - piece.step.centre) / piece.step.h)
-        v = times(1 / piece.k.h, motion(piece.k, r, H)[0])
-        return [interval(x * world.length) for x in ([*r, *v] if time else [*world.r, *world.v])]
+        r, v = state(piece, t, ball((time - piece.step.centre) / piece.step.h))
+        moving = [world.turned(r, -1), world.turned(times(1 / piece.k.h, v), -1)]
+        return [interval(x * world.length) for part in (moving if time else world.release) for x in part]

@@ -7,21 +7,23 @@ every second one of a chain has to be proved: `pair` joins them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from operator import mul
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from flint import ctx, fmpz_poly
+from flint import ctx, fmpz, fmpz_poly
 
-from .balls import integer
-from .bound import World
+from .balls import cross, dot, integer
+from .bound import World, scaled
 from .shapes import Step
 
 GUARD = 16  # bits below those of the steps
 SLACK = 12  # rounding of coefficient k enters the defect k times: the last terms need not be smaller than that
 GRAIN = 64  # step lengths change by multiples of 1/GRAIN
 LOPSIDED = Fraction(33, 32)  # an expansion is stretched to its left by so much and not more
+POWERS = (0, 0, 0, 1, 1, 1, 2, 1)  # of h in x, m, w, V, λ, j
 BLOCK = 18  # orders summed term by term before the products are taken as polynomials
 COLUMN_ORDER = 27
 COLUMN_BITS = 50
@@ -29,19 +31,12 @@ ILL = 10  # condition number above which columns are made orthogonal
 
 
 class Expansion(NamedTuple):
-    """Taylor coefficients of n and h H at `t`, of s = time/h, as integers over 2^bits; to be used up to t + h."""
+    """Taylor coefficients of n and h² λ at `t`, of s = time/h, as integers over 2^bits; to be used up to t + h."""
 
     t: Fraction
     h: Fraction
     bits: int
     coefficients: tuple[list[int], ...]
-
-
-def from_rates(t: Fraction, h: Fraction, bits: int, coefficients: Iterable[list[int]]) -> Expansion:
-    """An expansion from coefficients of n and of H (in 1/s) times h^k 2^bits, as an integrator gives them."""
-    rows = list(coefficients)
-    n, d = h.numerator, h.denominator
-    return Expansion(t, h, bits, (*rows[:3], *([c * n // d for c in row] for row in rows[3:])))
 
 
 class Series(Protocol):
@@ -61,17 +56,67 @@ class Series(Protocol):
 
     @property
     def coefficients(self) -> Sequence[list[int]]:
-        """Six rows."""
+        """Four rows, x, m, w and h² λ, in the axes of `World`."""
+
+
+@dataclass(frozen=True)
+class Turned:
+    """Somebody's polynomials of n, east, north, up, in the axes of the proof, with the λ that goes with them."""
+
+    given: Series
+    world: World
+
+    @property
+    def t(self) -> Fraction:
+        """Centre."""
+        return self.given.t
+
+    @property
+    def h(self) -> Fraction:
+        """Step."""
+        return self.given.h
+
+    @property
+    def bits(self) -> int:
+        """Coefficients are integers over 2^bits."""
+        return self.given.bits
+
+    @property
+    def coefficients(self) -> tuple[list[int], ...]:
+        """Four rows, made when asked for."""
+        bits, (east, north, up) = self.bits, self.given.coefficients[:3]
+        with ctx.workprec(self.world.prec):
+            sin, cos = (int(integer(x, bits)) for x in self.world.tilt)
+        m = [(y * sin - z * cos) >> bits for y, z in zip(north, up, strict=True)]
+        w = [(y * cos + z * sin) >> bits for y, z in zip(north, up, strict=True)]
+        p, unit = [fmpz_poly(row) for row in (east, m, w)], fmpz(1) << bits
+        turn, _, _, cm, cw = scaled(self.world, self.h, bits).whole
+        V = [f.derivative() + g // unit for f, g in zip(p, (-turn * p[1], turn * p[0], fmpz_poly()), strict=True)]
+        pull = ((dot(V, V) + cm * p[1] + cw * p[2]) // unit).truncate(len(east))
+        return east, m, w, [int(c) for c in pull.coeffs()]
+
+
+def turned(inputs: Any, chain: Iterable[Series]) -> Iterator[Turned]:
+    """A run's polynomials as a candidate."""
+    world: World | None = None
+    for e in chain:
+        world = world or World(inputs, e.bits + GUARD)
+        yield Turned(e, world)
 
 
 def rescaled(e: Series, ratio: Fraction) -> Expansion:
     """The same expansion in s / ratio; the ratio is a multiple of 1/GRAIN."""
+    return Expansion(e.t, ratio * e.h, e.bits, stretched(e.coefficients, (0, 0, 0, 2), ratio))
+
+
+def stretched(rows: Sequence[list[int]], powers: Iterable[int], ratio: Fraction) -> tuple[list[int], ...]:
+    """Coefficients of s / ratio, each row times a power of the ratio besides; the ratio is a multiple of 1/GRAIN."""
     factor, shift = int(ratio * GRAIN), GRAIN.bit_length() - 1
-    given = e.coefficients
-    powers = [factor**k for k in range(max(map(len, given)) + 1)]
-    lines = [[c * f >> shift * k for k, (c, f) in enumerate(zip(row, powers, strict=False))] for row in given]
-    speed = [[c * factor >> shift for c in row] for row in lines[3:]]
-    return Expansion(e.t, ratio * e.h, e.bits, (*lines[:3], *speed))
+    most = [factor**k for k in range(max(map(len, rows)) + 2)]
+    return tuple(
+        [c * f >> shift * k for k, (c, f) in enumerate(zip(row, most[power:], strict=False), power)]
+        for row, power in zip(rows, powers, strict=True)
+    )
 
 
 def pair(chain: Iterable[Series]) -> Iterator[Step]:
@@ -102,7 +147,10 @@ def _one_sided(e: Series) -> Step:
 
 
 class Recurrence:
-    """Own Taylor series in fixed point: V = n' + Ω × n and λ = V·V + n·c leave three convolutions, λ n."""
+    """Own Taylor series in fixed point: V = n' + Ω × n and λ = V·V + n·c leave three convolutions, λ n.
+
+    With drag one more, w²; for λ' = 3 c·V - c·(Ω × n) - 2 γ (λ - c·n - ω j) has j = (n × V)_w.
+    """
 
     def __init__(self, world: World, bits: int, order: int) -> None:
         """Take the constants as integers over 2^(bits + GUARD)."""
@@ -111,93 +159,71 @@ class Recurrence:
         self.one = 1 << self.f
         with ctx.workprec(world.prec + self.f):
             self.c = [int(integer(x, self.f)) for x in world.c]
-            self.w = [int(integer(x, self.f)) for x in world.omega]
+            self.w = int(integer(world.omega[2], self.f))
             self.g = int(integer(world.drag, self.f))
             self.n = [int(integer(x, self.f)) for x in world.r]
-            v = [int(integer(x, self.f)) for x in world.v]
-        self.V = [a + b for a, b in zip(v, self._cross(self.w, self.n), strict=True)]
+            self.V = [int(integer(x, self.f)) for x in cross(world.H, world.r)]
 
-    def _cross(self, a: list[int], b: list[int]) -> list[int]:
-        f = self.f
-        return [(a[i] * b[j] - a[j] * b[i]) >> f for i, j in ((1, 2), (2, 0), (0, 1))]
-
-    def _dot(self, a: list[int], b: list[int]) -> int:
+    def _dot(self, a: Iterable[int], b: Iterable[int]) -> int:
         return int(sum(map(mul, a, b))) >> self.f
 
     def chain(self, first: Fraction) -> Iterator[Expansion]:
         """Expansions without end, each to where its last terms reach 2^-bits; `first` guesses the step in s."""
         t, h, before = Fraction(0), first, first
         while True:
-            e, ratio = self._expand(t, h)
+            rows = self._expand(h)
+            ratio = self._reach(rows)
             reach = h * ratio
             # where reaches shrink the next one must still reach back to here
-            wanted = reach * min(reach / before, Fraction(1))
+            wanted, length = reach * min(reach / before, Fraction(1)), h
             if wanted < h:
-                e = rescaled(e, Fraction(max(int(wanted / h * GRAIN), 1), GRAIN))
-            yield self._rounded(e)
-            self._move(e)
-            t, before = t + e.h, reach
+                part = Fraction(max(int(wanted / h * GRAIN), 1), GRAIN)
+                rows, length = stretched(rows, POWERS, part), h * part
+            yield Expansion(t, length, self.bits, tuple([c >> GUARD for c in row] for row in (*rows[:3], rows[6])))
+            self._move(rows, length)
+            t, before = t + length, reach
             h = h if h <= wanted < h * Fraction(17, 16) else coarse(min(wanted, 2 * h))
 
-    def _rounded(self, e: Expansion) -> Expansion:
-        rows = tuple([c >> GUARD for c in row] for row in e.coefficients)
-        return Expansion(e.t, e.h, self.bits, rows)
-
-    def _move(self, e: Expansion) -> None:
+    def _move(self, rows: Sequence[list[int]], h: Fraction) -> None:
         """To s = 1, and back on the sphere."""
-        n, H = [sum(row) for row in e.coefficients[:3]], [sum(row) for row in e.coefficients[3:]]
+        n, V = ([sum(row) for row in part] for part in (rows[:3], rows[3:6]))
         lift = 3 * self.one - self._dot(n, n)
         self.n = n = [x * lift >> (self.f + 1) for x in n]
-        H = [x * e.h.denominator // e.h.numerator for x in H]
-        V = self._cross(H, n)
+        V = [x * h.denominator // h.numerator for x in V]
         radial = self._dot(V, n)
         self.V = [v - (radial * x >> self.f) for v, x in zip(V, n, strict=True)]
 
-    def _expand(self, t: Fraction, h: Fraction) -> tuple[Expansion, Fraction]:
+    def _expand(self, h: Fraction) -> tuple[list[int], ...]:
+        """Rows x, m, w, Vx, Vm, Vw, λ, j in the time of a step."""
         f, a, b = self.f, h.numerator, h.denominator
-        _, cy, cz = (x * a * a // (b * b) for x in self.c)
-        _, wy, wz = (x * a // b for x in self.w)
-        g = self.g * a // b
-        V = [x * a // b for x in self.V]
-        H = self._cross(self.n, V)
-        X, Y, Z = ([x] for x in self.n)
-        hx, hy, hz = ([x] for x in H)
-        vx, vy, vz = V
-        x, y, z = self.n
-        jx, jy, jz = H
-        lam = self._dot(V, V) + ((y * cy + z * cz) >> f)
-        L, Q = [lam], [(wy * y + wz * z) >> f]
-        twist = (cy * wz - cz * wy) >> f
+        _, cm, cw = (x * a * a // (b * b) for x in self.c)
+        turn, g = self.w * a // b, self.g * a // b
+        x, m, w = self.n
+        vx, vm, vw = (u * a // b for u in self.V)
+        lam, j = self._dot((vx, vm, vw, m, w), (vx, vm, vw, cm, cw)), (x * vm - m * vx) >> f
+        rows: tuple[list[int], ...] = tuple([u] for u in (x, m, w, vx, vm, vw, lam, j))
+        X, M, W, *_, L, _ = rows
+        cmw = cm * turn >> f
         known: list[list[int]] = []
         base = 0
         for k in range(self.order):
             if k == base + BLOCK:
-                known, base = self._products(L, (X, Y, Z), k), k
-            fx, fy, fz = ((u >> f) for u in self._terms(L, (X, Y, Z), known, base, k))
+                known, base = self._products(L, (X, M, W), k), k
+            fx, fm, fw = (u >> f for u in self._terms(L, (X, M, W), known, base, k))
             if k == 0:
-                fy, fz = fy - cy, fz - cz
-            nx, ny, nz = vx - ((wy * z - wz * y) >> f), vy - (wz * x >> f), vz + (wy * x >> f)
-            lam_next = (3 * (cy * vy + cz * vz) - twist * x) >> f
-            kx = (y * cz - z * cy + jy * wz - jz * wy) >> f
-            ky = (-x * cz - jx * wz) >> f
-            kz = (x * cy + jx * wy) >> f
-            ux, uy, uz = -fx - ((wy * vz - wz * vy) >> f), -fy - (wz * vx >> f), -fz + (wy * vx >> f)
+                fm, fw = fm - cm, fw - cw
+            nx, nm, nw = vx + (turn * m >> f), vm - (turn * x >> f), vw
+            ux, um, uw = (turn * vm >> f) - fx, -(turn * vx >> f) - fm, -fw
+            lam1, j1 = (3 * (cm * vm + cw * vw) - cmw * x) >> f, cm * x >> f
             if g:
-                ux, uy, uz = ux - (g * nx >> f), uy - (g * ny >> f), uz - (g * nz >> f)
-                lam_next -= 2 * g * (lam - ((y * cy + z * cz + wy * jy + wz * jz) >> f)) >> f
-                ends = [sum(map(mul, Q, u[::-1])) >> f for u in (X, Y, Z)]
-                if k == 0:
-                    jy, jz = jy - wy, jz - wz
-                kx, ky, kz = (u - (g * (j + q) >> f) for u, j, q in zip((kx, ky, kz), (jx, jy, jz), ends, strict=True))
-            n = k + 1
-            x, y, z = nx // n, ny // n, nz // n
-            vx, vy, vz = ux // n, uy // n, uz // n
-            jx, jy, jz, lam = kx // n, ky // n, kz // n, lam_next // n
-            for row, value in zip((X, Y, Z, hx, hy, hz, L), (x, y, z, jx, jy, jz, lam), strict=True):
+                ux, um, uw = ux - (g * nx >> f), um - (g * nm >> f), uw - (g * nw >> f)
+                lam1 -= 2 * g * (lam - ((cm * m + cw * w + turn * j) >> f)) >> f
+                across = (0 if k else self.one) - self._dot(W, W[::-1])
+                j1 -= g * (j - (turn * across >> f)) >> f
+            x, m, w, vx, vm, vw, lam, j = (u // (k + 1) for u in (nx, nm, nw, ux, um, uw, lam1, j1))
+            for row, value in zip(rows, (x, m, w, vx, vm, vw, lam, j), strict=True):
                 row.append(value)
-            Q.append((wy * y + wz * z) >> f)
-        e = Expansion(t, h, f, (X, Y, Z, hx, hy, hz))
-        return e, self._reach(e)
+        return rows
 
     def _products(self, lam: list[int], n: tuple[list[int], ...], k: int) -> list[list[int]]:
         """Coefficients k … k + BLOCK - 1 of λ n from the terms known so far."""
@@ -221,12 +247,10 @@ class Recurrence:
             for i, row in enumerate(n)
         )
 
-    def _reach(self, e: Expansion) -> Fraction:
+    def _reach(self, rows: Sequence[list[int]]) -> Fraction:
         """How much longer the step may be until its last two terms are 2^-bits."""
         reach = min(
-            (GUARD + SLACK - abs(row[k]).bit_length()) / k
-            for row in e.coefficients
-            for k in (self.order - 1, self.order)
+            (GUARD + SLACK - abs(row[k]).bit_length()) / k for row in rows[:6] for k in (self.order - 1, self.order)
         )
         return Fraction(max(int(2 ** min(reach, 1.0) * GRAIN), 1), GRAIN)
 
@@ -253,8 +277,11 @@ class ColumnSource:
         h, M = float(step.h), COLUMN_ORDER
         w, c, g = self.w * h, self.c * h * h, self.g * h
         one = 1 << step.bits
-        rows = np.array([[x / one for x in row[: M + 1]] + [0.0] * (M + 1 - len(row)) for row in step.coefficients])
-        n, turn = rows[:3].T, rows[3:].T.copy()
+        rows = [[x / one for x in row[: M + 2]] + [0.0] * (M + 2 - len(row)) for row in step.coefficients[:3]]
+        whole = np.array(rows).T
+        n = whole[: M + 1]
+        speed = whole[1:] * np.arange(1, M + 2)[:, None] + np.cross(w, n)
+        turn = np.array([np.cross(n[: k + 1], speed[k::-1]).sum(axis=0) for k in range(M + 1)])
         turn[0] -= w
         field = np.zeros((6, M + 1, 6))
         field[:3, :, :3] = hats(turn).transpose(1, 0, 2)

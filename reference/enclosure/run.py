@@ -145,11 +145,6 @@ def enclose(
     )
 
 
-def _degree(coefficients: Any) -> int:
-    digits = getattr(coefficients, "digits", None)
-    return len(coefficients[0] if digits is None else digits) - 1
-
-
 def _order(bits: int) -> int:
     return max(24, round(ORDER_PER_BIT * bits))
 
@@ -210,7 +205,7 @@ class _Run:
             first = next(given, None)
             if first is None:
                 raise UnreachableError("enclosure: the candidate is empty.")
-            bits, order = first.bits, _degree(first.coefficients)
+            bits, order = first.bits, len(first.coefficients[0]) - 1
             self.clock.lap("candidate")
             whole = chain([first], given)
             steps = whole if isinstance(first, Step) else pair(whole)

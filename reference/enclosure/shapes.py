@@ -38,7 +38,10 @@ class EnclosedTransit:
 
 
 class Step(NamedTuple):
-    """A proposal: n and h H on [centre + h low, centre + h high], integer coefficients of s over 2^bits."""
+    """A proposal: n in the axes of `World` and h² λ, on [centre + h low, centre + h high].
+
+    Four rows of coefficients of s, integers over 2^bits.
+    """
 
     centre: Fraction
     h: Fraction
@@ -49,20 +52,20 @@ class Step(NamedTuple):
 
 
 class Sizes(NamedTuple):
-    """Sup norms on |s| <= 1: the defects, |p|, |K|, |d1'|."""
+    """Sup norms on |s| <= 1: the defects, |p|, |K|, ||p|² - 1|, |d1'|."""
 
     d1: arb
     d2: arb
     p: arb
     k: arb
+    tau: arb
     d1_rate: arb
 
 
 class Tube(NamedTuple):
-    """Bounds of |r - p|, |H - K|, |v - p'|, |r'' - p''|."""
+    """Bounds of |r - p|, |r' - p'|, |r'' - p''|."""
 
     eta: arb
-    gamma: arb
     u: arb
     a: arb
 

@@ -2,10 +2,10 @@
 
 from functools import reduce
 
-from flint import arb, arb_poly, ctx
+from flint import arb, ctx
 
-from .balls import ball, interval
-from .bound import Piece, World, motion, state
+from .balls import SHORT, add, ball, dot, interval, times
+from .bound import Piece, World, state
 from .shapes import EnclosedTransit, Interval, Leaf, Tube
 
 
@@ -18,46 +18,54 @@ class Slope:
     """xdot lies in f ± u and xddot in f' ± a on a piece, f = p'_x; all in scaled time."""
 
     def __init__(self, piece: Piece, tube: Tube) -> None:
-        self.piece, self.tube, f = piece, tube, piece.polys[0].derivative()
-        self.forms = [(arb_poly(f), arb(0, tube.u)), (arb_poly(f.derivative()), arb(0, tube.a))]
+        self.piece, self.tube = piece, tube
+        self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
     def at(self, n: int, s: arb) -> arb:
         """Contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
         return self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
+
+    def bend(self, s: arb) -> arb:
+        """Contains the third derivative of x on the ball `s`, by the equations of motion (section 7)."""
+        k, (r, v) = self.piece.k, state(self.piece, self.tube, s)
+        a = [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
+        F, F1 = k.force(r, v), add(k.force(v, a), times(-1, k.c))
+        rate: arb = F1[0] - v[0] * (dot(v, v) + dot(r, F)) - r[0] * (2 * dot(v, a) + dot(v, F) + dot(r, F1))
+        return rate
 
 
 class Scan:
     """Sorts leaves step by step and closes clusters of those that are not E, also across steps."""
 
     def __init__(self, world: World) -> None:
-        self.world, self.begun, self.left, self.right = world, False, 0, 0
-        self.found: list[EnclosedTransit] = []
-        self.cluster: list[Leaf] = []
+        self.world, self.begun, self.left = world, False, 0
+        self.end: tuple[Slope, arb] | None = None
+        self.found, self.cluster = list[EnclosedTransit](), list[Leaf]()
 
     def advance(self, piece: Piece, tube: Tube) -> None:
         """Take the next step."""
         with ctx.workprec(self.world.prec):
             slope, low, high = Slope(piece, tube), ball(piece.step.low), ball(piece.step.high)
-            self.right = sign(slope.at(0, high))
+            self.end = slope, high
             if not self.begun:
                 self.left = sign(slope.at(0, low))
             self._sort(slope, low, high, 0)
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
-        whole, middle = low.union(high), ((low + high) / 2).mid()
-        if not low < middle < high:
-            raise ArithmeticError("a step is too short for the precision")
-        rate = slope.at(1, whole)
-        speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
-        way, bend = sign(speed), sign(rate)
-        if not way and not self.begun and self.world.slow:
-            # from rest, xdot takes the sign of its first derivative that is not 0
-            way = bend
-            if self.world.flat and not way:
-                way = sign(motion(slope.piece.k, *state(slope.piece, slope.tube, whole))[2][0])
-        elif not way and bend:
-            first, last = sign(slope.at(0, low)), sign(slope.at(0, high))
-            way = first if first == last else 0
+        # most leaves are plain to see, and few need the digits
+        with ctx.workprec(SHORT if 4 * depth < SHORT else self.world.prec):
+            whole, middle = low.union(high), ((low + high) / 2).mid()
+            if not low < middle < high:
+                raise ArithmeticError("a step is too short for the precision")
+            rate = slope.at(1, whole)
+            speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
+            way, bend = sign(speed), sign(rate)
+            if not way and not self.begun and self.world.slow:
+                # from rest, xdot takes the sign of its first derivative that is not 0
+                way = bend or (sign(slope.bend(whole)) if self.world.flat else 0)
+            elif not way and bend:
+                first, last = sign(slope.at(0, low)), sign(slope.at(0, high))
+                way = first if first == last else 0
         if way:
             self._close(way)
             self.left = way
@@ -71,7 +79,7 @@ class Scan:
     def finish(self) -> list[EnclosedTransit]:
         """Close at T what is open; all of them in order."""
         with ctx.workprec(self.world.prec):
-            self._close(self.right)
+            self._close(sign(self.end[0].at(0, self.end[1])) if self.end else 0)
         return self.found
 
     def _close(self, right: int) -> None:
@@ -92,9 +100,9 @@ class Scan:
     def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:
         rows = []
         for slope, s in touched(leaves, t):
-            k, (r, H) = slope.piece.k, state(slope.piece, slope.tube, s)
-            v, a, _ = motion(k, r, H)
-            rows.append([*r, v[1] / k.h, a[0] / k.h**2])
+            r, v = (self.world.turned(a, -1) for a in state(slope.piece, slope.tube, s))
+            h = slope.piece.k.h
+            rows.append([*r, v[1] / h, slope.at(1, s) / h**2])
         return [interval(reduce(arb.union, x) * self.world.length) for x in zip(*rows, strict=True)]
 
 
@@ -107,15 +115,16 @@ def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
 
 def contract(leaves: list[Leaf], begin: arb, end: arb) -> arb | None:
     """Interval Newton where xddot keeps its sign; None if it proves that there is no zero."""
-    t = begin.union(end)
-    while begin < (middle := t.mid()) < end:  # outside of the leaves nothing is known
-        speed = reduce(arb.union, (f.at(0, s) / f.piece.k.h for f, s in touched(leaves, middle)))
-        rate = reduce(arb.union, (f.at(1, s) / f.piece.k.h**2 for f, s in touched(leaves, t)))
-        new = middle - speed / rate if sign(rate) else t
-        if not new.overlaps(t):
-            return None
-        new = new.intersection(t)
-        if not new.rad() < t.rad() * 3 / 4:
-            return new
-        t = new
+    t, full = begin.union(end), ctx.prec
+    for prec in (SHORT, full):
+        with ctx.workprec(prec):
+            shrinks = True
+            while shrinks and begin < (middle := t.mid()) < end:  # outside of the leaves nothing is known
+                speed = reduce(arb.union, (f.at(0, s) / f.piece.k.h for f, s in touched(leaves, middle)))
+                rate = reduce(arb.union, (f.at(1, s) / f.piece.k.h**2 for f, s in touched(leaves, t)))
+                new = middle - speed / rate if sign(rate) else t
+                if not new.overlaps(t):
+                    return None
+                before, t = t, new.intersection(t)
+                shrinks = bool(t.rad() < before.rad() * 3 / 4)
     return t

@@ -21,7 +21,6 @@ from .expansion import Expansion
 from .lanes import LANES
 from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Carried, Outputs, carried, march
 from .problem import Problem, most_bits, problem
-from .series import room
 from .times import digits_of_doubles, digits_of_fractions
 from .zeros import FOUND
 
@@ -156,7 +155,6 @@ def expand(plan: Plan, order: int | None = None) -> Generator[Expansion, None, R
     going.until = FOR_EVER
     spent = 0.0
     grain, model, last = going.problem.grain, going.problem.model, plan.times[-1]
-    spare = room(model.order, model.limbs)
     while not ahead:
         begun = time.process_time()
         going.go(POLYNOMIALS_PER_CALL)
@@ -164,7 +162,7 @@ def expand(plan: Plan, order: int | None = None) -> Generator[Expansion, None, R
         series = going.out.series.reshape(POLYNOMIALS_PER_CALL, -1).copy()
         for (start, length), of_step in zip(going.out.steps.reshape(-1, 2).tolist(), series, strict=True):
             t = start * grain
-            yield Expansion(t, length * grain, fraction_bits(model.limbs), of_step, spare, model)
+            yield Expansion(t, length * grain, model.limbs, of_step)
             if t > last:
                 ahead = True
                 break

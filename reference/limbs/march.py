@@ -9,7 +9,6 @@ import numpy as np
 from .dense import divide_place, evaluate, finish
 from .digits import Array, aligned
 from .lanes import LANES, SOURCES, compiled, entry, load, store
-from .polynomials import write_polynomials
 from .series import Counts, Line, Series, expand, room
 from .step import AIM, SLIP, Model, begin, end, next_length, reach, scale_line, settle
 from .zeros import FOUND, GRAZING, Search, bracket_zeros, polish, search_room, sign_leaving, sign_now
@@ -171,7 +170,7 @@ def _zeros(at: Carried, model: Model, out: Outputs) -> bool:
     return True
 
 
-def _entries(sources: str) -> tuple[Any, Any]:
+def _entry(sources: str) -> Any:
     """What Python calls.
 
     numba's cache on disk looks at the file of the function that is called, not at those that it calls; but what a
@@ -182,11 +181,7 @@ def _entries(sources: str) -> tuple[Any, Any]:
     def march(at: Carried, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
         return _march(at, model, out, until, steps, seek) if sources else STUCK
 
-    @entry
-    def polynomials(to: Array, s: Series, model: Model) -> int:
-        return write_polynomials(to, s, model) if sources else STUCK
-
-    return march, polynomials
+    return march
 
 
-march, polynomials = _entries(SOURCES)
+march = _entry(SOURCES)

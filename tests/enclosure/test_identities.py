@@ -35,7 +35,8 @@ def at(request):
     rng = Random(request.param)
     r = unit(rng)
     H = cross(r, any_vector(rng))
-    names = {n: any_vector(rng) for n in ("c", "W", "p", "K", "d1", "d2")}
+    names = {n: any_vector(rng) for n in ("c", "W", "p", "p1", "p2", "d1", "d2")}
+    names["K"] = cross(names["p"], any_vector(rng))
     return {"r": r, "H": H, "g": Fraction(rng.randint(0, 20), 7), "w": Fraction(rng.randint(1, 30), 7), **names}
 
 
@@ -85,13 +86,43 @@ def test_constraints_are_neutral_everywhere_without_drag(at):
     assert dot(K1, at["p"]) + dot(at["K"], p1) == 0
 
 
-def test_defects_of_the_constraints(at):
-    _, _, _, _, p1, K1 = errors(at)
-    p, K, W, g = (at[n] for n in ("p", "K", "W", "g"))
-    tau, kappa = dot(p, p) - 1, dot(K, p)
-    assert 2 * dot(p, p1) == 2 * dot(p, at["d1"])
-    drag = -g * (kappa + dot(W, p) * tau)
-    assert dot(K1, p) + dot(K, p1) == dot(p, at["d2"]) + dot(K, at["d1"]) + drag
+def test_defects_come_from_one_force_and_the_distance_from_the_sphere(at):
+    """Lemma 0, for any p, p', p'' and any pull."""
+    p, p1, p2, c, W, g, pull = (at[n] for n in ("p", "p1", "p2", "c", "W", "g", "w"))
+    V, V1 = lin((1, p1), (1, cross(W, p))), lin((1, p2), (1, cross(W, p1)))
+    K, K1 = cross(p, V), lin((1, cross(p1, V)), (1, cross(p, V1)))
+    d = lin((1, V1), (1, cross(W, V)), (g, p1), (-1, c), (pull, p))
+    tau = dot(p, p) - 1
+    v, H1 = rates(at, p, K)
+    assert lin((1, p1), (-1, v)) == lin((dot(p, p1), p), (-tau, V))
+    assert lin((1, K1), (-1, H1)) == lin((1, cross(p, d)), (g * tau, W))
+    assert dot(K, p) == 0
+    # as it is computed, with the Earth's axis for the third
+    (x, m, w), (x1, m1, _), W = p, p1, [0, 0, W[2]]
+    V1, V = lin((1, p2), (1, cross(W, p1))), lin((1, p1), (1, cross(W, p)))
+    plain = lin((1, p2), (2 * W[2], [-m1, x1, 0]), (g, p1), (-1, c))
+    lift = pull - W[2] ** 2
+    assert lin((1, plain), (1, [lift * x, lift * m, pull * w])) == lin(
+        (1, V1), (1, cross(W, V)), (g, p1), (-1, c), (pull, p)
+    )
+
+
+def test_third_derivative_is_that_of_the_equations_of_motion(at):
+    r, v, a, W, c, g = (at[n] for n in ("p", "p1", "p2", "W", "c", "g"))
+
+    def force(r, v, c):
+        return lin((1, c), (-1, cross(W, lin((1, cross(W, r)), (2, v)))), (-g, v))
+
+    def second(step):
+        here, moving = lin((1, r), (step, v)), lin((1, v), (step, a))
+        F = force(here, moving, c)
+        return lin((1, F), (-dot(moving, moving) - dot(here, F), here))
+
+    # of a polynomial of degree four or less this is the derivative
+    exact = lin((8, second(1)), (-8, second(-1)), (-1, second(2)), (1, second(-2)))
+    F, F1 = force(r, v, c), force(v, a, [0, 0, 0])
+    rate = 2 * dot(v, a) + dot(v, F) + dot(r, F1)
+    assert exact == lin((12, F1), (-12 * (dot(v, v) + dot(r, F)), v), (-12 * rate, r))
 
 
 def test_energy_identity_of_theorem_n(at):
@@ -114,10 +145,9 @@ def test_energy_identity_of_theorem_c(at):
     left = dot(g, g1) - rg * rg1 + w2 * dot(e, e1)
     er, cr, Kr = dot(e, r), dot(c, r), dot(K, r)
     e_flat, k, c_flat = lin((1, e), (-er, r)), lin((1, K), (-Kr, r)), lin((1, c), (-cr, r))
-    kappa = dot(K, p)
     bracket = lin((cr - w2, e_flat), (dot(k, e_flat), k))
     right = -dot(flat, cross(r, bracket)) + er * dot(flat, cross(r, c_flat))
-    right -= (kappa + Kr * er) * dot(flat, cross(r, K)) + dot(flat, at["d2"]) + w2 * dot(e, at["d1"])
+    right -= Kr * er * dot(flat, cross(r, K)) + dot(flat, at["d2"]) + w2 * dot(e, at["d1"])
     right -= G * (dot(flat, flat) + dot(W, p) * dot(flat, e))
     assert left == right
 
