@@ -12,14 +12,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from reference import Golden, Scene
-from reference.constants import Constants, constants
+from reference.constants import Constants
 from reference.dense import Dense
 from reference.mechanics import acceleration, invariant
-from reference.precision import context
 from reference.scene import Inputs
 from reference.solution import Array
 
 from .candidates.candidate import COLUMNS, Candidate
+from .equations.constants import constants_in_double
+from .power_of_time import power_of_time
 from .verdicts.ellipse import EllipseErrors, ellipse_errors
 
 ENVELOPES = 40  # parts of the run whose largest error makes the curve that growth is fitted to
@@ -109,16 +110,12 @@ class Errors:
         )
 
     @property
-    def growth(self) -> float | None:
-        """The exponent p of error ∝ t^p, fitted to the largest error in equal parts of log t; None if too few rows."""
+    def growth_exponent(self) -> float | None:
+        """The exponent p of error ∝ t^p, of what is above the truth's bound; None if too few rows."""
         kept = (self.t > 0) & (self.position > self.bound_m)
         if kept.sum() < 4 or self.t[kept][-1] < 4 * self.t[kept][0]:
             return None
-        t, error = self.t[kept], np.maximum.accumulate(self.position[kept])
-        edges = np.geomspace(t[0], t[-1], ENVELOPES)
-        at = np.unique(np.searchsorted(t, edges, side="right") - 1)
-        at = at[at >= 0]
-        return float(np.polyfit(np.log(t[at]), np.log(error[at]), 1)[0]) if len(at) > 2 else None
+        return power_of_time(self.t[kept], self.position[kept], ENVELOPES)
 
     def ellipse(self, rest: tuple[float, float]) -> EllipseErrors:
         """Turn of the swing plane and delay; `rest` is x, y of the rest position in m."""
@@ -135,7 +132,7 @@ def errors_of(candidate: Candidate, truth: Dense, golden: Golden) -> Errors:
         golden: where the truth comes from; the scales are those of its whole grid, whatever the candidate's rows.
     """
     late = candidate.rest.get("t")
-    rates = None if late is None else _rates(truth.states, _constants(golden.scene))
+    rates = None if late is None else _rates(truth.states, constants_in_double(golden.scene.exact))
     components = {}
     for i, name in enumerate(COLUMNS):
         if name not in candidate.columns:
@@ -151,10 +148,6 @@ def errors_of(candidate: Candidate, truth: Dense, golden: Golden) -> Errors:
     return Errors(candidate.t, components, np.asarray(position), truth, truth.bound_m, amplitude, speed)
 
 
-def _constants(scene: Scene | Inputs) -> Constants:
-    return constants(scene.exact if isinstance(scene, Scene) else scene, context(80)).converted(float)
-
-
 def _rates(states: Array, k: Constants) -> Array:
     """Velocity and acceleration, shape (rows, 6), in m/s and m/s²."""
     n, v = (tuple(part.T / k.length) for part in (states[:, :3], states[:, 3:]))
@@ -167,7 +160,7 @@ def drifts(candidate: Candidate, scene: Scene | Inputs) -> dict[str, float]:
     inputs = scene.exact if isinstance(scene, Scene) else scene
     found: dict[str, float] = {}
     have = candidate.columns
-    k = _constants(inputs)
+    k = constants_in_double(inputs)
     if "z" not in have:
         return found
     n = tuple(have[name] / k.length for name in ("x", "y", "z"))

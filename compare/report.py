@@ -5,30 +5,28 @@ Everything is made from the study's JSON document alone: the same document, the 
 
 from __future__ import annotations
 
-import csv
 import importlib.util
-import io
-import json
-import math
 from collections.abc import Sequence
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from .measuring.measure import Row
+from .measuring.row import Row
 from .pages import explanations as say
 from .pages import tables
-from .pages.page import Html, facts, figure, findings, join, page, paragraph, section, write_files
+from .pages.folder import PAGE, csv_text, json_text, write_files
+from .pages.page import Html, facts, figure, findings, join, page, paragraph, section
 from .pages.pareto import rows_of, sentences
 from .pages.tables import text_table
 
-__all__ = ["csv_text", "json_text", "page_text", "text_table", "write_report"]
+__all__ = ["page_text", "text_table", "write_report"]
 
-CSV, JSON, PAGE = "rows.csv", "study.json", "index.html"
+CSV, JSON = "rows.csv", "study.json"
+FILES = (CSV, JSON, PAGE)
 
 
 def write_report(document: dict[str, Any], out: Path) -> Path:
-    """Write the report of a study, each file whole: an interruption leaves what was there.
+    """Write the report of a study, all files or none: an interruption leaves what was there.
 
     Args:
         document: `Study.document()`, or what study.json holds; further keys `title` (of the scene) and `limit_s` (CPU
@@ -41,31 +39,9 @@ def write_report(document: dict[str, Any], out: Path) -> Path:
     Raises:
         InputError: the folder cannot be written to.
     """
-    made = {CSV: csv_text(document), JSON: json_text(document), PAGE: page_text(document)}
-    write_files(out, made)
+    rows = csv_text((one.name for one in fields(Row)), map(asdict, rows_of(document)))
+    write_files(out, {CSV: rows, JSON: json_text(document), PAGE: page_text(document)})
     return out / PAGE
-
-
-def csv_text(document: dict[str, Any]) -> str:
-    """The rows as CSV: a header line, doubles with all their digits, nothing where there is no value."""
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, [one.name for one in fields(Row)], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(asdict(row) for row in rows_of(document))
-    return stream.getvalue()
-
-
-def json_text(document: dict[str, Any]) -> str:
-    """The document; NaN and infinity, which JSON does not have, become null."""
-    return json.dumps(_finite(document), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(one) for key, one in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(one) for one in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def page_text(document: dict[str, Any]) -> str:

@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
-
-import numpy as np
+from functools import cached_property
 
 from reference import Golden, InputError, Scene
 from reference.constants import constants
 from reference.dense import WITHIN
 from reference.mechanics import rest_position
 from reference.precision import context
-from reference.sensitivity import sensitivity
 from reference.solution import Array
 
-from .cache import kept
 from .candidates.candidate import Candidate
 from .candidates.external import Timing
+from .equations.constants import constants_in_double
+from .input_floor import input_floor
 from .metrics import Errors, drifts, errors_of
 from .truth import DIGITS, FINE, Report, golden_of, truth_at
 from .verdicts.diagnosis import Diagnosis, diagnose
@@ -29,7 +25,6 @@ from .verdicts.ellipse import EllipseErrors
 from .verdicts.transits import TransitErrors, transit_errors
 
 TOLERANCE = 1e-6  # of the amplitude, where no tolerance is given
-FLOOR_TIMES = 289
 
 
 @dataclass(frozen=True)
@@ -43,7 +38,6 @@ class Score:
         golden: the dataset that the truth comes from.
         errors: at the candidate's times.
         tolerance_m: largest position error allowed.
-        input_floor_m: how far the rounding of the inputs to binary64 alone moves the bob.
         ellipse: turn of the swing plane and delay.
         drifts: of h and of |r| - l, where the candidate has the columns.
         transits: how its transits compare, or None.
@@ -59,7 +53,6 @@ class Score:
     golden: Golden
     errors: Errors
     tolerance_m: float
-    input_floor_m: float
     ellipse: EllipseErrors
     drifts: dict[str, float]
     transits: TransitErrors | None = None
@@ -67,6 +60,11 @@ class Score:
     diagnosis: Diagnosis | None = None
     looked: bool = False
     notes: tuple[str, ...] = ()
+
+    @cached_property
+    def input_floor_m(self) -> float:
+        """How far the rounding of the inputs to binary64 alone moves the bob in m; computed when it is asked for."""
+        return input_floor(self.scene, float(self.candidate.t[-1]))
 
     @property
     def allowed_m(self) -> float:
@@ -140,7 +138,6 @@ def score(
         golden=golden,
         errors=errors,
         tolerance_m=allowed,
-        input_floor_m=input_floor(scene, float(candidate.t[-1])),
         ellipse=errors.ellipse(_rest(scene)),
         drifts=drifts(candidate, read_as),
         transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
@@ -182,7 +179,7 @@ def _unjudged(golden: Golden) -> str | None:
 
 
 def _transits(times: Array, golden: Golden, errors: Errors, tolerance_m: float) -> TransitErrors:
-    k = constants(golden.scene.exact, context(80)).converted(float)
+    k = constants_in_double(golden.scene.exact)
     omega = max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), errors.speed_m_s / k.length)
     end = float(golden.scene.exact.t_end)
     judged = times[
@@ -200,18 +197,3 @@ def _transits(times: Array, golden: Golden, errors: Errors, tolerance_m: float) 
         tolerance_m=tolerance_m,
         xdot=lambda at: truth_at(golden, at).states[:, 3],
     )
-
-
-def input_floor(scene: Scene, until: float) -> float:
-    """How far in m the rounding of the decimal inputs to binary64 alone moves the bob up to a time in s."""
-    decimal = scene.with_values(["inputs=decimal"])
-    document = decimal.model_dump(mode="json")
-    parts = [document[key] for key in ("pendulum", "site", "release")]
-    recipe = hashlib.sha256(json.dumps([parts, until], sort_keys=True).encode()).hexdigest()[:32]
-
-    def make(path: Path) -> None:
-        times = np.linspace(0.0, until, FLOOR_TIMES) if until > 0 else np.zeros(1)
-        moved = sensitivity(decimal, times).rounding()[:, :3]
-        path.write_text(repr(float(np.sqrt((moved**2).sum(axis=1)).max())))
-
-    return kept("floor", f"{recipe}.txt", make, lambda path: float(path.read_text()))

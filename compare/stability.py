@@ -16,17 +16,18 @@ from typing import Any
 import numpy as np
 
 from reference import FoucaultError, Scene, UnreachableError, load, load_scene, parse_scene, scene_ids
-from reference.constants import constants
-from reference.precision import context
 from reference.worker import Emit
 
+from .equations.constants import constants_in_double
 from .equations.swing import suited
 from .measuring.character import Character, character
+from .measuring.errors import Truth
 from .measuring.grid import on_doubles
 from .measuring.journal import Journal
 from .measuring.lane import lane
-from .measuring.measure import EXTRAPOLATED, OK, Bench, Row, Truth
+from .measuring.measure import Bench
 from .measuring.reasons import reason_of
+from .measuring.row import EXTRAPOLATED, OK, Row
 from .methods import METHODS
 from .truth import golden_of
 
@@ -92,7 +93,7 @@ def default_scenes() -> list[str]:
 
 def cut(scene: Scene) -> Scene:
     """The scene in the binary64 reading, no longer than `SWINGS` small swings, without transits."""
-    k = constants(scene.exact, context(80)).converted(float)
+    k = constants_in_double(scene.exact)
     strength = math.hypot(float(k.pull[1]), float(k.pull[2]))
     swing = 2 * math.pi / math.sqrt(strength) if strength else math.inf
     scene = on_doubles(scene.with_values(["inputs=binary64", "run.transits=false"]))

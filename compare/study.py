@@ -22,7 +22,8 @@ from .equations.swing import suited
 from .measuring.grid import on_doubles
 from .measuring.journal import Journal
 from .measuring.lane import lane
-from .measuring.measure import Row, ladder
+from .measuring.measure import ladder
+from .measuring.row import Row
 from .methods import METHODS
 from .truth import golden_of
 

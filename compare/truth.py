@@ -9,6 +9,7 @@ import shutil
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -50,7 +51,7 @@ def golden_of(
         UnreachableError: the scene cannot be solved to the digits.
     """
     for folder in shipped(scene):
-        golden = load(folder)
+        golden = _loaded(folder)
         if solves(golden, scene) and golden.manifest.digits >= digits:
             return golden
     wanted = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
@@ -58,10 +59,21 @@ def golden_of(
     path = cache.found("golden", name)
     if path is not None:
         try:
-            return load(path)
+            return _loaded(path)
         except (DatasetError, InputError):
             shutil.rmtree(path, ignore_errors=True)  # damaged: solved again
-    return load(_solved(wanted, name, announce, report))
+    return _loaded(_solved(wanted, name, announce, report))
+
+
+def _loaded(folder: Path) -> Golden:
+    """A dataset, checked and read again only if one of its files has been touched since this process read it."""
+    found = (path.stat() for path in [folder, *sorted(folder.iterdir())]) if folder.is_dir() else ()
+    return _read(folder, tuple((one.st_ino, one.st_size, one.st_mtime_ns, one.st_ctime_ns) for one in found))
+
+
+@lru_cache(maxsize=4)
+def _read(folder: Path, _: tuple[tuple[int, ...], ...]) -> Golden:
+    return load(folder)
 
 
 def _shortened(scene: Scene, until: float | None) -> Scene:

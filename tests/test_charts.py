@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from compare.measuring.measure import Row
+from compare.measuring.row import Row
 from compare.methods import METHODS
 from compare.pages import charts
 from compare.pages.charts.drawing import power_of_ten, sheet
@@ -53,14 +53,15 @@ def study_rows():
 
 
 ROWS = study_rows()
-GROWTHS = [
-    charts.Growth("double", t := np.linspace(0, 1e6, 5000), 1e-16 * t**1.5),
-    charts.Growth("quadruple", t, 1e-33 * t),
+HISTORIES = [
+    charts.ErrorHistory("double", t := np.linspace(0, 1e6, 5000), 1e-16 * t**1.5, 1.5),
+    charts.ErrorHistory("quadruple", t, 1e-33 * t, 1.0),
+    charts.ErrorHistory("single", t, 1e-7 * t),
 ]
 CELLS = [
-    charts.Cell("paris", "rk4", "ok", 7.9),
-    charts.Cell("hard", "rk4", "silently_wrong"),
-    charts.Cell("hard", "x", "not_finite"),
+    charts.Field("paris", "rk4", "ok", 7.9),
+    charts.Field("hard", "rk4", "silently_wrong"),
+    charts.Field("hard", "x", "not_finite"),
 ]
 PICTURES = {
     "overview": lambda: charts.overview(ROWS, BOUND),
@@ -69,7 +70,7 @@ PICTURES = {
     "tolerance": lambda: charts.achieved_tolerance(ROWS, BOUND),
     "formulations": lambda: charts.formulations(ROWS, BOUND),
     "precision": lambda: charts.precision_ladder(ROWS, BOUND),
-    "growth": lambda: charts.error_growth(GROWTHS, BOUND),
+    "growth": lambda: charts.error_growth(HISTORIES, BOUND),
     "map": lambda: charts.heat_map(CELLS),
 }
 
@@ -143,6 +144,7 @@ def test_growth_names_the_slopes_and_each_lines_own(drawn):
     assert {"t", "t^1.5", "t²"} <= set(named)
     assert "double, t^1.50" in named
     assert "quadruple, t^1.00" in named
+    assert "single" in named
 
 
 def test_the_map_reads_without_colour(drawn):
@@ -152,8 +154,8 @@ def test_the_map_reads_without_colour(drawn):
 
 
 def test_digits_are_rounded_down_in_the_map():
-    assert charts.Cell("a", "b", "ok", 7.99).mark == "7"
-    assert charts.Cell("a", "b", "ok", -1.0).mark == "0"
+    assert charts.Field("a", "b", "ok", 7.99).mark == "7"
+    assert charts.Field("a", "b", "ok", -1.0).mark == "0"
 
 
 def test_letters_of_the_map_are_all_different():
@@ -161,13 +163,13 @@ def test_letters_of_the_map_are_all_different():
     assert len(set(letters)) == len(letters)
 
 
-@pytest.mark.parametrize("cells", [[], [charts.Cell("a", "b", "broken")]])
+@pytest.mark.parametrize("cells", [[], [charts.Field("a", "b", "broken")]])
 def test_a_map_of_nothing_or_of_an_unknown_class_is_refused(cells):
     with pytest.raises(InputError):
         charts.heat_map(cells)
 
 
-@pytest.mark.parametrize("lines", [[], [charts.Growth("still", np.array([0.0, 1.0]), np.zeros(2))]])
+@pytest.mark.parametrize("lines", [[], [charts.ErrorHistory("still", np.array([0.0, 1.0]), np.zeros(2))]])
 def test_growth_of_nothing_is_refused(lines):
     with pytest.raises(InputError):
         charts.error_growth(lines, BOUND)

@@ -14,6 +14,7 @@ import pytest
 from small_scenes import make_scene
 
 from compare.candidates.external import arguments, placeholders, run_program, timed
+from compare.candidates.family import MARK
 from reference import InputError
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -143,6 +144,53 @@ def test_what_a_program_leaves_running_is_ended(tmp_path):
     output, _, _ = run_program(words)
     output.close()
     assert ends_within(int(note.read_text()), 5)
+
+
+DAEMON = """
+import os, sys, time
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        with open(sys.argv[1], "w") as note:
+            note.write(f"{os.getpid()} {os.getsid(0)}")
+        time.sleep(60)
+    os._exit(0)
+os.wait()
+while not (os.path.exists(sys.argv[1]) and open(sys.argv[1]).read()):
+    time.sleep(0.01)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the mark is looked for in /proc")
+@pytest.mark.parametrize(("then", "late"), [("time.sleep(60)", True), ("print('done')", False)])
+def test_what_forks_into_a_session_of_its_own_is_ended_as_well(tmp_path, then, late):
+    note = tmp_path / "pid"
+    words = [*python(DAEMON + then), str(note)]
+    if late:
+        with pytest.raises(InputError, match="--timeout"):
+            run_program(words, timeout_s=2.0)
+    else:
+        run_program(words)[0].close()
+    pid, session = map(int, note.read_text().split())
+    assert session != os.getsid(0)
+    assert not alive(pid)  # at once: nothing of it runs on when this returns
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the mark is looked for in /proc")
+def test_nobody_elses_processes_are_ended_with_a_program():
+    with subprocess.Popen(python("import time; time.sleep(60)"), start_new_session=True) as bystander:
+        run_program(python("print(1)"))[0].close()
+        assert alive(bystander.pid)
+        bystander.kill()
+
+
+def test_a_program_within_a_program_has_the_marks_of_both(monkeypatch):
+    monkeypatch.setenv(MARK, "outer")
+    output, _, _ = run_program(python(f"import os; print(os.environ[{MARK!r}])"))
+    with output:
+        outer, inner = output.read().split()
+    assert outer == b"outer"
+    assert len(inner) == 32
 
 
 def test_too_much_output_ends_the_program():

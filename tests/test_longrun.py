@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from compare.measuring import longrun
-from compare.measuring.longrun import Growth, laws, long_run
+from compare.measuring.longrun import LongRun, laws, long_run
 from compare.truth import golden_of
 from reference import load_scene
 
@@ -40,7 +40,7 @@ def test_thirty_days_are_paris_with_a_truth_of_its_own(monkeypatch: pytest.Monke
 
     def short(scene, golden, items, **keywords):  # type: ignore[no-untyped-def]
         asked.append(f"{scene.id} {scene.inputs} {float(scene.exact.t_end):g} {golden} {[item[0] for item in items]}")
-        return [Growth("m", "f", 1.0, "ok")]
+        return [LongRun("m", "f", 1.0, "ok")]
 
     monkeypatch.setattr(longrun, "golden_of", lambda scene, digits, level: f"{digits} {level}")
     monkeypatch.setattr(longrun, "long_run", short)

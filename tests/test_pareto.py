@@ -7,9 +7,9 @@ from itertools import pairwise
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import kendalltau, linregress
+from scipy.stats import linregress
 
-from compare.measuring.measure import Row
+from compare.measuring.row import Row
 from compare.pages.pareto import (
     cost_at,
     cost_of_digits,
@@ -17,9 +17,6 @@ from compare.pages.pareto import (
     costs_at,
     curves,
     front,
-    front_stability,
-    kendall_tau,
-    ranking,
     sentences,
     whole_evaluations,
 )
@@ -117,11 +114,6 @@ def test_a_ladder_goes_from_loose_to_tight_whatever_order_it_comes_in():
     assert [one.setting for one in bits.rows] == [64, 113, 256]
 
 
-def test_ranking_names_each_method_once_along_the_front():
-    rows = ladder("a", [(1e-2, 1.0), (1e-4, 2.0), (1e-6, 9.0)]) + ladder("b", [(1e-5, 3.0), (1e-7, 4.0)])
-    assert ranking(rows) == ["a", "b"]
-
-
 def test_the_cost_of_an_order_four_method_is_interpolated_exactly():
     curve = curves([row(setting=h, error_m=h**4, cpu_s=2 / h) for h in (0.5, 0.2, 0.05, 0.01)])[0]
     for error in (1e-2, 1e-5, 1e-7):
@@ -185,29 +177,6 @@ def test_where_the_papers_method_is_the_cheapest_the_next_is_named():
 def test_an_extrapolated_winner_is_marked_in_its_sentence():
     told = sentences(document(ladder("a", [(1e-4, 3.0)], status="extrapolated")))
     assert "extrapolated" in told[0]
-
-
-@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), min_size=2, max_size=30))
-def test_tau_is_that_of_scipy(pairs):
-    one, other = zip(*pairs, strict=True)
-    if len(set(one)) == 1 or len(set(other)) == 1:
-        with pytest.raises(InputError):
-            kendall_tau(one, other)
-    else:
-        assert kendall_tau(one, other) == pytest.approx(kendalltau(one, other).statistic, abs=1e-12)
-
-
-def test_a_study_ranks_like_itself_and_opposite_to_its_mirror():
-    rows = ladder("a", [(1e-2, 1.0), (1e-4, 2.0)]) + ladder("b", [(1e-6, 4.0), (1e-8, 8.0)])
-    mirror = [Row.parsed(asdict(one) | {"cpu_s": 10 / one.cpu_s}) for one in rows]
-    assert front_stability(rows, rows) == 1.0
-    assert front_stability(rows, mirror) == -1.0
-
-
-def test_a_row_that_enters_the_front_in_the_second_study_counts():
-    one = ladder("a", [(1e-2, 1.0), (1e-4, 2.0), (1e-6, 3.0)]) + ladder("b", [(1e-4, 2.1)])
-    other = ladder("a", [(1e-2, 1.0), (1e-4, 2.0), (1e-6, 3.0)]) + ladder("b", [(1e-4, 1.9)])
-    assert front_stability(one, other) == pytest.approx(4 / 6)
 
 
 def test_the_power_law_and_its_standard_error_are_those_of_scipy():

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from compare.measuring.character import Character
-from compare.measuring.measure import Row
 from compare.measuring.reasons import reason_of
+from compare.measuring.row import Row
 
 CALM = Character(0.4, 0.0, 1.0, 2.0, 9.0, 0.001, 0.01, 600.0)
 ROW = Row("rk4", "space", 0.1, "step", "binary64", "ok", steps=6000, h_drift=1e-7, cpu_s=12.0)

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from compare.measuring.character import character
-from compare.measuring.longrun import Growth, laws
+from compare.measuring.longrun import LongRun, laws
 from compare.stability import Cell, cut, default_scenes, stability
 from foucault import app
 from reference import load_scene, trajectory
@@ -90,7 +90,7 @@ def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:
 
 def test_a_growth_of_known_power_is_named() -> None:
     t = np.linspace(0, 100, 400)
-    made = Growth("m", "f", 1.0, "ok", "", t.tolist(), (1e-9 * t**1.5).tolist(), 1.0)
+    made = LongRun("m", "f", 1.0, "ok", "", t.tolist(), (1e-9 * t**1.5).tolist(), 1.0)
     assert made.exponent == pytest.approx(1.5, abs=0.02)
     assert made.law == "t^1.5"
     assert "grows like t^1.5" in next(laws([made]))

@@ -33,6 +33,15 @@ def test_the_golden_numbers_agree(golden, states, columns):
     assert made.transits.matched == 10514
 
 
+def test_what_nobody_asks_for_is_not_computed(monkeypatch):
+    """The input floor costs a run of the variational equations."""
+    asked = []
+    monkeypatch.setattr("compare.score.input_floor", lambda scene, until: asked.append(until) or 5e-13)
+    made = assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-15)
+    assert asked == []
+    assert (made.input_floor_m, made.input_floor_m, asked) == (5e-13, 5e-13, [0.0])
+
+
 def test_lists_will_do():
     assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-15)
 

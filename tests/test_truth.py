@@ -70,6 +70,21 @@ def test_a_damaged_entry_is_solved_again():
     load(path)
 
 
+def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched(monkeypatch):
+    scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
+    golden = golden_of(scene)
+    assert golden_of(scene) is golden
+    transits = golden.path / "transits.csv"
+    transits.write_bytes(transits.read_bytes())
+    again = golden_of(scene)
+    assert again is not golden
+    assert again.manifest == golden.manifest
+    (golden.path / "stranger").touch()
+    said: list[str] = []
+    golden_of(scene, announce=said.append)
+    assert len(said) == 1  # a folder with something else in it is no dataset: it was solved again
+
+
 @pytest.mark.parametrize("place", ["file", "proc"])
 def test_a_cache_that_cannot_be_written_costs_time_only(place, tmp_path, monkeypatch):
     blocked = tmp_path / "file"

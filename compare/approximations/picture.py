@@ -1,12 +1,11 @@
 """One picture of the errors of approximations, as SVG text: logarithmic, labelled at the lines, legible in grey.
 
-Lines that lie on each other are drawn once, with all their names. Colours are those of Okabe and Ito, which the
-colour-blind tell apart; dashes and marks repeat what colour says. Needs the extra `plot`.
+Lines that lie on each other are drawn once, with all their names. Dashes and marks repeat what
+colour says. Needs the extra `plot`.
 """
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,12 +16,13 @@ import numpy as np
 
 from reference import InputError
 
+from ..plotting import COLOURS, SAME_BYTES, pyplot, svg_of
 from .approximation import Array
 from .domain import TimeRow
 from .limits import SweepRow
 from .variation import UNITS
 
-_COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+_COLOURS = (COLOURS[-1], *COLOURS[:-1])  # black first
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (7, 1.5, 1.2, 1.5)))
 _SAME = 0.15  # lines that differ by less than this part everywhere are one line to the eye
 _WRAP = 2  # names in a line of a label
@@ -81,23 +81,14 @@ def plot(rows: Sequence[TimeRow | SweepRow], what: str = "error_m", title: str =
     lines = _lines(rows, what)
     if not lines:
         raise InputError("rows", f"{len(rows)} rows", f"some with {what}")
-    try:
-        import matplotlib
-        from matplotlib.backends.backend_svg import FigureCanvasSVG
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise InputError(
-            "plot", "no matplotlib", "matplotlib", "Install it: pip install 'foucault-reference[plot]'."
-        ) from None
-    with matplotlib.rc_context({"svg.hashsalt": "foucault", "svg.fonttype": "none", "font.size": 9}):
-        figure = Figure(
-            figsize=(9.5, max(4.8, 0.42 * sum(len(line.names) for line in lines) / _WRAP + 3)), layout="constrained"
-        )
-        FigureCanvasSVG(figure)
-        _draw(figure.subplots(), rows[0], lines, what, title)
-        text = io.StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return text.getvalue()
+    plt = pyplot("plot")
+    with plt.rc_context(SAME_BYTES | {"font.size": 9}):
+        tall = max(4.8, 0.42 * sum(len(line.names) for line in lines) / _WRAP + 3)
+        figure, axes = plt.subplots(figsize=(9.5, tall), layout="constrained")
+        _draw(axes, rows[0], lines, what, title)
+        text = svg_of(figure)
+        plt.close(figure)
+    return text
 
 
 def _draw(axes: Any, row: TimeRow | SweepRow, lines: list[Line], what: str, title: str) -> None:

@@ -20,6 +20,7 @@ from reference import InputError, Scene
 from reference.constants import release
 from reference.precision import context
 
+from .family import Family
 from .lines import MAX_BYTES
 
 TIMEOUT_S = 600.0
@@ -96,12 +97,17 @@ def run_program(
     Raises:
         InputError: it cannot be started, fails, takes too long or writes too much; nothing of it runs on then.
     """
-    begun = time.monotonic()
+    begun, family = time.monotonic(), Family()
     with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as stack:
         output = stack.enter_context(tempfile.TemporaryFile())
         try:
             process = subprocess.Popen(
-                words, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, start_new_session=True
+                words,
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=errors,
+                env=family.environment,
+                start_new_session=True,
             )
         except OSError as error:
             raise InputError("--run", words[0], "a program that can be started", f"{error.strerror}.") from None
@@ -116,8 +122,9 @@ def run_program(
             raise
         finally:
             limits.end()
-            _kill_group(process.pid)  # what it left running in the background
-        wall, tail = time.monotonic() - begun, _tail(errors)
+            wall = time.monotonic() - begun
+            family.end(process.pid)  # what it left running in the background
+        tail = _tail(errors)
         if limits.reason:
             raise InputError("--run", shlex.join(words), limits.reason, tail)
         if process.returncode:
@@ -157,7 +164,8 @@ class _Limits:
                 return
 
     def kill(self) -> None:
-        _kill_group(self._process.pid)
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, signal.SIGKILL)
 
 
 @contextlib.contextmanager
@@ -178,11 +186,6 @@ def _terminable() -> Iterator[None]:
     finally:
         for number in numbers:
             signal.signal(number, signal.SIG_DFL)
-
-
-def _kill_group(group: int) -> None:
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(group, signal.SIGKILL)
 
 
 def _tail(errors: BinaryIO) -> str:

@@ -19,7 +19,7 @@ from types import ModuleType
 from typing import Any
 
 from ..cache import root
-from .tracing import FUNCTIONS, Program
+from .program import FUNCTIONS, Program
 
 HEADER = f"""import numba as nb
 import numpy as np

@@ -17,9 +17,10 @@ from reference.mechanics import FORMULATIONS
 from reference.precision import context
 from reference.scene import Scene
 
+from .program import Program
 from .swing import Swing
 from .tangent import differentiated
-from .tracing import Program, record
+from .tracing import record
 
 Array = npt.NDArray[np.float64]
 Rates = Callable[[Sequence[Any], Any, Mapping[str, Any]], Sequence[Any]]

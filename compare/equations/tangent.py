@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from .tracing import Program, RecordingFunctions, Tape
+from .program import Program
+from .tracing import RecordingFunctions, Tape
 
 
 def differentiated(program: Program, variables: Sequence[str]) -> Program:

@@ -27,58 +27,15 @@ def kepler(x, y):
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-FUNCTIONS = ("atan2", "cos", "sin", "sqrt")
-_SYMBOLS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+from .program import FUNCTIONS, Line, Program
 
 
 class TracingError(TypeError):
     """The function did to a recording number what straight-line code cannot do."""
-
-
-@dataclass(frozen=True)
-class Line:
-    """One operation: the name it defines, what is done, and the names or literals it is done to."""
-
-    name: str
-    operation: str
-    operands: tuple[str, ...]
-
-    @property
-    def expression(self) -> str:
-        """The right-hand side, in Python."""
-        if self.operation == "neg":
-            return f"-{self.operands[0]}"
-        if self.operation in _SYMBOLS:
-            return f"{self.operands[0]} {_SYMBOLS[self.operation]} {self.operands[1]}"
-        return f"{self.operation}({', '.join(self.operands)})"
-
-
-@dataclass(frozen=True)
-class Program:
-    """Straight-line code: inputs, operations in order, and the names or literals that are its results."""
-
-    inputs: tuple[str, ...]
-    lines: tuple[Line, ...] = field(repr=False)
-    outputs: tuple[str, ...]
-
-    def source(self, name: str) -> str:
-        """A Python function of the inputs, which returns the tuple of the outputs."""
-        body = [f"{line.name} = {line.expression}" for line in self.lines]
-        ending = ", ".join(self.outputs) + ("," if len(self.outputs) == 1 else "")
-        return "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"]) + "\n"
-
-    def function(self) -> Callable[..., tuple[float, ...]]:
-        """The same without a compiler: a Python function of floats."""
-        namespace: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-        exec(self.source("traced"), namespace)
-        made: Callable[..., tuple[float, ...]] = namespace["traced"]
-        return made
 
 
 class Number:

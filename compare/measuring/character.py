@@ -12,11 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference import Scene
-from reference.constants import Constants, constants
+from reference.constants import Constants
 from reference.mechanics import FORMULATIONS, tension
-from reference.precision import context
 from reference.sensitivity import sensitivity
 from reference.solution import Array
+
+from ..equations.constants import constants_in_double
 
 SAMPLES = 64  # states of the trajectory at which it is looked at
 _NUDGE = 1e-6
@@ -65,7 +66,7 @@ def character(scene: Scene, times: Array, states: Array) -> Character:
         times: increasing, from 0, in s.
         states: the true x, y, z, vx, vy, vz in m and m/s at these times, shape (times, 6).
     """
-    k = constants(scene.exact, context(80)).converted(float)
+    k = constants_in_double(scene.exact)
     length = float(k.length)
     chosen = np.unique(np.linspace(0, len(times) - 1, SAMPLES).astype(int))
     scaled = states / length

@@ -18,10 +18,11 @@ from reference import FoucaultError, Golden, Scene, load, load_scene, parse_scen
 from reference.worker import Emit
 
 from ..methods import METHODS, Problem, available
+from ..power_of_time import power_of_time
 from ..truth import golden_of
+from .errors import Truth
 from .journal import Journal
 from .lane import lane
-from .measure import Truth
 
 SCENE = "paris_30d"
 TRUTH_DIGITS = 36  # so that 113 bits can be judged
@@ -49,8 +50,8 @@ ITEMS: tuple[Item, ...] = (
 
 
 @dataclass(frozen=True)
-class Growth:
-    """How a method's error grows.
+class LongRun:
+    """A method's errors over a long run.
 
     Attributes:
         method, formulation, setting: what ran.
@@ -81,11 +82,7 @@ class Growth:
         """The exponent p of error ∝ t^p, fitted to the largest error so far; None where nothing was measured."""
         t, error = np.array(self.t), np.maximum.accumulate(np.array(self.error_m or [0.0]))
         kept = (t >= FROM * t[-1]) & (error > 0) if len(t) else np.zeros(0, dtype=bool)
-        if kept.sum() < PARTS:
-            return None
-        edges = np.geomspace(t[kept][0], t[kept][-1], PARTS)
-        at = np.unique(np.searchsorted(t[kept], edges, side="right") - 1)
-        return float(np.polyfit(np.log(t[kept][at]), np.log(error[kept][at]), 1)[0])
+        return power_of_time(t[kept], error[kept], PARTS) if kept.sum() >= PARTS else None
 
     @property
     def law(self) -> str | None:
@@ -105,8 +102,8 @@ def long_run(
     *,
     kept: Path | None = None,
     report: Callable[[int, int, str], None] | None = None,
-) -> list[Growth]:
-    """The error growth of methods.
+) -> list[LongRun]:
+    """The errors of methods over a long run.
 
     Args:
         scene: in the binary64 reading.
@@ -116,7 +113,7 @@ def long_run(
         report: called with runs done, runs in all and what runs now.
     """
     journal = Journal(kept, f"{scene.id} {scene.run.t_end} {golden.manifest.files['grid.csv'].sha256[:16]}")
-    done = {row.key: row for row in (Growth(**result) for result in journal)}
+    done = {row.key: row for row in (LongRun(**result) for result in journal)}
     document = scene.model_dump(exclude_none=True)
     for item in items:
         if report is not None:
@@ -128,8 +125,8 @@ def long_run(
     return [done[item] for item in items]
 
 
-def _failed(item: Item, late: bool, reason: str) -> Growth:
-    return Growth(*item, "out_of_time" if late else "gave_up", reason)
+def _failed(item: Item, late: bool, reason: str) -> LongRun:
+    return LongRun(*item, "out_of_time" if late else "gave_up", reason)
 
 
 def grown(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item]) -> None:
@@ -141,7 +138,7 @@ def grown(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item])
         method = METHODS[name]
         missing = available(method)
         if missing is not None:
-            emit(Growth(name, formulation, setting, "not_installed", missing))
+            emit(LongRun(name, formulation, setting, "not_installed", missing))
             continue
         try:
             work = method.prepare(Problem.of(scene, formulation, truth.times), setting)
@@ -149,18 +146,18 @@ def grown(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item])
             outcome = work()
             cpu_s = time.process_time() - begun
         except FoucaultError as error:
-            emit(Growth(name, formulation, setting, "refused", str(error)))
+            emit(LongRun(name, formulation, setting, "refused", str(error)))
             continue
         errors = truth.position_errors(outcome)
         t = truth.times[: len(errors)]
         emit(
-            Growth(
+            LongRun(
                 name, formulation, setting, outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m
             )
         )
 
 
-def laws(rows: Sequence[Growth]) -> Iterator[str]:
+def laws(rows: Sequence[LongRun]) -> Iterator[str]:
     """A sentence a method."""
     for row in rows:
         exponent = row.exponent
@@ -180,7 +177,7 @@ def over_thirty_days(
     *,
     kept: Path | None = None,
     report: Callable[[int, int, str], None] | None = None,
-) -> list[Growth]:
+) -> list[LongRun]:
     """`long_run` on Paris over 30 days, with its truth; see there."""
     scene = load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
     golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)

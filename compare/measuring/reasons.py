@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from .character import Character
-from .measure import Row
+from .row import Row
 
 ROUNDING = 2.0**-53
 EXPLICIT_REACH = 3.3  # of the real axis, that an explicit method of order 5 to 8 has per step, about

@@ -11,7 +11,7 @@ import numpy as np
 from reference.mechanics import plus, times
 
 from ..equations.problem import Array, Problem
-from ..equations.tracing import Program
+from ..equations.program import Program
 from .method import Method, Outcome, Work, outcome
 from .tableau import NystromTableau, Tableau
 

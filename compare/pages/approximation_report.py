@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,9 +14,10 @@ from ..approximations import APPROXIMATIONS
 from ..approximations.domain import error_table, quantity_table
 from ..approximations.limits import LIMITS, SWEEP_S, LimitRow, limits, sweep
 from ..approximations.picture import plot
-from .page import Column, TableRow, figure, page, paragraph, section, table, write_files
+from .folder import PAGE, csv_text, json_text, write_files
+from .page import Column, TableRow, figure, page, paragraph, section, table
 
-CSV, JSON, PAGE = "rows.csv", "approximations.json", "index.html"
+CSV, JSON = "rows.csv", "approximations.json"
 OVERS = ("time", "amplitude", "latitude", "length")
 CURVE_TIMES = 80
 
@@ -65,13 +63,9 @@ def text_table(made: dict[str, Any]) -> str:
 
 
 def write(scene: Scene, made: dict[str, Any], out: Path) -> Path:
-    """Write rows.csv, approximations.json and the page, each whole; returns the page."""
-    stream = io.StringIO()
-    rows = csv.DictWriter(stream, list(made["rows"][0]), lineterminator="\n")
-    rows.writeheader()
-    rows.writerows(made["rows"])
-    text = json.dumps(made, indent=1, ensure_ascii=False) + "\n"
-    write_files(out, {CSV: stream.getvalue(), JSON: text, PAGE: page_text(scene, made)})
+    """Write rows.csv, approximations.json and the page, all or none; returns the page."""
+    rows = csv_text(made["rows"][0], made["rows"])
+    write_files(out, {CSV: rows, JSON: json_text(made), PAGE: page_text(scene, made)})
     return out / PAGE
 
 

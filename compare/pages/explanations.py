@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..measuring.measure import REPEAT_S, REPEATS, Row
+from ..measuring.measure import REPEAT_S, REPEATS
+from ..measuring.row import Row
 from .pareto import curves
 
 LEAD = (

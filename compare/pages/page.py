@@ -5,17 +5,15 @@ Text is escaped wherever it is put in; what is HTML already says so by its type.
 
 from __future__ import annotations
 
+import base64
 import html
-import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from pathlib import Path
 
-from reference import InputError
+MARK = '<meta name="generator" content="foucault">'  # of every page: by it a folder of ours is known
 
 
 class Html(str):
@@ -30,7 +28,8 @@ class Column:
 
     Attributes:
         title: over it.
-        kind: `text`, `number` (to the right), or `prose` (may be broken into lines).
+        kind: `text`, `number` (to the right), `prose` (may be broken into lines), `line` (the same, for long ones), or
+            `wrapped` (broken anywhere: a table of nothing else is as wide as the page).
     """
 
     title: str
@@ -43,11 +42,13 @@ class TableRow:
 
     Attributes:
         cells: one for each column.
-        kind: how it looks: `front`, `failed`, `first` (of a group), several words, or nothing.
+        kind: how it looks: `front`, `failed`, `first` (of a group), a verdict, several words, or nothing.
+        anchor: the word by which it is linked to, or nothing.
     """
 
     cells: Sequence[str]
     kind: str = ""
+    anchor: str = ""
 
 
 def text(value: str) -> Html:
@@ -63,6 +64,11 @@ def join(parts: Iterable[str]) -> Html:
 def strong(value: str) -> Html:
     """Set off from its neighbours."""
     return Html(f"<strong>{text(value)}</strong>")
+
+
+def faint(value: str) -> Html:
+    """Set back behind its neighbours."""
+    return Html(f'<span class="faint">{text(value)}</span>')
 
 
 def paragraph(value: str) -> Html:
@@ -85,17 +91,41 @@ def figure(svg: str, caption: str) -> Html:
     return Html(f'<figure>\n<div class="wide">\n{svg}</div>\n<figcaption>{text(caption)}</figcaption>\n</figure>')
 
 
+def plate(svg: str, number: int, title: str, remark: str) -> Html:
+    """A numbered picture in its own colours, as an image, with its printed title and a remark beside it."""
+    image = f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
+    words = f"<p>{strong(f'FIG. {number}.')} {text(title)}</p>\n<p>{text(remark)}</p>"
+    return Html(
+        f'<figure id="figure-{number}" class="plate">\n<img alt="Figure {number}" src="{image}">\n'
+        f"<figcaption>\n{words}\n</figcaption>\n</figure>"
+    )
+
+
+def choices(kinds: Mapping[str, str]) -> Html:
+    """A box for each kind of row, with its label; page.css hides the rows of a kind whose box is not checked."""
+    boxes = (
+        f'<label><input type="checkbox" id="show-{kind}" checked> {text(label)}</label>'
+        for kind, label in kinds.items()
+    )
+    return Html('<p class="choices">\n' + "\n".join(boxes) + "\n</p>")
+
+
 def table(columns: Sequence[Column], rows: Iterable[TableRow], caption: str = "") -> Html:
     """A table that moves inside itself where it is wider than the screen."""
     head = "".join(f'<th scope="col"{_class(one)}>{text(one.title)}</th>' for one in columns)
     body = []
     for row in rows:
         cells = "".join(f"<td{_class(one)}>{text(cell)}</td>" for one, cell in zip(columns, row.cells, strict=True))
-        body.append(f'<tr class="{row.kind}">{cells}</tr>' if row.kind else f"<tr>{cells}</tr>")
+        kind = f' class="{row.kind}"' if row.kind else ""
+        named = f' id="{text(row.anchor)}"' if row.anchor else ""
+        body.append(f"<tr{kind}{named}>{cells}</tr>")
     title = [f"<figcaption>{text(caption)}</figcaption>"] if caption else []
     inside = [f"<thead><tr>{head}</tr></thead>", "<tbody>", *body, "</tbody>"]
+    around = "whole" if all(one.kind == "wrapped" for one in columns) else "wide"
     return Html(
-        "\n".join(["<figure>", *title, '<div class="wide">', "<table>", *inside, "</table>", "</div>", "</figure>"])
+        "\n".join(
+            ["<figure>", *title, f'<div class="{around}">', "<table>", *inside, "</table>", "</div>", "</figure>"]
+        )
     )
 
 
@@ -121,34 +151,10 @@ def page(title: str, sections: Sequence[str], *, lead: str = "") -> str:
     links = "\n".join(f'<a href="#{where}">{heading}</a>' for where, heading in headings)
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n'
         f"<title>{text(title)}</title>\n<style>\n{_styles()}</style>\n</head>\n<body>\n<header>\n<h1>{text(title)}</h1>\n"
         f"{text(lead)}\n</header>\n<nav>\n{links}\n</nav>\n<main>\n{join(sections)}\n</main>\n</body>\n</html>\n"
     )
-
-
-def write_files(folder: Path, made: Mapping[str, str]) -> None:
-    """Write files into a folder, each whole or not at all: all beside their targets first, then renamed in order.
-
-    Raises:
-        InputError: the folder cannot be written to.
-    """
-    beside = {name: folder / f".{name}.partial-{os.getpid()}" for name in made}
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, content in made.items():
-            with beside[name].open("w", encoding="utf-8", newline="") as stream:
-                stream.write(content)
-                stream.flush()
-                os.fsync(stream.fileno())
-        for name in made:
-            beside[name].replace(folder / name)
-    except OSError as error:
-        raise InputError("--out", str(folder), "a folder that can be written to", f"{error.strerror}.") from None
-    finally:
-        for rest in beside.values():
-            with suppress(OSError):
-                rest.unlink(missing_ok=True)
 
 
 def _class(column: Column) -> str:

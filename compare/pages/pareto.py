@@ -8,12 +8,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations, pairwise
+from itertools import pairwise
 from typing import Any
 
 from reference import InputError
 
-from ..measuring.measure import EXTRAPOLATED, OK, Row
+from ..measuring.row import EXTRAPOLATED, OK, Row
 from .power_law import LEAST_POINTS, PowerLaw, power_law
 
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors that the sentences speak of
@@ -114,39 +114,6 @@ def front(rows: Sequence[Row], bound_m: float = 0.0) -> list[Row]:
             best = error_of(row, bound_m)
             found.append(row)
     return found
-
-
-def ranking(rows: Sequence[Row], bound_m: float = 0.0) -> list[str]:
-    """Labels of the methods along the front, each once: from the cheapest to the most accurate."""
-    labels = {row.key: curve.label for curve in curves(rows) for row in curve.rows}
-    return list(dict.fromkeys(labels[row.key] for row in front(rows, bound_m)))
-
-
-def kendall_tau(one: Sequence[float], other: Sequence[float]) -> float:
-    """Kendall's tau-b of two lists that belong together: 1 if they order alike, -1 if they order opposite.
-
-    Raises:
-        InputError: a list that orders nothing.
-    """
-    signs = [(_sign(a - c), _sign(b - d)) for (a, b), (c, d) in combinations(zip(one, other, strict=True), 2)]
-    untied = sum(p != 0 for p, _ in signs) * sum(q != 0 for _, q in signs)
-    if not untied:
-        raise InputError("rankings", f"{len(one)} values", "two lists with at least two different values each")
-    return sum(p * q for p, q in signs) / math.sqrt(untied)
-
-
-def front_stability(one: Sequence[Row], other: Sequence[Row], bound_m: float = 0.0) -> float:
-    """Kendall's tau of the costs in two studies of the rows that stand on the front of either.
-
-    Rows that only one of them has measured are left out.
-
-    Raises:
-        InputError: fewer than two rows to compare.
-    """
-    costs = [{row.key: cost_of(row) for row in _measured(rows)} for rows in (one, other)]
-    keys = dict.fromkeys(row.key for rows in (one, other) for row in front(rows, bound_m))
-    pairs = [(costs[0][key], costs[1][key]) for key in keys if key in costs[0] and key in costs[1]]
-    return kendall_tau([a for a, _ in pairs], [b for _, b in pairs])
 
 
 def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> Cost | None:
@@ -268,7 +235,3 @@ def _metres(error_m: float) -> str:
 def _measured(rows: Sequence[Row]) -> list[Row]:
     """Rows with a cost and an error that are numbers: a broken one must not reach the front by comparing false."""
     return [row for row in rows if row.measured and math.isfinite((row.error_m or 0.0) + cost_of(row))]
-
-
-def _sign(value: float) -> int:
-    return (value > 0) - (value < 0)

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import json
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, fields
@@ -16,19 +13,19 @@ import numpy as np
 
 from reference import load_scene
 
-from ..measuring.longrun import Growth, laws
+from ..measuring.longrun import LongRun, laws
 from ..stability import WRONG, Cell
-from .charts import Growth as Line
-from .charts import error_growth, heat_map
-from .charts.heat_map import CLASSES
-from .charts.heat_map import Cell as Field
-from .page import Column, TableRow, facts, figure, findings, page, paragraph, section, table, write_files
+from .charts import ErrorHistory, error_growth, heat_map
+from .charts.heat_map import CLASSES, Field
+from .folder import PAGE, csv_text, json_text, write_files
+from .page import Column, TableRow, facts, figure, findings, page, paragraph, section, table
 
-CSV, JSON, PAGE = "rows.csv", "stability.json", "index.html"
+CSV, JSON = "rows.csv", "stability.json"
+FILES = (CSV, JSON, PAGE)
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
 
 
-def document(cells: Sequence[Cell], runs: Sequence[Growth], machine: dict[str, str]) -> dict[str, Any]:
+def document(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, str]) -> dict[str, Any]:
     """The JSON document of the contract."""
     return {
         "rows": [asdict(cell) for cell in cells],
@@ -75,18 +72,14 @@ def _times(gain: float) -> str:
     return f"{gain:.2g} times cheaper" if gain >= 1 else f"{1 / gain:.2g} times dearer"
 
 
-def write(made: dict[str, Any], cells: Sequence[Cell], runs: Sequence[Growth], out: Path) -> Path:
-    """Write rows.csv, stability.json and the page, each whole; returns the page."""
-    stream = io.StringIO()
-    rows = csv.DictWriter(stream, [one.name for one in fields(Cell)], lineterminator="\n")
-    rows.writeheader()
-    rows.writerows(made["rows"])
-    text = json.dumps(made, indent=1, ensure_ascii=False) + "\n"
-    write_files(out, {CSV: stream.getvalue(), JSON: text, PAGE: page_text(cells, runs, made["machine"])})
+def write(made: dict[str, Any], cells: Sequence[Cell], runs: Sequence[LongRun], out: Path) -> Path:
+    """Write rows.csv, stability.json and the page, all or none; returns the page."""
+    rows = csv_text((one.name for one in fields(Cell)), made["rows"])
+    write_files(out, {CSV: rows, JSON: json_text(made), PAGE: page_text(cells, runs, made["machine"])})
     return out / PAGE
 
 
-def page_text(cells: Sequence[Cell], runs: Sequence[Growth], machine: dict[str, str]) -> str:
+def page_text(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, str]) -> str:
     """The page."""
     letters = "; ".join(f"{letter}: {meaning}" for letter, meaning in CLASSES.values())
     drawn = [Field(cell.scene, f"{cell.method} {_short(cell.precision)}", cell.status, cell.digits) for cell in cells]
@@ -108,7 +101,7 @@ def page_text(cells: Sequence[Cell], runs: Sequence[Growth], machine: dict[str, 
     measured = [run for run in runs if run.exponent is not None]
     if measured:
         lines = [
-            Line(f"{run.method}, {run.formulation}", np.array(run.t), np.array(run.error_m), run.exponent)
+            ErrorHistory(f"{run.method}, {run.formulation}", np.array(run.t), np.array(run.error_m), run.exponent)
             for run in measured
         ]
         caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
@@ -156,7 +149,7 @@ def _scenes(cells: Sequence[Cell]) -> str:
     return table([*columns, Column("right", "number"), Column("failed", "number")], rows)
 
 
-def text_table(cells: Sequence[Cell], runs: Sequence[Growth]) -> str:
+def text_table(cells: Sequence[Cell], runs: Sequence[LongRun]) -> str:
     """For the terminal: the headlines, and a line a method."""
     names = list(dict.fromkeys((cell.method, cell.precision) for cell in cells))
     words = ["ok", "silently_wrong", "not_finite", "gave_up", "out_of_time", "refused", "not_installed"]

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from ..measuring.measure import EXTRAPOLATED, Row
+from ..measuring.row import EXTRAPOLATED, Row
 from ..methods import METHODS
 from . import explanations as say
 from .page import Column, Html, TableRow, strong, table

@@ -31,16 +31,19 @@ def rows(report: Report | None = None) -> list[Row]:
 
 
 def build(out: Path, report: Report | None = None) -> list[Row]:
-    """Write `index.html`, `figure_N.svg`, `rows.csv` and `rows.json` into a folder, whole or not at all.
+    """Write `index.html`, `figure_N.svg`, `rows.csv` and `rows.json` into a folder, all or none.
 
     Raises:
-        InputError: matplotlib or numba is not installed, or the folder cannot be written.
+        InputError: matplotlib or numba is not installed, the folder is somebody else's, or it cannot be written.
     """
+    from ..pages.folder import PAGE, check_folder, write_files
+    from ..plotting import pyplot
     from .figure_runs import check_methods
-    from .figures import FIGURES, pyplot, svg
-    from .page import files_of, write
+    from .figures import FIGURES, svg
+    from .page import files_of
 
-    pyplot()  # before the work, not after it
+    pyplot("--out")  # before the work, not after it
+    check_folder(out, [PAGE])
     check_methods()
     judged = rows(report)
     figures = {}
@@ -48,5 +51,5 @@ def build(out: Path, report: Report | None = None) -> list[Row]:
         figures[number] = svg(number)
         if report is not None:
             report(f"figure {number}", done, len(FIGURES))
-    write(out, files_of(judged, figures))
+    write_files(out, files_of(judged, figures))
     return judged

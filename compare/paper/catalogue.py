@@ -10,10 +10,12 @@ from .judge import Check, Row
 Report = Callable[[str, int, int], None]
 
 SECTIONS = (
-    "mathar_frames",
+    "mathar_axes",
+    "mathar_velocity",
     "mathar_lagrangian",
     "mathar_cartesian",
     "mathar_rest",
+    "mathar_triangle",
     "mathar_slow",
     "mathar_motion",
     "mathar_frequency",
@@ -22,7 +24,9 @@ SECTIONS = (
     "gastebois_rotation",
     "gastebois_gravity",
     "gastebois_small",
-    "gastebois_solutions",
+    "gastebois_solution",
+    "gastebois_thrown",
+    "gastebois_let_go",
     "gastebois_pantheon",
     "gastebois_lagrangian",
     "gastebois_general",

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from reference.cli import AsJson, emit
+
+from ..commands.options import counting
 
 
 def register(app: typer.Typer) -> None:
@@ -27,7 +27,11 @@ def command(
     from . import build, rows
     from .page import document
 
-    with _progress() as report:
+    with counting("judging") as count:
+
+        def report(place: str, done: int, total: int) -> None:
+            count(done, total, place)
+
         judged = rows(report) if out is None else build(out, report)
     if as_json:
         emit({"out": None if out is None else str(out), "rows": [document(row) for row in judged]})
@@ -41,18 +45,3 @@ def command(
         typer.echo(f"{verdict:13}  {sum(row.verdict == verdict for row in judged)}")
     if out is not None:
         typer.echo(f"{out / 'index.html'}")
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[str, int, int], None] | None]:
-    """A bar on stderr, or None where stderr is no terminal."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield None
-        return
-    with Progress(console=console, transient=True) as bar:
-        task = bar.add_task("judging", total=None)
-        yield lambda place, done, total: bar.update(task, completed=done, total=total, description=place)

@@ -12,7 +12,7 @@ from ..equations.problem import Problem
 from ..methods import METHODS, available
 from .digits import MP, acos, dot, mpf, pi, sin, sqrt
 from .mathar_frequency import slow_down
-from .mathar_rest import apparent_gravity
+from .mathar_triangle import apparent_gravity
 from .points import paris
 from .runs import Array, frequency, path_in, solved
 from .truth import rest

@@ -1,50 +1,30 @@
-"""Figures 1 and 3-9 of the paper, drawn again from the reference (matplotlib, extra `plot`).
-
-Colours are Okabe and Ito's, which the colour-blind tell apart; line styles tell them apart in grey.
-"""
+"""Figures 1 and 3-9 of the paper, drawn again from the reference (matplotlib, extra `plot`)."""
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
-from reference import InputError, load_scene
+from reference import load_scene
 
 from ..approximations import Motion, approximation
+from ..plotting import COLOURS, SAME_BYTES, pyplot, svg_of
 from .digits import degrees, mpf
 from .figure_runs import estimate_at, frequencies, orders_at, window
 from .points import paris
 from .runs import Array, mean_direction, paris_path, rest_in_metres
 from .truth import rest_angle
 
-BLUE, RED, GREEN, PINK, BLACK, GREY = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000", "#888888"
+BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
+GREY = "#888888"
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WINDOWS = (0, 7000, 12000)  # s
 WIDE, HIGH = 8.0, 4.2  # inches
 
 
-def pyplot() -> Any:
-    """Import matplotlib, without a window and with the same bytes for the same picture.
-
-    Raises:
-        InputError: it is not installed.
-    """
-    try:
-        import matplotlib
-    except ImportError:
-        raise InputError(
-            "--out", "no matplotlib", "the extra plot", "pip install 'foucault-reference[plot]'."
-        ) from None
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
-
-    return plt
-
-
-STYLE = {
+STYLE = SAME_BYTES | {
     "axes.spines.right": False,
     "axes.spines.top": False,
     "axes.titlelocation": "left",
@@ -53,8 +33,6 @@ STYLE = {
     "font.size": 9.5,
     "legend.frameon": False,
     "lines.linewidth": 1.3,
-    "svg.fonttype": "none",
-    "svg.hashsalt": "foucault",
 }
 
 
@@ -242,10 +220,9 @@ def svg(number: int) -> str:
     Raises:
         InputError: matplotlib is not installed.
     """
-    plt = pyplot()
+    plt = pyplot("--out")
     with plt.rc_context(STYLE):
         figure = FIGURES[number](plt)
-        text = io.StringIO()
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
+        text = svg_of(figure)
         plt.close(figure)
-    return text.getvalue()
+    return text

@@ -10,7 +10,7 @@ from reference.mechanics import acceleration
 from .digits import MP, Vector, add, cos, cross, dot, scale, sin, vector_derivative
 from .gastebois_frames import turning
 from .judge import Check, Identity
-from .mathar_frames import moving
+from .mathar_velocity import moving
 from .pantheon import G
 from .points import Point
 from .truth import by_angles

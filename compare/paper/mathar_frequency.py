@@ -6,7 +6,7 @@ from typing import Any
 
 from .digits import MP, Vector, acos, asin, dot, mpf, pi, shown, sin, sqrt
 from .judge import Check, Finding, Number, Statement
-from .mathar_rest import apparent_gravity
+from .mathar_triangle import apparent_gravity
 from .points import paris
 from .runs import solved, transit_times
 from .truth import rest

@@ -6,7 +6,7 @@ from typing import Any
 
 from .digits import MP, Vector, cos, derivative, shown, sin, sqrt
 from .judge import Check, Finding, Identity, Statement
-from .mathar_frames import alpha_0, alpha_1, alpha_2
+from .mathar_velocity import alpha_0, alpha_1, alpha_2
 from .points import Point, points
 from .truth import (
     by_angles,

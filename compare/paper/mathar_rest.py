@@ -1,4 +1,4 @@
-"""Mathar, section V: where the bob hangs at rest, (44)-(50)."""
+"""Mathar, section V: where the bob hangs at rest, (44)-(47)."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Any
 
 from reference.mechanics import tension
 
-from .digits import MP, asin, cos, degrees, derivative, pi, scale, shown, sin, sqrt
-from .judge import Approximate, Check, Finding, Identity, Statement
+from .digits import MP, cos, degrees, derivative, scale, shown, sin, sqrt
+from .judge import Check, Finding, Identity, Statement
 from .mathar_cartesian import beta_x, beta_y
 from .points import Point, paris, points
 from .rest_series import series_term
@@ -75,42 +75,10 @@ def _restoring(p: Point, sign: int, cord: Any) -> Any:
     return -sign * horizontal_acceleration(local)[1] / (p.length * cos(cord))
 
 
-def apparent_gravity(p: Point) -> Any:
-    """(48)."""
-    out = p.R * p.rate**2
-    return sqrt(p.gravity**2 + out**2 - 2 * p.gravity * out * cos(p.phi))
-
-
 def pull_at_rest(p: Point) -> Any:
     """What the cord carries per mass where the bob hangs at rest."""
     n = scale(1 / p.length, rest(p))
     return p.length * tension(n, (0, 0, 0), p.k)
-
-
-def triangle_angle(p: Point) -> Any:
-    """(50)."""
-    return asin(p.R * p.rate**2 * sin(p.phi) / apparent_gravity(p))
-
-
-def _shorter(s: Any) -> Point:
-    """Paris with a cord s times as long."""
-    here = paris()
-    return here.but(length=here.length * s)
-
-
-def _slower(s: Any) -> Point:
-    """Paris with RΩ² s times as large, and a cord of no length to speak of."""
-    here = paris()
-    return here.but(rate=here.rate * sqrt(s), length=MP.mpf("1e-50"))
-
-
-def _two_terms(p: Point) -> Any:
-    out, s, c, g = p.R * p.rate**2, sin(p.phi), cos(p.phi), p.gravity
-    return s / g * out + c * s / g**2 * out**2
-
-
-def _one_term(p: Point) -> Any:
-    return sin(2 * p.phi) / p.gravity * (p.N + p.altitude) * p.rate**2 / 2
 
 
 @cache
@@ -147,8 +115,13 @@ def _on_the_meridian() -> Finding:
     )
 
 
+def _forty_four(p: Point) -> Any:
+    zero, _, two = beta_y(p)
+    return p.z**2 * (-zero - two * p.rate**2) / (p.z**4 * p.length**2)
+
+
 def checks() -> list[Check]:
-    """The rows of section V."""
+    """The rows of section V up to (47)."""
     position: list[Check] = [
         Statement("mathar_44_x", f"{V}, before (44)", "at rest x = 0: on the meridian", _on_the_meridian),
         Identity(
@@ -216,62 +189,4 @@ def checks() -> list[Check]:
         ),
         Statement("mathar_47_text", f"{V}, after (47)", "the sign of λ is opposite to that of ϕ", _south_in_the_north),
     ]
-    triangle: list[Check] = [
-        Approximate(
-            "mathar_48",
-            f"{V} (48)",
-            "g' = sqrt(g² + (RΩ²)² - 2 g RΩ² cosϕ)",
-            lambda s: (apparent_gravity(_shorter(s)), pull_at_rest(_shorter(s))),
-            1,
-            "l",
-            "m/s²",
-            "N+h stands for the distance of the bob, N+h-l",
-        ),
-        Identity(
-            "mathar_49",
-            f"{V} (49)",
-            "RΩ² / sinφ = g' / sinϕ",
-            lambda p: p.R * p.rate**2 / sin(_tilt(p)),
-            lambda p: apparent_gravity(p) / sin(p.phi),
-            remark="the sine rule of the triangle of (48), its angle by atan2",
-        ),
-        Approximate(
-            "mathar_50",
-            f"{V} (50)",
-            "sinφ = RΩ² sinϕ / sqrt(g² + (RΩ²)² - 2gRΩ² cosϕ)",
-            lambda s: (triangle_angle(_shorter(s)), rest_angle(_shorter(s))),
-            1,
-            "l",
-            "rad",
-        ),
-        Approximate(
-            "mathar_50_two",
-            f"{V}, after (50)",
-            "sinφ ≈ (sinϕ/g) RΩ² + (cosϕ sinϕ/g²) (RΩ²)² + O((RΩ²)³)",
-            lambda s: (_two_terms(_slower(s)), sin(triangle_angle(_slower(s)))),
-            3,
-            "RΩ²",
-            "rad",
-        ),
-        Approximate(
-            "mathar_50_one",
-            f"{V}, after (50)",
-            "sinφ ≈ (1/2) (sin2ϕ/g) (N+h) Ω² + O((RΩ²)²)",
-            lambda s: (_one_term(_slower(s)), sin(triangle_angle(_slower(s)))),
-            2,
-            "RΩ²",
-            "rad",
-        ),
-    ]
-    return [*position, *angle, *triangle]
-
-
-def _forty_four(p: Point) -> Any:
-    zero, _, two = beta_y(p)
-    return p.z**2 * (-zero - two * p.rate**2) / (p.z**4 * p.length**2)
-
-
-def _tilt(p: Point) -> Any:
-    """Angle at the bob of the triangle: between g and the sum of g and the centrifugal acceleration."""
-    out = p.R * p.rate**2
-    return pi / 2 - MP.atan2(p.gravity - out * cos(p.phi), out * sin(p.phi))
+    return [*position, *angle]

@@ -10,7 +10,8 @@ from reference.mechanics import acceleration
 from .digits import MP, Vector, cos, scale, shown, sin, sqrt, vector_derivative
 from .judge import Approximate, Check, Identity, Number
 from .mathar_cartesian import beta_x, beta_y, in_powers, inverse_times, solved
-from .mathar_rest import apparent_gravity, pull_at_rest
+from .mathar_rest import pull_at_rest
+from .mathar_triangle import apparent_gravity
 from .points import Point, paris
 from .truth import in_rate
 

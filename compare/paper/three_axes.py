@@ -24,7 +24,7 @@ def coupled(p: Point, place: Vector, speed: Vector) -> Vector:
     return -k * place[0] + 2 * up * speed[1], -k * place[1] - 2 * up * speed[0]
 
 
-def primed(p: Point, path: Path, rate: Any) -> Path:
+def primed(path: Path, rate: Any) -> Path:
     """X' = x cosω_p t - y sinω_p t, y' = x sinω_p t + y cosω_p t."""
 
     def turned(t: Any) -> Vector:
@@ -48,7 +48,7 @@ def unprimed_equation(p: Point, rate: Any) -> Vector:
 
     def excess(a: Vector) -> Vector:
         here = p.but(ax=a[0], ay=a[1])
-        turned = primed(here, generic_path(here), rate)
+        turned = primed(generic_path(here), rate)
         place, speed, second = turned(p.t), vector_derivative(turned, p.t), vector_derivative(turned, p.t, 2)
         return add(second, scale(-1, coupled(p, place, speed)))
 

@@ -41,7 +41,7 @@ def _second_long(p: Point) -> Vector:
 
 
 def _derived(order: int) -> Callable[[Point], Vector]:
-    return lambda p: vector_derivative(primed(p, generic_path(p), _own_rate(p)), p.t, order)
+    return lambda p: vector_derivative(primed(generic_path(p), _own_rate(p)), p.t, order)
 
 
 def _printed_unprimed(p: Point, rate: Any) -> Vector:

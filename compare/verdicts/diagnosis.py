@@ -17,14 +17,13 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import FoucaultError, Scene
-from reference.constants import constants
 from reference.flow import Variants
-from reference.precision import context
 from reference.scene import Inputs
 from reference.sensitivity import Sensitivity, sensitivity, with_value
 from reference.solution import Array
 
 from ..candidates.candidate import Candidate
+from ..equations.constants import constants_in_double
 from ..metrics import Errors
 from .hypotheses import hypotheses
 
@@ -231,7 +230,7 @@ class _Case:
             raise ValueError("beyond what was run")
         return self.model.states(changed, self.times[:until])
 
-    @property
+    @cached_property
     def _inputs(self) -> Inputs:
         return self.scene.exact
 
@@ -242,7 +241,7 @@ class _Case:
 
 def _quickness(inputs: Inputs) -> float:
     """How fast anything happens in 1/s: swing, rotation, drag, and the release."""
-    k = constants(inputs, context(64)).converted(float)
+    k = constants_in_double(inputs)
     speed = inputs.position[2:] if inputs.position is not None else inputs.angles[2:] if inputs.angles else ()
     moving = max((abs(float(part)) for part in speed), default=0.0) / (
         k.length if inputs.position is not None else 57.3

@@ -34,7 +34,7 @@ def document(made: Score) -> dict[str, Any]:
         "tolerance_m": made.tolerance_m,
         "input_floor_m": made.input_floor_m,
         "error_over_floor": errors.max_m / made.input_floor_m if made.input_floor_m else None,
-        "growth_exponent": errors.growth,
+        "growth_exponent": errors.growth_exponent,
         "swing_plane_error_deg": None if turn is None else math.degrees(turn),
         "phase_error_s": made.ellipse.largest_delay,
         "h_drift_m2_s2": made.drifts.get("h_m2_s2"),

@@ -10,32 +10,11 @@ import numpy as np
 
 from reference import InputError
 
+from ..plotting import COLOURS, SAME_BYTES, pyplot
 from ..score import Score
 
-# Okabe and Ito's colours, told apart by the colour-blind; the line styles tell them apart in grey
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 STYLES = ("-", "--", "-.", ":")
 SUFFIXES = (".svg", ".png", ".pdf")
-
-
-def pyplot() -> Any:
-    """Import matplotlib without a window.
-
-    Raises:
-        InputError: it is not installed.
-    """
-    try:
-        import matplotlib
-    except ImportError:
-        raise InputError(
-            "--plot", "no matplotlib", "the extra plot", "pip install 'foucault-reference[plot]'."
-        ) from None
-    matplotlib.use("Agg")
-    matplotlib.rcParams["svg.hashsalt"] = "foucault"  # the same picture has the same bytes
-    matplotlib.rcParams["svg.fonttype"] = "none"
-    from matplotlib import pyplot as plt
-
-    return plt
 
 
 def check_target(path: Path) -> None:
@@ -44,7 +23,7 @@ def check_target(path: Path) -> None:
     Raises:
         InputError: no matplotlib, an ending that is no picture's, or no folder to write to.
     """
-    pyplot()
+    pyplot("--plot")
     if path.suffix.lower() not in SUFFIXES:
         raise InputError("--plot", str(path), f"a path that ends in {', '.join(SUFFIXES)}")
     if path.is_dir() or not path.absolute().parent.is_dir():
@@ -53,8 +32,15 @@ def check_target(path: Path) -> None:
 
 def error_picture(scores: Sequence[Score], path: Path) -> None:
     """Position error of each candidate against time, with the reference's bound as a band."""
-    plt = pyplot()
-    figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
+    plt = pyplot("--plot")
+    with plt.rc_context(SAME_BYTES):
+        figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
+        _draw(axes, scores)
+        _save(figure, path)
+        plt.close(figure)
+
+
+def _draw(axes: Any, scores: Sequence[Score]) -> None:
     bound = max(made.errors.bound_m for made in scores)
     top = max([10 * bound, *(made.errors.max_m for made in scores)])
     for i, made in enumerate(scores):
@@ -71,8 +57,6 @@ def error_picture(scores: Sequence[Score], path: Path) -> None:
     axes.set_title(f"{scores[0].scene.id}: error against time", loc="left")
     axes.legend(frameon=False, fontsize="small", loc="best")
     axes.spines[["top", "right"]].set_visible(False)
-    _save(figure, path)
-    plt.close(figure)
 
 
 def _thinned(t: Any, error: Any, points: int = 2000) -> tuple[Any, Any]:

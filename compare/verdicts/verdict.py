@@ -16,7 +16,7 @@ def lines(made: Score) -> Iterator[str]:
     errors = made.errors
     yield f"{made.candidate.name} {made.verdict} with {made.scene.id} ({_span(made)})"
     yield from _row("largest error", f"{errors.max_m:.3g} m", _largest(made))
-    yield from _row("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth))
+    yield from _row("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth_exponent))
     scale = f"largest error over the amplitude {errors.amplitude_m:.4g} m"
     yield from _row("digits", _shown(errors.digits), scale)
     mixed = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"

@@ -44,8 +44,10 @@ def test_a_folder_that_is_not_ours_is_refused(
     from compare.paper import figures
     from reference import InputError
 
-    (tmp_path / "mine.txt").write_text("mine")
+    (tmp_path / "index.html").write_text("mine")
     monkeypatch.setattr(figures, "svg", lambda number: "<svg/>")
     outcome = CliRunner().invoke(app, ["paper", "--out", str(tmp_path)])
     assert isinstance(outcome.exception, InputError)
     assert outcome.exception.exit_status == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["index.html"]
+    assert (tmp_path / "index.html").read_text() == "mine"

@@ -7,15 +7,15 @@ the same bytes. Colours are Okabe and Ito's; markers, dashes and labels repeat w
 from __future__ import annotations
 
 from .errors import achieved_tolerance, formulations, right_hand_sides
-from .growth import Growth, error_growth
-from .heat_map import CLASSES, Cell, heat_map
+from .growth import ErrorHistory, error_growth
+from .heat_map import CLASSES, Field, heat_map
 from .overview import by_family, overview
 from .precision import precision_ladder
 
 __all__ = [
     "CLASSES",
-    "Cell",
-    "Growth",
+    "ErrorHistory",
+    "Field",
     "achieved_tolerance",
     "by_family",
     "error_growth",

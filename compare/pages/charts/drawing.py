@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from ...verdicts.pictures import pyplot
+from ...plotting import SAME_BYTES, pyplot, svg_of
 
 # In a page these follow its light or dark scheme, through these names: the greys of the sheet, and the darkest colour
 INKS = {
@@ -20,11 +19,9 @@ INK, FAINT, RULE, BAND, PAPER, _ = INKS.values()
 _ROOM = 0.06  # at the ends of a logarithmic axis, in parts of its length
 PIXELS = 4 / 3  # of a page for a point of a picture
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_PARAMETERS = {
+_PARAMETERS = SAME_BYTES | {
     "font.size": 9,
     "font.family": ["DejaVu Sans", "sans-serif"],
-    "svg.fonttype": "none",
-    "svg.hashsalt": "foucault",
     "text.color": INK,
     "axes.labelcolor": INK,
     "axes.edgecolor": FAINT,
@@ -50,7 +47,7 @@ def sheet(size: tuple[float, float], rows: int = 1, columns: int = 1, **shared: 
     Raises:
         InputError: matplotlib is not installed.
     """
-    plt = pyplot()
+    plt = pyplot("--out")
     with plt.rc_context(_PARAMETERS):
         figure, axes = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False, **shared)
         figure.patch.set_visible(False)
@@ -71,9 +68,7 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
         description: for those who do not see it.
         kind: its class; the text of `lines` gets a halo in a page, so that it reads over lines.
     """
-    stream = io.StringIO()
-    figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
-    text = stream.getvalue()
+    text = svg_of(figure)
     text = text[text.index("<svg") :]
     text = re.sub(
         r"<metadata>.*?</metadata>\s*|<defs>\s*<style.*?</defs>\s*|<!--.*?-->\s*|(?<=\n) +", "", text, flags=re.DOTALL

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...measuring.measure import Row
-from ...verdicts.pictures import COLOURS
+from ...measuring.row import Row
+from ...plotting import COLOURS
 from ..pareto import Curve, cost_of, curves, whole_evaluations
 from .drawing import FAINT, limits, logarithmic, sheet, svg_text
 from .families import MANY_DIGITS, family_of, line_style, styles

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from ...verdicts.pictures import COLOURS
+from ...plotting import COLOURS
 from ..pareto import Curve
 from .drawing import FAINT, INK
 

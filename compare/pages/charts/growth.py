@@ -10,8 +10,7 @@ import numpy.typing as npt
 
 from reference import InputError
 
-from ...verdicts.pictures import COLOURS
-from ..power_law import power_law
+from ...plotting import COLOURS
 from .drawing import BAND, FAINT, logarithmic, sheet, svg_text
 from .families import line_style
 from .labels import Label, place
@@ -24,14 +23,14 @@ _ABOVE = 4.0  # the fan's distance from the lines as a factor of error
 
 
 @dataclass(frozen=True)
-class Growth:
+class ErrorHistory:
     """An error over time.
 
     Attributes:
         label: of the line.
         t: times in s, increasing, shape (rows,).
         error: at these times, shape (rows,).
-        exponent: of its growth where that is known; fitted to the last decade of time if None.
+        exponent: p of error ∝ t^p, for its label; None where it is not known.
     """
 
     label: str
@@ -52,9 +51,9 @@ class Growth:
 
 
 def error_growth(
-    lines: Sequence[Growth], bound_m: float, *, quantity: str = "largest error of position so far in m"
+    lines: Sequence[ErrorHistory], bound_m: float, *, quantity: str = "largest error of position so far in m"
 ) -> str:
-    """Errors over time, log-log, with fans of slopes 1, 1.5 (Brouwer's law) and 2, and each line's own fitted slope.
+    """Errors over time, log-log, with fans of slopes 1, 1.5 (Brouwer's law) and 2, and each line's own power of time.
 
     Args:
         lines: one for each method, at least one.
@@ -80,7 +79,8 @@ def error_growth(
         for i, (label, t, error) in enumerate(drawn):
             look = line_style(COLOURS[i % len(COLOURS)], i) | {"marker": ""}
             axes.plot(t, error, **look, zorder=3)
-            labels.append(Label(f"{label}{_slope(t, error, lines[i].exponent)}", look["color"], t, error))
+            power = "" if lines[i].exponent is None else f", t^{lines[i].exponent:.2f}"
+            labels.append(Label(f"{label}{power}", look["color"], t, error))
         for end, low in fans:
             for slope, name in SLOPES:
                 x, y = [end / _FAN, end], [low, low * _FAN**slope]
@@ -90,18 +90,6 @@ def error_growth(
         ends = [Label(one.text, one.colour, one.x[-1:], one.y[-1:]) for one in guides]
         place(axes, [*ends, *labels], [*labels, *guides])
         return svg_text(figure, "growth", f"Error over time, log-log: {', '.join(label for label, *_ in drawn)}.")
-
-
-def _slope(t: Sequence[float], error: Sequence[float], known: float | None) -> str:
-    """The exponent, fitted to the last decade of time if it is not known."""
-    if known is not None:
-        return f", t^{known:.2f}"
-    late = [(a, b) for a, b in zip(t, error, strict=True) if a >= t[-1] / 10]
-    try:
-        law = power_law([a for a, _ in late], [b for _, b in late])
-    except InputError:
-        return ""
-    return f", t^{law.exponent:.2f}"
 
 
 def _fans(drawn: Sequence[tuple[str, list[float], list[float]]]) -> list[tuple[float, float]]:

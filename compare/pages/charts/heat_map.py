@@ -31,7 +31,7 @@ _LEAST_COLUMNS, _KEY_ROWS = 15, 5.5  # cells that the key needs
 
 
 @dataclass(frozen=True)
-class Cell:
+class Field:
     """One field of the map.
 
     Attributes:
@@ -54,7 +54,7 @@ class Cell:
         return "?" if self.digits is None else f"{int(max(0.0, self.digits))}"
 
 
-def heat_map(cells: Sequence[Cell], steps: Sequence[float] = (3, 6, 9, 12, 15)) -> str:
+def heat_map(cells: Sequence[Field], steps: Sequence[float] = (3, 6, 9, 12, 15)) -> str:
     """The map: rows and columns in the order in which they come; a field that is not in `cells` stays empty.
 
     Args:
@@ -90,7 +90,7 @@ def heat_map(cells: Sequence[Cell], steps: Sequence[float] = (3, 6, 9, 12, 15)) 
         return svg_text(figure, "map", f"{len(rows)} scenes by {len(columns)} methods; silently wrong: {wrong}.", "map")
 
 
-def _colours(cell: Cell, steps: Sequence[float]) -> tuple[str, str]:
+def _colours(cell: Field, steps: Sequence[float]) -> tuple[str, str]:
     """Of the field and of what stands in it."""
     if cell.status == "ok":
         level = sum((cell.digits or 0.0) >= step for step in steps)
@@ -109,7 +109,7 @@ def _field(axes: Any, x: float, y: float, mark: str, colour: str, ink: str) -> N
 def _key(axes: Any, y: float, wide: float, present: set[str], steps: Sequence[float]) -> None:
     """What the fields mean, below the map."""
     for i, digits in enumerate([0.0, *steps]):
-        cell = Cell("", "", "ok", digits)
+        cell = Field("", "", "ok", digits)
         _field(axes, i, y, cell.mark, *_colours(cell, steps))
     axes.text(len(steps) + 1.3, y + 0.5, "digits kept, at least", fontsize=8, va="center_baseline", color=INK)
     x = 0.0
@@ -118,6 +118,6 @@ def _key(axes: Any, y: float, wide: float, present: set[str], steps: Sequence[fl
         needs = 1.7 + _CHARACTER * len(meaning)
         if x == 0.0 or x + needs > wide:
             x, y = 0.0, y + 1.2
-        _field(axes, x, y, letter, *_colours(Cell("", "", status), steps))
+        _field(axes, x, y, letter, *_colours(Field("", "", status), steps))
         axes.text(x + 1.2, y + 0.5, meaning, fontsize=8, va="center_baseline", color=INK)
         x += needs

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ...measuring.measure import EXTRAPOLATED, Row
+from ...measuring.row import EXTRAPOLATED, Row
 from ..pareto import Curve, error_of
 from .drawing import BAND, FAINT
 from .families import family_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ...measuring.measure import Row
+from ...measuring.row import Row
 from ..pareto import Curve, cost_of, curves, error_of, front
 from .drawing import BAND, FAINT, RULE, limits, logarithmic, sheet, svg_text
 from .families import FAMILIES, MANY_DIGITS, family_of, styles

@@ -1,0 +1,1 @@
+"""The commands that judge: each reads its options, calls what does the work, and prints."""

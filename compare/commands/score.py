@@ -1,0 +1,144 @@
+"""`foucault score`: one or more candidates against the truth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reference import InputError, Scene, load_scene
+from reference.cli import AsJson, Assignments, SceneWord, emit, progress
+
+from .options import announce
+
+if TYPE_CHECKING:
+    from ..candidates.candidate import Candidate
+    from ..candidates.external import Timing
+    from ..score import Score
+
+MAX_REPEATS = 1000
+
+
+class Inputs(StrEnum):
+    """How the scene's numbers are read."""
+
+    auto = "auto"
+    decimal = "decimal"
+    binary64 = "binary64"
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to an app."""
+    app.command("score")(command)
+
+
+def command(
+    scene_word: SceneWord,
+    candidates: Annotated[
+        list[str] | None, typer.Argument(metavar="[CANDIDATE]...", help="CSV, foucPend output or .npz; - is stdin.")
+    ] = None,
+    transits: Annotated[
+        str | None, typer.Option("--transits", metavar="FILE", help="CSV with a column t: times of xdot = 0.")
+    ] = None,
+    run: Annotated[
+        str | None, typer.Option("--run", metavar="'COMMAND'", help="Run this program and score what it prints.")
+    ] = None,
+    approximation: Annotated[
+        str | None, typer.Option("--approximation", metavar="ID", help="Score one of the seeds' approximations.")
+    ] = None,
+    tolerance: Annotated[
+        float | None, typer.Option("--tolerance", metavar="M", help="Largest position error allowed, in m.")
+    ] = None,
+    inputs: Annotated[Inputs, typer.Option("--inputs", help="How the scene's numbers are read.")] = Inputs.auto,
+    plot: Annotated[
+        Path | None, typer.Option("--plot", metavar="FILE", help="Error against time: svg, png, pdf.")
+    ] = None,
+    timeout: Annotated[float, typer.Option("--timeout", metavar="S", help="Limit for --run.")] = 600.0,
+    repeats: Annotated[int, typer.Option("--repeats", help="Timed runs of --run after a warm-up.")] = 3,
+    no_diagnosis: Annotated[bool, typer.Option("--no-diagnosis", help="Do not look for the reason.")] = False,
+    set_: Assignments = None,
+    as_json: AsJson = False,
+) -> None:
+    """Score a program's output against the truth; exit status 0 agrees, 1 disagrees.
+
+    --run fills in {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
+    {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate} {azimuth_rate}
+    {t_end} {grid_step}.
+    """
+    scene = load_scene(scene_word, set_ or ())
+    if tolerance is not None and not 0 < tolerance < float("inf"):
+        raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
+    if not candidates and run is None and approximation is None:
+        raise InputError(
+            "CANDIDATE", "nothing", "a file, - for stdin, --run or --approximation", "Name what is to be scored."
+        )
+    if [*(candidates or ()), transits].count("-") > 1:
+        raise InputError("CANDIDATE", "- more than once", "standard input once", "It can be read only once.")
+    if not 0 < timeout < float("inf"):
+        raise InputError("--timeout", f"{timeout:g}", "a positive number of seconds")
+    if not 0 <= repeats <= MAX_REPEATS:
+        raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
+    if plot is not None:
+        from ..verdicts.pictures import check_target
+
+        check_target(plot)
+    from ..score import score as judge
+    from ..trajectory import read, read_transits
+
+    zeros = None if transits is None else read_transits(transits)
+    found: list[tuple[Candidate, Timing | None]] = [(read(name), None) for name in candidates or ()]
+    if run is not None:
+        found.append(_run(run, scene, timeout, repeats))
+    if approximation is not None:
+        from ..approximations.candidate import candidate_of
+
+        found.append((candidate_of(approximation, scene), None))
+    made = []
+    for candidate, timing in found:
+        with progress(f"solve {scene.id}", float(scene.run.t_end)) as report:
+            result = judge(
+                candidate,
+                scene,
+                transits=zeros,
+                tolerance=tolerance,
+                inputs=inputs.value,
+                explain=not no_diagnosis,
+                announce=announce,
+                report=report,
+            )
+        made.append(replace(result, timing=timing))
+    if plot is not None:
+        from ..verdicts.pictures import error_picture
+
+        error_picture(made, plot)
+    _print(made, as_json)
+    if not all(result.agrees for result in made):
+        raise typer.Exit(1)
+
+
+def _run(words: str, scene: Scene, timeout: float, repeats: int) -> tuple[Candidate, Timing]:
+    """What a program printed, and what it took."""
+    from ..candidates.external import arguments, timed
+    from ..trajectory import read_stream
+
+    output, took = timed(arguments(words, scene), timeout, repeats)
+    with output:
+        return read_stream(output, "the program"), took
+
+
+def _print(made: list[Score], as_json: bool) -> None:
+    from ..verdicts.document import document
+    from ..verdicts.verdict import lines
+
+    if as_json:
+        documents = [document(result) for result in made]
+        verdict = "agrees" if all(result.agrees for result in made) else "disagrees"
+        rows = {"scene": made[0].scene.id, "verdict": verdict, "rows": documents}
+        emit(documents[0] if len(documents) == 1 else rows)
+        return
+    for result in made:
+        for line in lines(result):
+            typer.echo(line)

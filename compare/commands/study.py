@@ -1,0 +1,110 @@
+"""`foucault study`: error against run time, of methods or of approximations."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from reference import InputError, Scene, load_scene
+from reference.cli import AsJson, Assignments, SceneWord, emit
+
+from .options import announce, counting, inside, listed, numbers
+
+
+def register(app: typer.Typer) -> None:
+    """Add the command to an app."""
+    app.command("study")(command)
+
+
+def command(
+    scene_word: SceneWord,
+    methods: Annotated[str | None, typer.Option("--methods", metavar="A,B,…", help="Ids; all by default.")] = None,
+    precisions: Annotated[
+        str | None, typer.Option("--precisions", metavar="53,113,…", help="Bits: time against achieved digits.")
+    ] = None,
+    approximations: Annotated[
+        bool, typer.Option("--approximations", help="The seeds' approximations instead: where each stops being good.")
+    ] = False,
+    run: Annotated[
+        list[str] | None, typer.Option("--run", metavar="'COMMAND'", help="A program of yours; {setting} is its step.")
+    ] = None,
+    settings: Annotated[
+        str, typer.Option("--settings", metavar="0.1,0.01,…", help="What {setting} of --run takes.")
+    ] = "0.1,0.01",
+    t_end: Annotated[str | None, typer.Option("--t-end", metavar="S", help="End of the span in s.")] = None,
+    limit: Annotated[float, typer.Option("--limit", metavar="S", help="CPU seconds of one run.")] = 8.0,
+    no_formulations: Annotated[
+        bool, typer.Option("--no-formulations", help="Leave the comparison of formulations out.")
+    ] = False,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="CSV, JSON and an HTML page.")] = None,
+    set_: Assignments = None,
+    as_json: AsJson = False,
+) -> None:
+    """Report error against run time: every method over its settings, in one run; resumes with the same --out."""
+    changes = [*(set_ or ()), *([] if t_end is None else [f"run.t_end={t_end}"])]
+    scene = load_scene(scene_word, changes)
+    if not 0 < limit < float("inf"):
+        raise InputError("--limit", f"{limit:g}", "a positive number of seconds")
+    if approximations:
+        _study_approximations(scene, out, as_json)
+        return
+    from ..methods import EXTERNAL, METHODS
+    from ..pages.folder import check_folder
+    from ..report import FILES
+    from ..study import plan, single_thread
+    from ..study import study as measure
+
+    if out is not None:
+        check_folder(out, FILES)
+    single_thread()
+    problem, digits = scene, None
+    items = plan(scene, listed(methods, "--methods", METHODS), not no_formulations)
+    if precisions is not None:
+        from ..measuring.precisions import bits_of, precision_items, precision_scene
+
+        bits = bits_of(precisions)
+        items = precision_items(bits)
+        problem, digits = precision_scene(scene, bits, whole=t_end is not None)
+    for command in run or ():
+        items += [(f"{EXTERNAL}{command}", "momentum", setting) for setting in numbers(settings, "--settings")]
+    with counting(scene.id) as report:
+        found = measure(
+            problem,
+            items=items,
+            limit_s=limit,
+            kept=inside(out, "rows.jsonl"),
+            digits=digits,
+            report=report,
+            announce=announce,
+        )
+    _shown(found.document(), out, as_json)
+
+
+def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
+    from ..pages import approximation_report
+    from ..pages.folder import PAGE
+
+    made = approximation_report.document(scene)
+    if out is not None:
+        approximation_report.write(scene, made, out)
+    if as_json:
+        emit(made)
+        return
+    typer.echo(approximation_report.text_table(made))
+    if out is not None:
+        typer.echo(f"{out / PAGE}: the report")
+
+
+def _shown(document: dict[str, Any], out: Path | None, as_json: bool) -> None:
+    from ..report import text_table, write_report
+
+    if out is not None:
+        write_report(document, out)
+    if as_json:
+        emit(document)
+        return
+    typer.echo(text_table(document))
+    if out is not None:
+        typer.echo(f"{out / 'index.html'}: the report")

@@ -1,0 +1,111 @@
+"""The files of a report: rows as CSV, a document as JSON, and a folder into which all are written or none."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+import shutil
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from reference import InputError
+
+from .page import MARK
+
+PAGE = "index.html"
+_HEAD = 1024  # bytes of a page within which its mark stands
+
+
+def check_folder(folder: Path, names: Iterable[str]) -> None:
+    """Refuse a folder in which a file of somebody else's would be replaced: one with such a file and no page of ours.
+
+    Raises:
+        InputError: it is such a folder, or no folder.
+    """
+    taken = next((name for name in names if (folder / name).exists()), None)
+    if (taken is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
+        got = str(folder) if taken is None else f"{folder}, which has a {taken} of its own"
+        raise InputError("--out", got, "a new folder, or one that an earlier run made", "Choose another name.")
+
+
+def _is_ours(page: Path) -> bool:
+    try:
+        with page.open("rb") as stream:
+            return MARK.encode() in stream.read(_HEAD)
+    except OSError:
+        return False
+
+
+def write_files(folder: Path, made: Mapping[str, str]) -> None:
+    """Write files into a folder, all or none; whatever else is in it stays as it is.
+
+    All are written beside their targets first and then renamed in order; an error or an interruption on the way
+    brings back what was there.
+
+    Raises:
+        InputError: the folder cannot be written to, or `check_folder` refuses it.
+    """
+    check_folder(folder, made)
+    new, old = ({name: folder / f".{name}.{word}-{os.getpid()}" for name in made} for word in ("partial", "before"))
+    renamed: list[str] = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in made.items():
+            _write(new[name], content)
+            if (folder / name).exists():
+                shutil.copy2(folder / name, old[name])
+        for name in made:
+            os.replace(new[name], folder / name)
+            renamed.append(name)
+    except BaseException as error:
+        for name in renamed:
+            _bring_back(old[name], folder / name)
+        if isinstance(error, OSError):
+            raise InputError("--out", str(folder), "a folder that can be written to", f"{error.strerror}.") from None
+        raise
+    finally:
+        for left in (*new.values(), *old.values()):
+            with suppress(OSError):
+                left.unlink(missing_ok=True)
+
+
+def _write(path: Path, content: str) -> None:
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        stream.write(content)
+        stream.flush()
+        os.fsync(stream.fileno())
+
+
+def _bring_back(old: Path, target: Path) -> None:
+    with suppress(OSError):
+        if old.exists():
+            os.replace(old, target)
+        else:
+            target.unlink()
+
+
+def csv_text(columns: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> str:
+    """Rows as CSV: a header line, doubles with all their digits, nothing where there is no value."""
+    stream = io.StringIO()
+    writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return stream.getvalue()
+
+
+def json_text(document: Any) -> str:
+    """A document as JSON; NaN and infinity, which JSON does not have, become null."""
+    return json.dumps(_finite(document), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _finite(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _finite(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_finite(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
