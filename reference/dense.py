@@ -25,6 +25,7 @@ from .solution import GRID_COLUMNS, Array
 
 TYPES = (LONG_DOUBLE, real(128), real(192), real(256))  # the next is tried where the one before loses too much
 WITHIN = 2.0**-58  # of the cord length: enough to judge programs in double
+ROOM = 32  # times `within`: the tolerance of a step at first; what that costs is measured on arrival, as all is
 SAFETY = 4  # for what the end of an interval, where a run is measured, does not show
 MOST_STRETCH = 1000.0  # at a point of rest nothing is late, and the ratio of speeds says nothing
 ULPS = 8  # that a golden state and what is made of it may lose by being rounded to the run's type
@@ -67,9 +68,10 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
     _check(wanted, grid)
     length = float(golden.scene.exact.length)
     fine = [number for number in TYPES if ULPS * 2.0**-number.prec <= within] or [TYPES[-1]]
-    for number in fine:
-        march = _March(golden, grid, wanted, number)
-        states, rest = march.run()
+    tries = [(number, tolerance) for number in fine for tolerance in (ROOM * within, None)]
+    for number, tolerance in tries:
+        march = _March(golden, grid, wanted, number, tolerance)
+        states, rest = march.run(math.inf if (number, tolerance) == tries[-1] else within * length)
         if march.missed <= within * length:
             break
     lost = SAFETY * march.missed + (ULPS * 2.0**-number.prec + PAIR) * length
@@ -93,13 +95,15 @@ class _March:
     a run that is late by a moment shows little of it where it arrives slowly, near the top or at a turning point.
     """
 
-    def __init__(self, golden: Golden, grid: list[Fraction], wanted: Array, number: NumberType) -> None:
+    def __init__(
+        self, golden: Golden, grid: list[Fraction], wanted: Array, number: NumberType, tolerance: float | None
+    ) -> None:
         from . import taylor
 
         self._numbers = taylor.Numbers(number)
         self._k = constants(golden.scene.exact, context(number.prec + GUARD_BITS)).converted(self._numbers.of)
         self._model = FORMULATIONS["momentum"]
-        self._flow = taylor.Flow(self._model.variables, taylor.rates(self._model, self._k), number)
+        self._flow = taylor.Flow(self._model.variables, taylor.rates(self._model, self._k), number, tolerance=tolerance)
         self._grid, self._wanted = grid, wanted
         self._near = np.array([float(t) for t in grid])
         self._wide = _wide(self._near, self._numbers)
@@ -113,12 +117,14 @@ class _March:
         self._legs = {step: self._numbers.of(step) for step in {b - a for a, b in pairwise(grid)}}
         self.missed = 0.0
 
-    def run(self) -> tuple[Array, Array]:
-        """States as doubles and what these lack, each of shape (times wanted, 6)."""
+    def run(self, most: float) -> tuple[Array, Array]:
+        """States as doubles and what these lack, each of shape (times wanted, 6); given up beyond `most` m."""
         near, rest = np.empty((len(self._wanted), 6)), np.empty((len(self._wanted), 6))
         held: list[Any] = []
         row = count = 0
         for states in self._intervals():
+            if self.missed * float(self._k.length) > most:
+                break
             held.append(states)
             count += len(states)
             if count >= BLOCK or row + count == len(near):

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .engines import HEYOKA, fastest
+from .engines import HEYOKA, LIMBS, fastest
 from .errors import IntegrationError
 from .mechanics import FORMULATIONS
 from .precision import real
@@ -34,6 +34,8 @@ ORDER_PER_BIT = (
 )
 BATCH = 32  # steps sent at once
 SHRINK = 0.995  # of the step heyoka would take, before it is cut to few bits
+MOST_TURN = 1.75  # of a step times the swing's frequency: nearly linear series reach further, but no bound follows them
+DECAYS = 5.0  # likewise of a step with a fast drag
 STEP_BITS = 6  # mantissa of a step: equal steps share their scaled constants, and times stay short
 
 
@@ -67,8 +69,8 @@ class Feed:
 
     @property
     def workers(self) -> int | None:
-        """Processes that the proof may use besides: heyoka's run has one of its own."""
-        return 1
+        """Processes that the proof may use, None for one a core: heyoka's run has one of its own."""
+        return None if self.engine == LIMBS else 1
 
     def _of_limbs(self, plan: Plan) -> Iterator[Any]:
         from . import limbs
@@ -111,14 +113,16 @@ def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Generator[
     stepper = taylor.Stepper(FORMULATIONS["momentum"], k, n, v, ctx, plan.number)
     grid = [stepper.numbers.of(t) for t in times]
     begun = time.process_time()
-    states, limit, ahead = [stepper.state], stepper.numbers.of(times[-1]), False
+    rate = max(float(ctx.sqrt(ctx.norm(k.pull))), float(k.drag) / DECAYS)
+    most = _short(MOST_TURN / rate) if rate > 0 else max(times[-1], Fraction(1))
+    states, limit, ahead = [stepper.state], stepper.numbers.of(most), False
     while not ahead:
         ahead = stepper.time > grid[-1]
         step = stepper.expand(limit, prec + GUARD_BITS)
         yield step
         while len(states) < len(grid) and grid[len(states)] <= stepper.time:
             states.append(stepper.sample(grid[len(states)]))
-        limit = stepper.numbers.of(_next_step(step, stepper.order))
+        limit = stepper.numbers.of(min(_next_step(step, stepper.order), most))
     return result(plan, stepper, np.array(states, dtype=stepper.numbers.dtype), None, begun)
 
 
@@ -128,7 +132,12 @@ def _next_step(step: Polynomials, order: int) -> Fraction:
     The rule: h = ρ exp(-2 - 0.7/(p - 1)), ρ the smaller of |c_k|^(-1/k) of the last two orders.
     """
     reach = min(-step.log2_largest(k) / k for k in (order - 1, order)) - (2 + 0.7 / (order - 1)) * math.log2(math.e)
-    mantissa, exponent = math.frexp(float(step.h) * 2**reach * SHRINK)
+    return _short(float(step.h) * 2**reach * SHRINK)
+
+
+def _short(h: float) -> Fraction:
+    """A little less than h, with few bits."""
+    mantissa, exponent = math.frexp(h)
     return Fraction(int(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
 
 

@@ -14,7 +14,7 @@ from typing import Any
 from .errors import InputError, IntegrationError, UnreachableError
 from .expansions import GUARD_BITS, Feed
 from .growth import Growth, bits_in, measure_growth
-from .precision import cheapest_type
+from .precision import NumberType, cheapest_type
 from .render import UndecidedRounding, grid_sheet, transits_sheet
 from .runs import Plan, Report, Run, run
 from .scene import Scene
@@ -23,7 +23,7 @@ from .solution import GRID_COLUMNS, TRANSIT_COLUMNS, CrossCheck, Proof, Solution
 ROUNDING_BITS = 20  # balls are this much smaller than the last digit: among 1e5 numbers few ties, mostly none
 ROUNDING_TRIES = 3
 FINER = 2**16  # factor of the next try
-TRANSIT_DIGITS = 9  # what the run with event detection is asked for
+TRANSIT_DIGITS = (9, 27)  # what the run with event detection is asked for, and where the flow blurs its transits
 ROUNDING_SLACK = 12  # bits that evaluating a run's polynomial may lose, by which it may miss its ball
 SCALE_BITS = 64  # of the tables' integers, below the smallest ball
 
@@ -156,7 +156,23 @@ def _transit_check(
     Raises:
         IntegrationError: naming the transit on which they part.
     """
-    number = cheapest_type(growth.bits_for(TRANSIT_DIGITS, times[-1], checked=False))
+    usual, finer = (cheapest_type(growth.bits_for(digits, times[-1], checked=False)) for digits in TRANSIT_DIGITS)
+    try:
+        return _found_by(usual, scene, times, grid, met, directions, growth, undecided)
+    except IntegrationError:
+        return _found_by(finer, scene, times, grid, met, directions, growth, undecided)
+
+
+def _found_by(
+    number: NumberType,
+    scene: Scene,
+    times: tuple[Fraction, ...],
+    grid: Table,
+    met: Table,
+    directions: list[int],
+    growth: Growth,
+    undecided: bool,
+) -> CrossCheck:
     seen = run(Plan(scene.exact, "momentum", number, times, transits=True))
     found = [(Fraction(row[0], 2**seen.scale), way) for row, way in zip(seen.zeros or (), seen.directions, strict=True)]
     if len(found) != len(directions) and not undecided:

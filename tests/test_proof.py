@@ -98,6 +98,40 @@ def test_every_kind_of_scene_is_proved_and_every_digit_is_right(sections):
         assert abs(Fraction(row[1]) - Fraction(whole[0], 2**truth.scale)) <= Fraction(row[-1])
 
 
+HARD = {
+    "nearly linear, in heyoka's long steps": ("conical", "heyoka"),
+    "a flow that blurs what nine digits show": ("separatrix", "auto"),
+    "an unstable rest": ("inverted_rest", "auto"),
+    "no gravity to measure by": ("weightless", "auto"),
+}
+
+
+@pytest.mark.parametrize(("name", "engine"), HARD.values(), ids=HARD.keys())
+def test_scenes_that_bounds_find_hard_are_proved(name, engine):
+    solution = reference.solve(reference.load_scene(name), level="enclosed", engine=engine)
+    assert solution.level == "enclosed"
+    assert solution.possible == ()
+
+
+@pytest.mark.parametrize("engine", ["heyoka", "limbs"])
+def test_helpers_prove_the_same_of_any_engine(monkeypatch, engine):
+    if engine == "limbs":
+        pytest.importorskip("numba")
+    scene = reference.load_scene("paris", ["run.t_end=120"])
+    times = tuple(scene.exact.grid)
+    monkeypatch.setattr("reference.enclosure.run.WORTH", 0)
+    proofs = []
+    for workers in (1, 2):
+        feed = Feed(scene.exact, times, engine)
+        proofs.append(
+            enclosure.enclose(scene.exact, times, radius=Fraction(1, 10**40), candidate=feed, workers=workers)
+        )
+        feed.stop()
+    alone, shared = proofs
+    assert alone.states == shared.states
+    assert alone.transits == shared.transits
+
+
 def test_xdot_identically_zero_has_no_transits_to_enclose():
     planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run=SHORT)
     assert reference.solve(planar).transits is None

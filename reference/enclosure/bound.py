@@ -40,7 +40,8 @@ class World:
             self.slow, self.flat = vx, at_rest and x  # xdot(0) = 0 exactly; and xddot(0) = 0
             self.still = (vx and x and rate.is_zero()) or (at_rest and x and y and straight)  # xdot = 0 for ever
             c, w = size(self.c), size(self.omega)
-            self.w0 = c.sqrt().mid() if c > 0 else arb(1)  # any positive number is a valid weight
+            pace = c.sqrt() if c > 0 else w + size(self.H)
+            self.w0 = pace.mid() if pace > 0 else arb(1)  # any positive number is a valid weight
             energy = dot(self.H, self.H) / 2 - dot(self.omega, self.H) - dot(self.c, self.r)
             self.speed = upper(w + upper(w**2 + 2 * (energy + c)).sqrt())  # |H| at any time
             self.below, self.above = upper(self.w0**2 + w**2 / 2 + energy), upper(c - self.w0**2)  # -+ (c·r - w0²)

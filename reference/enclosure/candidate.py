@@ -15,6 +15,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from flint import ctx, fmpz, fmpz_poly
 
+from ..words import WORD_BITS, Words
 from .balls import cross, dot, integer
 from .bound import World, scaled
 from .shapes import Step
@@ -57,6 +58,20 @@ class Series(Protocol):
     @property
     def coefficients(self) -> Sequence[list[int]]:
         """Four rows, x, m, w and h² λ, in the axes of `World`."""
+
+
+def polynomials(step: Step) -> Step:
+    """The step with FLINT's polynomials, which are sooner made of words than of large integers."""
+    given, unit = step.coefficients, fmpz(1) << WORD_BITS
+    if not isinstance(given, Words):
+        return step
+    rows = []
+    for words in given.table.tolist():
+        made = fmpz_poly(words.pop())
+        while words:
+            made = made * unit + fmpz_poly(words.pop())
+        rows.append(made)
+    return step._replace(coefficients=rows)
 
 
 @dataclass(frozen=True)
@@ -277,8 +292,8 @@ class ColumnSource:
         h, M = float(step.h), COLUMN_ORDER
         w, c, g = self.w * h, self.c * h * h, self.g * h
         one = 1 << step.bits
-        rows = [[x / one for x in row[: M + 2]] + [0.0] * (M + 2 - len(row)) for row in step.coefficients[:3]]
-        whole = np.array(rows).T
+        rows = [[int(x) / one for x in fmpz_poly(row).truncate(M + 2).coeffs()] for row in step.coefficients]
+        whole = np.array([row + [0.0] * (M + 2 - len(row)) for row in rows[:3]]).T
         n = whole[: M + 1]
         speed = whole[1:] * np.arange(1, M + 2)[:, None] + np.cross(w, n)
         turn = np.array([np.cross(n[: k + 1], speed[k::-1]).sum(axis=0) for k in range(M + 1)])

@@ -26,7 +26,7 @@ from flint import arb, fmpz
 
 from ..errors import UnreachableError
 from .bound import Piece, Radius, World, output
-from .candidate import ColumnSource, Expansion, Recurrence, coarse, pair
+from .candidate import ColumnSource, Expansion, Recurrence, coarse, pair, polynomials
 from .columns import Columns
 from .shapes import EnclosedTransit, Interval, Sizes, Step
 from .transits import Scan
@@ -82,7 +82,7 @@ class Enclosure:
 
 
 class _Narrow(Exception):
-    """Bounds came out too wide; carries how many bits more to take."""
+    """Bounds came out too wide; carries how many bits to take."""
 
     def __init__(self, said: str, bits: int) -> None:
         super().__init__(said)
@@ -125,7 +125,11 @@ def enclose(
     """
     if not times or times[0] < 0 or any(b <= a for a, b in pairwise(times)):
         raise ValueError("times: got a sequence that is empty, negative or not increasing")
-    plan, said = _plan(inputs, times[-1], radius, method), "nothing tried"
+    try:
+        plan, said = _plan(inputs, times[-1], radius, method), "nothing tried"
+    except (ArithmeticError, ValueError) as error:
+        advice = "Its numbers are too far apart: check lengths, rates and angles."
+        raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
     attempts = ATTEMPTS if candidate is None or callable(candidate) else 1
     for _ in range(attempts):
         try:
@@ -224,7 +228,7 @@ class _Run:
             ratio = max(position, velocity) / radius
             more = 8 * ceil((ratio.numerator.bit_length() - ratio.denominator.bit_length() + 6) / 8)
             said = f"{bits} bits gave {_short(position)} m and {_short(velocity)} m/s ({self.plan.method})"
-            raise _Narrow(said, more)
+            raise _Narrow(said, bits + more)
         rows = cast("list[State]", [tuple(row) for row in states])
         cost = Cost(**self.clock.parts)
         return Enclosure(
@@ -273,7 +277,7 @@ class _Run:
         if self.workers < 2 or float(self.end) * float(world.w0) < WORTH:
             for step in steps:
                 self.clock.lap("candidate")
-                piece = Piece(self.world, step)
+                piece = Piece(self.world, polynomials(step))
                 sizes = piece.sizes()
                 self.clock.lap("defect")
                 yield piece, sizes
@@ -305,7 +309,7 @@ class _Run:
             sizes, cpu = helper.receive()
             self.clock.parts["defect"] += cpu
             for step, row in zip(done, sizes, strict=True):
-                piece = Piece(self.world, step)
+                piece = Piece(self.world, polynomials(step))
                 self.clock.lap("defect")
                 yield piece, row
 
@@ -370,6 +374,6 @@ def serve() -> None:
             steps = [Step(*row) for row in pickle.load(source)]
         except EOFError:
             return
-        rows = [_pack(Piece(world, s).sizes()) for s in steps]
+        rows = [_pack(Piece(world, polynomials(s)).sizes()) for s in steps]
         pickle.dump((rows, process_time() - before), target)
         target.flush()

@@ -48,7 +48,7 @@ class Step(NamedTuple):
     low: Fraction  # -1 <= low < high <= 1
     high: Fraction
     bits: int
-    coefficients: Sequence[list[int]]
+    coefficients: Sequence[Any]  # lists of integers, or FLINT's polynomials
 
 
 class Sizes(NamedTuple):

@@ -53,7 +53,7 @@ class Scan:
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
         # most leaves are plain to see, and few need the digits
-        with ctx.workprec(SHORT if 4 * depth < SHORT else self.world.prec):
+        with ctx.workprec(SHORT if depth < 4 else self.world.prec):
             whole, middle = low.union(high), ((low + high) / 2).mid()
             if not low < middle < high:
                 raise ArithmeticError("a step is too short for the precision")
@@ -68,8 +68,7 @@ class Scan:
                 way = first if first == last else 0
         if way:
             self._close(way)
-            self.left = way
-        elif bend or 2 * depth >= self.world.prec or not speed.abs_upper() > 2 * slope.tube.u:
+        elif bend or 2 * depth >= self.world.prec or not speed.abs_upper() > 3 * slope.tube.u:
             self.cluster.append(Leaf(bend, low, high, slope))
         else:
             self._sort(slope, low, middle, depth + 1)
@@ -83,7 +82,7 @@ class Scan:
         return self.found
 
     def _close(self, right: int) -> None:
-        leaves, self.cluster, product = self.cluster, [], self.left * right
+        leaves, product, self.cluster, self.left = self.cluster, self.left * right, [], right
         steady = {leaf.bend for leaf in leaves} in ({1}, {-1})
         if not leaves or (steady and product > 0):
             return

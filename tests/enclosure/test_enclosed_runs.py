@@ -5,15 +5,18 @@ from fractions import Fraction
 from itertools import pairwise
 
 import mpmath as mp
+import numpy as np
 import pytest
-from flint import ctx
+from flint import ctx, fmpz_poly
 from oracle import PARIS, contains, scene, steep_truth, steps, truth
 
 from reference.enclosure import enclose, turned
 from reference.enclosure.balls import integer
 from reference.enclosure.bound import World
-from reference.enclosure.candidate import Expansion, Recurrence, pair
+from reference.enclosure.candidate import Expansion, Recurrence, pair, polynomials
+from reference.enclosure.shapes import Step
 from reference.errors import UnreachableError
+from reference.words import Words
 
 WANTED = Fraction(1, 10**40)
 HARD = {
@@ -175,3 +178,19 @@ def test_drag_takes_energy_away():
 def test_own_steps_serve_both_sides():
     rows = list(steps(PARIS, Fraction(200)))
     assert sum(s.low < -Fraction(9, 10) for s in rows) > len(rows) / 2
+
+
+def test_numbers_too_far_apart_for_any_precision_are_refused():
+    with pytest.raises(UnreachableError, match="no precision can be chosen"):
+        enclose(scene(length="1e-300", x="1e-301", y="0"), [Fraction(60)], radius=Fraction(1, 10**340))
+
+
+def test_words_are_the_integers_that_they_stand_for():
+    rows = [[-(2**196), 2**196 - 1, 0, -1, 1, 2**60, -(2**60)], [5] * 7, [-7] * 7, [2**59 - 1] * 7]
+    table = [[[n >> 60 * w & 2**60 - 1 for n in row] for w in range(3)] + [[n >> 180 for n in row]] for row in rows]
+    words = Words(np.array(table, dtype=np.int64))
+    step = Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 197, words)
+    assert list(words) == rows
+    assert polynomials(step).coefficients == [fmpz_poly(row) for row in rows]
+    plain = step._replace(coefficients=rows)
+    assert polynomials(plain) is plain
