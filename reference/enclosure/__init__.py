@@ -1,7 +1,8 @@
 """A proof of the run: balls that contain the true state and every transit (THEOREM.md); needs python-flint.
 
-Trusted, and in no need of anything else: `balls`, `bound`, `columns`, `transits`. Untrusted: `candidate`, which
-proposes, and `run`, which chooses precision and hands steps on. Ends of intervals are fractions: no flint leaves here.
+Trusted, and in no need of anything else: `balls`, `bound`, `columns`, `transits`. Untrusted: `candidate`, `recurrence`
+and `frames`, which propose, `plan`, which chooses precision, `run` and `helpers`, which hand steps on. Ends of
+intervals are fractions: no flint leaves here.
 """
 
 from .candidate import Expansion, pair, turned

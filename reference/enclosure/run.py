@@ -1,4 +1,4 @@
-"""The run: method, order and precision from scene and digits, defects on all cores, more bits when needed.
+"""The run: from steps to states and transits, defects on all cores, more bits when needed.
 
 Nothing here makes a bound: it hands every step, with the defect that belongs to it, to the trusted functions, which
 check that steps join.
@@ -6,37 +6,30 @@ check that steps join.
 
 from __future__ import annotations
 
-import contextlib
 import os
-import pickle
-import subprocess
-import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from decimal import Decimal
 from fractions import Fraction
 from itertools import chain, islice, pairwise
-from math import ceil, log2
+from math import ceil
 from time import process_time
-from types import SimpleNamespace
-from typing import IO, Any, NamedTuple, cast
+from typing import Any, cast
 
-from flint import arb, fmpz
+from flint import arb
 
 from ..errors import UnreachableError
 from .bound import Piece, Radius, World, output
-from .candidate import ColumnSource, Expansion, Recurrence, coarse, pair, polynomials
+from .candidate import Expansion, pair, polynomials
 from .columns import Columns
+from .frames import ColumnSource
+from .helpers import Helper
+from .plan import MAX_BITS, Plan, order_for, plan_for, short
+from .recurrence import Recurrence
 from .shapes import EnclosedTransit, Interval, Sizes, Step
 from .transits import Scan
 
 GUARD_BITS = 64  # the scene's balls beyond the steps' coefficients
-MARGIN = 18  # bits lost to coefficient rounding and norms; measured on Paris
-COLUMN_MARGIN = 14  # the same, more, with columns
-ORDER_PER_BIT = 0.5  # measured optimum, flat
-GROWTH_SHARE = 0.2  # bits of growth that one radius may cost before columns are cheaper
-LEAST_BITS, MAX_BITS = 96, 2048
 ATTEMPTS = 4
 CHUNK = 32  # steps sent at once
 AHEAD = 2  # chunks a helper holds
@@ -89,13 +82,6 @@ class _Narrow(Exception):
         self.bits = bits
 
 
-class _Plan(NamedTuple):
-    method: str
-    bits: int
-    order: int
-    first: Fraction
-
-
 def enclose(
     inputs: Any,
     times: Sequence[Fraction],
@@ -126,7 +112,7 @@ def enclose(
     if not times or times[0] < 0 or any(b <= a for a, b in pairwise(times)):
         raise ValueError("times: got a sequence that is empty, negative or not increasing")
     try:
-        plan, said = _plan(inputs, times[-1], radius, method), "nothing tried"
+        plan, said = plan_for(inputs, times[-1], radius, method), "nothing tried"
     except (ArithmeticError, ValueError) as error:
         advice = "Its numbers are too far apart: check lengths, rates and angles."
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
@@ -140,33 +126,13 @@ def enclose(
         except (ArithmeticError, ValueError) as error:
             # a bound that is not finite, a matrix without inverse, a step that does not join
             said, more = f"at {plan.bits} bits: {error}", plan.bits // 3
-        plan = plan._replace(bits=plan.bits + more, order=_order(plan.bits + more))
+        plan = plan._replace(bits=plan.bits + more, order=order_for(plan.bits + more))
         if plan.bits > MAX_BITS:
             break
     raise UnreachableError(
-        f"enclosure: no bound of {_short(radius)} m at {float(times[-1]):g} s; {said}.",
+        f"enclosure: no bound of {short(radius)} m at {float(times[-1]):g} s; {said}.",
         "Ask for fewer digits or a shorter time.",
     )
-
-
-def _order(bits: int) -> int:
-    return max(24, round(ORDER_PER_BIT * bits))
-
-
-def _plan(inputs: Any, end: Fraction, radius: Fraction, method: str | None) -> _Plan:
-    """Method and precision from the bound's own growth rate."""
-    world = World(inputs, 128)
-    w, span = float(world.w0), float(end)
-    growth = span * float(max(world.below, world.above + world.speed**2, key=float)) / (2 * w) / 0.693
-    ratio = inputs.length / radius
-    wanted = ratio.numerator.bit_length() - ratio.denominator.bit_length() + log2(2 + span * w)
-    method = method or ("radius" if growth <= GROWTH_SHARE * wanted + MARGIN else "columns")
-    extra = growth if method == "radius" else COLUMN_MARGIN + 2 * log2(2 + span * w) / 2
-    bits = max(LEAST_BITS, 8 * ceil((wanted + MARGIN + extra) / 8))
-    if bits > MAX_BITS:
-        said = f"enclosure: {_short(radius)} m would take more than {MAX_BITS} bits."
-        raise UnreachableError(said, "Ask for fewer digits.")
-    return _Plan(method, bits, _order(bits), coarse(Fraction(1 / (4 * w))))
 
 
 @dataclass
@@ -188,7 +154,7 @@ class _Run:
     def __init__(
         self,
         inputs: Any,
-        plan: _Plan,
+        plan: Plan,
         times: list[Fraction],
         transits: bool,
         workers: int | None,
@@ -227,7 +193,7 @@ class _Run:
         if max(position, velocity) > radius:
             ratio = max(position, velocity) / radius
             more = 8 * ceil((ratio.numerator.bit_length() - ratio.denominator.bit_length() + 6) / 8)
-            said = f"{bits} bits gave {_short(position)} m and {_short(velocity)} m/s ({self.plan.method})"
+            said = f"{bits} bits gave {short(position)} m and {short(velocity)} m/s ({self.plan.method})"
             raise _Narrow(said, bits + more)
         rows = cast("list[State]", [tuple(row) for row in states])
         cost = Cost(**self.clock.parts)
@@ -282,15 +248,15 @@ class _Run:
                 self.clock.lap("defect")
                 yield piece, sizes
             return
-        helpers = [_Helper(self.inputs, world.prec) for _ in range(self.workers - 1)]
+        helpers = [Helper(self.inputs, world.prec) for _ in range(self.workers - 1)]
         try:
             yield from self._shared(steps, helpers)
         finally:
             for helper in helpers:
                 helper.stop()
 
-    def _shared(self, steps: Iterator[Step], helpers: list[_Helper]) -> Iterator[tuple[Piece, Sizes]]:
-        sent: deque[tuple[_Helper, list[Step]]] = deque()
+    def _shared(self, steps: Iterator[Step], helpers: list[Helper]) -> Iterator[tuple[Piece, Sizes]]:
+        sent: deque[tuple[Helper, list[Step]]] = deque()
         turn = 0
         while True:
             chunk = list(islice(steps, CHUNK))
@@ -314,66 +280,5 @@ class _Run:
                 yield piece, row
 
 
-def _short(x: Fraction) -> str:
-    """Two digits, also of what a float cannot hold."""
-    return f"{Decimal(x.numerator) / Decimal(x.denominator):.1e}"
-
-
 def _log(z: arb) -> float:
     return float(z.log()) if z > 0 else TINY
-
-
-def _pack(sizes: Sizes) -> list[tuple[int, int]]:
-    return [(int(m), int(e)) for m, e in (x.man_exp() for x in sizes)]
-
-
-def _unpack(row: list[tuple[int, int]]) -> Sizes:
-    return Sizes(*(arb((fmpz(m), fmpz(e))) for m, e in row))
-
-
-class _Helper:
-    """A process that computes defects; it ends when its input does, so it cannot outlive this one."""
-
-    def __init__(self, inputs: Any, prec: int) -> None:
-        code = "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer); from {} import serve; serve()"
-        self.process = subprocess.Popen(
-            [sys.executable, "-c", code.format(__name__)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-        )
-        self.put(sys.path)
-        self.put((SimpleNamespace(**vars(inputs)), prec))
-
-    def put(self, value: object) -> None:
-        pipe = cast("IO[bytes]", self.process.stdin)
-        pickle.dump(value, pipe, protocol=pickle.HIGHEST_PROTOCOL)
-        pipe.flush()
-
-    def send(self, steps: list[Step]) -> None:
-        self.put([tuple(step) for step in steps])
-
-    def receive(self) -> tuple[list[Sizes], float]:
-        rows, cpu = pickle.load(cast("IO[bytes]", self.process.stdout))
-        return [_unpack(row) for row in rows], cpu
-
-    def stop(self) -> None:
-        self.process.kill()
-        for pipe in (self.process.stdin, self.process.stdout):
-            if pipe:
-                with contextlib.suppress(OSError):
-                    pipe.close()
-        self.process.wait()
-
-
-def serve() -> None:
-    """The helper's loop: steps in, sizes out, until the input ends."""
-    source, target = sys.stdin.buffer, sys.stdout.buffer
-    inputs, prec = pickle.load(source)
-    world = World(inputs, prec)
-    while True:
-        before = process_time()
-        try:
-            steps = [Step(*row) for row in pickle.load(source)]
-        except EOFError:
-            return
-        rows = [_pack(Piece(world, polynomials(s)).sizes()) for s in steps]
-        pickle.dump((rows, process_time() - before), target)
-        target.flush()

@@ -12,8 +12,10 @@ import numpy as np
 from flint import ctx
 
 from reference.enclosure.bound import Piece, Radius, World, output
-from reference.enclosure.candidate import ColumnSource, Recurrence, pair
+from reference.enclosure.candidate import pair
 from reference.enclosure.columns import Columns
+from reference.enclosure.frames import ColumnSource
+from reference.enclosure.recurrence import Recurrence
 from reference.scene import Inputs
 
 PARIS = Inputs(

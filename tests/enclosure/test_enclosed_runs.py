@@ -13,7 +13,8 @@ from oracle import PARIS, contains, scene, steep_truth, steps, truth
 from reference.enclosure import enclose, turned
 from reference.enclosure.balls import integer
 from reference.enclosure.bound import World
-from reference.enclosure.candidate import Expansion, Recurrence, pair, polynomials
+from reference.enclosure.candidate import Expansion, pair, polynomials
+from reference.enclosure.recurrence import Recurrence
 from reference.enclosure.shapes import Step
 from reference.errors import UnreachableError
 from reference.words import Words
@@ -81,7 +82,7 @@ def test_one_core_is_enough(monkeypatch):
 
 
 def test_precision_rises_until_the_width_is_reached(monkeypatch):
-    monkeypatch.setattr("reference.enclosure.run.MARGIN", -40)
+    monkeypatch.setattr("reference.enclosure.plan.MARGIN", -40)
     proof = enclose(PARIS, [Fraction(60)], radius=WANTED)
     assert proof.position_radius <= WANTED
     assert proof.bits > 140

@@ -15,8 +15,10 @@ from scipy.integrate import solve_ivp
 from reference.enclosure import enclose
 from reference.enclosure.balls import add, ball, cross
 from reference.enclosure.bound import Piece, Radius, World
-from reference.enclosure.candidate import ColumnSource, Recurrence, pair
+from reference.enclosure.candidate import pair
 from reference.enclosure.columns import Columns
+from reference.enclosure.frames import ColumnSource
+from reference.enclosure.recurrence import Recurrence
 from reference.enclosure.shapes import Step
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}

@@ -1,0 +1,76 @@
+"""Defects computed by other processes: those of different steps have nothing to do with each other. Untrusted."""
+
+from __future__ import annotations
+
+import contextlib
+import pickle
+import subprocess
+import sys
+from time import process_time
+from types import SimpleNamespace
+from typing import IO, Any, cast
+
+from flint import arb, fmpz
+
+from .bound import Piece, World
+from .candidate import polynomials
+from .shapes import Sizes, Step
+
+
+def _pack(sizes: Sizes) -> list[tuple[int, int]]:
+    return [(int(m), int(e)) for m, e in (x.man_exp() for x in sizes)]
+
+
+def _unpack(row: list[tuple[int, int]]) -> Sizes:
+    return Sizes(*(arb((fmpz(m), fmpz(e))) for m, e in row))
+
+
+class Helper:
+    """A process that computes defects; it ends when its input does, so it cannot outlive this one."""
+
+    def __init__(self, inputs: Any, prec: int) -> None:
+        code = "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer); from {} import serve; serve()"
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", code.format(__name__)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
+        self._put(sys.path)
+        self._put((SimpleNamespace(**vars(inputs)), prec))
+
+    def _put(self, value: object) -> None:
+        pipe = cast("IO[bytes]", self.process.stdin)
+        pickle.dump(value, pipe, protocol=pickle.HIGHEST_PROTOCOL)
+        pipe.flush()
+
+    def send(self, steps: list[Step]) -> None:
+        """Steps to work on; waits while the pipe is full."""
+        self._put([tuple(step) for step in steps])
+
+    def receive(self) -> tuple[list[Sizes], float]:
+        """The sizes of the steps sent first, and the CPU seconds that they took."""
+        rows, cpu = pickle.load(cast("IO[bytes]", self.process.stdout))
+        return [_unpack(row) for row in rows], cpu
+
+    def stop(self) -> None:
+        """End the process."""
+        self.process.kill()
+        for pipe in (self.process.stdin, self.process.stdout):
+            if pipe:
+                with contextlib.suppress(OSError):
+                    pipe.close()
+        self.process.wait()
+
+
+def serve() -> None:
+    """The helper's loop: steps in, sizes out, until the input ends."""
+    source, target = sys.stdin.buffer, sys.stdout.buffer
+    inputs, prec = pickle.load(source)
+    world = World(inputs, prec)
+    while True:
+        before = process_time()
+        try:
+            steps = [Step(*row) for row in pickle.load(source)]
+        except EOFError:
+            return
+        rows = [_pack(Piece(world, polynomials(s)).sizes()) for s in steps]
+        pickle.dump((rows, process_time() - before), target)
+        target.flush()
