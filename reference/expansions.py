@@ -8,6 +8,7 @@ with a polynomial, the proof measures.
 from __future__ import annotations
 
 import math
+import os
 import time
 from collections.abc import Generator, Iterator
 from dataclasses import dataclass, field
@@ -68,9 +69,9 @@ class Feed:
         return self._open
 
     @property
-    def workers(self) -> int | None:
-        """Processes that the proof may use, None for one a core: heyoka's run has one of its own."""
-        return None if self.engine == LIMBS else 1
+    def workers(self) -> int:
+        """Processes that the proof may use: heyoka's run has one of its own; beside limbs one helper keeps up."""
+        return min(2, os.cpu_count() or 1) if self.engine == LIMBS else 1
 
     def _of_limbs(self, plan: Plan) -> Iterator[Any]:
         from . import limbs

@@ -18,7 +18,7 @@ class Slope:
     """xdot lies in f ± u and xddot in f' ± a on a piece, f = p'_x; all in scaled time."""
 
     def __init__(self, piece: Piece, tube: Tube) -> None:
-        self.piece, self.tube = piece, tube
+        self.piece, self.tube, self.centre = piece, tube, ball(piece.step.centre)
         self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
     def at(self, n: int, s: arb) -> arb:
@@ -107,7 +107,7 @@ class Scan:
 
 def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
     """The parts of the time ball `t` in the leaves that it may touch, as s."""
-    local = [(leaf, (t - ball(leaf.slope.piece.step.centre)) / leaf.slope.piece.k.h) for leaf in leaves]
+    local = [(leaf, (t - leaf.slope.centre) / leaf.slope.piece.k.h) for leaf in leaves]
     parts = [(leaf.slope, s, leaf.low.union(leaf.high)) for leaf, s in local]
     return [(slope, s.intersection(whole)) for slope, s, whole in parts if s.overlaps(whole)]
 
