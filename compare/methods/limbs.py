@@ -1,4 +1,4 @@
-"""The reference's own Taylor method in numbers of two to four doubles."""
+"""The reference's own Taylor method in numbers of many digits, each a whole number in a double."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def prepare(problem: Problem, setting: float) -> Work:
 
 METHOD = Method(
     id="limbs",
-    title="Taylor in two, three and four doubles a number",
+    title="Taylor in digits of 22 bits",
     setting="precision",
     ladder=(100, 150, 200),
     source="this project's reference/limbs",

@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..precision import to_fraction
-from .lanes import LANES, compiled, load, nearest, plus_product, spread, store
+from .lanes import LANES, compiled, inlined, load, nearest, plus_product, spread, store
 
 Array = npt.NDArray[np.float64]
 
@@ -80,7 +80,7 @@ def clear(rows: Array, count: int) -> None:
         store(rows, LANES * r, spread(0.0))
 
 
-@compiled
+@inlined
 def carry(rows: Array, first: int, last: int) -> None:
     """Bring the rows below `first` to digits, from the last upwards; exact."""
     radix, inverse = spread(RADIX), spread(INVERSE)
@@ -92,7 +92,7 @@ def carry(rows: Array, first: int, last: int) -> None:
     store(rows, LANES * first, digit)
 
 
-@compiled
+@inlined
 def divide(rows: Array, first: int, last: int, divisor: float) -> None:
     """Divide by a whole number below 2**20, from `first` downwards; what is left at `last` is dropped."""
     radix, by, inverse = spread(RADIX), spread(divisor), spread(1.0 / divisor)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from bisect import bisect_right
 from collections.abc import Callable, Generator, Sequence
 from fractions import Fraction
 from typing import Any
@@ -114,17 +115,16 @@ class March:
         digits = np.moveaxis(rows[: count * limbs * LANES].reshape(count, limbs, LANES), 1, 2)
         return joined(digits[:, :COLUMNS])
 
-    def zeros(self) -> tuple[list[int], Any, list[int]]:
+    def zeros(self) -> tuple[Any, Any, list[int]]:
         """Times in grains over 2**fraction_bits, rows, signs of the crossings."""
-        times: list[int] = []
-        signs: list[int] = []
         bits = fraction_bits(self.problem.model.limbs)
-        for moments, places, _ in self._found:
+        times, tables, signs = [np.zeros(0, dtype=object)], [np.zeros((0, COLUMNS), dtype=object)], []
+        for moments, places, rows in self._found:
             starts, lengths = moments[:, 0].astype(object), moments[:, 1].astype(object)
-            times += list((starts << bits) + lengths * places)
-            signs += [int(sign) for sign in moments[:, 2]]
-        empty = np.zeros((0, COLUMNS), dtype=object)
-        return times, np.concatenate([rows for _, _, rows in self._found] or [empty]), signs
+            times.append((starts << bits) + lengths * places)
+            tables.append(rows)
+            signs += moments[:, 2].tolist()
+        return np.concatenate(times), np.concatenate(tables), signs
 
 
 def run(plan: Plan, report: Report | None = None) -> Run:
@@ -184,7 +184,8 @@ def _result(going: March, plan: Plan, begun: float) -> Run:
     """What a march computed, in SI units."""
     made, bits = going.problem, fraction_bits(going.problem.model.limbs)
     scale = bits + SCALE_BITS
-    grid = _si(going.table(going.out.states, len(plan.times)), plan.inputs.length, made.unit, bits, scale)
+    table = going.table(going.out.states, len(plan.times))
+    grid = list(zip(*_si(table, plan.inputs.length, made.unit, bits, scale), strict=True))
     zeros, signs = _transits(going, plan, bits, scale) if going.seek else (None, [])
     return Run(
         plan=plan,
@@ -201,25 +202,25 @@ def _result(going: March, plan: Plan, begun: float) -> Run:
     )
 
 
-def _si(table: Any, length: Fraction, unit: Fraction, bits: int, scale: int) -> list[tuple[int, ...]]:
-    """Integers over 2**bits in l and the unit of time as integers over 2**scale in SI units."""
-    columns = []
-    for i in range(COLUMNS):
-        factor = length / unit ** (i // 3) * 2 ** (scale - bits)
-        columns.append(table[:, i] * factor.numerator // factor.denominator)
-    return list(zip(*columns, strict=True))
+def _si(table: Any, length: Fraction, unit: Fraction, bits: int, scale: int) -> list[Any]:
+    """The columns of integers over 2**bits in l and the unit of time as integers over 2**scale in SI units."""
+    return [_whole(table[:, i], length / unit ** (i // 3) * 2 ** (scale - bits)) for i in range(COLUMNS)]
+
+
+def _whole(column: Any, factor: Fraction) -> Any:
+    """Integers times a factor, rounded down."""
+    made = column * factor.numerator
+    return made if factor.denominator == 1 else made // factor.denominator
 
 
 def _transits(going: March, plan: Plan, bits: int, scale: int) -> tuple[list[tuple[int, ...]], list[int]]:
     """Zeros up to the last output time, t first, and the signs of the crossings."""
     made = going.problem
     times, table, signs = going.zeros()
-    last = int(plan.times[-1] / made.grain * 2**bits)
-    count = sum(t <= last for t in times)
-    factor = made.grain * 2 ** (scale - bits)
-    moments = [t * factor.numerator // factor.denominator for t in times[:count]]
-    rows = _si(table[:count], plan.inputs.length, made.unit, bits, scale)
-    return [(t, *row) for t, row in zip(moments, rows, strict=True)], signs[:count]
+    count = bisect_right(times, int(plan.times[-1] / made.grain * 2**bits))
+    moments = _whole(times[:count], made.grain * 2 ** (scale - bits))
+    columns = _si(table[:count], plan.inputs.length, made.unit, bits, scale)
+    return list(zip(moments, *columns, strict=True)), signs[:count]
 
 
 def _least_tension(made: Problem, grid: Sequence[tuple[int, ...]], scale: int) -> float:

@@ -22,8 +22,8 @@ LANES = 8
 SOURCES = "".join(sha256(path.read_bytes()).hexdigest() for path in sorted(Path(__file__).parent.glob("*.py")))
 _insert: Any = cgutils.get_or_insert_function
 Function = TypeVar("Function", bound=Callable[..., Any])
-_VECTOR = ir.VectorType(ir.DoubleType(), LANES)
-_FUSE = ("contract",)
+VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+FUSE = ("contract",)
 
 
 _extending: Any = numba.extending  # what it makes cannot be typed
@@ -33,6 +33,14 @@ _OPTIONS = {"error_model": "numpy", "_nrt": False}  # without counting reference
 def compiled(function: Function) -> Function:
     """Compile with numba as a part of others; no option that lets arithmetic be rearranged."""
     made: Function = _extending.register_jitable(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_OPTIONS)(function)
+    return made
+
+
+def inlined(function: Function) -> Function:
+    """Compile into its callers: for small parts of the innermost loops, whose arguments would cost more than they."""
+    made: Function = _extending.register_jitable(
+        no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True, **_OPTIONS
+    )(function)
     return made
 
 
@@ -50,112 +58,113 @@ class _Lanes(_Type):  # type: ignore[misc]
     """The type of eight doubles."""
 
 
-_lanes: Any = _Lanes(name="Lanes")
+Lanes: Any = _Lanes(name="Lanes")
 
 
 @_extending.register_model(_Lanes)
 class _Model(_extending.models.PrimitiveModel):  # type: ignore[misc]
     def __init__(self, manager: Any, made: Any) -> None:
-        super().__init__(manager, made, _VECTOR)
+        super().__init__(manager, made, VECTOR)
 
 
-def _instruction(generator: Any) -> Any:
+def instruction(generator: Any) -> Any:
     """What a call compiles to; for a type checker a function of anything."""
     return _extending.intrinsic(generator)
 
 
-def _address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
+def address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
+    """Where eight elements of a flat array begin."""
     data = context.make_array(array_type)(context, builder, array).data
-    return builder.bitcast(builder.gep(data, [index]), _VECTOR.as_pointer())
+    return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
 
 
-@_instruction
+@instruction
 def load(_: Any, array: Any, index: Any) -> Any:
     """Eight elements of a flat array from `index` on."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        made = builder.load(_address(context, builder, signature.args[0], *given))
+        made = builder.load(address(context, builder, signature.args[0], *given))
         made.align = 8
         return made
 
-    return _lanes(array, types.intp), generate
+    return Lanes(array, types.intp), generate
 
 
-@_instruction
+@instruction
 def store(_: Any, array: Any, index: Any, value: Any) -> Any:
     """Write eight elements of a flat array from `index` on."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        made = builder.store(given[2], _address(context, builder, signature.args[0], *given[:2]))
+        made = builder.store(given[2], address(context, builder, signature.args[0], *given[:2]))
         made.align = 8
         return context.get_dummy_value()
 
-    return types.void(array, types.intp, _lanes), generate
+    return types.void(array, types.intp, Lanes), generate
 
 
-@_instruction
+@instruction
 def spread(_: Any, value: Any) -> Any:
     """The same double in every lane."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        first = builder.insert_element(ir.Constant(_VECTOR, ir.Undefined), given[0], ir.Constant(ir.IntType(32), 0))
+        first = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), given[0], ir.Constant(ir.IntType(32), 0))
         return builder.shuffle_vector(
-            first, ir.Constant(_VECTOR, ir.Undefined), ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+            first, ir.Constant(VECTOR, ir.Undefined), ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
         )
 
-    return _lanes(types.float64), generate
+    return Lanes(types.float64), generate
 
 
-@_instruction
+@instruction
 def plus_product(_: Any, total: Any, a: Any, b: Any) -> Any:
     """Total + a b in each lane."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        return builder.fadd(given[0], builder.fmul(given[1], given[2], flags=_FUSE), flags=_FUSE)
+        return builder.fadd(given[0], builder.fmul(given[1], given[2], flags=FUSE), flags=FUSE)
 
-    return _lanes(_lanes, _lanes, _lanes), generate
+    return Lanes(Lanes, Lanes, Lanes), generate
 
 
-@_instruction
+@instruction
 def nearest(_: Any, a: Any) -> Any:
     """Each lane rounded to an integer."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        name, kind = f"llvm.rint.v{LANES}f64", ir.FunctionType(_VECTOR, [_VECTOR])
+        name, kind = f"llvm.rint.v{LANES}f64", ir.FunctionType(VECTOR, [VECTOR])
         return builder.call(_insert(builder.module, kind, name), given)
 
-    return _lanes(_lanes), generate
+    return Lanes(Lanes), generate
 
 
-@_instruction
+@instruction
 def occupied(_: Any, a: Any) -> Any:
     """True if any lane is not zero."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        bits = builder.fcmp_unordered("!=", given[0], ir.Constant(_VECTOR, [0.0] * LANES))
+        bits = builder.fcmp_unordered("!=", given[0], ir.Constant(VECTOR, [0.0] * LANES))
         whole = builder.bitcast(bits, ir.IntType(LANES))
         return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
 
-    return types.boolean(_lanes), generate
+    return types.boolean(Lanes), generate
 
 
-@_instruction
+@instruction
 def at_least(_: Any, a: Any, b: Any) -> Any:
     """1 in each lane where a >= b, else 0."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        return builder.uitofp(builder.fcmp_ordered(">=", *given), _VECTOR)
+        return builder.uitofp(builder.fcmp_ordered(">=", *given), VECTOR)
 
-    return _lanes(_lanes, _lanes), generate
+    return Lanes(Lanes, Lanes), generate
 
 
-@_instruction
+@instruction
 def within(_: Any, a: Any, bound: Any) -> Any:
     """True if no lane is larger in size than a double, or not a number."""
 
     def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
         places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-        blank = ir.Constant(_VECTOR, ir.Undefined)
+        blank = ir.Constant(VECTOR, ir.Undefined)
         first = builder.insert_element(blank, given[1], ir.Constant(ir.IntType(32), 0))
         most = builder.shuffle_vector(first, blank, places)
         low = builder.fcmp_ordered(">=", given[0], builder.fneg(most))
@@ -163,7 +172,7 @@ def within(_: Any, a: Any, bound: Any) -> Any:
         whole = builder.bitcast(builder.and_(low, high), ir.IntType(LANES))
         return builder.icmp_unsigned("==", whole, ir.Constant(ir.IntType(LANES), (1 << LANES) - 1))
 
-    return types.boolean(_lanes, types.float64), generate
+    return types.boolean(Lanes, types.float64), generate
 
 
 def shuffled(order: tuple[int, ...], name: str) -> Any:
@@ -172,36 +181,21 @@ def shuffled(order: tuple[int, ...], name: str) -> Any:
 
     def shuffle(_: Any, a: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            return builder.shuffle_vector(given[0], ir.Constant(_VECTOR, [0.0] * LANES), places)
+            return builder.shuffle_vector(given[0], ir.Constant(VECTOR, [0.0] * LANES), places)
 
-        return _lanes(_lanes), generate
+        return Lanes(Lanes), generate
 
     shuffle.__name__ = shuffle.__qualname__ = name
     return _extending.intrinsic(shuffle)
 
 
-@_instruction
-def second_of(_: Any, x: Any, y: Any, z: Any) -> Any:
-    """Lane 1 of three vectors in lanes 3, 4, 5; the rest is 0."""
-
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        made = ir.Constant(_VECTOR, [0.0] * LANES)
-        for lane, vector in enumerate(given, 3):
-            index = ir.Constant(ir.IntType(32), 1)
-            element = builder.extract_element(vector, index)
-            made = builder.insert_element(made, element, ir.Constant(ir.IntType(32), lane))
-        return made
-
-    return _lanes(_lanes, _lanes, _lanes), generate
-
-
-def _binary(operation: Any, instruction: str) -> None:
-    @_instruction
+def _binary(operation: Any, name: str) -> None:
+    @instruction
     def apply(_: Any, a: Any, b: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            return getattr(builder, instruction)(*given)
+            return getattr(builder, name)(*given)
 
-        return _lanes(_lanes, _lanes), generate
+        return Lanes(Lanes, Lanes), generate
 
     # numba takes the place of `apply` in a lambda for the signature; it wants no annotations here
     @_extending.overload(operation)

@@ -22,8 +22,8 @@ from .series import Line
 from .step import GRAINS, MOST_GRAINS, Model
 
 ROUNDING_BITS = 9  # what the sums of a step lose below the last digit they keep
-TAIL_BITS = 6  # by which the last coefficients are below the precision: what is cut off has one sign for many steps
-ORDER_PER_BIT = 0.36  # a step of ρ/e² loses 2.9 bits an order
+TAIL_BITS = 9  # by which the last coefficients are below the precision: what is cut off has one sign for many steps
+ORDER_PER_BIT = 0.45  # of cheapest orders: a step then loses 2.2 bits an order
 SMALLEST_SWING = 64  # bits; at rest on the vertical there is none
 MOST_TURN = 1.75  # of a step times the swing's frequency: its square is h² λ at rest, which digits hold up to 4
 GUESS = 0.5  # of the time in which the pendulum changes: the first step, before the series has been seen
@@ -74,7 +74,7 @@ def problem(inputs: Inputs, prec: int, order: int | None = None) -> Problem:
     k = constants(inputs, ctx)
     position, velocity = release(inputs, ctx)
     n, v = (scaled(vector, k.length) for vector in (position, velocity))
-    prec += _smallness(k, n, v, ctx)
+    prec = min(prec + _smallness(k, n, v, ctx), most_bits())
     limbs = limbs_for(prec)
     unit, guess = _unit(k, v, ctx)
     h = ctx.mpf(unit.numerator) / unit.denominator

@@ -19,21 +19,32 @@ import numpy as np
 import numpy.typing as npt
 
 from .digits import DOUBLED, LARGEST, Array, aligned, carry, carry_scalar, divide
-from .lanes import LANES, compiled, load, occupied, plus_product, second_of, shuffled, spread, store, within
+from .lanes import LANES, compiled, inlined, load, occupied, plus_product, shuffled, spread, store, within
+from .unrolled import (
+    MOST_ORDER,
+    MOST_ROWS,
+    PARTNER,
+    PLANES,
+    TO_SPEEDS,
+    TURNED,
+    WIDTH,
+    add_convolved,
+    add_linear,
+    column,
+)
 
 X, M, W, VX, VM, VW, PULL, SPIN = range(LANES)
-PLANES = 4  # x, m, w and the pull, each digit's coefficients one after another
 AXIAL_SQUARE = 3  # the fourth of the sums
 
 Counts = npt.NDArray[np.int64]
 
 # to lane i goes lane order[i]; -1 stands for nothing
 _velocity = shuffled((VX, VM, VW, -1, -1, -1, -1, -1), "_velocity")
-partner = shuffled((M, X, X, VM, VX, VW, VM, X), "partner")
-to_speeds = shuffled((-1, -1, -1, 0, 1, 2, -1, -1), "to_speeds")
-_turned = shuffled((0, 1, -1, 3, 4, -1, 6, 7), "_turned")
-_pull_axial = shuffled((-1, -1, -1, -1, -1, -1, 5, -1), "_pull_axial")
-_pull_turned = shuffled((-1, -1, -1, -1, -1, -1, 2, -1), "_pull_turned")
+partner = shuffled(PARTNER, "partner")
+to_speeds = shuffled(TO_SPEEDS, "to_speeds")
+_turned = shuffled(TURNED[0], "_turned")
+_pull_axial = shuffled(TURNED[1], "_pull_axial")
+_pull_turned = shuffled(TURNED[2], "_pull_turned")
 _dragged = shuffled((-1, -1, -1, 3, 4, 5, 6, 7), "_dragged")
 _dragged_aside = shuffled((-1, -1, -1, 1, 0, -1, 2, -1), "_dragged_aside")
 _pull_across = shuffled((-1, -1, -1, -1, -1, -1, 1, -1), "_pull_across")
@@ -67,8 +78,8 @@ class Series(NamedTuple):
         planes: digit q of x, m, w, λ, each with all orders in a row.
         used: per digit the number of orders in which it may be other than zero.
         sums: digit r of λ x, λ m, λ w and w², each with all orders in a row, not carried.
-        products: rows for λ n of one order.
         factors: the digits of x, m, w, λ of one order, doubled, each a row of eight times the same.
+        twice: order 0, doubled.
         total, partners, other, scalar: rows to work in.
     """
 
@@ -77,8 +88,8 @@ class Series(NamedTuple):
     planes: Array
     used: Counts
     sums: Array
-    products: Array
     factors: Array
+    twice: Array
     total: Array
     partners: Array
     other: Array
@@ -86,26 +97,23 @@ class Series(NamedTuple):
 
 
 def room(order: int, limbs: int) -> Series:
-    """Empty arrays for a series of an order."""
-    width = _width(order)
+    """Empty arrays for a series of an order, MOST_ORDER at most."""
+    if order > MOST_ORDER:
+        raise ValueError(f"a series of order {order}, more than {MOST_ORDER}")
     rows = LANES * (limbs + 2)
     return Series(
         c=aligned((order + 1) * limbs * LANES),
         first=np.zeros(order + 1, dtype=np.int64),
-        planes=aligned(limbs * PLANES * width),
+        planes=aligned(limbs * PLANES * WIDTH),
         used=np.zeros(limbs, dtype=np.int64),
-        sums=aligned((limbs + 1) * PLANES * width),
-        products=aligned(rows),
+        sums=aligned((limbs + 1) * PLANES * WIDTH),
         factors=aligned(PLANES * rows),
+        twice=aligned(rows),
         total=aligned(rows),
         partners=aligned(rows),
         other=aligned(rows),
         scalar=aligned(rows),
     )
-
-
-def _width(order: int) -> int:
-    return (order // LANES + 3) * LANES
 
 
 @compiled
@@ -115,15 +123,14 @@ def expand(s: Series, line: Line, order: int, limbs: int, drag: bool) -> bool:
     Of λ n only the products with order 0 are wanted at once; the others of an order are added to the sums while the
     processor waits for the divisions of the next.
     """
-    width = len(s.planes) // (limbs * PLANES)
-    _empty(s, limbs, width, drag)
+    _empty(s, order, limbs, drag)
     if not _looked_at(s.c, s.first, 0, 0, limbs):
         return False
     for k in range(order):
         first = s.first[k]
         _derive(s, line, k, first, limbs)
         if drag:
-            _slow(s, line, k, first, limbs, width)
+            _slow(s, line, k, first, limbs)
         low = 0
         while low < limbs and not occupied(load(s.total, LANES * low)):
             low += 1
@@ -135,28 +142,29 @@ def expand(s: Series, line: Line, order: int, limbs: int, drag: bool) -> bool:
             store(s.c, block + LANES * q, load(s.total, LANES * q))
         if not _looked_at(s.c, s.first, k + 1, low, limbs):
             return False
+        _convolve(s, k, order, limbs, drag)
         if 2 * k < order:
-            _double(s, k, first, limbs, width, drag)
-        _convolve(s, k, order, limbs, width, drag)
-        _enter(s, k, first, limbs, width)
+            # last, as a vector that is loaded just after a part of it was stored must wait
+            _double(s, k, first, limbs, drag)
+            _enter(s, k, first, limbs)
     return True
 
 
-@compiled
-def _empty(s: Series, limbs: int, width: int, drag: bool) -> None:
+@inlined
+def _empty(s: Series, order: int, limbs: int, drag: bool) -> None:
     zero = spread(0.0)
-    for i in range(0, limbs * PLANES * width, LANES):
-        store(s.planes, i, zero)
-    for r in range(limbs + 1):
-        row = r * PLANES * width
-        for i in range(row, row + (PLANES if drag else 3) * width, LANES):
-            store(s.sums, i, zero)
-        store(s.products, LANES * r, zero)
+    for row in range(0, limbs * PLANES * WIDTH, WIDTH):
+        for i in range(0, order // 2 + LANES, LANES):
+            store(s.planes, row + i, zero)
+    for digit in range(0, (limbs + 1) * PLANES * WIDTH, PLANES * WIDTH):
+        for row in range(digit, digit + (PLANES if drag else 3) * WIDTH, WIDTH):
+            for i in range(0, order + LANES, LANES):
+                store(s.sums, row + i, zero)
     for q in range(limbs):
         s.used[q] = 0
 
 
-@compiled
+@inlined
 def _looked_at(c: Array, firsts: Counts, k: int, low: int, limbs: int) -> bool:
     """Note the first digit of order k, from `low` on; False if a number is too large."""
     block, first = k * limbs * LANES, low
@@ -166,31 +174,39 @@ def _looked_at(c: Array, firsts: Counts, k: int, low: int, limbs: int) -> bool:
     return first > 0 or within(load(c, block), LARGEST)
 
 
-@compiled
+@inlined
 def _derive(s: Series, line: Line, k: int, first: int, limbs: int) -> None:
     """The derivative's coefficient of order k in `total`, not carried; all but drag."""
-    c, block, turn = s.c, k * limbs * LANES, line.turn
-    weight = spread(DOUBLED if k else 0.5 * DOUBLED)
+    c, block, turn, total = s.c, k * limbs * LANES, line.turn, s.total
     for r in range(limbs + 1):
-        turned, urgent = spread(0.0), spread(0.0)
-        for q in range(first, r):
-            v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
-            turned = plus_product(turned, load(turn, p), partner(v))
-            urgent = plus_product(urgent, spread(c[block + LANES * q + PULL]), load(c, p))
-            urgent = plus_product(urgent, spread(c[p + PULL]), v)
-        value = _turned(turned) + (_pull_axial(turned) + _pull_turned(turned))
-        value = value - load(s.products, LANES * r) - to_speeds(urgent * weight)
+        value = spread(0.0) - column(s.sums, r * PLANES * WIDTH + k)
         if first <= r < limbs:
             value = value + _velocity(load(c, block + LANES * r))
         if k == 0:
             value = value + load(line.steady, LANES * r)
-        store(s.total, LANES * r, value)
+        store(total, LANES * r, value)
+    if k == 1:
+        for q in range(limbs):
+            v = load(c, LANES * q)
+            store(s.twice, LANES * q, v + v)
+    zeroth = s.twice if k else c
+    for r in range(first + 1 + MOST_ROWS, limbs + 1):
+        turned, pulled = spread(0.0), spread(0.0)
+        for q in range(first, r):
+            v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
+            turned = plus_product(turned, load(turn, p), partner(v))
+            pulled = plus_product(pulled, spread(c[block + LANES * q + PULL]), load(zeroth, p))
+            pulled = plus_product(pulled, spread(zeroth[p + PULL]), v)
+        value = _turned(turned) + (_pull_axial(turned) + _pull_turned(turned)) - to_speeds(pulled)
+        store(total, LANES * r, load(total, LANES * r) + value)
+    rows = min(limbs - first, MOST_ROWS)
+    add_linear(rows, c, block + LANES * first, zeroth, 0, turn, 0, total, LANES * (first + 1))
 
 
 @compiled
-def _slow(s: Series, line: Line, k: int, first: int, limbs: int, width: int) -> None:
+def _slow(s: Series, line: Line, k: int, first: int, limbs: int) -> None:
     """Add the terms of drag to `total`."""
-    c, block, start, stride = s.c, k * limbs * LANES, AXIAL_SQUARE * width + k, PLANES * width
+    c, block, start, stride = s.c, k * limbs * LANES, AXIAL_SQUARE * WIDTH + k, PLANES * WIDTH
     weight = 2.0 * DOUBLED if k else DOUBLED
     for r in range(limbs + 1):
         square = s.sums[start + r * stride]
@@ -211,8 +227,8 @@ def _slow(s: Series, line: Line, k: int, first: int, limbs: int, width: int) -> 
         s.total[LANES * r + SPIN] += axial
 
 
-@compiled
-def _double(s: Series, k: int, first: int, limbs: int, width: int, drag: bool) -> None:
+@inlined
+def _double(s: Series, k: int, first: int, limbs: int, drag: bool) -> None:
     """Add the products of a coefficient with itself, or of λ and n of one order, to the sums of order 2 k."""
     c, sums, block = s.c, s.sums, k * limbs * LANES
     for r in range(2 * first + 1, limbs + 1):
@@ -223,91 +239,57 @@ def _double(s: Series, k: int, first: int, limbs: int, width: int, drag: bool) -
             if drag:
                 square += c[a + W] * c[b + W]
         store(s.other, 0, total * spread(DOUBLED))
-        at = r * PLANES * width + 2 * k
+        at = r * PLANES * WIDTH + 2 * k
         sums[at] += s.other[X]
-        sums[at + width] += s.other[M]
-        sums[at + 2 * width] += s.other[W]
-        sums[at + 3 * width] += DOUBLED * square
+        sums[at + WIDTH] += s.other[M]
+        sums[at + 2 * WIDTH] += s.other[W]
+        sums[at + 3 * WIDTH] += DOUBLED * square
 
 
-@compiled
-def _convolve(s: Series, k: int, order: int, limbs: int, width: int, drag: bool) -> None:
-    """Add to the sums all products of order k with lower ones; what belongs to order k + 1 goes to `products`."""
-    c, planes, sums, factors, first, stride = s.c, s.planes, s.sums, s.factors, s.first[k], PLANES * width
+@inlined
+def _convolve(s: Series, k: int, order: int, limbs: int, drag: bool) -> None:
+    """Add to the sums all products of order k with lower ones."""
+    c, planes, sums, factors, first, stride = s.c, s.planes, s.sums, s.factors, s.first[k], PLANES * WIDTH
     for p in range(first, limbs):
         digit, row = LANES * (k * limbs + p), PLANES * LANES * p
         store(factors, row, spread(DOUBLED * c[digit + X]))
         store(factors, row + LANES, spread(DOUBLED * c[digit + M]))
         store(factors, row + 2 * LANES, spread(DOUBLED * c[digit + W]))
         store(factors, row + 3 * LANES, spread(DOUBLED * c[digit + PULL]))
-    for r in range(1, min(first, limbs) + 1):
-        at = r * stride + k
-        store(s.products, LANES * r, second_of(load(sums, at), load(sums, at + width), load(sums, at + 2 * width)))
     highest = 0
     for j in range(0, max(min(k, order - k), 1), LANES):
         while j > 0 and highest < limbs and s.used[highest] <= j:
             highest += 1
         r, at = first + highest + 1, k + j
         if drag:
-            _convolve_square(planes, factors, sums, first, highest, limbs, width, j, at)
-        if r <= limbs and (limbs - r) % 2 == 0:
-            _one_row(planes, factors, sums, s.products, first, highest, r, width, j, at)
-            r += 1
-        while r < limbs:
-            _two_rows(planes, factors, sums, s.products, first, highest, r, width, j, at)
-            r += 2
+            _convolve_square(planes, factors, sums, first, highest, limbs, j, at)
+        rows = limbs + 1 - r
+        while rows > MOST_ROWS:
+            rows -= 2
+            _two_rows(planes, factors, sums, first, highest, r + rows, j, at)
+        plane, row = highest * stride + j, r * stride + at
+        add_convolved(rows, planes, plane, factors, PLANES * LANES * first, sums, row)
 
 
-@compiled
-def _one_row(
-    planes: Array,
-    factors: Array,
-    sums: Array,
-    products: Array,
-    first: int,
-    highest: int,
-    r: int,
-    width: int,
-    j: int,
-    at: int,
-) -> None:
-    """Row r = first + highest + 1 of the sums, to which the first digits alone contribute."""
-    plane, factor, row = highest * PLANES * width + j, PLANES * LANES * first, r * PLANES * width + at
-    pull, other = load(factors, factor + 3 * LANES), load(planes, plane + 3 * width)
-    x = plus_product(load(sums, row), pull, load(planes, plane))
-    m = plus_product(load(sums, row + width), pull, load(planes, plane + width))
-    w = plus_product(load(sums, row + 2 * width), pull, load(planes, plane + 2 * width))
-    x = plus_product(x, load(factors, factor), other)
-    m = plus_product(m, load(factors, factor + LANES), other)
-    w = plus_product(w, load(factors, factor + 2 * LANES), other)
-    store(sums, row, x)
-    store(sums, row + width, m)
-    store(sums, row + 2 * width, w)
-    if j == 0:
-        store(products, LANES * r, second_of(x, m, w))
-
-
-@compiled
+@inlined
 def _two_rows(
     planes: Array,
     factors: Array,
     sums: Array,
-    products: Array,
     first: int,
     highest: int,
     r: int,
-    width: int,
     j: int,
     at: int,
 ) -> None:
     """Rows r and r + 1 of the sums: each digit that is loaded serves both."""
-    stride, factor = PLANES * width, PLANES * LANES * first
+    stride, factor = PLANES * WIDTH, PLANES * LANES * first
     row, plane = r * stride + at, (r - first) * stride + j
     below = row + stride
-    x, m, w = load(sums, row), load(sums, row + width), load(sums, row + 2 * width)
-    x1, m1, w1 = load(sums, below), load(sums, below + width), load(sums, below + 2 * width)
-    nx, nm, nw = load(planes, plane), load(planes, plane + width), load(planes, plane + 2 * width)
-    pull = load(planes, plane + 3 * width)
+    x, m, w = load(sums, row), load(sums, row + WIDTH), load(sums, row + 2 * WIDTH)
+    x1, m1, w1 = load(sums, below), load(sums, below + WIDTH), load(sums, below + 2 * WIDTH)
+    nx, nm, nw = load(planes, plane), load(planes, plane + WIDTH), load(planes, plane + 2 * WIDTH)
+    pull = load(planes, plane + 3 * WIDTH)
     for p in range(first, r - highest + 1):
         fx, fm, fw = load(factors, factor), load(factors, factor + LANES), load(factors, factor + 2 * LANES)
         f = load(factors, factor + 3 * LANES)
@@ -317,45 +299,42 @@ def _two_rows(
         if p == r - highest:
             break
         plane -= stride
-        nx, nm, nw = load(planes, plane), load(planes, plane + width), load(planes, plane + 2 * width)
-        pull = load(planes, plane + 3 * width)
+        nx, nm, nw = load(planes, plane), load(planes, plane + WIDTH), load(planes, plane + 2 * WIDTH)
+        pull = load(planes, plane + 3 * WIDTH)
         x = plus_product(plus_product(x, f, nx), fx, pull)
         m = plus_product(plus_product(m, f, nm), fm, pull)
         w = plus_product(plus_product(w, f, nw), fw, pull)
         factor += PLANES * LANES
     store(sums, row, x)
-    store(sums, row + width, m)
-    store(sums, row + 2 * width, w)
+    store(sums, row + WIDTH, m)
+    store(sums, row + 2 * WIDTH, w)
     store(sums, below, x1)
-    store(sums, below + width, m1)
-    store(sums, below + 2 * width, w1)
-    if j == 0:
-        store(products, LANES * r, second_of(x, m, w))
-        store(products, LANES * (r + 1), second_of(x1, m1, w1))
+    store(sums, below + WIDTH, m1)
+    store(sums, below + 2 * WIDTH, w1)
 
 
 @compiled
 def _convolve_square(
-    planes: Array, factors: Array, sums: Array, first: int, highest: int, limbs: int, width: int, j: int, at: int
+    planes: Array, factors: Array, sums: Array, first: int, highest: int, limbs: int, j: int, at: int
 ) -> None:
     """The part of `_convolve` for w²."""
     for r in range(first + highest + 1, limbs + 1):
-        row = (r * PLANES + AXIAL_SQUARE) * width + at
+        row = (r * PLANES + AXIAL_SQUARE) * WIDTH + at
         square = load(sums, row)
         for p in range(first, r - highest):
             axial = load(factors, (PLANES * p + 2) * LANES)
-            square = plus_product(square, axial + axial, load(planes, ((r - 1 - p) * PLANES + 2) * width + j))
+            square = plus_product(square, axial + axial, load(planes, ((r - 1 - p) * PLANES + 2) * WIDTH + j))
         store(sums, row, square)
 
 
-@compiled
-def _enter(s: Series, k: int, first: int, limbs: int, width: int) -> None:
+@inlined
+def _enter(s: Series, k: int, first: int, limbs: int) -> None:
     """Copy x, m, w, λ of order k to the planes, from where higher orders take them."""
     c, planes = s.c, s.planes
     for q in range(first, limbs):
-        at, plane = LANES * (k * limbs + q), q * PLANES * width + k
+        at, plane = LANES * (k * limbs + q), q * PLANES * WIDTH + k
         planes[plane] = c[at + X]
-        planes[plane + width] = c[at + M]
-        planes[plane + 2 * width] = c[at + W]
-        planes[plane + 3 * width] = c[at + PULL]
+        planes[plane + WIDTH] = c[at + M]
+        planes[plane + 2 * WIDTH] = c[at + W]
+        planes[plane + 3 * WIDTH] = c[at + PULL]
         s.used[q] = k + 1

@@ -20,7 +20,7 @@ SHIFT = RADIX / GRAINS  # times m, and one digit down: a multiplication by m / G
 SLIP = 0.9  # a series that reaches this part of its step is used to its end all the same; its order is chosen so
 AIM = 0.98  # of the length that the last coefficients promise
 RESOLVED = 4.0  # last digits from which on a coefficient's size is believed
-LEAST, MOST = 0.94, 1.2  # a step is not changed while the wanted one is within these parts of it
+LEAST, MOST = 0.94, 1.03  # a step is not changed while the wanted one is within these parts of it
 
 _swapped_halves = shuffled((3, 4, 5, 0, 1, 2, -1, -1), "_swapped_halves")
 _positions = shuffled((0, 1, 2, -1, -1, -1, -1, -1), "_positions")

@@ -14,8 +14,8 @@ import numpy as np
 
 from .dense import evaluate, shift_part, slope
 from .digits import DIGIT_BITS, DOUBLED, INVERSE, Array, carry_scalar
-from .lanes import LANES, compiled
-from .series import PULL, VM, VX, Counts, Line, M, Series, X
+from .lanes import LANES, compiled, load, store
+from .series import PULL, VM, VX, Counts, Line, M, Series, X, expand, room
 from .step import Model, leading
 
 FOUND = 24  # zeros of one step at most
@@ -27,6 +27,8 @@ NOISE_BITS = 12  # digits' last bits that say nothing about a sign
 NARROWEST = 2.0**-40
 HALVINGS = 60
 POLISHINGS = 30
+NEAR_BITS = 46
+NEAR = 2.0**-NEAR_BITS  # of a step: a guess in double is not off by more, but for zeros that all but meet
 DERIVATIVE_BITS = 44  # of the slope that Newton's rule divides by
 EDGE = 2.0**-30  # how far beyond its interval a zero may come out
 
@@ -44,6 +46,8 @@ class Search(NamedTuple):
     guess: Array
     way: Counts
     place: Array
+    aside: Array
+    near: Series
 
 
 def search_room(order: int, limbs: int) -> Search:
@@ -57,7 +61,15 @@ def search_room(order: int, limbs: int) -> Search:
         guess=np.zeros(FOUND),
         way=np.zeros(FOUND, dtype=np.int64),
         place=np.zeros(limbs + 2),
+        aside=np.zeros(limbs + 2),
+        near=room(near_order(limbs), limbs),
     )
+
+
+@compiled
+def near_order(limbs: int) -> int:
+    """Of a series that is used no further than NEAR."""
+    return DIGIT_BITS * limbs // NEAR_BITS + 1
 
 
 @compiled
@@ -146,35 +158,24 @@ def _shifted(z: Search, size: int, low: float, high: float) -> None:
 
 
 @compiled
-def _kind(g: Array, size: int, noise: float) -> int:
-    """What the polynomial can do on -1 <= u <= 1."""
-    rest = slopes = bends = 0.0
-    for k in range(size - 1, 0, -1):
-        a = abs(g[k])
-        rest += a
-        if k > 1:
-            slopes += k * a
-        if k > 2:
-            bends += k * (k - 1.0) * a
-    if abs(g[0]) > rest + noise:
-        return FREE
-    if abs(g[1]) > slopes + size * noise:
-        return MONOTONE
-    if 2.0 * abs(g[2]) > bends + size * size * noise:
-        return BENT
-    return MIXED
-
-
-@compiled
-def _kind_at_sight(f: Array, size: int, noise: float) -> int:
-    """FREE or MONOTONE on 0 <= s <= 1 by value and slope in the middle; MIXED where that does not tell."""
-    bends = size * size * noise
-    for k in range(2, size):
-        bends += k * (k - 1.0) * abs(f[k])
-    slope = abs(_slope(f, size, 0.5))
-    if abs(_value(f, size, 0.5)) > 0.5 * slope + 0.125 * bends + noise:
-        return FREE
-    return MONOTONE if slope > 0.5 * bends + size * noise else MIXED
+def _look(f: Array, size: int, middle: float, half: float, noise: float) -> tuple[int, float, float]:
+    """What the polynomial can do within `half` of the middle; there its value and half its second derivative."""
+    high = middle + half
+    value = slope = bend = 0.0
+    total = slopes = bends = rest = 0.0  # the same of the coefficients' sizes at the upper end, to the third derivative
+    for k in range(size - 1, -1, -1):
+        bend, slope, value = bend * middle + slope, slope * middle + value, value * middle + f[k]
+        rest, bends, slopes = rest * high + bends, bends * high + slopes, slopes * high + total
+        total = total * high + abs(f[k])
+    rest *= half
+    kind = MIXED
+    if abs(value) > half * (abs(slope) + half * (abs(bend) + rest)) + noise:
+        kind = FREE
+    elif abs(slope) > half * (2.0 * abs(bend) + 3.0 * rest) + size * noise:
+        kind = MONOTONE
+    elif abs(bend) > 3.0 * rest + size * size * noise:
+        kind = BENT
+    return kind, value, bend
 
 
 @compiled
@@ -198,12 +199,13 @@ def _crossing(g: Array, size: int, low: float, high: float, before: int) -> floa
     """Where the polynomial changes sign between `low` and `high`, by Newton's rule kept inside by halving."""
     u = 0.5 * (low + high)
     for _ in range(HALVINGS):
-        value = _value(g, size, u)
+        value = rate = 0.0
+        for k in range(size - 1, -1, -1):
+            rate, value = rate * u + value, value * u + g[k]
         if (value > 0.0) == (before > 0):
             low = u
         else:
             high = u
-        rate = _slope(g, size, u)
         new = u - value / rate if rate != 0.0 else u
         if not low < new < high:
             new = 0.5 * (low + high)
@@ -264,39 +266,32 @@ def bracket_zeros(
     for k in range(size):
         total += abs(z.f[k])
     noise, found, depth = ROUNDING * total, 0, 1
-    kind = _kind_at_sight(z.f, size, noise)
-    if kind == FREE and before == after:
-        return 0
-    if kind == MONOTONE and before != 0 and after != 0:
-        return 0 if before == after else _note(z, 0, 0.0, 1.0, _crossing(z.f, size, 0.0, 1.0, before), after)
     z.stack[0], z.stack[1], z.stack[2], z.stack[3] = 0.0, 1.0, before, after
     while depth > 0:
         depth -= 1
         low, high = z.stack[4 * depth], z.stack[4 * depth + 1]
         left, right = int(z.stack[4 * depth + 2]), int(z.stack[4 * depth + 3])
-        _shifted(z, size, low, high)
-        kind = _kind(z.g, size, noise)
-        if found + 2 > FOUND or left == 0 or right == 0 or (kind == FREE and left != right):
-            return GRAZING
-        if kind == FREE or (kind == MONOTONE and left == right):
-            continue
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        if kind == MONOTONE or (kind == BENT and left != right):
-            u = _crossing(z.g, size, -1.0, 1.0, left)
-            found = _note(z, found, low, high, middle + half * u, right)
-        elif kind == BENT:
-            if (z.g[2] > 0.0) == (left > 0):
-                found = _dip(z, found, size, middle, half, left, noise, s, line, rows, model)
-                if found == GRAZING:
-                    return GRAZING
-        else:
+        kind, value, bend = _look(z.f, size, middle, half, noise)
+        if kind == FREE and left == right:
+            continue
+        if kind == FREE or found + 2 > FOUND or left == 0 or right == 0:
+            return GRAZING
+        if kind == MIXED:
             if half < NARROWEST or depth + 2 > len(z.stack) // 4:
                 return GRAZING
-            between = _sign_at(z, middle, z.g[0], noise, s, line, rows, model)
+            between = _sign_at(z, middle, value, noise, s, line, rows, model)
             top = 4 * depth
             z.stack[top], z.stack[top + 1], z.stack[top + 2], z.stack[top + 3] = middle, high, between, right
             z.stack[top + 4], z.stack[top + 5], z.stack[top + 6], z.stack[top + 7] = low, middle, left, between
             depth += 2
+        elif left != right:
+            found = _note(z, found, low, high, _crossing(z.f, size, low, high, left), right)
+        elif kind == BENT and (bend > 0.0) == (left > 0):
+            _shifted(z, size, low, high)
+            found = _dip(z, found, size, middle, half, left, noise, s, line, rows, model)
+            if found == GRAZING:
+                return GRAZING
     return found
 
 
@@ -363,23 +358,52 @@ def _dip(
 
 @compiled
 def polish(z: Search, i: int, s: Series, line: Line, rows: Array, model: Model) -> bool:
-    """The place of zero i in digits, and all lanes there in `rows`; False if Newton's rule leaves its interval."""
-    limbs = model.limbs
+    """The place of zero i in digits, and all lanes there in `rows`; False if Newton's rule leaves its interval.
+
+    The guess is so good that a series about it needs few orders: the step's own is evaluated just once.
+    """
+    limbs, short, before = model.limbs, z.near, 1.0
     _put(z.place, z.guess[i], limbs)
-    enough, before = 2.0 ** min(DERIVATIVE_BITS - (DIGIT_BITS * limbs - 1), -20), 1.0
     for _ in range(POLISHINGS):
-        speed = xdot_at(z, s, line, rows, model)
+        evaluate(rows, s, z.place, model.order, limbs)
+        for r in range(limbs):
+            store(short.c, LANES * r, load(rows, LANES * r))
+        if not expand(short, line, near_order(limbs), limbs, model.drag):
+            return False
+        if not _settled(z, line, rows, model):
+            return False
+        for q in range(limbs):
+            z.place[q] += z.aside[q]
+        carry_scalar(z.place, limbs - 1)
+        # where xdot is small beside the digits, their last bits keep the place from settling
+        moved = abs(value_of(z.aside, limbs))
+        settled, before = moved > 0.25 * before and before < EDGE, moved
+        if settled and moved >= NEAR:
+            evaluate(rows, s, z.place, model.order, limbs)
+        if settled or moved < NEAR:
+            place = value_of(z.place, limbs)
+            return bool(z.low[i] - EDGE <= place <= z.high[i] + EDGE)
+    return False
+
+
+@compiled
+def _settled(z: Search, line: Line, rows: Array, model: Model) -> bool:
+    """Newton's rule on the short series, from where it begins: the place in `aside`, all lanes there in `rows`."""
+    limbs, short, order = model.limbs, z.near, near_order(model.limbs)
+    enough, before = 2.0 ** min(DERIVATIVE_BITS - (DIGIT_BITS * limbs - 1), -20), 1.0
+    z.aside[:] = 0.0
+    for _ in range(POLISHINGS):
+        slope(short, line, rows, limbs)
+        speed = value_of(short.scalar, limbs)
         rate = xddot_at(rows, speed, line, model)
         if rate == 0.0:
             return False
         shift = -speed / rate
         if not abs(shift) < 1.0:
             return False
-        shift_part(z.place, shift, limbs)
-        # where xdot is small beside the digits, their last bits keep the place from settling further
+        shift_part(z.aside, shift, limbs)
+        evaluate(rows, short, z.aside, order, limbs)
         settled, before = abs(shift) > 0.25 * before and before < EDGE, abs(shift)
-        if settled or abs(shift) < enough:
-            evaluate(rows, s, z.place, model.order, limbs)
-            place = value_of(z.place, limbs)
-            return bool(z.low[i] - EDGE <= place <= z.high[i] + EDGE)
+        if settled or abs(shift) < enough or not abs(value_of(z.aside, limbs)) < NEAR:
+            return True
     return False
