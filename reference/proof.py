@@ -108,7 +108,8 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], proved: Any, feed: Run,
         agreement_bits=-bits_in(max(gaps[:3]) / size) if any(gaps[:3]) else feed.plan.number.prec,
         cpu_s={part: float(spent) for part, spent in vars(proved.cpu_s).items()},
     )
-    possible = tuple((z.t.low, z.t.high, z.parity) for z in unsure)
+    # all zeros lie in (0, T]; the ball of a cluster may be a little wider
+    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in unsure)
     directions = [z.direction for z in sure]
     return Solution(scene, times, grid, met, directions, Source.of(feed), tuple(checks), growth.cpu_s, proof, possible)
 

@@ -35,10 +35,11 @@ class World:
             self.release = self._release(inputs)
             self.c, self.r, v = (self.turned(a, 1) for a in (times(1 / self.length, weight), *self.release))
             self.H = cross(self.r, add(v, cross(self.omega, self.r)))
-            x, y, vx = (q.is_zero() for q in (*self.release[0][:2], v[0]))
-            at_rest, straight = all(q.is_zero() for q in v), (sin * cos).is_zero() or rate.is_zero()
+            (x, y, vx), at_rest = (q.is_zero() for q in (*self.release[0][:2], v[0])), all(q.is_zero() for q in v)
             self.slow, self.flat = vx, at_rest and x  # xdot(0) = 0 exactly; and xddot(0) = 0
-            self.still = (vx and x and rate.is_zero()) or (at_rest and x and y and straight)  # xdot = 0 for ever
+            self.still = (vx and x and rate.is_zero()) or (
+                at_rest and x and y and (sin * cos * rate).is_zero()
+            )  # xdot = 0 for ever
             c, w = size(self.c), size(self.omega)
             pace = c.sqrt() if c > 0 else w + size(self.H)
             self.w0 = pace.mid() if pace > 0 else arb(1)  # any positive number is a valid weight
@@ -107,9 +108,9 @@ class Piece:
         with ctx.workprec(SHORT):
             t, t1, t2 = (norm([f], 2 * bits) for f in (tau, tau.derivative(), tau.derivative().derivative()))
             size_p, v1, v2 = upper((1 + t).sqrt()), norm(v, bits), norm(a, bits)
-            defect = size_p * (norm(d, 2 * bits) + k.off * (3 * v1 + size_p + 1)) + k.drag_size * k.omega_size * t
+            defect = size_p * (norm(d, 2 * bits) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
             speed, rate = v1 + k.omega_size * size_p, v2 + k.omega_size * v1
-            first, second = t * speed + t1 * size_p / 2, t1 * (speed + v1 / 2) + t * rate + t2 * size_p / 2
+            first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + t2 * size_p / 2
             return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
 
 

@@ -2,7 +2,7 @@
 
 from functools import reduce
 
-from flint import arb, ctx
+from flint import arb, arb_poly, ctx
 
 from .balls import SHORT, add, ball, dot, interval, times
 from .bound import Piece, World, state
@@ -21,9 +21,10 @@ class Slope:
         self.piece, self.tube, self.centre = piece, tube, ball(piece.step.centre)
         self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
-    def at(self, n: int, s: arb) -> arb:
-        """Contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
-        return self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
+    def at(self, n: int, s: arb, about: arb | None = None) -> arb:
+        """Contains xdot (n = 0) or xddot (n = 1) on the ball `s`; by the series about a point, if given."""
+        f, off = self.forms[n]
+        return (f(s) if about is None else arb_poly(f)(arb_poly([about, 1]))(s - about)) / self.piece.unit + off
 
     def bend(self, s: arb) -> arb:
         """Contains the third derivative of x on the ball `s`, by the equations of motion (section 7)."""
@@ -57,7 +58,8 @@ class Scan:
             whole, middle = low.union(high), ((low + high) / 2).mid()
             if not low < middle < high:
                 raise ArithmeticError("a step is too short for the precision")
-            rate = slope.at(1, whole)
+            # a series about 0 is too wide on a short leaf to show a zero of high order
+            rate = slope.at(1, whole, None if depth < 4 else middle)
             speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
             way, bend = sign(speed), sign(rate)
             if not way and not self.begun and self.world.slow:
@@ -100,8 +102,7 @@ class Scan:
         rows = []
         for slope, s in touched(leaves, t):
             r, v = (self.world.turned(a, -1) for a in state(slope.piece, slope.tube, s))
-            h = slope.piece.k.h
-            rows.append([*r, v[1] / h, slope.at(1, s) / h**2])
+            rows.append([*r, v[1] / slope.piece.k.h, slope.at(1, s) / slope.piece.k.h**2])
         return [interval(reduce(arb.union, x) * self.world.length) for x in zip(*rows, strict=True)]
 
 

@@ -104,6 +104,21 @@ def test_a_release_at_rest_in_the_meridian_has_no_transit_at_its_start():
     assert abs(middle(proof.transits[0].t) - Fraction("8.2266590196580988")) < Fraction(1, 10**15)
 
 
+def test_a_release_perpendicular_to_the_earths_axis_takes_few_leaves(monkeypatch):
+    """There ẋ ~ t⁴."""
+    count, sort = [0], Scan._sort
+
+    def counted(self, *args):
+        count[0] += 1
+        assert count[0] < 5000
+        return sort(self, *args)
+
+    monkeypatch.setattr(Scan, "_sort", counted)
+    inputs = scene(latitude="30", length="1", angles=("30", "90", "0", "0"))
+    found = enclose(inputs, [Fraction(5)], radius=Fraction(1, 10**40), workers=1).transits
+    assert [t.kind for t in found] == ["possible", "one", "one", "one", "one"]
+
+
 def test_release_at_rest_in_the_meridian_with_drag():
     inputs = scene(x="0", y="0.5", drag="0.01", rotation_rate="0.001")
     proof = enclose(inputs, [Fraction(60)], radius=Fraction(1, 10**20), workers=1)

@@ -19,7 +19,6 @@ from reference.enclosure.candidate import pair
 from reference.enclosure.columns import Columns
 from reference.enclosure.frames import ColumnSource
 from reference.enclosure.recurrence import Recurrence
-from reference.enclosure.shapes import Step
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth
@@ -210,15 +209,6 @@ def test_a_release_that_may_be_on_the_horizontal_is_refused():
         World(scene(x="67", y="0", vx="1"), 128)
     with pytest.raises(ArithmeticError):
         World(scene(x="70", y="0"), 128)
-
-
-def test_a_drag_below_the_last_bit_still_counts_where_rotation_lifts_it_above():
-    """γ rounds to 0 but γΩ does not: its torque, -γΩ at p = K = 0, must not be lost."""
-    bits, drag = 64, Fraction(9, 10 * 2**64)
-    inputs = scene(length="1000", drag=drag, rotation_rate="1000", equatorial_radius="1e-9")
-    rows = ([1], *[[0]] * 3)
-    step = Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, rows)
-    assert Piece(World(inputs, 192), step).sizes().d2 > float(drag) * 999
 
 
 @pytest.mark.parametrize("change", [{"drag": "-0.001"}, {"length": "-67"}])
