@@ -209,7 +209,11 @@ def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
 def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
     words = [sys.executable, "-m", "foucault", "generate", "paris", "--out", str(tmp_path / "p")]
     with subprocess.Popen(
-        words, stderr=subprocess.PIPE, stdout=subprocess.PIPE, cwd=ROOT, start_new_session=True
+        words,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        cwd=ROOT,
+        start_new_session=True,
     ) as process:
         time.sleep(8)  # well into the run, also on a busy machine
         process.send_signal(signal.SIGINT)
