@@ -31,6 +31,7 @@ from .transits import Scan
 
 GUARD_BITS = 64  # the scene's balls beyond the steps' coefficients
 ATTEMPTS = 4
+LEAST_RAISE = 8  # bits
 CHUNK = 32  # steps sent at once
 AHEAD = 2  # chunks a helper holds
 WORTH = 500  # oscillation times below which a helper costs more than it saves
@@ -122,11 +123,11 @@ def enclose(
             run = _Run(inputs, plan, list(times), transits, workers, progress)
             return run.prove(candidate, radius)
         except _Narrow as error:
-            said, more = str(error), error.bits
+            said, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
         except (ArithmeticError, ValueError) as error:
             # a bound that is not finite, a matrix without inverse, a step that does not join
-            said, more = f"at {plan.bits} bits: {error}", plan.bits // 3
-        plan = plan._replace(bits=plan.bits + more, order=order_for(plan.bits + more))
+            said, bits = f"at {plan.bits} bits: {error}", plan.bits * 4 // 3
+        plan = plan._replace(bits=bits, order=order_for(bits))
         if plan.bits > MAX_BITS:
             break
     raise UnreachableError(

@@ -9,8 +9,9 @@ from .bound import Piece, World, state
 from .shapes import EnclosedTransit, Interval, Leaf, Tube
 
 
-def sign(x: arb) -> int:
-    """The sign of every point of a ball; 0 if there is none."""
+def sign(x: arb, wider: int = 0) -> int:
+    """The sign of every point of a ball, made wider by so many radii; 0 if there is none."""
+    x = x + wider * (x - x.mid()) if wider else x
     return 1 if x > 0 else -1 if x < 0 else 0
 
 
@@ -21,10 +22,14 @@ class Slope:
         self.piece, self.tube, self.centre = piece, tube, ball(piece.step.centre)
         self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
-    def at(self, n: int, s: arb, about: arb | None = None) -> arb:
-        """Contains xdot (n = 0) or xddot (n = 1) on the ball `s`; by the series about a point, if given."""
-        f, off = self.forms[n]
-        return (f(s) if about is None else arb_poly(f)(arb_poly([about, 1]))(s - about)) / self.piece.unit + off
+    def at(self, n: int, s: arb) -> arb:
+        """Contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
+        return self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
+
+    def rate(self, s: arb) -> arb:
+        """Contains xddot on `s`, by a series about its middle where one about 0 is too wide to have a sign."""
+        (f, off), plain = self.forms[1], self.at(1, s)
+        return plain if sign(plain, 2) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.piece.unit + off
 
     def bend(self, s: arb) -> arb:
         """Contains the third derivative of x on the ball `s`, by the equations of motion (section 7)."""
@@ -48,8 +53,7 @@ class Scan:
         with ctx.workprec(self.world.prec):
             slope, low, high = Slope(piece, tube), ball(piece.step.low), ball(piece.step.high)
             self.end = slope, high
-            if not self.begun:
-                self.left = sign(slope.at(0, low))
+            self.left = self.left if self.begun else sign(slope.at(0, low))
             self._sort(slope, low, high, 0)
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
@@ -58,16 +62,14 @@ class Scan:
             whole, middle = low.union(high), ((low + high) / 2).mid()
             if not low < middle < high:
                 raise ArithmeticError("a step is too short for the precision")
-            # a series about 0 is too wide on a short leaf to show a zero of high order
-            rate = slope.at(1, whole, None if depth < 4 else middle)
+            rate = slope.at(1, whole) if depth < 4 else slope.rate(whole)
             speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
-            way, bend = sign(speed), sign(rate)
+            way, bend = sign(speed), sign(rate, 2)  # sure enough for Newton to contract
             if not way and not self.begun and self.world.slow:
                 # from rest, xdot takes the sign of its first derivative that is not 0
                 way = bend or (sign(slope.bend(whole)) if self.world.flat else 0)
-            elif not way and bend:
-                first, last = sign(slope.at(0, low)), sign(slope.at(0, high))
-                way = first if first == last else 0
+            elif not way and bend and sign(slope.at(0, low)) == (last := sign(slope.at(0, high))):
+                way = last
         if way:
             self._close(way)
         elif bend or 2 * depth >= self.world.prec or not speed.abs_upper() > 3 * slope.tube.u:
@@ -108,8 +110,7 @@ class Scan:
 
 def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
     """The parts of the time ball `t` in the leaves that it may touch, as s."""
-    local = [(leaf, (t - leaf.slope.centre) / leaf.slope.piece.k.h) for leaf in leaves]
-    parts = [(leaf.slope, s, leaf.low.union(leaf.high)) for leaf, s in local]
+    parts = [(x.slope, (t - x.slope.centre) / x.slope.piece.k.h, x.low.union(x.high)) for x in leaves]
     return [(slope, s.intersection(whole)) for slope, s, whole in parts if s.overlaps(whole)]
 
 
@@ -121,7 +122,7 @@ def contract(leaves: list[Leaf], begin: arb, end: arb) -> arb | None:
             shrinks = True
             while shrinks and begin < (middle := t.mid()) < end:  # outside of the leaves nothing is known
                 speed = reduce(arb.union, (f.at(0, s) / f.piece.k.h for f, s in touched(leaves, middle)))
-                rate = reduce(arb.union, (f.at(1, s) / f.piece.k.h**2 for f, s in touched(leaves, t)))
+                rate = reduce(arb.union, (f.rate(s) / f.piece.k.h**2 for f, s in touched(leaves, t)))
                 new = middle - speed / rate if sign(rate) else t
                 if not new.overlaps(t):
                     return None
