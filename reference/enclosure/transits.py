@@ -9,9 +9,8 @@ from .bound import Piece, World, state
 from .shapes import EnclosedTransit, Interval, Leaf, Tube
 
 
-def sign(x: arb, wider: int = 0) -> int:
-    """The sign of every point of a ball, made wider by so many radii; 0 if there is none."""
-    x = x + wider * (x - x.mid()) if wider else x
+def sign(x: arb) -> int:
+    """The sign of every point of a ball; 0 if there is none."""
     return 1 if x > 0 else -1 if x < 0 else 0
 
 
@@ -29,7 +28,7 @@ class Slope:
     def rate(self, s: arb) -> arb:
         """Contains xddot on `s`, by a series about its middle where one about 0 is too wide to have a sign."""
         (f, off), plain = self.forms[1], self.at(1, s)
-        return plain if sign(plain, 2) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.piece.unit + off
+        return plain if sign(plain) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.piece.unit + off
 
     def bend(self, s: arb) -> arb:
         """Contains the third derivative of x on the ball `s`, by the equations of motion (section 7)."""
@@ -64,7 +63,7 @@ class Scan:
                 raise ArithmeticError("a step is too short for the precision")
             rate = slope.at(1, whole) if depth < 4 else slope.rate(whole)
             speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
-            way, bend = sign(speed), sign(rate, 2)  # sure enough for Newton to contract
+            way, bend = sign(speed), sign(rate)
             if not way and not self.begun and self.world.slow:
                 # from rest, xdot takes the sign of its first derivative that is not 0
                 way = bend or (sign(slope.bend(whole)) if self.world.flat else 0)
