@@ -165,6 +165,18 @@ def test_what_cannot_be_decided_is_said_and_its_row_left_out(monkeypatch, tmp_pa
     assert problems_of(path) == []
 
 
+def test_a_possible_transit_is_reported_within_the_run(monkeypatch):
+    def doubt(proved):
+        first, last = proved.transits[0], proved.transits[-1]
+        early = replace(first, parity="odd", t=replace(first.t, low=Fraction(-1, 10**14)))
+        late = replace(last, parity="odd", t=replace(last.t, high=proved.times[-1] + Fraction(1, 10**14)))
+        return replace(proved, transits=[early, *proved.transits[1:-1], late])
+
+    doctored(monkeypatch, doubt)
+    early, late = reference.solve(make_scene(run=SHORT)).possible
+    assert (early[0], late[1]) == (0, 300)
+
+
 @pytest.mark.parametrize(("engine", "shift"), [("heyoka", Fraction(1, 10**35)), ("limbs", Fraction(1, 10**29))])
 def test_a_state_outside_its_ball_names_time_and_component(monkeypatch, engine, shift):
     def move(proved):
