@@ -14,7 +14,7 @@ from typing import Any
 from .errors import InputError, IntegrationError, UnreachableError
 from .expansions import GUARD_BITS, Feed
 from .growth import Growth, bits_in, measure_growth
-from .precision import NumberType, cheapest_type
+from .precision import cheapest_type
 from .render import UndecidedRounding, grid_sheet, transits_sheet
 from .runs import Plan, Report, Run, run
 from .scene import Scene
@@ -23,7 +23,7 @@ from .solution import GRID_COLUMNS, TRANSIT_COLUMNS, CrossCheck, Proof, Solution
 ROUNDING_BITS = 20  # balls are this much smaller than the last digit: among 1e5 numbers few ties, mostly none
 ROUNDING_TRIES = 3
 FINER = 2**16  # factor of the next try
-TRANSIT_DIGITS = (9, 27)  # what the run with event detection is asked for, and where the flow blurs its transits
+USUAL_DIGITS, FINER_DIGITS = 9, 27  # what the run with event detection is asked for, at first and on a second try
 ROUNDING_SLACK = 12  # bits that evaluating a run's polynomial may lose, by which it may miss its ball
 SCALE_BITS = 64  # of the tables' integers, below the smallest ball
 
@@ -157,39 +157,39 @@ def _transit_check(
     Raises:
         IntegrationError: naming the transit on which they part.
     """
-    usual, finer = (cheapest_type(growth.bits_for(digits, times[-1], checked=False)) for digits in TRANSIT_DIGITS)
+
+    def seen_with(digits: int) -> Run:
+        number = cheapest_type(growth.bits_for(digits, times[-1], checked=False))
+        return run(Plan(scene.exact, "momentum", number, times, transits=True))
+
+    seen = seen_with(USUAL_DIGITS)
     try:
-        return _found_by(usual, scene, times, grid, met, directions, growth, undecided)
-    except IntegrationError:
-        return _found_by(finer, scene, times, grid, met, directions, growth, undecided)
+        gaps = _matched(seen, met, directions, growth, undecided)
+    except IntegrationError:  # where the flow blurs its transits
+        seen = seen_with(FINER_DIGITS)
+        gaps = _matched(seen, met, directions, growth, undecided)
+    state = [max(column) for column in zip(*_gaps(grid, seen), strict=True)]
+    return CrossCheck.of(seen, state, gaps)
 
 
-def _found_by(
-    number: NumberType,
-    scene: Scene,
-    times: tuple[Fraction, ...],
-    grid: Table,
-    met: Table,
-    directions: list[int],
-    growth: Growth,
-    undecided: bool,
-) -> CrossCheck:
-    seen = run(Plan(scene.exact, "momentum", number, times, transits=True))
+def _matched(
+    seen: Run, met: Table, directions: list[int], growth: Growth, undecided: bool
+) -> list[tuple[Fraction, ...]]:
+    """How far the transits that a run found are from the enclosed ones, in s."""
     found = [(Fraction(row[0], 2**seen.scale), way) for row, way in zip(seen.zeros or (), seen.directions, strict=True)]
     if len(found) != len(directions) and not undecided:
         raise IntegrationError(f"heyoka finds {len(found)} transits, the enclosure {len(directions)}.")
-    late = growth.estimates(number.prec)[3]
-    rounding = times[-1] / 2 ** (number.prec - ROUNDING_SLACK)
+    prec = seen.plan.number.prec
+    late, rounding = growth.estimates(prec)[3], seen.plan.times[-1] / 2 ** (prec - ROUNDING_SLACK)
     nearest = iter(found)
-    gaps = []
+    gaps: list[tuple[Fraction, ...]] = []
     for k, (t, ax, way) in enumerate(zip(met.exact("t"), met.exact("ax"), directions, strict=True), 1):
         allowed = late / abs(ax) + rounding
         gap = next((abs(t - moment) for moment, sign in nearest if sign == way and abs(t - moment) <= allowed), None)
         if gap is None:
             raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {float(t)} s.")
         gaps.append((gap,))
-    state = [max(column) for column in zip(*_gaps(grid, seen), strict=True)]
-    return CrossCheck.of(seen, state, gaps)
+    return gaps
 
 
 def _gaps(grid: Table, seen: Run) -> list[tuple[Fraction, ...]]:
