@@ -6,8 +6,8 @@ import sys
 
 import typer
 
-from compare.cli import app as judges
-from reference.cli import app as makers
+from compare.commands import app as judges
+from reference.commands import app as makers
 from reference.errors import FoucaultError
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None)

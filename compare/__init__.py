@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .candidates.candidate import Candidate
-    from .score import Score
+    from .candidates.read import read
+    from .score.judge import Score
     from .testing import assert_agrees
-    from .trajectory import read
 
 __all__ = ["Candidate", "Score", "assert_agrees", "read"]
 
 _LAZY = {
     "Candidate": "candidates.candidate",
-    "Score": "score",
+    "Score": "score.judge",
     "assert_agrees": "testing",
-    "read": "trajectory",
+    "read": "candidates.read",
 }
 
 

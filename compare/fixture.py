@@ -9,7 +9,7 @@ import pytest
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .score import Score
+    from .score.judge import Score
 
 
 @pytest.fixture(name="assert_agrees")

@@ -15,7 +15,7 @@ from reference import InputError, Scene, load_scene
 
 from .candidates.candidate import COLUMNS, candidate_of
 from .candidates.transit_times import checked_transits
-from .score import Score, score
+from .score.judge import Score, score
 
 
 def assert_agrees(

@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 
 from reference import DatasetError, Golden, InputError, Scene, load
-from reference.dense import WITHIN, Dense, dense
+from reference.dataset.dense import WITHIN, Dense, dense
+from reference.precision import Array
 from reference.scene import data_root
-from reference.solution import Array
 
 from . import cache
 
 DIGITS = 22  # of a dataset solved only to judge programs in double
-MADE = b"dense 2"  # changes with what `reference.dense` gives, so that older entries are made again
+MADE = b"dense 2"  # changes with what `reference.dataset.dense` gives, so that older entries are made again
 FINE = 2.0**-110  # how near the truth is evaluated for candidates with more digits than a double
 
 Report = Callable[[float], None]
@@ -87,7 +87,7 @@ def _shortened(scene: Scene, until: float | None) -> Scene:
 
 def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, report: Report | None) -> Path:
     from reference import solve
-    from reference.publish import write
+    from reference.dataset.write import write
 
     folder = cache.writable("golden")
     if announce is not None:

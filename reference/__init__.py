@@ -15,10 +15,10 @@ from .errors import DatasetError, FoucaultError, InputError, IntegrationError, U
 from .scene import Scene, load_scene, parse_scene, scene_ids
 
 if TYPE_CHECKING:
-    from .flow import integrate, trajectory
-    from .golden import Golden, load
-    from .solution import Solution
-    from .solver import solve
+    from .dataset.read import Golden, load
+    from .engines.trajectory import integrate, trajectory
+    from .solver.solution import Solution
+    from .solver.solve import solve
 
 __all__ = [
     "DatasetError",
@@ -39,12 +39,12 @@ __all__ = [
 ]
 
 _LAZY = {
-    "Golden": "golden",
-    "Solution": "solution",
-    "integrate": "flow",
-    "load": "golden",
-    "solve": "solver",
-    "trajectory": "flow",
+    "Golden": "dataset.read",
+    "Solution": "solver.solution",
+    "integrate": "engines.trajectory",
+    "load": "dataset.read",
+    "solve": "solver.solve",
+    "trajectory": "engines.trajectory",
 }
 
 

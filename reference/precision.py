@@ -11,6 +11,10 @@ from fractions import Fraction
 from typing import Any
 
 import mpmath
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
 
 GUARD_BITS = 64  # constants and conversions carry this much more than the run that uses them
 DOUBLE_BITS = 53
@@ -38,7 +42,7 @@ def real(prec: int) -> NumberType:
 
 
 def limbs(prec: int) -> NumberType:
-    """Digits of radix 2**22 that keep `prec` bits of a number as large as the swing (`reference.limbs`)."""
+    """Digits of radix 2**22 that keep `prec` bits of a number as large as the swing (`reference.engines.limbs`)."""
     return NumberType("limbs", prec)
 
 

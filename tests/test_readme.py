@@ -67,5 +67,5 @@ def test_the_packages_own_examples_are_true(module):
 
 
 def test_every_module_the_readme_names_exists():
-    for name in re.findall(r"`(\w+\.py)`", README):
+    for name in re.findall(r"`([\w/]+\.py)`", README):
         assert (ROOT / name).exists() or [*ROOT.glob(f"reference/**/{name}"), *ROOT.glob(f"compare/**/{name}")], name

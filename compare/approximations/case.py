@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, UnreachableError
-from reference.constants import Constants, Vector, constants, release
-from reference.mechanics import rest_position
+from reference.model.constants import Constants, Vector, constants, release
+from reference.model.mechanics import rest_position
 from reference.precision import context
 
 from .approximation import Array

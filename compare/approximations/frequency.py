@@ -8,7 +8,7 @@ from typing import Any
 
 from reference import Scene
 
-from . import measure
+from . import observed as measure
 from .approximation import Order, Printed, Quantity
 from .case import Case, at_rest, below, under_gravity
 from .mathar_linear import slow_down

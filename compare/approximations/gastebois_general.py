@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from reference import Scene
-from reference.constants import Constants, scaled
-from reference.mechanics import FORMULATIONS
+from reference.model.constants import Constants, scaled
+from reference.model.mechanics import FORMULATIONS
 
 from .approximation import Array, Motion, Order
 from .carried import integrated

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, UnreachableError
-from reference.constants import Vector
-from reference.mechanics import tension, times
+from reference.model.constants import Vector
+from reference.model.mechanics import tension, times
 
 from .approximation import Array, Motion, Order
 from .case import Case, Level, below, hung

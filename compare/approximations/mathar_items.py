@@ -15,8 +15,8 @@ from functools import partial
 from typing import Any
 
 from reference import IntegrationError, Scene
-from reference.constants import Constants, scaled
-from reference.mechanics import Functions, State, minus, plus, times
+from reference.model.constants import Constants, scaled
+from reference.model.mechanics import Functions, State, minus, plus, times
 
 from .approximation import Array, Motion, Order
 from .carried import integrated
@@ -33,7 +33,7 @@ _RATES = (1e-5, 2e-5, 4e-5, 8e-5)
 
 
 def derivatives(state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()) -> State:
-    """(43) without the terms of items 2, 3, 5; with no item it is `reference.mechanics.Plane`.
+    """(43) without the terms of items 2, 3, 5; with no item it is `reference.model.mechanics.Plane`.
 
     Args:
         state: x, y, vx, vy over the cord length.

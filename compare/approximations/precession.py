@@ -6,7 +6,7 @@ from typing import Any
 
 from reference import Scene
 
-from . import measure
+from . import observed as measure
 from .approximation import Order, Printed, Quantity
 from .case import Case, Level, at_rest, below, under_gravity
 from .gastebois_small import small_angles

@@ -9,7 +9,7 @@ from typing import BinaryIO
 import numpy as np
 
 from reference import InputError
-from reference.solution import Array
+from reference.precision import Array
 
 from .candidate import COLUMNS, Candidate, candidate_of
 from .lines import CHUNK, MAX_BYTES

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from reference import InputError
-from reference.solution import Array
+from reference.precision import Array
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 LARGEST = 1e100  # beyond this the run has blown up, and squares are near the end of the doubles

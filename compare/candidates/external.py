@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from typing import BinaryIO
 
 from reference import InputError, Scene
-from reference.constants import release
+from reference.model.constants import release
 from reference.precision import context
 
 from .family import Family

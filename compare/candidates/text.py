@@ -14,7 +14,7 @@ from typing import BinaryIO
 import numpy as np
 
 from reference import InputError
-from reference.solution import Array
+from reference.precision import Array
 
 from .candidate import COLUMNS, HEADER_ADVICE, Candidate
 from .decimals import lacking, lacking_of_time

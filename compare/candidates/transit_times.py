@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from reference import InputError
-from reference.solution import Array
+from reference.precision import Array
 
 from .lines import chunks, is_number
 

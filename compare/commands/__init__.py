@@ -1,1 +1,14 @@
-"""The commands that judge: each reads its options, calls what does the work, and prints."""
+"""The commands that judge: score, study, stability, pend, paper. Results on stdout, progress on stderr."""
+
+from __future__ import annotations
+
+import typer
+
+from . import paper, pend, score, stability, study
+
+app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None)
+app.command("score")(score.command)
+app.command("study")(study.command)
+app.command("stability")(stability.command)
+app.command("pend")(pend.command)
+app.command("paper")(paper.command)

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reference import InputError, Scene, load_scene
-from reference.cli import AsJson, Assignments, SceneWord, emit, progress
+from reference.commands.terminal import AsJson, Assignments, SceneWord, emit, progress
 
 from .options import announce
 
 if TYPE_CHECKING:
     from ..candidates.candidate import Candidate
     from ..candidates.external import Timing
-    from ..score import Score
+    from ..score.judge import Score
 
 MAX_REPEATS = 1000
 
@@ -28,11 +28,6 @@ class Inputs(StrEnum):
     auto = "auto"
     decimal = "decimal"
     binary64 = "binary64"
-
-
-def register(app: typer.Typer) -> None:
-    """Add the command to an app."""
-    app.command("score")(command)
 
 
 def command(
@@ -82,18 +77,18 @@ def command(
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:
-        from ..verdicts.pictures import check_target
+        from ..score.picture import check_target
 
         check_target(plot)
-    from ..score import score as judge
-    from ..trajectory import read, read_transits
+    from ..candidates.read import read, read_transits
+    from ..score.judge import score as judge
 
     zeros = None if transits is None else read_transits(transits)
     found: list[tuple[Candidate, Timing | None]] = [(read(name), None) for name in candidates or ()]
     if run is not None:
         found.append(_run(run, scene, timeout, repeats))
     if approximation is not None:
-        from ..approximations.candidate import candidate_of
+        from ..approximations.as_candidate import candidate_of
 
         found.append((candidate_of(approximation, scene), None))
     made = []
@@ -111,7 +106,7 @@ def command(
             )
         made.append(replace(result, timing=timing))
     if plot is not None:
-        from ..verdicts.pictures import error_picture
+        from ..score.picture import error_picture
 
         error_picture(made, plot)
     _print(made, as_json)
@@ -122,7 +117,7 @@ def command(
 def _run(words: str, scene: Scene, timeout: float, repeats: int) -> tuple[Candidate, Timing]:
     """What a program printed, and what it took."""
     from ..candidates.external import arguments, timed
-    from ..trajectory import read_stream
+    from ..candidates.read import read_stream
 
     output, took = timed(arguments(words, scene), timeout, repeats)
     with output:
@@ -130,8 +125,8 @@ def _run(words: str, scene: Scene, timeout: float, repeats: int) -> tuple[Candid
 
 
 def _print(made: list[Score], as_json: bool) -> None:
-    from ..verdicts.document import document
-    from ..verdicts.verdict import lines
+    from ..score.document import document
+    from ..score.verdict import lines
 
     if as_json:
         documents = [document(result) for result in made]

@@ -8,14 +8,9 @@ from typing import Annotated
 import typer
 
 from reference import InputError, scene_ids
-from reference.cli import AsJson, emit
+from reference.commands.terminal import AsJson, emit
 
 from .options import counting, inside, listed
-
-
-def register(app: typer.Typer) -> None:
-    """Add the command to an app."""
-    app.command("stability")(command)
 
 
 def command(
@@ -31,13 +26,13 @@ def command(
     as_json: AsJson = False,
 ) -> None:
     """Every method on stiff and extreme scenes: digits kept, or how it failed; resumes with the same --out."""
-    from ..measuring.longrun import over_thirty_days
     from ..methods import METHODS
-    from ..pages import stability_report
-    from ..pages.folder import PAGE, check_folder
-    from ..stability import default_scenes
-    from ..stability import stability as measure
-    from ..study import machine, single_thread
+    from ..report import stability as stability_report
+    from ..report.folder import PAGE, check_folder
+    from ..studies.long_runs import over_thirty_days
+    from ..studies.stability import default_scenes
+    from ..studies.stability import stability as measure
+    from ..studies.study import machine, single_thread
 
     if not 0 < limit < float("inf"):
         raise InputError("--limit", f"{limit:g}", "a positive number of seconds")

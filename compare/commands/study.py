@@ -8,14 +8,9 @@ from typing import Annotated, Any
 import typer
 
 from reference import InputError, Scene, load_scene
-from reference.cli import AsJson, Assignments, SceneWord, emit
+from reference.commands.terminal import AsJson, Assignments, SceneWord, emit
 
 from .options import announce, counting, inside, listed, numbers
-
-
-def register(app: typer.Typer) -> None:
-    """Add the command to an app."""
-    app.command("study")(command)
 
 
 def command(
@@ -51,10 +46,10 @@ def command(
         _study_approximations(scene, out, as_json)
         return
     from ..methods import EXTERNAL, METHODS
-    from ..pages.folder import check_folder
-    from ..report import FILES
-    from ..study import plan, single_thread
-    from ..study import study as measure
+    from ..report.folder import check_folder
+    from ..report.study import FILES
+    from ..studies.study import plan, single_thread
+    from ..studies.study import study as measure
 
     if out is not None:
         check_folder(out, FILES)
@@ -62,7 +57,7 @@ def command(
     problem, digits = scene, None
     items = plan(scene, listed(methods, "--methods", METHODS), not no_formulations)
     if precisions is not None:
-        from ..measuring.precisions import bits_of, precision_items, precision_scene
+        from ..studies.precisions import bits_of, precision_items, precision_scene
 
         bits = bits_of(precisions)
         items = precision_items(bits)
@@ -83,8 +78,8 @@ def command(
 
 
 def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
-    from ..pages import approximation_report
-    from ..pages.folder import PAGE
+    from ..report import approximations as approximation_report
+    from ..report.folder import PAGE
 
     made = approximation_report.document(scene)
     if out is not None:
@@ -98,7 +93,7 @@ def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None
 
 
 def _shown(document: dict[str, Any], out: Path | None, as_json: bool) -> None:
-    from ..report import text_table, write_report
+    from ..report.study import text_table, write_report
 
     if out is not None:
         write_report(document, out)

@@ -21,7 +21,7 @@ from importlib import import_module
 
 from reference.errors import InputError
 
-from ..equations.problem import Problem
+from ..rhs.problem import Problem
 from .external import external
 from .method import Exact, Method, Outcome, Work, available
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..equations.problem import Problem
+from ..rhs.problem import Problem
 from .method import Method, Outcome, Work, outcome
 
 ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"

@@ -11,7 +11,7 @@ import numpy as np
 from reference.errors import InputError
 from reference.scene import Scene
 
-from ..equations.problem import Array, Problem
+from ..rhs.problem import Array, Problem
 from .method import Method, Outcome, Setting, Work, failed
 
 SAME_TIME = 1e-9  # relative: decimals that a program prints for a time that is no short decimal
@@ -43,7 +43,7 @@ def external(
 
 def _prepare(problem: Problem, value: float, command: str) -> Work:
     from ..candidates.external import arguments, run_program
-    from ..trajectory import read_stream
+    from ..candidates.read import read_stream
 
     words = arguments(command.replace("{setting}", repr(value)), _scene(problem))
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from reference.mechanics import plus, times
+from reference.model.mechanics import plus, times
 
-from ..equations.problem import Array, Problem
-from ..equations.program import Program
+from ..rhs.problem import Array, Problem
+from ..rhs.program import Program
 from .method import Method, Outcome, Work, outcome
 from .tableau import NystromTableau, Tableau
 
@@ -56,7 +56,7 @@ def prepare_fixed(problem: Problem, setting: float, step: Step, stages: int) -> 
         step: `step(state, h, derivatives)` in the model's generic style.
         stages: evaluations of the right-hand side in a step.
     """
-    from ..equations.compiled import compiled, elements, fill, function_text, names, unpacked
+    from ..rhs.compiled import compiled, elements, fill, function_text, names, unpacked
 
     variables, parameters = len(problem.start), len(problem.system.parameters)
     loop = fill(

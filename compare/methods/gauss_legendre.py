@@ -16,7 +16,7 @@ import numpy as np
 
 from reference.precision import context
 
-from ..equations.problem import Array, Problem
+from ..rhs.problem import Array, Problem
 from .fixed_step import steps_between
 from .method import Method, Outcome, Work, outcome
 from .tableau import TableauError
@@ -141,7 +141,7 @@ def _cardinal(ctx: Any, nodes: list[Any], j: int) -> list[Any]:
 
 def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
     """Fixed step of `setting` seconds."""
-    from ..equations.compiled import compiled, elements, fill, function_text, names, unpacked
+    from ..rhs.compiled import compiled, elements, fill, function_text, names, unpacked
 
     size, parameters = len(problem.start), len(problem.system.parameters)
     texts = {name: elements(name, size) for name in ("y", "z", "f")}

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from reference.constants import constants, release, scaled
 from reference.errors import IntegrationError
-from reference.mechanics import FORMULATIONS
+from reference.model.constants import constants, release, scaled
+from reference.model.mechanics import FORMULATIONS
 from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, context, real
 
-from ..equations.problem import Array, Problem
+from ..rhs.problem import Array, Problem
 from .method import Exact, Method, Outcome, Setting, Work, failed
 
 QUADRUPLE_BITS = 113
@@ -35,7 +35,7 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
     """
-    from reference import taylor
+    from reference.engines.heyoka import taylor
 
     model, ctx = FORMULATIONS[problem.formulation], context(number.prec + GUARD_BITS)
     exact = constants(problem.scene.exact, ctx)

@@ -6,16 +6,16 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..equations.problem import Array, Problem
+from ..rhs.problem import Array, Problem
 from .method import Exact, Method, Outcome, Work, failed
 
 
 def prepare(problem: Problem, setting: float) -> Work:
     """Compile the limbs' kernels by a first short run; the work is the run."""
-    from reference import limbs
+    from reference.engines import limbs
+    from reference.engines.plan import Plan
     from reference.errors import IntegrationError
     from reference.precision import NumberType
-    from reference.runs import Plan
 
     number = NumberType("limbs", int(setting))
     times = tuple(Fraction(t) for t in problem.times.tolist())
@@ -48,6 +48,6 @@ METHOD = Method(
     licence="this project's",
     prepare=prepare,
     formulations=("momentum",),
-    requires=("reference.limbs", "numba"),
+    requires=("reference.engines.limbs", "numba"),
     extra="methods",
 )

@@ -14,7 +14,7 @@ import numpy as np
 
 from reference.scene import Scene
 
-from ..equations.problem import Array, Problem
+from ..rhs.problem import Array, Problem
 
 Setting = Literal["step", "tolerance", "precision"]
 Status = Literal["ok", "gave_up", "not_finite"]

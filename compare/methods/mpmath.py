@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from reference.constants import constants, release, scaled
-from reference.mechanics import FORMULATIONS
+from reference.model.constants import constants, release, scaled
+from reference.model.mechanics import FORMULATIONS
 from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
 
-from ..equations.problem import Array, Problem
+from ..rhs.problem import Array, Problem
 from .method import Exact, Method, Outcome, Work
 
 SPARE_BITS = 64

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..equations.problem import Problem
+from ..rhs.problem import Problem
 from .method import TRACEABLE, Method, Outcome, Work, outcome
 from .native import listened
 
@@ -30,7 +30,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     os.environ.setdefault("GFORTRAN_UNBUFFERED_PRECONNECTED", "y")  # else its words come when the process ends
     from numbalsoda import driver, driver_dop853
 
-    from ..equations.compiled import compiled, elements, fill, function_text
+    from ..rhs.compiled import compiled, elements, fill, function_text
 
     variables, parameters = len(problem.start), len(problem.parameters)
     used = len(problem.system.parameters)

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ..equations.problem import Array, Problem
+from ..rhs.problem import Array, Problem
 from .method import Method, Outcome, Work, outcome
 
 _POINTER = """
@@ -105,7 +105,7 @@ def prepare_ias15(problem: Problem, setting: float) -> Work:
 
 
 def _compiled(problem: Problem, template: str, y: str, dy: str = "", **offsets: int) -> Any:
-    from ..equations.compiled import compiled, elements, fill, function_text
+    from ..rhs.compiled import compiled, elements, fill, function_text
 
     size, parameters = len(problem.start), len(problem.parameters)
     texts = {name: str(offset) for name, offset in offsets.items()}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..equations.problem import Problem
+from ..rhs.problem import Problem
 from .fixed_step import prepare_fixed, runge_kutta
 from .method import Method, Work
 from .tableau import Tableau, fractions, triangle

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from reference.constants import Vector, is_zero
-from reference.mechanics import add, cross, dot, plus, scale, subtract, times
+from reference.model.constants import Vector, is_zero
+from reference.model.mechanics import add, cross, dot, plus, scale, subtract, times
 
-from ..equations.problem import Problem
+from ..rhs.problem import Problem
 from .fixed_step import Derivatives, combined, moved, prepare_fixed
 from .method import Method, Work
 from .rk4 import TABLEAU

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..equations.problem import Problem
+from ..rhs.problem import Problem
 from .method import TRACEABLE, Method, Outcome, Work, outcome
 
 LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning

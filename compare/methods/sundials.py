@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..equations.problem import Array, Problem
+from ..rhs.problem import Array, Problem
 from .method import Method, Outcome, Work, outcome
 from .native import listened
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, Protocol
 
 from flint import ctx, fmpz, fmpz_poly
 
-from ..words import WORD_BITS, Words
+from ..packing import WORD_BITS, Words
 from .balls import dot, integer
 from .bound import World, scaled
 from .shapes import Step

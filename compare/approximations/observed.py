@@ -1,0 +1,154 @@
+"""What an observer reads off a motion: the direction of the swing plane, the frequency, the period of precession.
+
+About a point of rest the linear oscillator on a turntable moves, in axes that do not turn, on an ellipse. With
+Z = X + iY the displacement in the plane across the plumb line (X east, Y north), Z' its rate on the ground, Ω_n the
+component of Ω along the plumb line and ω the frequency, position and velocity over ω are Z and
+S = (Z' + i Ω_n Z)/ω, and
+    ψ = arg(Z² + S²)/2
+is the direction of its major axis: for Z = C1 exp(-iωt) + C2 exp(iωt) it is arg(4 C1 C2)/2 at every t. Axes on the
+ground and those that do not turn coincide at the moment looked at, so ψ is the azimuth (east to north) on the ground.
+ψ has no meaning on a circle (C1 or C2 zero), and counts modulo 180°.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from reference import Scene, UnreachableError, trajectory
+from reference.model.mechanics import tension
+
+from .approximation import Array
+from .case import Case
+
+PER_SWING = 64  # samples in a period: the interpolation of an apsis between them is good to 1e-12
+_NODES = 12
+_ROUND = 1e-6  # an ellipse with |Z² + S²| below this part of |Z|² + |S|² has no direction
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A point of rest and the linear oscillator about it, to measure a motion with.
+
+    Attributes:
+        rest: unit vector from the suspension to the point of rest.
+        length: l in m.
+        omega: ω in rad/s.
+        turn: Ω_n in rad/s.
+    """
+
+    rest: tuple[float, float, float]
+    length: float
+    omega: float
+    turn: float
+
+    @classmethod
+    def of(cls, scene: Scene, rest: Any = None) -> Gauge:
+        """For a scene, about `rest` in m, or about its own point of rest; ω from the pull of the cord there.
+
+        Raises:
+            UnreachableError: there is no point of rest, or nothing pulls the bob back to it.
+        """
+        case = Case.of(scene)
+        hanging = case.rest
+        turn = -case.ctx.mpf(case.k.turn[1]) * hanging[1] - case.ctx.mpf(case.k.turn[2]) * hanging[2]
+        square = tension(hanging, (0, 0, 0), case.k) + turn**2
+        if not square > 0:
+            raise UnreachableError("nothing pulls the bob back to its point of rest: there is no swing to measure.")
+        centre = hanging if rest is None else tuple(part / case.length for part in rest)
+        return cls(
+            (float(centre[0]), float(centre[1]), float(centre[2])),
+            float(case.length),
+            float(case.ctx.sqrt(square)),
+            float(turn),
+        )
+
+    @cached_property
+    def period(self) -> float:
+        """2π/ω in s."""
+        return float(2 * np.pi / self.omega)
+
+    def displacement(self, rows: Array) -> tuple[Any, Any]:
+        """Z in m and Z' in m/s of rows x, y, z, vx, vy, vz."""
+        _, y, z = self.rest
+        return rows[:, 0] + 1j * (rows[:, 2] * y - rows[:, 1] * z), rows[:, 3] + 1j * (rows[:, 5] * y - rows[:, 4] * z)
+
+    def swing_plane(self, rows: Array) -> Array:
+        """ψ in rad, in (-π/2, π/2]; NaN where the ellipse is a circle."""
+        place, rate = self.displacement(rows)
+        speed = (rate + 1j * self.turn * place) / self.omega
+        square = place**2 + speed**2
+        size = np.abs(place) ** 2 + np.abs(speed) ** 2
+        return np.where(np.abs(square) > _ROUND * size, np.angle(square) / 2, np.nan)
+
+    def apsides(self, times: Array, rows: Array) -> tuple[Array, Array]:
+        """Times in s and azimuths in rad (unwrapped modulo π) of the largest distances from rest.
+
+        Args:
+            times: evenly spaced in s, some PER_SWING in a period.
+            rows: the motion there.
+        """
+        place, rate = self.displacement(rows)
+        height = rows[:, :3] @ np.array(self.rest)  # along the plumb line
+        radial = (place.conj() * rate).real if np.min(height) > 0 else -rows[:, 3:] @ np.array(self.rest)
+        found = np.flatnonzero((radial[:-1] > 0) & (radial[1:] <= 0))
+        half = _NODES // 2
+        found = found[(found >= half - 1) & (found + half < len(times))]
+        nodes = np.arange(1 - half, half + 1)
+        inverse = np.linalg.inv(np.vander(nodes, _NODES, increasing=True))  # the nodes are small: condition 1e7
+        at = found[:, None] + nodes
+        distance = inverse @ radial[at].T
+        east, north = inverse @ place.real[at].T, inverse @ place.imag[at].T
+        step = radial[found] / (radial[found] - radial[found + 1])
+        powers, slopes = np.arange(_NODES)[:, None], np.arange(1, _NODES)[:, None]
+        for _ in range(4):  # Newton from a secant: the function is nearly linear here
+            value = np.sum(distance * step**powers, axis=0)
+            step = step - value / np.sum(slopes * distance[1:] * step ** (slopes - 1), axis=0)
+        z = np.sum(east * step**powers, axis=0) + 1j * np.sum(north * step**powers, axis=0)
+        azimuth = np.unwrap(2 * np.angle(z)) / 2
+        return times[found] + step * (times[1] - times[0]), azimuth
+
+
+def _look(scene: Scene, duration: float) -> tuple[Gauge, Array, Array]:
+    gauge = Gauge.of(scene)
+    step = gauge.period / PER_SWING
+    times: Array = np.arange(int(duration / step) + _NODES + 1) * np.float64(step)
+    return gauge, times, trajectory(scene, times)
+
+
+def frequency(scene: Scene, swings: int = 50) -> float:
+    """Frequency in Hz of the full model over about `swings` periods, from the largest distances from rest.
+
+    Raises:
+        UnreachableError: no swing was found.
+    """
+    gauge = Gauge.of(scene)
+    _, times, rows = _look(scene, (swings + 1) * gauge.period)
+    apsides, _ = gauge.apsides(times, rows)
+    if len(apsides) < 3:
+        raise UnreachableError("the bob does not swing: it has no largest distances from its point of rest.")
+    return float((len(apsides) - 1) / (2 * (apsides[-1] - apsides[0])))
+
+
+def precession_period(scene: Scene, longest: float = 1e6) -> float:
+    """Time in s in which the swing plane of the full model turns by 360°: twice the time of its first half turn.
+
+    Raises:
+        UnreachableError: it does not turn by 180° within `longest` seconds.
+    """
+    gauge = Gauge.of(scene)
+    guess = np.pi / abs(gauge.turn) if gauge.turn else np.inf
+    for stretch in (1.1, 2.0, 4.0):
+        if not guess * stretch < longest:
+            break
+        _, times, rows = _look(scene, guess * stretch + 2 * gauge.period)
+        apsides, azimuths = gauge.apsides(times, rows)
+        turned = np.abs(azimuths - azimuths[0])
+        if turned[-1] >= np.pi:
+            last = int(np.argmax(turned >= np.pi))
+            share = (np.pi - turned[last - 1]) / (turned[last] - turned[last - 1])
+            return float(2 * (apsides[last - 1] + share * (apsides[last] - apsides[last - 1]) - apsides[0]))
+    raise UnreachableError(f"the swing plane does not turn by 180° within {longest:g} s.")

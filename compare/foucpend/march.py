@@ -1,0 +1,75 @@
+"""The program's integration: Mathar (43) at a fixed step, in blocks so that a long run needs little memory."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from reference import InputError, IntegrationError
+from reference.model.constants import Constants, is_zero
+from reference.precision import Array
+
+from ..approximations.mathar_items import VARIABLES, derivatives, truncated
+from ..methods import METHODS, available
+from ..rhs.problem import Problem, System
+from .options import Options
+
+BLOCK = 100_000  # steps
+ITEMS = {0: frozenset[Any](), 1: frozenset({2}), 2: frozenset({1}), 3: frozenset({1, 2})}  # of section VI, by -a
+
+
+def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
+    """Times in s and states x, y, z, vx, vy, vz, shape (rows, 6); the first row of a block is the last one before it.
+
+    Raises:
+        InputError: numba is not installed.
+        IntegrationError: the bob reaches the height of the suspension, or the run fails otherwise.
+    """
+    method = METHODS[options.method]
+    missing = available(method)
+    if missing is not None:
+        raise InputError("-R", options.method, "a method that is installed", f"It is {missing}.")
+    step = float(options.step)
+    problem = _problem(options, step)
+    begun = 0
+    while begun < options.steps:
+        count = min(BLOCK, options.steps - begun)
+        times: Array = np.arange(count + 1, dtype=np.float64) * step
+        problem = replace(problem, times=times)
+        outcome = method.prepare(problem, step)()
+        states = outcome.states
+        if len(states) <= count:
+            raise IntegrationError(
+                f"{method.title} at {step:g} s fails after t = {begun * step + outcome.reached_t:g} s.",
+                "The equations in x and y hold below the suspension; a shorter step (-t) may help.",
+            )
+        yield np.asarray((begun + np.arange(count + 1)) * step, dtype=np.float64), states
+        problem = replace(problem, start=states[-1, [0, 1, 3, 4]] / problem.constants.length)
+        begun += count
+
+
+def _problem(options: Options, step: float) -> Problem:
+    problem = Problem.of(options.scene, "plane", [0.0, step])
+    if not options.bits:
+        return problem
+    items = ITEMS[options.bits]
+    return replace(problem, system=_system(truncated(problem.constants, items), items))
+
+
+def _system(k: Constants, items: frozenset[Any]) -> System:
+    """(43) without what the bits of -a drop; the constants that are left are parameters, so that code is shared."""
+    groups = {"turn": k.turn, "pull": k.pull, "centrifugal": k.centrifugal}
+    named = {
+        f"{name}_{i}": value for name, group in groups.items() for i, value in enumerate(group) if not is_zero(value)
+    }
+
+    def rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
+        here = {
+            name: tuple(parameters.get(f"{name}_{i}", 0) for i in range(len(group))) for name, group in groups.items()
+        }
+        return derivatives(state, replace(k, **here), functions, items)
+
+    return System(VARIABLES, rates, named)

@@ -1,0 +1,135 @@
+"""The program's lines: comments, snapshots and transits. Their format stands in the package's docstring."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from reference import InputError, Scene, solve
+from reference.model.constants import constants
+from reference.precision import Array, context
+from reference.scene import MAX_ROWS
+
+from .options import DEFAULTS, METHOD_OF, Options
+
+DIGITS = 17  # a double's
+PREC = 128  # bits in which the site's constants are made
+COLUMNS = "t/s x/m y/m z/m X/m Y/m Z/m phi/deg lambda/deg speed/(m/s)"
+_SNAPSHOT = " ".join(["%.17g"] * 10)
+
+
+def lines(options: Options) -> Iterator[str]:
+    """The output, line by line, without newlines.
+
+    Raises:
+        InputError: something that is needed is not installed.
+        IntegrationError, UnreachableError: the run failed.
+    """
+    yield from _comments(options)
+    count = 0
+    site = Site(options.scene)
+    for times, states, zeros in _exact(options) if options.exact else _marched(options):
+        shown = site.snapshots(times, states)
+        row = 0
+        for zero in zeros:
+            end = int(np.searchsorted(times, zero, side="left"))
+            yield from _texts(shown[row:end])
+            row, count = end, count + 1
+            yield f"# P {count} {zero:.17g} {count / (2 * zero):.17g}"
+        yield from _texts(shown[row:])
+
+
+def _texts(rows: Array) -> Iterator[str]:
+    for row in rows.tolist():
+        yield _SNAPSHOT % tuple(row)
+
+
+def _comments(options: Options) -> Iterator[str]:
+    scene = options.scene
+    values = {
+        "x": scene.release.x,
+        "y": scene.release.y,
+        "l": scene.pendulum.length,
+        "v": scene.release.vx,
+        "L": scene.site.latitude,
+        "T": scene.run.t_end,
+        "t": scene.run.grid_step,
+        "s": options.skip,
+        "g": scene.site.gravity,
+        "O": scene.site.rotation_rate,
+        "f": scene.site.inverse_flattening,
+        "h": scene.site.altitude,
+        "r": scene.site.equatorial_radius,
+    }
+    ours = "--exact" if options.exact else f"-R {_digit(options.method)} -a {options.bits}"
+    yield "# foucault pend " + " ".join(f"-{switch} {values[switch]}" for switch in DEFAULTS if switch in values)
+    yield f"# {ours}"
+    yield f"# columns: {COLUMNS}"
+    yield "# transits of xdot = 0: # P count t/s frequency/Hz"
+
+
+def _digit(method: str) -> str:
+    return next(digit for digit, word in METHOD_OF.items() if word == method)
+
+
+def _marched(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
+    """Snapshots of a block, and the transits in it."""
+    from .march import blocks
+    from .zeros import Transits
+
+    transits, begun = Transits(), 0
+    for times, states in blocks(options):
+        zeros = transits.of(times, states[:, 3])
+        index = begun + np.arange(len(times))
+        kept = (index % options.skip == 0) & (index >= (begun + 1 if begun else 0))
+        yield times[kept], states[kept], zeros
+        begun += len(times) - 1
+
+
+def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
+    """The same from the reference, confirmed."""
+    rows, end = options.steps // options.skip, options.step * options.steps
+    if rows > MAX_ROWS:
+        raise InputError("-s", str(options.skip), f"at most {MAX_ROWS} snapshots with --exact", "Take a larger -s.")
+    grid = options.step * options.skip if rows else end
+    times = {"grid_step": grid, "t_end": end}
+    solution = solve(
+        options.scene.with_values(f"run.{key}={float(value)!r}" for key, value in times.items()),
+        digits=DIGITS,
+        level="confirmed",
+    )
+    states = np.array([getattr(solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]).T
+    zeros = [] if solution.transits is None else solution.transits.array("t").tolist()
+    yield solution.t[: rows + 1], states[: rows + 1], zeros
+
+
+class Site:
+    """The suspension and its axes in the frame that does not turn, Mathar (1)-(9)."""
+
+    def __init__(self, scene: Scene) -> None:
+        ctx, exact = context(PREC), scene.exact
+        k = constants(exact, ctx)
+        flattening = ctx.mpf(exact.flattening.numerator) / exact.flattening.denominator
+        altitude = ctx.mpf(exact.altitude.numerator) / exact.altitude.denominator
+        radius = ctx.mpf(exact.equatorial_radius.numerator) / exact.equatorial_radius.denominator
+        squared = flattening * (2 - flattening)
+        normal = radius / ctx.sqrt(1 - squared * k.sin * k.sin)
+        self.sin, self.cos, self.rate = float(k.sin), float(k.cos), float(k.rate)
+        self.axis_distance = float(k.axis_distance * k.length)
+        self.height = float((normal * (1 - squared) + altitude) * k.sin)
+
+    def snapshots(self, times: Array, states: Array) -> Array:
+        """The ten columns of states x, y, z, vx, vy, vz of shape (rows, 6); shape (rows, 10)."""
+        x, y, z = states[:, :3].T
+        out = self.axis_distance - self.sin * y + self.cos * z
+        turn = self.rate * times
+        inertial = (
+            out * np.cos(turn) - x * np.sin(turn),
+            out * np.sin(turn) + x * np.cos(turn),
+            self.height + self.cos * y + self.sin * z,
+        )
+        angle = np.degrees(np.arctan2(np.hypot(x, y), -z))
+        azimuth = np.degrees(np.arctan2(y, x))
+        speed = np.sqrt((states[:, 3:] ** 2).sum(axis=1))
+        return np.column_stack((times, x, y, z, *inertial, angle, azimuth, speed))

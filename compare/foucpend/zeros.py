@@ -1,0 +1,69 @@
+"""Transits of a run at a fixed step: quadratic interpolation of xdot, as the paper's program has it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from reference.precision import Array
+
+
+def parabola_zero(t: Array, v: Array) -> float:
+    """The zero of the parabola through three values, between those two of them that differ in sign.
+
+    Args:
+        t: times, shape (3,), equally far apart.
+        v: values, shape (3,).
+    """
+    middle, h = t[1], t[1] - t[0]
+    c, b, a = v[1], (v[2] - v[0]) / 2, (v[2] - 2 * v[1] + v[0]) / 2
+    spread = np.sqrt(max(b * b - 4 * a * c, 0.0))
+    twice = -(b + np.copysign(spread, b))
+    roots = [twice / (2 * a)] if a else []
+    roots += [2 * c / twice] if twice else []
+    low, high = (0.0, 1.0) if np.sign(v[1]) != np.sign(v[2]) else (-1.0, 0.0)
+    inside = min(roots, key=lambda root: max(low - root, root - high))
+    return float(middle + h * inside)
+
+
+class Transits:
+    """Finds the zeros of xdot block by block; a release at rest is none."""
+
+    def __init__(self) -> None:
+        self._sign = 0.0  # of the last value that was not zero
+        self._before: tuple[float, float] | None = None  # the row before the block
+
+    def of(self, times: Array, v: Array) -> list[float]:
+        """Times of the zeros after the block's first row, up to its last.
+
+        Args:
+            times: shape (rows,), the first row being the last of the block before.
+            v: xdot there.
+        """
+        signs = np.sign(v)
+        found = []
+        if self._sign == 0:
+            self._sign = float(signs[0])
+        # rows where something happens: a change of sign from the row before, or an exact zero at either of them
+        changes = np.nonzero((signs[1:] != signs[:-1]) | (signs[1:] == 0))[0] + 1
+        for i in changes:
+            here = float(signs[i])
+            if here == 0 or here == self._sign:
+                continue
+            if self._sign != 0:
+                found.append(self._zero(times, v, int(i)))
+            self._sign = here
+        self._before = (float(times[-2]), float(v[-2]))
+        return found
+
+    def _zero(self, times: Array, v: Array, i: int) -> float:
+        """The zero between rows i - 1 and i, v at i being the first value of the new sign."""
+        if v[i - 1] == 0:
+            return float(times[i - 1])
+        if i >= 2:
+            return parabola_zero(times[i - 2 : i + 1], v[i - 2 : i + 1])
+        if self._before is not None:
+            t, value = self._before
+            return parabola_zero(np.array([t, *times[:2]]), np.array([value, *v[:2]]))
+        if len(v) > 2:
+            return parabola_zero(times[:3], v[:3])
+        return float(times[0] + (times[1] - times[0]) * v[0] / (v[0] - v[1]))

@@ -1,0 +1,228 @@
+"""Figures 1 and 3-9 of the paper, drawn again from the reference (matplotlib, extra `plot`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from reference import load_scene
+
+from ..approximations import Motion, approximation
+from ..report.plotting import COLOURS, SAME_BYTES, pyplot, svg_of
+from .digits import degrees, mpf
+from .figure_runs import estimate_at, frequencies, orders_at, window
+from .points import paris
+from .runs import Array, mean_direction, paris_path, rest_in_metres
+from .truth import rest_angle
+
+BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
+GREY = "#888888"
+DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
+WINDOWS = (0, 7000, 12000)  # s
+WIDE, HIGH = 8.0, 4.2  # inches
+
+
+STYLE = SAME_BYTES | {
+    "axes.spines.right": False,
+    "axes.spines.top": False,
+    "axes.titlelocation": "left",
+    "axes.titlesize": "medium",
+    "figure.constrained_layout.use": True,
+    "font.size": 9.5,
+    "legend.frameon": False,
+    "lines.linewidth": 1.3,
+}
+
+
+def figure_1(plt: Any) -> Any:
+    """The rest position's angle against latitude, l = 1, 10, 100 m."""
+    figure, axes = plt.subplots(figsize=(WIDE, HIGH))
+    latitudes = np.linspace(-90, 90, 73)
+    for length, colour, dashes in zip((1, 10, 100), (BLUE, RED, GREEN), DASHES, strict=False):
+        here = paris().but(length=mpf(length))
+        angles = [abs(float(degrees(rest_angle(here.but(latitude=mpf(float(d))))))) for d in latitudes]
+        axes.plot(latitudes, angles, color=colour, linestyle=dashes, label=f"l = {length} m")
+    axes.set(xlabel="geodetic latitude in °", ylabel="deviation from the vertical in °", xlim=(-90, 90), ylim=(0, None))
+    axes.set_xticks(range(-90, 91, 30))
+    axes.legend(loc="upper center")
+    return figure
+
+
+def figure_3(plt: Any) -> Any:
+    """X and y over 20 s, three times."""
+    figure, panels = plt.subplots(1, 3, figsize=(WIDE, HIGH), sharey=True)
+    for begin, axes in zip(WINDOWS, panels, strict=True):
+        times, states = window(begin, 20)
+        axes.plot(times, states[:, 0], color=BLUE, linestyle=DASHES[0], label="x, east")
+        axes.plot(times, states[:, 1], color=RED, linestyle=DASHES[1], label="y, north")
+        axes.axhline(0, color=GREY, linewidth=0.5)
+        axes.set(xlabel="t in s", xlim=(begin, begin + 20))
+        axes.set_xticks([begin + 5, begin + 15])
+    panels[0].set_ylabel("position in m")
+    _legend_above(figure, panels[0])
+    return figure
+
+
+def figure_4(plt: Any) -> Any:
+    """Three swings in space and from above."""
+    figure = plt.figure(figsize=(WIDE, HIGH))
+    space, above = figure.add_subplot(1, 2, 1, projection="3d"), figure.add_subplot(1, 2, 2)
+    rest = rest_in_metres(load_scene("paris"))
+    for begin, colour, dashes in zip(WINDOWS, (BLUE, RED, GREEN), DASHES, strict=False):
+        _, states = window(begin, 17)
+        space.plot(states[:, 0], states[:, 1], 1000 * (states[:, 2] + 67), color=colour, linestyle=dashes)
+        above.plot(states[:, 0], states[:, 1], color=colour, linestyle=dashes, label=f"from {begin} s")
+    above.plot(rest[0], rest[1], "+", color=BLACK, markersize=10)
+    above.set(xlabel="x (east) in m", ylabel="y (north) in m", aspect="equal", xlim=(-0.62, 0.62), ylim=(-0.8, 0.62))
+    above.legend(loc="upper left")
+    space.set(xlabel="x in m", ylabel="y in m")
+    space.text2D(0.98, 0.93, "z + 67 m, in mm", transform=space.transAxes, ha="right")
+    space.tick_params(labelsize=8, pad=1)
+    space.locator_params(nbins=5)
+    space.view_init(elev=22, azim=-65)
+    return figure
+
+
+def _snapshots() -> tuple[Array, Array]:
+    """Hours and states every 30 s."""
+    times, states = paris_path()
+    return times[::120] / 3600, states[::120]
+
+
+def _day(axes: Any) -> None:
+    axes.set(xlabel="t in h", xlim=(0, 24))
+    axes.set_xticks(range(0, 25, 3))
+
+
+def figure_5(plt: Any) -> Any:
+    """Z of a day."""
+    figure, axes = plt.subplots(figsize=(WIDE, HIGH))
+    hours, states = _snapshots()
+    axes.plot(hours, states[:, 2], ".", color=BLUE, markersize=2)
+    axes.axhline(states[0, 2], color=RED, linewidth=1, linestyle=DASHES[1])
+    axes.annotate(
+        f"release, z = {states[0, 2]:.4f} m",
+        (13.5, states[0, 2]),
+        (13.5, -66.9972),
+        color=RED,
+        arrowprops={"arrowstyle": "-", "color": RED, "linewidth": 0.6},
+        backgroundcolor="white",
+    )
+    axes.set(ylabel="z in m")
+    axes.ticklabel_format(axis="y", useOffset=False)
+    _day(axes)
+    return figure
+
+
+def figure_6(plt: Any) -> Any:
+    """The azimuth of a day."""
+    figure, axes = plt.subplots(figsize=(WIDE, HIGH))
+    hours, states = _snapshots()
+    axes.plot(hours, np.degrees(np.arctan2(states[:, 1], states[:, 0])), ".", color=BLUE, markersize=2)
+    plane = mean_direction()[::120]
+    for turn in (-1, 0, 1, 2):
+        line = np.degrees(plane) + 180 * turn
+        axes.plot(hours, np.where(np.abs(line) <= 180, line, np.nan), color=RED, linewidth=1)
+    axes.set(ylabel="azimuth λ in ° (east to north)", ylim=(-180, 180))
+    axes.set_yticks(range(-180, 181, 60))
+    _day(axes)
+    return figure
+
+
+def figure_7(plt: Any) -> Any:
+    """X and y after 12000 s: full, without rotation, without the outer diagonal, without Ω²."""
+    figure, panels = plt.subplots(2, 1, figsize=(WIDE, 1.35 * HIGH), sharex=True)
+    times, full = window(12000, 20)
+    still = load_scene("paris", ["site.rotation_rate=0"])
+    asked = np.concatenate(([0.0], times))
+    others = (
+        ("Ω = 0", GREEN, DASHES[3], window(12000, 20, still)[1]),
+        ("without -yx (item 2)", BLUE, DASHES[1], _path("mathar_item_2", asked)),
+        ("without Ω² (item 1)", RED, DASHES[2], _path("mathar_item_1", asked)),
+    )
+    for i, axes in enumerate(panels):
+        axes.plot(times, full[:, i], color=PINK, linewidth=2.2, label="full theory")
+        for label, colour, dashes, states in others:
+            axes.plot(times, states[:, i], color=colour, linestyle=dashes, label=label)
+        axes.axhline(0, color=GREY, linewidth=0.5)
+        axes.set(ylabel=f"{'xy'[i]} in m", xlim=(12000, 12020))
+    panels[1].set_xlabel("t in s")
+    panels[1].set_xticks(range(12000, 12021, 5))
+    _legend_above(figure, panels[0])
+    return figure
+
+
+def _path(word: str, times: Array) -> Array:
+    made = approximation(word)
+    assert isinstance(made, Motion)
+    return made.trajectory(load_scene("paris"), times)[1:]
+
+
+def figure_8(plt: Any) -> Any:
+    """Frequency against latitude."""
+    figure, axes = plt.subplots(figsize=(WIDE, HIGH))
+    latitudes = np.linspace(-90, 90, 91)
+    axes.plot(latitudes, [estimate_at(float(d)) for d in latitudes], color=RED, linewidth=1)
+    found = frequencies()
+    axes.plot(list(found), list(found.values()), "o", color=BLUE, markersize=4, fillstyle="none")
+    axes.annotate(
+        "Paris, 0.0608436 Hz",
+        (48.846111, estimate_at(48.846111)),
+        (12, 0.060868),
+        arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.7},
+    )
+    axes.set(xlabel="geodetic latitude in °", ylabel="frequency in Hz", xlim=(-93, 93))
+    axes.set_xticks(range(-90, 91, 30))
+    axes.ticklabel_format(axis="y", useOffset=False)
+    return figure
+
+
+def figure_9(plt: Any) -> Any:
+    """Three fixed-step methods at 0.5 s after 12000 s."""
+    figure, panels = plt.subplots(2, 1, figsize=(WIDE, 1.35 * HIGH), sharex=True)
+    times, truth = window(12000, 20, step=0.5)
+    smooth, path = window(12000, 20)
+    panels[0].plot(smooth, path[:, 0], color=GREY, linewidth=1, label="reference")
+    labels = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
+    for (word, states), colour, mark in zip(orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osx", strict=True):
+        panels[0].plot(times, states[:, 0], mark, color=colour, fillstyle="none", markersize=5, label=labels[word])
+        gap = np.linalg.norm(states[:, :3] - truth[:, :3], axis=1)
+        panels[1].plot(times, gap, color=colour, marker=mark, fillstyle="none", markersize=5, linewidth=0.7)
+    panels[0].set(ylabel="x in m", xlim=(12000, 12020))
+    panels[1].set(ylabel="off by, in m", xlabel="t in s", yscale="log")
+    panels[1].set_xticks(range(12000, 12021, 5))
+    _legend_above(figure, panels[0])
+    return figure
+
+
+def _legend_above(figure: Any, axes: Any) -> None:
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=len(labels))
+
+
+FIGURES: dict[int, Callable[[Any], Any]] = {
+    1: figure_1,
+    3: figure_3,
+    4: figure_4,
+    5: figure_5,
+    6: figure_6,
+    7: figure_7,
+    8: figure_8,
+    9: figure_9,
+}
+
+
+def svg(number: int) -> str:
+    """A figure as SVG.
+
+    Raises:
+        InputError: matplotlib is not installed.
+    """
+    plt = pyplot("--out")
+    with plt.rc_context(STYLE):
+        figure = FIGURES[number](plt)
+        text = svg_of(figure)
+        plt.close(figure)
+    return text

@@ -1,0 +1,1 @@
+"""G. Gastebois on the Foucault pendulum, judged section by section."""

@@ -1,0 +1,15 @@
+"""The numbers that Gastebois puts in, and the day."""
+
+from __future__ import annotations
+
+from ..digits import mpf, pi
+
+G = "Gastebois"
+SIDEREAL_DAY = 2 * pi / mpf("7.292115e-5") / 3600  # h, by the rotation rate of WGS84
+EARTH_RADIUS = mpf("6370e3")  # m, as the document has it
+GRAVITY = mpf("9.8")  # m/s², as the document has it in 4.1
+PANTHEON_LATITUDE = mpf("48.87")
+PANTHEON_RELEASE = mpf("6.5")
+PANTHEON_LENGTH = mpf("67")
+MEAN_RADIUS = mpf("6371008.7714")  # m, NIMA TR8350.2: mean radius of semi-axes
+RATE = 2 * pi / (SIDEREAL_DAY * 3600)  # rad/s

@@ -1,0 +1,1 @@
+"""R. J. Mathar, The Foucault Pendulum: Trajectories of the Full Lagrangian, judged section by section."""

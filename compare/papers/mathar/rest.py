@@ -1,0 +1,192 @@
+"""Mathar, section V: where the bob hangs at rest, (44)-(47)."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+from reference.model.mechanics import tension
+
+from ..checks import Check, Finding, Identity, Statement
+from ..digits import MP, cos, degrees, derivative, scale, shown, sin, sqrt
+from ..points import Point, paris, points
+from ..truth import horizontal_acceleration, rest, rest_angle
+from .cartesian import beta_x, beta_y
+from .rest_series import series_term
+
+V = "Mathar V"
+SERIES = (
+    (2, "²", "/ 2g"),
+    (4, "⁴", "[(N+h) (1+cos2ϕ)/2 - l cos2ϕ] / 2g²"),
+    (6, "⁶", "{(N+h)² [cos4ϕ + 3cos2ϕ + 2] - (N+h) l [37/8 cos4ϕ + 11/8 + 6cos2ϕ] + l² [35/8 cos4ϕ + 13/8]} / 12g³"),
+)
+NOTHING = MP.mpf("1e-45")
+
+
+def _at_rest(p: Point, **changes: Any) -> Point:
+    return p.but(**({"vx": MP.zero, "vy": MP.zero} | changes))
+
+
+def _right_side_of_45(p: Point) -> Any:
+    s, c, y, l2 = sin(p.phi), cos(p.phi), p.y, p.length**2
+    share = p.rate**2 / p.gravity
+    bowed = sqrt(l2 - y**2) * (y - p.R * s - 2 * y * c**2)
+    return (bowed + c * (p.R * y + (l2 - 2 * y**2) * s)) * share
+
+
+def _hanging(p: Point) -> Point:
+    x, y, _ = rest(p)
+    return _at_rest(p, x=MP.mpf(x), y=y)
+
+
+def _degree_of_45() -> Finding:
+    p = points()[0]
+    s, c, share = sin(p.phi), cos(p.phi), p.rate**2 / p.gravity
+
+    def cleared(y: Any) -> Any:
+        """(45), its root isolated and squared."""
+        isolated = y - c * (p.R * y + (p.length**2 - 2 * y**2) * s) * share
+        return isolated**2 - (p.length**2 - y**2) * ((y - p.R * s - 2 * y * c**2) * share) ** 2
+
+    def difference(order: int) -> Any:
+        return sum((-1) ** k * MP.binomial(order, k) * cleared(MP.mpf(k)) for k in range(order + 1))
+
+    holds = abs(difference(5)) < NOTHING < abs(difference(4))
+    return Finding(holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}")
+
+
+def _first_line_of_46(p: Point, sign: int, cord: Any) -> Any:
+    s, c, sp, cp = sin(p.phi), cos(p.phi), sin(cord), cos(cord)
+    turn2 = p.rate**2
+    far = p.R / p.length * turn2 * (sign * s * cp - c * sp)
+    near = turn2 * (s * sp + sign * c * cp) * (sign * c * sp - s * cp)
+    return far + near + p.gravity / p.length * sp
+
+
+def _second_line_of_46(p: Point, sign: int, cord: Any) -> Any:
+    turn2, tilted = p.rate**2, p.phi - sign * cord
+    far = sign * p.R / p.length * turn2 * sin(tilted)
+    return far - sign * turn2 * cos(tilted) * sin(tilted) + p.gravity / p.length * sin(cord)
+
+
+def _restoring(p: Point, sign: int, cord: Any) -> Any:
+    """-ϕ'' of a bob let go at rest in the meridian at the angle `cord`, to the north (+1) or the south (-1)."""
+    local = _at_rest(p, x=MP.zero, y=sign * p.length * sin(cord))
+    return -sign * horizontal_acceleration(local)[1] / (p.length * cos(cord))
+
+
+def pull_at_rest(p: Point) -> Any:
+    """What the cord carries per mass where the bob hangs at rest."""
+    n = scale(1 / p.length, rest(p))
+    return p.length * tension(n, (0, 0, 0), p.k)
+
+
+@cache
+def steepest() -> tuple[Any, Any]:
+    """Latitude in degrees and angle in degrees where the bob of l = 1 m hangs furthest from straight down."""
+    here = paris().but(length=MP.one)
+    best = MP.findroot(lambda latitude: derivative(lambda d: rest_angle(here.but(latitude=d)), latitude), 45, tol=1e-40)
+    return best, degrees(rest_angle(here.but(latitude=best)))
+
+
+def _below_a_tenth() -> Finding:
+    latitude, angle = steepest()
+    return Finding(angle < MP.mpf("0.1"), f"largest {shown(angle)}° at latitude {shown(latitude, 8)}°")
+
+
+def _one_curve() -> Finding:
+    latitudes = [MP.mpf(10 * k) for k in range(1, 9)]
+    angles = [[degrees(rest_angle(paris().but(length=MP.mpf(m), latitude=d))) for m in (1, 100)] for d in latitudes]
+    gap = max(abs(a - b) for a, b in angles)
+    return Finding(gap < MP.mpf("1e-4"), f"l = 1 m and 100 m differ by at most {shown(gap)}°")
+
+
+def _south_in_the_north() -> Finding:
+    found = [rest(paris().but(latitude=MP.mpf(d)))[1] for d in (-60, -20, 20, 60)]
+    holds = all((y < 0) == (d > 0) for y, d in zip(found, (-60, -20, 20, 60), strict=True))
+    return Finding(holds, f"y at rest at 60° south {shown(found[0])} m, at 60° north {shown(found[-1])} m")
+
+
+def _on_the_meridian() -> Finding:
+    x, y, _ = rest(paris())
+    here = _at_rest(paris(), x=MP.mpf(x), y=y)
+    return Finding(
+        all(abs(a) < NOTHING for a in horizontal_acceleration(here)), f"x = {shown(MP.mpf(x))}, y = {shown(y)} m"
+    )
+
+
+def _forty_four(p: Point) -> Any:
+    zero, _, two = beta_y(p)
+    return p.z**2 * (-zero - two * p.rate**2) / (p.z**4 * p.length**2)
+
+
+def checks() -> list[Check]:
+    """The rows of section V up to (47)."""
+    position: list[Check] = [
+        Statement("mathar_44_x", f"{V}, before (44)", "at rest x = 0: on the meridian", _on_the_meridian),
+        Identity(
+            "mathar_44_text",
+            f"{V}, before (44)",
+            "β_x0 and β_x1 are both proportional to x (vanish at x = 0)",
+            lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[1]),
+            lambda p: (MP.zero, MP.zero),
+            "β_x0 and β_x2 are",
+            lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[2]),
+        ),
+        Identity(
+            "mathar_44",
+            f"{V} (44)",
+            "y'' = z² (-β_y0 - β_y2 Ω²) / (z⁴ l²) at x = 0, at rest",
+            lambda p: _forty_four(_at_rest(p, x=MP.zero)),
+            lambda p: horizontal_acceleration(_at_rest(p, x=MP.zero))[1],
+        ),
+        Identity(
+            "mathar_45",
+            f"{V} (45)",
+            "y² = sqrt(l²-y²) (y - R sinϕ - 2y cos²ϕ) Ω²/g + cosϕ [Ry + (l²-2y²) sinϕ] Ω²/g",
+            lambda p: _hanging(p).y ** 2,
+            lambda p: _right_side_of_45(_hanging(p)),
+            "the left side is y",
+            lambda p: _hanging(p).y,
+            remark="at the rest position of the reference",
+        ),
+        Statement("mathar_45_degree", f"{V} (45)", "a quartic equation for y", _degree_of_45),
+        Statement("mathar_45_text", f"{V}, after (45)", "deviations from the vertical < 0.1°", _below_a_tenth),
+        Statement("mathar_fig1", f"{V}, Fig. 1", "l = 1, 10, 100 m indistinguishable", _one_curve),
+    ]
+    angle: list[Check] = [
+        Identity(
+            "mathar_46_a",
+            f"{V} (46), first line",
+            "R̂Ω² (±sinϕ cosφ - cosϕ sinφ) + Ω² (…)(…) + (g/l) sinφ",
+            lambda p: tuple(_first_line_of_46(p, sign, p.cord) for sign in (1, -1)),
+            lambda p: tuple(_restoring(p, sign, p.cord) for sign in (1, -1)),
+        ),
+        Identity(
+            "mathar_46_b",
+            f"{V} (46), second line",
+            "±R̂Ω² sin(ϕ∓φ) ∓ Ω² cos(ϕ∓φ) sin(ϕ∓φ) + (g/l) sinφ = 0",
+            lambda p: tuple(_second_line_of_46(p, sign, p.cord) for sign in (1, -1)),
+            lambda p: tuple(_restoring(p, sign, p.cord) for sign in (1, -1)),
+        ),
+        Identity(
+            "mathar_46_root",
+            f"{V} (46)",
+            "its root is the rest position",
+            lambda p: _second_line_of_46(p, -1, rest_angle(p)),
+            lambda p: MP.zero,
+            remark="root: reference.model.mechanics.rest_position",
+        ),
+        *(
+            Identity(
+                f"mathar_47_{power}",
+                f"{V} (47), Ω{mark}",
+                f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}",
+                *series_term(i),
+                remark="truth: Taylor series of the rest position",
+            )
+            for i, (power, mark, printed) in enumerate(SERIES)
+        ),
+        Statement("mathar_47_text", f"{V}, after (47)", "the sign of λ is opposite to that of ϕ", _south_in_the_north),
+    ]
+    return [*position, *angle]

@@ -1,0 +1,247 @@
+"""Mathar, section VI: what each step towards the harmonic equations (51)-(52) leaves out, measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from reference.model.mechanics import acceleration
+
+from ..checks import Approximate, Check, Identity, Number
+from ..digits import MP, Vector, cos, scale, shown, sin, sqrt, vector_derivative
+from ..points import Point, paris
+from ..truth import in_rate
+from .cartesian import beta_x, beta_y, in_powers, inverse_times, solved
+from .rest import pull_at_rest
+from .triangle import apparent_gravity
+
+VI = "Mathar VI"
+
+
+def _swinging(s: Any, rate: Any = None) -> Point:
+    """Paris half way through its swing, amplitude and speed s times its own, without rotation unless given."""
+    here = paris()
+    x, y = MP.mpf("0.21") * s, MP.mpf("0.28") * s
+    w = sqrt(here.gravity / here.length)
+    turning = MP.zero if rate is None else rate
+    return here.but(x=x, y=y, vx=w * y / 2, vy=w * x, rate=turning)
+
+
+def _negated(vector: Vector) -> Vector:
+    return tuple(-part for part in vector)
+
+
+def _diagonal(p: Point, b: Vector) -> Vector:
+    x, y, z = p.position
+    return tuple(part / (z**4 * p.length**2) for part in ((y**2 + z**2) * b[0], (x**2 + z**2) * b[1]))
+
+
+def without_square_rate(p: Point) -> Vector:
+    """Item 1: (35) and (41) replaced by zero."""
+    return inverse_times(p, _negated(tuple(in_powers(p, beta(p)[:2]) for beta in (beta_x, beta_y))))
+
+
+def without_coupling(p: Point) -> Vector:
+    """Item 2: -yx in (43) set to zero."""
+    return _diagonal(p, _negated(tuple(in_powers(p, beta(p)) for beta in (beta_x, beta_y))))
+
+
+def gravity_alone(p: Point) -> Vector:
+    """Item 3: of (33) and (39) only the term with g."""
+    pull = p.gravity * abs(p.z) ** 3
+    kept = tuple(in_powers(p, (place * pull, *beta(p)[1:])) for place, beta in ((p.x, beta_x), (p.y, beta_y)))
+    return inverse_times(p, _negated(kept))
+
+
+def without_cosine(p: Point) -> Vector:
+    """Item 4: of (34) and (40) only the term with sin ϕ."""
+    bent = 2 * p.z**4 * sin(p.phi)
+    once = (-bent * p.vy, bent * p.vx)
+    kept = (in_powers(p, (beta(p)[0], linear, beta(p)[2])) for linear, beta in zip(once, (beta_x, beta_y), strict=True))
+    return inverse_times(p, _negated(tuple(kept)))
+
+
+def _depth_is_length(p: Point) -> Vector:
+    """Item 5 in the term with g: z replaced by l."""
+    g = p.gravity / p.length
+    return (-g * p.x, -g * p.y)
+
+
+def harmonic(p: Point) -> Vector:
+    """(51), (52), with hats and dots where they belong."""
+    pull, turn = p.gravity / p.length, 2 * p.rate * sin(p.phi)
+    return (-pull * p.x + turn * p.vy, -pull * p.y - turn * p.vx)
+
+
+def linearised(p: Point) -> Vector:
+    """The reference's model without centrifugal force, linear about straight down."""
+
+    def scaled(s: Any) -> Vector:
+        moved = p.but(x=p.x * s, y=p.y * s, vx=p.vx * s, vy=p.vy * s)
+        return uniform_acceleration(moved)
+
+    return vector_derivative(scaled)
+
+
+def uniform_acceleration(p: Point) -> Vector:
+    """X'', y'' of the reference's model with gravity alone."""
+    n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
+    return tuple(p.length * part for part in acceleration(n, v, p.uniform)[:2])
+
+
+def _dropped(made: Callable[[Point], Vector], turning: bool = False) -> Callable[[Any], tuple[Vector, Vector]]:
+    """Print and truth at an amplitude s times that of Paris; with rotation only where it matters."""
+
+    def pair(s: Any) -> tuple[Vector, Vector]:
+        p = _swinging(s, paris().rate if turning else None)
+        return made(p), solved(p)
+
+    return pair
+
+
+def _sizes_at_rate(s: Any) -> tuple[Vector, Vector]:
+    p = _swinging(MP.one, paris().rate * s)
+    return without_square_rate(p), solved(p)
+
+
+def _printed_gravity(s: Any) -> tuple[Any, Any]:
+    here = paris()
+    p = here.but(rate=here.rate * sqrt(s))
+    return p.gravity - p.R * p.rate**2 * cos(p.phi), apparent_gravity(p)
+
+
+def _no_centrifugal_force(s: Any) -> tuple[Any, Any]:
+    here = paris()
+    p = here.but(rate=here.rate * sqrt(s))
+    return p.gravity, pull_at_rest(p)
+
+
+def _share() -> Any:
+    p = paris()
+    return p.R * p.rate**2 / p.gravity
+
+
+def _cosine(s: Any) -> tuple[Vector, Vector]:
+    """What is linear in Ω, the Coriolis part, alone."""
+    p = _swinging(s)
+
+    def linear(made: Callable[[Point], Vector], i: int) -> Any:
+        return in_rate(lambda rate: made(p.but(rate=rate))[i], 1)
+
+    printed, true = (tuple(linear(made, i) for i in (0, 1)) for made in (without_cosine, solved))
+    return printed, true
+
+
+def _whole(s: Any) -> tuple[Vector, Vector]:
+    p = _swinging(s, paris().rate)
+    return harmonic(p), uniform_acceleration(p)
+
+
+def checks() -> list[Check]:
+    """The rows of section VI."""
+    place = "s × the amplitude of Paris, half way through a swing"
+    steps: list[Check] = [
+        Number("mathar_vi_1_size", f"{VI} item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2),
+        Approximate(
+            "mathar_vi_1",
+            f"{VI} item 1",
+            "the terms with Ω² are neglected, being of the order of 5 × 10⁻⁹",
+            _no_centrifugal_force,
+            1,
+            "Ω²",
+            "m/s²",
+            f"pull on the resting bob; what is dropped is RΩ²/g = {shown(_share(), 3)} of g, not Ω²",
+        ),
+        Approximate(
+            "mathar_vi_1_order",
+            f"{VI} item 1",
+            "β_x2 = β_y2 = 0",
+            _sizes_at_rate,
+            2,
+            "Ω",
+            "m/s²",
+            "accelerations half way through a swing; bit 2 of the program's -a",
+        ),
+        Approximate(
+            "mathar_vi_1_variant",
+            f"{VI} item 1, variant",
+            "g - RΩ² cosϕ is the first order Taylor expansion of (48)",
+            _printed_gravity,
+            2,
+            "RΩ²",
+            "m/s²",
+        ),
+        Approximate(
+            "mathar_vi_2",
+            f"{VI} item 2",
+            "-yx in (43) set to zero",
+            _dropped(without_coupling),
+            2,
+            "amplitude",
+            remark=f"{place}; bit 1 of the program's -a",
+        ),
+        Approximate(
+            "mathar_vi_3",
+            f"{VI} item 3",
+            "only the terms with g in (33), (39)",
+            _dropped(gravity_alone),
+            2,
+            "amplitude",
+            remark=place,
+        ),
+        Approximate(
+            "mathar_vi_4",
+            f"{VI} item 4",
+            "only the terms with sinϕ in (34), (40)",
+            _cosine,
+            1,
+            "amplitude",
+            remark=f"of the Coriolis acceleration; {place}",
+        ),
+        Approximate(
+            "mathar_vi_5",
+            f"{VI} item 5",
+            "z replaced by l",
+            lambda s: (_depth_is_length(_swinging(s)), _pulled(_swinging(s))),
+            2,
+            "amplitude",
+            remark=place,
+        ),
+    ]
+    equations: list[Check] = [
+        Identity(
+            "mathar_51",
+            f"{VI} (51)",
+            "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
+            lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
+            lambda p: linearised(p)[0],
+            "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
+            lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy / p.length),
+            "truth: reference.model.mechanics without centrifugal force, linear",
+        ),
+        Identity(
+            "mathar_52",
+            f"{VI} (52)",
+            "ŷ'' = -ŷ ĝ - 2Ω sinϕ x̂'",
+            lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
+            lambda p: linearised(p)[1] / p.length,
+            remark="the text in hand has every hat and dot of this line",
+        ),
+        Approximate(
+            "mathar_51_52",
+            f"{VI} (51), (52)",
+            "an approximation of (43)",
+            _whole,
+            1,
+            "amplitude",
+            remark=f"against gravity alone, all of items 2-5; {place}",
+        ),
+    ]
+    return [*steps, *equations]
+
+
+def _pulled(p: Point) -> Vector:
+    """What item 5 starts from: diagonal of (43), g alone."""
+    pull = p.gravity * abs(p.z) ** 3
+    b = (-p.x * pull, -p.y * pull)
+    return tuple(part * p.z**2 / (p.z**4 * p.length**2) for part in b)

@@ -1,0 +1,100 @@
+"""Mathar, section V: the triangle of gravity and centrifugal force, (48)-(50)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..checks import Approximate, Check, Identity
+from ..digits import MP, asin, cos, pi, sin, sqrt
+from ..points import Point, paris
+from ..truth import rest_angle
+from .rest import V, pull_at_rest
+
+
+def apparent_gravity(p: Point) -> Any:
+    """(48)."""
+    out = p.R * p.rate**2
+    return sqrt(p.gravity**2 + out**2 - 2 * p.gravity * out * cos(p.phi))
+
+
+def triangle_angle(p: Point) -> Any:
+    """(50)."""
+    return asin(p.R * p.rate**2 * sin(p.phi) / apparent_gravity(p))
+
+
+def _shorter(s: Any) -> Point:
+    """Paris with a cord s times as long."""
+    here = paris()
+    return here.but(length=here.length * s)
+
+
+def _slower(s: Any) -> Point:
+    """Paris with RΩ² s times as large, and a cord of no length to speak of."""
+    here = paris()
+    return here.but(rate=here.rate * sqrt(s), length=MP.mpf("1e-50"))
+
+
+def _two_terms(p: Point) -> Any:
+    out, s, c, g = p.R * p.rate**2, sin(p.phi), cos(p.phi), p.gravity
+    return s / g * out + c * s / g**2 * out**2
+
+
+def _one_term(p: Point) -> Any:
+    return sin(2 * p.phi) / p.gravity * (p.N + p.altitude) * p.rate**2 / 2
+
+
+def _tilt(p: Point) -> Any:
+    """Angle at the bob of the triangle: between g and the sum of g and the centrifugal acceleration."""
+    out = p.R * p.rate**2
+    return pi / 2 - MP.atan2(p.gravity - out * cos(p.phi), out * sin(p.phi))
+
+
+def checks() -> list[Check]:
+    """The rows of section V from (48) on."""
+    return [
+        Approximate(
+            "mathar_48",
+            f"{V} (48)",
+            "g' = sqrt(g² + (RΩ²)² - 2 g RΩ² cosϕ)",
+            lambda s: (apparent_gravity(_shorter(s)), pull_at_rest(_shorter(s))),
+            1,
+            "l",
+            "m/s²",
+            "N+h stands for the distance of the bob, N+h-l",
+        ),
+        Identity(
+            "mathar_49",
+            f"{V} (49)",
+            "RΩ² / sinφ = g' / sinϕ",
+            lambda p: p.R * p.rate**2 / sin(_tilt(p)),
+            lambda p: apparent_gravity(p) / sin(p.phi),
+            remark="the sine rule of the triangle of (48), its angle by atan2",
+        ),
+        Approximate(
+            "mathar_50",
+            f"{V} (50)",
+            "sinφ = RΩ² sinϕ / sqrt(g² + (RΩ²)² - 2gRΩ² cosϕ)",
+            lambda s: (triangle_angle(_shorter(s)), rest_angle(_shorter(s))),
+            1,
+            "l",
+            "rad",
+        ),
+        Approximate(
+            "mathar_50_two",
+            f"{V}, after (50)",
+            "sinφ ≈ (sinϕ/g) RΩ² + (cosϕ sinϕ/g²) (RΩ²)² + O((RΩ²)³)",
+            lambda s: (_two_terms(_slower(s)), sin(triangle_angle(_slower(s)))),
+            3,
+            "RΩ²",
+            "rad",
+        ),
+        Approximate(
+            "mathar_50_one",
+            f"{V}, after (50)",
+            "sinφ ≈ (1/2) (sin2ϕ/g) (N+h) Ω² + O((RΩ²)²)",
+            lambda s: (_one_term(_slower(s)), sin(triangle_angle(_slower(s)))),
+            2,
+            "RΩ²",
+            "rad",
+        ),
+    ]

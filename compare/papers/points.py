@@ -1,0 +1,152 @@
+"""Random points to evaluate a formula at: a pendulum, a planet and a state whose numbers are all of order one.
+
+At such a point no term hides behind another, as RΩ² hides behind g on the Earth: what differs shows at once.
+"""
+
+from __future__ import annotations
+
+import random
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+from reference.model.constants import Constants, constants
+from reference.precision import to_fraction
+from reference.scene import Inputs
+
+from .digits import MP, Vector, cos, mpf, radians, sin, sqrt
+
+COUNT = 5
+SEED = 20231117
+
+
+@dataclass(frozen=True)
+class Point:
+    """Numbers of one random point, exact; lengths in m, times in s, angles in radians unless said.
+
+    Attributes:
+        radius, flattening, altitude, latitude: the planet's (latitude in degrees).
+        length, gravity, rate: of the pendulum and of the rotation, l, g, Ω.
+        cord, azimuth: angles of the cord, φ and λ in Mathar, θ and φ in Gastebois; with rates and accelerations.
+        x, y: horizontal position, with velocities and accelerations.
+        t, mass: a time and a mass.
+    """
+
+    radius: Any
+    flattening: Any
+    altitude: Any
+    latitude: Any
+    length: Any
+    gravity: Any
+    rate: Any
+    cord: Any
+    azimuth: Any
+    cord_rate: Any
+    azimuth_rate: Any
+    cord_second: Any
+    azimuth_second: Any
+    x: Any
+    y: Any
+    vx: Any
+    vy: Any
+    ax: Any
+    ay: Any
+    t: Any
+    mass: Any
+
+    @cached_property
+    def phi(self) -> Any:
+        """Latitude in radians."""
+        return radians(self.latitude)
+
+    @cached_property
+    def e2(self) -> Any:
+        """Squared eccentricity of the ellipsoid."""
+        return self.flattening * (2 - self.flattening)
+
+    @cached_property
+    def N(self) -> Any:  # noqa: N802  # the field's symbol
+        """Radius of curvature in the prime vertical, Mathar (2)."""
+        return self.radius / sqrt(1 - self.e2 * sin(self.phi) ** 2)
+
+    @cached_property
+    def R(self) -> Any:  # noqa: N802
+        """Distance of the suspension from the axis, Mathar (3)."""
+        return (self.N + self.altitude) * cos(self.phi)
+
+    @cached_property
+    def z(self) -> Any:
+        """Height of the bob below the suspension, negative."""
+        return -sqrt(self.length**2 - self.x**2 - self.y**2)
+
+    @cached_property
+    def vz(self) -> Any:
+        """Vertical velocity, from r·v = 0."""
+        return -(self.x * self.vx + self.y * self.vy) / self.z
+
+    @cached_property
+    def position(self) -> Vector:
+        """X, y, z."""
+        return (self.x, self.y, self.z)
+
+    @cached_property
+    def velocity(self) -> Vector:
+        """Vx, vy, vz."""
+        return (self.vx, self.vy, self.vz)
+
+    @cached_property
+    def k(self) -> Constants:
+        """The model's constants at this point, for `reference.model.mechanics`."""
+        return constants(_inputs(self), MP)
+
+    @cached_property
+    def uniform(self) -> Constants:
+        """The same with gravity alone: no centrifugal force, as the other two documents have it."""
+        return replace(self.k, pull=(0, 0, -self.gravity / self.length), centrifugal=(0, 0, 0, 0))
+
+    def but(self, **changes: Any) -> Point:
+        """The point with other numbers."""
+        return replace(self, **changes)
+
+
+def _inputs(p: Point) -> Inputs:
+    zero = Fraction(0)
+    return Inputs(
+        length=to_fraction(p.length),
+        drag=zero,
+        latitude=to_fraction(p.latitude),
+        altitude=to_fraction(p.altitude),
+        gravity=to_fraction(p.gravity),
+        rotation_rate=to_fraction(p.rate),
+        equatorial_radius=to_fraction(p.radius),
+        flattening=to_fraction(p.flattening),
+        position=(zero,) * 4,
+        angles=None,
+        t_end=Fraction(1),
+        grid_step=Fraction(1),
+    )
+
+
+_RANGES = {
+    "radius": (2, 3), "flattening": (0.1, 0.3), "altitude": (0.1, 0.5), "latitude": (15, 75),
+    "length": (1, 2), "gravity": (6, 10), "rate": (0.3, 0.9), "cord": (0.4, 1.2), "azimuth": (-3, 3),
+    "cord_rate": (0.2, 0.9), "azimuth_rate": (0.2, 0.9), "cord_second": (-0.9, 0.9), "azimuth_second": (-0.9, 0.9),
+    "x": (0.1, 0.6), "y": (0.1, 0.6), "vx": (0.2, 0.9), "vy": (0.2, 0.9), "ax": (-0.9, 0.9), "ay": (-0.9, 0.9),
+    "t": (0.5, 2), "mass": (1.5, 3),
+}  # fmt: skip
+
+
+def points(count: int = COUNT) -> list[Point]:
+    """Points that are the same in every run."""
+    draw = random.Random(SEED)
+    return [Point(**{name: MP.mpf(draw.uniform(*ends)) for name, ends in _RANGES.items()}) for _ in range(count)]
+
+
+def paris() -> Point:
+    """The Paris pendulum as released, Mathar VII: decimals as printed."""
+    numbers = {"radius": "6378137", "altitude": "0", "latitude": "48.846111", "length": "67", "gravity": "9.80665",
+               "rate": "7.292115e-5", "x": "0.3", "y": "0.4"}  # fmt: skip
+    given = {name: mpf(text) for name, text in numbers.items()}
+    blank = dict.fromkeys(_RANGES, MP.zero) | {"mass": MP.one}
+    return Point(**(blank | given | {"flattening": 1 / mpf("298.257223564")}))

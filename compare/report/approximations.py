@@ -1,0 +1,146 @@
+"""The seeds' approximations on a scene: errors over time, where each stops being good, numbers; as text, JSON, page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference import Scene
+
+from ..approximations import APPROXIMATIONS
+from ..studies.approximation_errors import error_table, quantity_table
+from ..studies.approximation_limits import LIMITS, SWEEP_S, LimitRow, limits, sweep
+from .charts.approximations import plot
+from .folder import PAGE, csv_text, json_text, write_files
+from .page import Column, TableRow, figure, page, paragraph, section, table
+
+CSV, JSON = "rows.csv", "approximations.json"
+OVERS = ("time", "amplitude", "latitude", "length")
+CURVE_TIMES = 80
+
+
+def document(scene: Scene) -> dict[str, Any]:
+    """Errors up to 20 s, 1 h, 12000 s and the end; where each is good to 1 mm, 1 µm, 1 arcsecond; numbers."""
+    t_end = float(scene.exact.t_end)
+    within = min(SWEEP_S, t_end)
+    good = [row for over in OVERS for row in limits(scene, over=over, t_end=t_end if over == "time" else within)]
+    return {
+        "scene": scene.id,
+        "t_end": t_end,
+        "rows": [vars(row) for row in error_table(scene, t_end=t_end)],
+        "limits": [vars(row) for row in good],
+        "quantities": [vars(row) for row in quantity_table(scene)],
+    }
+
+
+def text_table(made: dict[str, Any]) -> str:
+    """For the terminal."""
+    times = sorted({row["t"] for row in made["rows"]})
+    errors = {(row["approximation"], row["t"]): row for row in made["rows"]}
+    names = list(dict.fromkeys(row["approximation"] for row in made["rows"]))
+    good = {(row["approximation"], row["limit"]): row for row in made["limits"] if row["over"] == "time"}
+    heads = "".join(f"{f'{t:g} s':>12}" for t in times) + "".join(f"{f'to {name}':>16}" for name, _, _ in LIMITS)
+    lines = [f"{made['scene']}: largest position error in m up to a time, and how long each is good", f"{'':22}{heads}"]
+    for name in names:
+        cells: list[str] = []
+        for t in times:
+            error = errors[name, t]["error_m"]
+            cells.append(
+                f"{'does not apply' if error is None and not cells else '' if error is None else f'{error:.2e}':>12}"
+            )
+        for limit, _, _ in LIMITS:
+            intervals = good[name, limit]["good"]
+            cells.append(f"{f'{intervals[0][1]:.4g} s' if intervals else '–':>16}")
+        lines.append(f"{name:22}" + "".join(cells))
+    lines.append("")
+    for row in made["quantities"]:
+        error = "" if row["relative_error"] is None else f"  relative error {row['relative_error']:.1e}"
+        lines.append(f"{row['approximation']:22}{row['value'] or row['status']} {row['unit']}{error}")
+    return "\n".join(lines)
+
+
+def write(scene: Scene, made: dict[str, Any], out: Path) -> Path:
+    """Write rows.csv, approximations.json and the page, all or none; returns the page."""
+    rows = csv_text(made["rows"][0], made["rows"])
+    write_files(out, {CSV: rows, JSON: json_text(made), PAGE: page_text(scene, made)})
+    return out / PAGE
+
+
+def page_text(scene: Scene, made: dict[str, Any]) -> str:
+    """The page."""
+    t_end = made["t_end"]
+    over_time = error_table(scene, t_end=t_end, times=[float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)])
+    pictures = [
+        figure(plot(over_time), "Largest position error so far. Approximations that coincide share a line."),
+        figure(plot(over_time, "plane_error_arcsec"), "Largest error of the swing plane so far."),
+    ]
+    pictures += [
+        figure(
+            plot(sweep(scene, over=over, t=min(SWEEP_S, t_end))),
+            f"Largest position error within {min(SWEEP_S, t_end):g} s, with the {over} changed.",
+        )
+        for over in OVERS[1:]
+    ]
+    return page(
+        f"{scene.id}: how good the approximations are",
+        [
+            section("Error over time", *pictures[:2], _errors(made)),
+            section("Where each stops being good", *pictures[2:], *(_limits(made, over) for over in OVERS)),
+            section("Numbers", _quantities(made)),
+            section("What each is", _about()),
+        ],
+        lead=paragraph("The analytic and truncated models of the seed documents against the full Lagrangian."),
+    )
+
+
+def _errors(made: dict[str, Any]) -> str:
+    """A line an approximation: position and plane at each time."""
+    times = sorted({row["t"] for row in made["rows"]})
+    found = {(row["approximation"], row["t"]): row for row in made["rows"]}
+    columns = [Column("approximation")]
+    columns += [Column(f"m, to {t:g} s", "number") for t in times]
+    columns += [Column(f"arcsec, to {t:g} s", "number") for t in times]
+    rows = []
+    for name in dict.fromkeys(row["approximation"] for row in made["rows"]):
+        values = [found[name, t][what] for what in ("error_m", "plane_error_arcsec") for t in times]
+        remark = "" if found[name, times[0]]["status"] == "ok" else "does not apply to this scene"
+        rows.append(TableRow((name, *("" if value is None else f"{value:.3g}" for value in values), remark)))
+    return table([*columns, Column("remark", "prose")], rows, "Largest errors of position and of swing plane")
+
+
+def _limits(made: dict[str, Any], over: str) -> str:
+    rows = [row for row in made["limits"] if row["over"] == over]
+    names = list(dict.fromkeys(row["approximation"] for row in rows))
+    found = {(row["approximation"], row["limit"]): row for row in rows}
+    columns = [Column("approximation"), *(Column(f"good to {name}", "number") for name, _, _ in LIMITS)]
+    body = [TableRow((name, *(_intervals(found[name, limit]) for limit, _, _ in LIMITS))) for name in names]
+    unit = rows[0]["unit"] if rows else ""
+    return table(columns, body, f"Over {over}, in {unit}")
+
+
+def _intervals(row: dict[str, Any] | LimitRow) -> str:
+    good: Sequence[tuple[float, float]] = row["good"] if isinstance(row, dict) else row.good
+    return ", ".join(f"{low:.3g} to {high:.3g}" for low, high in good) or "nowhere"
+
+
+def _quantities(made: dict[str, Any]) -> str:
+    columns = [Column("approximation"), Column("value", "number"), Column("reference", "number"), Column("unit")]
+    rows = [
+        TableRow(
+            (
+                row["approximation"], row["value"] or row["status"], row["truth"] or "", row["unit"],
+                "" if row["relative_error"] is None else f"{row['relative_error']:.1e}",
+            )
+        )
+        for row in made["quantities"]
+    ]  # fmt: skip
+    return table([*columns, Column("relative error", "number")], rows)
+
+
+def _about() -> str:
+    columns = [Column("id"), Column("what", "prose"), Column("where", "prose"), Column("drops", "prose")]
+    rows = [TableRow((one.id, one.title, one.where, one.drops)) for one in APPROXIMATIONS.values()]
+    return table(columns, rows)

@@ -1,0 +1,237 @@
+"""Who is cheapest at which error: the Pareto front of measured rows, costs at an error, and the sentences of both.
+
+An error below the reference's bound counts as the bound: nothing here is judged finer than the truth is known.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+from reference import InputError
+
+from ..studies.row import EXTRAPOLATED, OK, Row
+from .power_law import LEAST_POINTS, PowerLaw, power_law
+
+TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors that the sentences speak of
+PAPER_METHOD, PAPER_NAME = "rk4", "the paper's RK4"
+PRECISION_METHOD = "heyoka_real"  # the method whose cost is modelled against digits
+ALIKE = 1.05  # costs closer than this factor are called the same: repeats spread by as much
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A method in a formulation over its ladder.
+
+    Attributes:
+        method: its id.
+        formulation: of the equations of motion.
+        label: the method, with the formulation where that is not the method's own.
+        rows: from loose to tight, failed ones included.
+    """
+
+    method: str
+    formulation: str
+    label: str
+    rows: tuple[Row, ...]
+
+    @property
+    def measured(self) -> tuple[Row, ...]:
+        """Rows with a cost and an error."""
+        return tuple(row for row in self.rows if row.measured)
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What an error costs with a method.
+
+    Attributes:
+        label: of the curve.
+        method: its id.
+        cpu_s: CPU seconds.
+        interpolated: between two settings; otherwise that of a measured setting that is at least as accurate.
+        extrapolated: it rests on a run over a part of the span.
+    """
+
+    label: str
+    method: str
+    cpu_s: float
+    interpolated: bool
+    extrapolated: bool
+
+
+def rows_of(document: dict[str, Any]) -> list[Row]:
+    """The rows of a study's document."""
+    return [Row.parsed(row) for row in document["rows"]]
+
+
+def curves(rows: Sequence[Row]) -> list[Curve]:
+    """Rows by method and formulation in the order in which they come; a method's first formulation is its own."""
+    own: dict[str, str] = {}
+    groups: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        own.setdefault(row.method, row.formulation)
+        groups.setdefault((row.method, row.formulation), []).append(row)
+    return [
+        Curve(
+            method,
+            formulation,
+            method if own[method] == formulation else f"{method} ({formulation})",
+            tuple(sorted(group, key=lambda row: row.setting if row.kind == "precision" else -row.setting)),
+        )
+        for (method, formulation), group in groups.items()
+    ]
+
+
+def error_of(row: Row, bound_m: float) -> float:
+    """The row's largest position error in m, not finer than the reference is known."""
+    if row.error_m is None:
+        raise InputError("row", f"{row.method} at {row.setting:g}: {row.status}", "a row with an error")
+    return max(row.error_m, bound_m)
+
+
+def cost_of(row: Row) -> float:
+    """The row's CPU seconds; infinite if it has none."""
+    return math.inf if row.cpu_s is None else row.cpu_s
+
+
+def front(rows: Sequence[Row], bound_m: float = 0.0) -> list[Row]:
+    """The measured rows that no other measured row beats in error without costing more, cheapest first.
+
+    Args:
+        rows: any; failed ones are never on the front, extrapolated ones may be.
+        bound_m: of the reference. Errors below it are equal.
+
+    Returns:
+        Rows of increasing cost and decreasing error; of equal rows the first.
+    """
+    best, found = math.inf, []
+    for row in sorted(_measured(rows), key=lambda row: (cost_of(row), error_of(row, bound_m))):
+        if error_of(row, bound_m) < best:
+            best = error_of(row, bound_m)
+            found.append(row)
+    return found
+
+
+def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> Cost | None:
+    """Least cost at which a method reaches an error, None if it does not.
+
+    Interpolated in logarithms between neighbouring settings that lie on both sides of the error, never across a
+    failed one and never beyond the ladder: where already the loosest setting is finer, its cost stands.
+    Whole runs go before extrapolated ones.
+    """
+    if error_m < bound_m:
+        return None
+    found = [Cost(curve.label, curve.method, *one) for one in _ways(curve, error_m, bound_m)]
+    return min(found, key=lambda cost: (cost.extrapolated, cost.cpu_s, cost.interpolated), default=None)
+
+
+def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[tuple[float, bool, bool]]:
+    for row in curve.measured:
+        if row.cpu_s and error_of(row, bound_m) <= error_m:
+            yield row.cpu_s, False, row.status == EXTRAPOLATED
+    for a, b in pairwise(curve.rows):
+        if not (a.measured and b.measured and a.cpu_s and b.cpu_s):
+            continue
+        e, f = error_of(a, bound_m), error_of(b, bound_m)
+        if 0 < min(e, f) < error_m < max(e, f):
+            part = math.log(error_m / e) / math.log(f / e)
+            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part, True, EXTRAPOLATED in (a.status, b.status)
+
+
+def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[Cost]:
+    """Cost of an error with every method that reaches it, whole runs before extrapolated ones, cheapest first."""
+    found = [cost_at(curve, error_m, bound_m) for curve in curves(rows)]
+    return sorted((cost for cost in found if cost is not None), key=lambda cost: (cost.extrapolated, cost.cpu_s))
+
+
+def sentences(document: dict[str, Any]) -> list[str]:
+    """What a reader takes home: the cheapest method at each error that is reached, and what a digit costs.
+
+    A ladder of precisions has nothing to say about large errors: there only the cost of digits is told.
+    """
+    rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
+    law = cost_of_digits(rows, bound_m)
+    coarse = {row.method for row in _measured(rows) if error_of(row, bound_m) > TARGETS_M[-1]}
+    found = [_sentence(rows, error_m, bound_m) for error_m in TARGETS_M] if coarse or law is None else []
+    return [sentence for sentence in (*found, cost_sentence(law) if law else "") if sentence]
+
+
+def _sentence(rows: Sequence[Row], error_m: float, bound_m: float) -> str:
+    costs = costs_at(rows, error_m, bound_m)
+    if not costs:
+        return ""
+    first = costs[0]
+    head = f"At {_metres(error_m)} the cheapest is {first.label}, {seconds(first.cpu_s)} of CPU time"
+    if first.extrapolated:
+        head += " (extrapolated from a part of the span)"
+    paper = next((cost for cost in costs if cost.method == PAPER_METHOD), None)
+    if first.method == PAPER_METHOD:
+        return head + (f": {_times(costs[1], first)} the next, {costs[1].label}." if len(costs) > 1 else ".")
+    if paper is not None:
+        about = " (extrapolated)" if paper.extrapolated else ""
+        return f"{head}: {_times(paper, first)} {PAPER_NAME}{about}."
+    best = min((error_of(row, bound_m) for row in _measured(rows) if row.method == PAPER_METHOD), default=None)
+    return head + (f"; {PAPER_NAME} does not reach it ({best:.1e} m at best)." if best is not None else ".")
+
+
+def _times(dear: Cost, cheap: Cost) -> str:
+    ratio = dear.cpu_s / cheap.cpu_s
+    if ratio < ALIKE:
+        return "as cheap as"
+    return f"{ratio:.2g} times cheaper than" if ratio < 100 else f"{float(f'{ratio:.2g}'):.0f} times cheaper than"
+
+
+def digits_of(row: Row, bound_m: float) -> float:
+    """Right decimals of the position in m: -log10 of the largest error."""
+    return -math.log10(error_of(row, bound_m))
+
+
+def cost_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> PowerLaw | None:
+    """CPU seconds of `heyoka_real` as a power of the digits achieved; None with fewer than three rows to fit.
+
+    Rows at or below the reference's bound are left out: what they achieved is not known.
+    """
+    known = [
+        row
+        for row in _measured(rows)
+        if row.method == PRECISION_METHOD and row.error_m and bound_m < row.error_m < 1 and row.cpu_s
+    ]
+    if len({row.error_m for row in known}) < LEAST_POINTS:
+        return None
+    return power_law([digits_of(row, bound_m) for row in known], [cost_of(row) for row in known])
+
+
+def cost_sentence(law: PowerLaw) -> str:
+    """The model of the cost of digits in words."""
+    return (
+        f"The cost of {PRECISION_METHOD} is {law.factor:.2g} s · digits^a with a = {law.exponent:.2f} ± "
+        f"{law.standard_error:.2f} (standard error of the fit to {law.points} settings, {law.low:.0f} to "
+        f"{law.high:.0f} digits; digits = −log10 of the largest error in m)."
+    )
+
+
+def whole_evaluations(row: Row, t_end: float) -> float | None:
+    """Evaluations of the right-hand side for the whole span: an extrapolated row has counted those of its part."""
+    if row.rhs_evaluations is None or row.status == OK or not row.reached_t:
+        return row.rhs_evaluations
+    return row.rhs_evaluations * t_end / row.reached_t
+
+
+def seconds(cpu_s: float) -> str:
+    """CPU time with its unit, two or three digits."""
+    if cpu_s < 1e-3:
+        return f"{cpu_s * 1e6:.3g} µs"
+    return f"{cpu_s * 1e3:.3g} ms" if cpu_s < 0.1 else f"{cpu_s:.3g} s" if cpu_s < 1000 else f"{cpu_s:.0f} s"
+
+
+def _metres(error_m: float) -> str:
+    return f"1e{round(math.log10(error_m))} m"
+
+
+def _measured(rows: Sequence[Row]) -> list[Row]:
+    """Rows with a cost and an error that are numbers: a broken one must not reach the front by comparing false."""
+    return [row for row in rows if row.measured and math.isfinite((row.error_m or 0.0) + cost_of(row))]

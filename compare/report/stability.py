@@ -1,0 +1,164 @@
+"""The report of `foucault stability`: what is silently wrong first, a heat map, the reasons, and long runs."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from reference import load_scene
+
+from ..studies.long_runs import LongRun, laws
+from ..studies.stability import WRONG, Cell
+from .charts import ErrorHistory, error_growth, heat_map
+from .charts.heat_map import CLASSES, Field
+from .folder import PAGE, csv_text, json_text, write_files
+from .page import Column, TableRow, facts, figure, findings, page, paragraph, section, table
+
+CSV, JSON = "rows.csv", "stability.json"
+FILES = (CSV, JSON, PAGE)
+PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
+
+
+def document(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, str]) -> dict[str, Any]:
+    """The JSON document of the contract."""
+    return {
+        "rows": [asdict(cell) for cell in cells],
+        "silently_wrong": sum(cell.status == "silently_wrong" for cell in cells),
+        "long_runs": [run.document() for run in runs],
+        "machine": machine,
+    }
+
+
+def headlines(cells: Sequence[Cell]) -> list[str]:
+    """What a reader takes home."""
+    wrong = [cell for cell in cells if cell.status == "silently_wrong"]
+    ran = [cell for cell in cells if cell.status not in ("not_installed", "refused")]
+    methods = Counter(cell.method for cell in wrong)
+    said = [
+        f"{len(wrong)} of {len(ran)} runs are silently wrong: success was reported, and the error is more than {WRONG} "
+        "times what was asked for."
+    ]
+    if methods:
+        worst = ", ".join(f"{name} ({count})" for name, count in methods.most_common(6))
+        said.append(f"Silently wrong most often: {worst}.")
+    return said + list(_stiffness(cells))
+
+
+def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
+    """Do stiff methods win where it is stiff, and lose where it is not?"""
+    by_key = {(cell.scene, cell.method): cell for cell in cells if cell.cpu_s is not None}
+    stiff = {cell.scene for cell in cells if "stiff" in load_scene(cell.scene).flags}
+    for implicit, explicit in PAIRS:
+        ratios: dict[bool, list[float]] = {True: [], False: []}
+        for (scene, method), cell in by_key.items():
+            other = by_key.get((scene, explicit))
+            if method == implicit and other is not None and cell.cpu_s and other.cpu_s:
+                ratios[scene in stiff].append(other.cpu_s / cell.cpu_s)
+        if ratios[True] and ratios[False]:
+            wins, loses = median(ratios[True]), 1 / median(ratios[False])
+            yield (
+                f"{implicit} against {explicit}, median CPU time: {_times(wins)} where it is stiff "
+                f"({len(ratios[True])} scenes), {_times(1 / loses)} elsewhere ({len(ratios[False])})."
+            )
+
+
+def _times(gain: float) -> str:
+    return f"{gain:.2g} times cheaper" if gain >= 1 else f"{1 / gain:.2g} times dearer"
+
+
+def write(made: dict[str, Any], cells: Sequence[Cell], runs: Sequence[LongRun], out: Path) -> Path:
+    """Write rows.csv, stability.json and the page, all or none; returns the page."""
+    rows = csv_text((one.name for one in fields(Cell)), made["rows"])
+    write_files(out, {CSV: rows, JSON: json_text(made), PAGE: page_text(cells, runs, made["machine"])})
+    return out / PAGE
+
+
+def page_text(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, str]) -> str:
+    """The page."""
+    letters = "; ".join(f"{letter}: {meaning}" for letter, meaning in CLASSES.values())
+    drawn = [Field(cell.scene, f"{cell.method} {_short(cell.precision)}", cell.status, cell.digits) for cell in cells]
+    parts = [
+        section("Findings", findings(headlines(cells))),
+        section(
+            "Digits kept",
+            figure(heat_map(drawn), f"Whole digits of the amplitude that were kept, or how it failed. {letters}."),
+        ),
+        section("Silently wrong", _reasons([cell for cell in cells if cell.status == "silently_wrong"])),
+        section(
+            "Other failures",
+            _reasons(
+                [cell for cell in cells if cell.reason and cell.status not in ("silently_wrong", "not_installed")]
+            ),
+        ),
+        section("Scenes", _scenes(cells)),
+    ]
+    measured = [run for run in runs if run.exponent is not None]
+    if measured:
+        lines = [
+            ErrorHistory(f"{run.method}, {run.formulation}", np.array(run.t), np.array(run.error_m), run.exponent)
+            for run in measured
+        ]
+        caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
+        picture = figure(error_growth(lines, max(run.bound_m for run in measured)), caption)
+        parts.append(section("Long runs", picture, findings(laws(runs))))
+    parts.append(section("Measured on", facts(machine)))
+    return page(
+        "Stiff and extreme scenes: what breaks, and when",
+        parts,
+        lead=paragraph(
+            "Every method was asked for the same on every scene; what it returned was held against the truth."
+        ),
+    )
+
+
+def _short(precision: str) -> str:
+    number, _, formulation = precision.partition(", ")
+    return formulation if number == "double" else f"{number} {formulation}"
+
+
+def _reasons(cells: Sequence[Cell]) -> str:
+    columns = [Column("scene"), Column("method"), Column("precision"), Column("status")]
+    columns += [Column("digits", "number"), Column("asked", "number"), Column("why", "prose")]
+    rows = [
+        TableRow(
+            (
+                cell.scene, cell.method, cell.precision, cell.status.replace("_", " "),
+                "" if cell.digits is None else f"{max(cell.digits, 0):.1f}", f"{cell.asked:.1f}", cell.reason,
+            )
+        )
+        for cell in cells
+    ]  # fmt: skip
+    return table(columns, rows)
+
+
+def _scenes(cells: Sequence[Cell]) -> str:
+    names = list(dict.fromkeys(cell.scene for cell in cells))
+    rows = []
+    for name in names:
+        scene = load_scene(name)
+        kept = [cell.digits for cell in cells if cell.scene == name and cell.status == "ok" and cell.digits is not None]
+        failed = sum(cell.scene == name and cell.status not in ("ok", "not_installed", "refused") for cell in cells)
+        rows.append(TableRow((name, scene.title, ", ".join(scene.flags), f"{len(kept)}", f"{failed}")))
+    columns = [Column("scene"), Column("what it is", "prose"), Column("flags", "prose")]
+    return table([*columns, Column("right", "number"), Column("failed", "number")], rows)
+
+
+def text_table(cells: Sequence[Cell], runs: Sequence[LongRun]) -> str:
+    """For the terminal: the headlines, and a line a method."""
+    names = list(dict.fromkeys((cell.method, cell.precision) for cell in cells))
+    words = ["ok", "silently_wrong", "not_finite", "gave_up", "out_of_time", "refused", "not_installed"]
+    lines = [
+        *headlines(cells),
+        "",
+        f"{'method':20}{'precision':24}" + "".join(f"{word.replace('_', ' '):>16}" for word in words),
+    ]
+    for method, precision in names:
+        found = Counter(cell.status for cell in cells if (cell.method, cell.precision) == (method, precision))
+        lines.append(f"{method:20}{precision:24}" + "".join(f"{found[word] or '':>16}" for word in words))
+    return "\n".join([*lines, *([""] if runs else []), *laws(runs)])

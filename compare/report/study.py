@@ -1,0 +1,94 @@
+"""The report of a study: rows.csv, study.json, and one self-contained page with pictures and tables; a table as text.
+
+Everything is made from the study's JSON document alone: the same document, the same bytes.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from collections.abc import Sequence
+from dataclasses import asdict, fields
+from pathlib import Path
+from typing import Any
+
+from ..studies.row import Row
+from . import explanations as say
+from . import tables
+from .folder import PAGE, csv_text, json_text, write_files
+from .page import Html, facts, figure, findings, join, page, paragraph, section
+from .pareto import rows_of, sentences
+from .tables import text_table
+
+__all__ = ["page_text", "text_table", "write_report"]
+
+CSV, JSON = "rows.csv", "study.json"
+FILES = (CSV, JSON, PAGE)
+
+
+def write_report(document: dict[str, Any], out: Path) -> Path:
+    """Write the report of a study, all files or none: an interruption leaves what was there.
+
+    Args:
+        document: `Study.document()`, or what study.json holds; further keys `title` (of the scene) and `limit_s` (CPU
+            seconds of a run) are used where they are there.
+        out: folder, made if it is not there.
+
+    Returns:
+        The page.
+
+    Raises:
+        InputError: the folder cannot be written to.
+    """
+    rows = csv_text((one.name for one in fields(Row)), map(asdict, rows_of(document)))
+    write_files(out, {CSV: rows, JSON: json_text(document), PAGE: page_text(document)})
+    return out / PAGE
+
+
+def page_text(document: dict[str, Any]) -> str:
+    """The page."""
+    rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
+    home = sentences(document)
+    failed = tables.failures(rows)
+    parts = [
+        section("What to take home", findings(home) if home else paragraph("No method reached 1e-3 m.")),
+        section("Least cost of an error", tables.costs(rows, bound_m)),
+        *_pictures(document, rows, bound_m),
+        section("The Pareto front", tables.pareto_front(rows, bound_m)),
+        section("Every row", tables.every_row(rows, bound_m)),
+        *([section("What failed, and why", failed)] if failed else []),
+        section("How it was measured", *map(paragraph, say.measured(document.get("limit_s")))),
+        section("The methods", tables.methods(rows)),
+    ]
+    return page(f"Error against run time: {document.get('title') or document['scene']}", parts, lead=_lead(document))
+
+
+def _lead(document: dict[str, Any]) -> Html:
+    reference, machine = document["reference"], document["machine"]
+    known = {
+        "scene": document["scene"],
+        "span": f"{document['t_end']:g} s, {reference['transits']} transits",
+        "reference": f"level {reference['level']}, bound {float(reference['bound_m']):.1e} m",
+        "machine": ", ".join(machine[key] for key in ("processor", "system") if key in machine),
+        "versions": ", ".join(f"{k} {v}" for k, v in machine.items() if k not in ("processor", "system")),
+    }
+    return join([paragraph(say.LEAD), facts(known)])
+
+
+def _pictures(document: dict[str, Any], rows: Sequence[Row], bound_m: float) -> list[Html]:
+    if importlib.util.find_spec("matplotlib") is None:
+        return [section("Pictures", paragraph(say.NO_PICTURES))]
+    from . import charts
+
+    made = [
+        ("Error against CPU time", charts.overview(rows, bound_m), say.overview(rows)),
+        ("Family by family", charts.by_family(rows, bound_m), say.FAMILIES),
+        (
+            "Evaluations of the right-hand side",
+            charts.right_hand_sides(rows, bound_m, document["t_end"]),
+            say.RIGHT_HAND_SIDES,
+        ),
+        ("Tolerance asked for, error achieved", charts.achieved_tolerance(rows, bound_m), say.TOLERANCE),
+        ("Formulations", charts.formulations(rows, bound_m), say.FORMULATIONS),
+        ("What digits cost", charts.precision_ladder(rows, bound_m), say.PRECISION),
+    ]
+    return [section(heading, figure(svg, caption)) for heading, svg, caption in made if svg is not None]

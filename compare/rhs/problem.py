@@ -1,0 +1,241 @@
+"""The initial value problem as a method gets it: doubles, a right-hand side, and the way back to metres."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from reference.errors import InputError
+from reference.model.constants import Constants, constants, is_zero, release, scaled
+from reference.model.mechanics import FORMULATIONS
+from reference.precision import context
+from reference.scene import Scene
+
+from .program import Program
+from .swing import Swing
+from .tangent import differentiated
+from .tracing import record
+
+Array = npt.NDArray[np.float64]
+Rates = Callable[[Sequence[Any], Any, Mapping[str, Any]], Sequence[Any]]
+
+CONSTANT_BITS = 200  # constants are folded in this precision and rounded once, so that they are no method's floor
+
+
+@dataclass(frozen=True)
+class System:
+    """An autonomous first-order system in the model's generic style.
+
+    Attributes:
+        variables: names of the state's variables.
+        rates: `rates(state, functions, parameters)` gives their derivatives; see `tracing.record`.
+        parameters: doubles by name, which `rates` gets as numbers; what it writes as literals needs none.
+    """
+
+    variables: tuple[str, ...]
+    rates: Rates
+    parameters: Mapping[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def program(self) -> Program:
+        """The derivatives as straight-line code of the variables and the parameters."""
+        return self.traced(self.rates)
+
+    @cached_property
+    def jacobian(self) -> Program:
+        """∂ derivative / ∂ variable, row by row, as straight-line code of the variables and the parameters."""
+        return differentiated(self.program, self.inputs[: len(self.variables)])
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names in generated code: x0, x1, … for the variables, k0, k1, … for the parameters."""
+        return tuple(f"x{i}" for i in range(len(self.variables))) + tuple(f"k{i}" for i in range(len(self.parameters)))
+
+    def traced(self, function: Rates, *more: str) -> Program:
+        """Trace a function of state, functions and parameters; with `more` inputs, of these as well."""
+        count, names = len(self.variables), tuple(self.parameters)
+
+        def flat(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
+            known = dict(zip(names, numbers[count : count + len(names)], strict=True))
+            return function(
+                numbers[:count], functions, known | dict(zip(more, numbers[len(self.inputs) :], strict=True))
+            )
+
+        return record(flat, (*self.inputs, *more))
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A scene's initial value problem in binary64.
+
+    Attributes:
+        scene: its exact inputs, in the scene's own reading.
+        formulation: a word of `reference.model.mechanics.FORMULATIONS`.
+        constants: of the model, folded in 200 bits and rounded once.
+        start: state at t = 0, rounded once, shape (variables,).
+        times: output times in s, increasing, from 0, shape (rows,).
+        sizes: how far each variable swings at most, from the energy; what tolerances are measured by.
+        system: the equations, with the constants they use as parameters.
+    """
+
+    scene: Scene
+    formulation: str
+    constants: Constants = field(repr=False)
+    start: Array
+    times: Array = field(repr=False)
+    sizes: Array
+    system: System = field(repr=False)
+
+    @classmethod
+    def of(cls, scene: Scene, formulation: str, times: npt.ArrayLike | None = None) -> Problem:
+        """The problem of a scene; output at its own grid times unless others are given.
+
+        Raises:
+            InputError: the formulation cannot say where the bob is released, or the times do not increase from 0.
+        """
+        model = FORMULATIONS[formulation]
+        ctx = context(CONSTANT_BITS)
+        exact = constants(scene.exact, ctx)
+        n, v = (scaled(vector, exact.length) for vector in release(scene.exact, ctx))
+        try:
+            start = model.start(n, v, exact, ctx)
+        except ValueError as error:
+            raise InputError("formulation", formulation, "one that holds at the release", f"{error}.") from None
+        if times is None:
+            times = [float(t) for t in scene.exact.grid]
+        rounded = exact.converted(float)
+        swing = Swing.of(n, v, exact)
+        return cls(
+            scene=scene,
+            formulation=formulation,
+            constants=rounded,
+            start=np.array([float(value) for value in start]),
+            times=_increasing(times),
+            sizes=swing.sizes(len(model.variables)),
+            system=_model_system(formulation, rounded),
+        )
+
+    @property
+    def parameters(self) -> Array:
+        """Values of the system's parameters, in its order; at least one, for libraries that refuse none."""
+        return np.array([*self.system.parameters.values()] or [0.0])
+
+    @cached_property
+    def rhs(self) -> Callable[[float, Array], Array]:
+        """`rhs(t, y)`: derivatives, compiled by numba."""
+        derivatives, k = self.rates.rhs, self.parameters
+        return lambda t, y: derivatives(t, y, k)
+
+    @cached_property
+    def jacobian(self) -> Callable[[float, Array], Array]:
+        """`jacobian(t, y)`: shape (variables, variables), compiled by numba."""
+        jacobian, k = self.slopes.jacobian, self.parameters
+        return lambda t, y: jacobian(t, y, k)
+
+    @cached_property
+    def rates(self) -> ModuleType:
+        """Compiled `rhs(t, y, k)`, and `rhs_into(y, k, dy)` in place; k are the `parameters`."""
+        return self._compiled(self.system.program, _RATES)
+
+    @cached_property
+    def slopes(self) -> ModuleType:
+        """Compiled `jacobian(t, y, k)`, and `jacobian_into(y, k, j)` in place."""
+        return self._compiled(self.system.jacobian, _SLOPES)
+
+    def _compiled(self, program: Program, template: str) -> ModuleType:
+        from .compiled import compiled, elements, fill, function_text
+
+        size = len(self.start)
+        places = {"y": elements("y", size), "k": elements("k", len(self.system.parameters)), "dy": elements("dy", size)}
+        matrix = "".join(elements("j", size, str(row)) for row in range(size))
+        return compiled(function_text(program, "traced") + fill(template, j=matrix, **places))
+
+    def cartesian(self, states: Array) -> Array:
+        """x, y, z in m and vx, vy, vz in m/s of states of shape (rows, variables), shape (rows, 6)."""
+        columns = tuple(np.ascontiguousarray(states.T))
+        n, v = FORMULATIONS[self.formulation].cartesian(columns, self.constants, np)
+        rows = [np.broadcast_to(part * self.constants.length, len(states)) for part in (*n, *v)]
+        return np.array(rows, dtype=np.float64).T.copy()
+
+
+_STATE = """
+STATE = nb.types.Array(nb.float64, 1, "A", readonly=True)
+
+"""
+
+_RATES = (
+    _STATE
+    + """
+@nb.njit(nb.float64[::1](nb.float64, STATE, nb.float64[::1]), **OPTIONS)
+def rhs(t, y, k):
+    dy = np.empty(len(y))
+    ${dy}= traced(${y}${k})
+    return dy
+
+
+@nb.njit(nb.void(STATE, nb.float64[::1], nb.float64[:]), **OPTIONS)
+def rhs_into(y, k, dy):
+    ${dy}= traced(${y}${k})
+"""
+)
+
+_SLOPES = (
+    _STATE
+    + """
+@nb.njit(nb.float64[:, ::1](nb.float64, STATE, nb.float64[::1]), **OPTIONS)
+def jacobian(t, y, k):
+    j = np.empty((len(y), len(y)))
+    ${j}= traced(${y}${k})
+    return j
+
+
+@nb.njit(nb.void(STATE, nb.float64[::1], nb.float64[:, :]), **OPTIONS)
+def jacobian_into(y, k, j):
+    ${j}= traced(${y}${k})
+"""
+)
+
+
+def _increasing(times: npt.ArrayLike) -> Array:
+    given = np.array(times, dtype=np.float64).ravel()
+    if len(given) == 0 or given[0] != 0 or not np.isfinite(given).all() or not (np.diff(given) > 0).all():
+        raise InputError("times", given.tolist() if len(given) < 9 else "an array", "finite times increasing from 0")
+    return given
+
+
+def _model_system(formulation: str, k: Constants) -> System:
+    """The model's equations with the constants that they use as parameters, by name."""
+    model = FORMULATIONS[formulation]
+    named: dict[str, float] = {}
+
+    def name_of(value: Any, name: str) -> Any:
+        if isinstance(value, tuple):
+            return tuple(name_of(part, f"{name}_{i}") for i, part in enumerate(value))
+        if is_zero(value):
+            return 0
+        named[name] = value
+        return name
+
+    names = {key: name_of(value, key) for key, value in vars(k).items()}
+
+    def rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
+        def number(name: Any) -> Any:
+            return tuple(map(number, name)) if isinstance(name, tuple) else (parameters[name] if name else 0)
+
+        return model.derivatives(state, Constants(**{key: number(name) for key, name in names.items()}), functions)
+
+    whole = System(model.variables, rates, named)
+    used = {operand for line in whole.program.lines for operand in line.operands} | set(whole.program.outputs)
+    inputs = dict(zip(whole.inputs[len(model.variables) :], named, strict=True))
+    kept = {name: named[name] for given, name in inputs.items() if given in used}
+
+    def used_rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
+        return rates(state, functions, dict.fromkeys(named, 0) | dict(parameters))
+
+    return System(model.variables, used_rates, kept)

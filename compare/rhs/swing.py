@@ -1,0 +1,77 @@
+"""How far and how fast a bob can get, by its energy: what tolerances are measured by, and which formulation holds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from reference.model.constants import Constants, Vector, constants, release, scaled
+from reference.precision import DOUBLE_BITS, GUARD_BITS, context
+from reference.scene import Scene
+
+Array = npt.NDArray[np.float64]
+
+SMALLEST_SIZE = 1e-12  # of a variable's swing, for a bob at rest: a tolerance must not become zero
+
+
+@dataclass(frozen=True)
+class Swing:
+    """How far and how fast the bob can get, from its energy about the rest position.
+
+    Without the small gradient of the centrifugal force v²/2 - n·c is constant, so that the angle from the rest
+    position c/|c| never exceeds the one where v would vanish, nor the speed its value at the bottom.
+
+    Attributes:
+        cosine: of that largest angle; at most 1, -1 or less where the bob can go over the top.
+        fastest: speed over l, in 1/s.
+        aside: how far the rest position is off the vertical, as a part of l.
+        spread: what the centrifugal gradient may add to the energy, as a part of the pull.
+    """
+
+    cosine: float
+    fastest: float
+    aside: float
+    spread: float
+
+    @classmethod
+    def of(cls, position: Vector, velocity: Vector, k: Constants) -> Swing:
+        """From n = r/l and n' at the release, in any number type."""
+        n, v, pull = (np.array(part, dtype=float) for part in (position, velocity, k.pull))
+        strength = float(np.linalg.norm(pull))
+        if strength == 0:
+            return cls(-1.0, float(np.linalg.norm(v)), 1.0, 1.0)
+        energy = float(v @ v / 2 - n @ pull)
+        fastest = math.sqrt(max(2 * (energy + strength), 0.0))
+        return cls(
+            min(-energy / strength, 1.0), fastest, float(np.hypot(*pull[:2])) / strength, float(k.rate) ** 2 / strength
+        )
+
+    @property
+    def below(self) -> bool:
+        """True if the bob stays below the horizontal, where the cord always pulls."""
+        return self.cosine > self.aside + self.spread
+
+    def sizes(self, variables: int) -> Array:
+        """Positions (radians, or n) and rates (1/s), in the order of a state's variables."""
+        reach = math.sqrt(1 - self.cosine**2) if self.cosine > 0 else 1.0
+        half = variables // 2
+        sizes: Array = np.array([min(reach + self.aside, 1.0)] * half + [self.fastest] * half)
+        return np.maximum(sizes, SMALLEST_SIZE)
+
+
+def suited(scene: Scene, formulations: Sequence[str]) -> str:
+    """The first of some formulations that can carry the scene's motion all the way.
+
+    `plane` holds below the horizontal only, and `space` leaves the sphere where the cord is pushed; for a bob whose
+    energy may take it there any other is better, `space` is next, and `plane` cannot do it.
+    """
+    ctx = context(DOUBLE_BITS + GUARD_BITS)
+    k = constants(scene.exact, ctx)
+    n, v = (scaled(vector, k.length) for vector in release(scene.exact, ctx))
+    if Swing.of(n, v, k).below:
+        return formulations[0]
+    return min(formulations, key=lambda word: {"space": 1, "plane": 2}.get(word, 0))

@@ -1,0 +1,175 @@
+"""Error measures of a trajectory against the truth, as the field counts them.
+
+Errors are differences of numbers that may agree to more digits than a double holds: both sides come as a
+double and what it lacks, and the difference is taken of both.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from reference import Golden, Scene
+from reference.dataset.dense import Dense
+from reference.model.constants import Constants
+from reference.model.mechanics import acceleration, invariant
+from reference.precision import Array
+from reference.scene import Inputs
+
+from ..candidates.candidate import COLUMNS, Candidate
+from ..rhs.constants import constants_in_double
+from ..studies.power_of_time import power_of_time
+from .swing_plane import EllipseErrors, ellipse_errors
+
+ENVELOPES = 40  # parts of the run whose largest error makes the curve that growth is fitted to
+
+
+@dataclass(frozen=True)
+class Errors:
+    """A candidate's errors at its own times.
+
+    Attributes:
+        t: times in s, shape (rows,).
+        components: candidate minus truth per column that the candidate has, in m or m/s.
+        position: distance from the truth in m over the position columns that it has, shape (rows,).
+        truth: at those times.
+        bound_m: how far the truth itself may be off.
+        amplitude_m: the truth's largest distance from the vertical, the scale of the digits.
+        speed_m_s: the truth's largest speed, the scale of the digits of velocities.
+    """
+
+    t: Array = field(repr=False)
+    components: dict[str, Array] = field(repr=False)
+    position: Array = field(repr=False)
+    truth: Dense = field(repr=False)
+    bound_m: float
+    amplitude_m: float
+    speed_m_s: float
+
+    @property
+    def max_m(self) -> float:
+        """The largest position error in m."""
+        return float(self.position.max())
+
+    @property
+    def rms_m(self) -> float:
+        """The root mean square of the position errors in m."""
+        top = self.max_m
+        return top * math.sqrt(float(np.mean((self.position / top) ** 2))) if top else 0.0
+
+    @property
+    def end_m(self) -> float:
+        """The position error at the last row in m."""
+        return float(self.position[-1])
+
+    @property
+    def digits(self) -> float:
+        """-log10 of the largest position error of the run over the amplitude; never beyond the truth's bound."""
+        return -math.log10(max(self.max_m, self.bound_m) / self.amplitude_m)
+
+    @property
+    def scd(self) -> float | None:
+        """Significant correct digits: -log10 of the largest relative error of any component at the end.
+
+        As in the Test Set for IVP Solvers (Mazzia and Magherini); components whose truth is 0, as far as it
+        is known, are left out.
+        """
+        return self._digits_at_the_end(0.0, 0.0)
+
+    @property
+    def mescd(self) -> float | None:
+        """Mixed error significant correct digits: -log10 of max |error| / (a + |truth|) over components at the end.
+
+        As in the Test Set for IVP Solvers, where a is atol/rtol; here it is the amplitude, for velocities the
+        largest speed.
+        """
+        return self._digits_at_the_end(self.amplitude_m, self.speed_m_s)
+
+    def _digits_at_the_end(self, of_position: float, of_velocity: float) -> float | None:
+        found = []
+        for i, name in enumerate(COLUMNS):
+            known = self.bound_m * (1.0 if i < 3 else self.speed_m_s / self.amplitude_m)
+            truth = abs(float(self.truth.states[-1, i]))
+            size = (truth if truth > known else 0.0) + (of_position if i < 3 else of_velocity)
+            if name not in self.components or not size:
+                continue
+            error = max(abs(float(self.components[name][-1])), known)
+            if error:
+                found.append(error / size)
+        return -math.log10(max(found)) if found else None
+
+    @property
+    def worst(self) -> tuple[int, str]:
+        """Row and component of the largest error in position."""
+        row = int(np.argmax(self.position))
+        return row, max(
+            (name for name in ("x", "y", "z") if name in self.components),
+            key=lambda name: abs(float(self.components[name][row])),
+        )
+
+    @property
+    def growth_exponent(self) -> float | None:
+        """The exponent p of error ∝ t^p, of what is above the truth's bound; None if too few rows."""
+        kept = (self.t > 0) & (self.position > self.bound_m)
+        if kept.sum() < 4 or self.t[kept][-1] < 4 * self.t[kept][0]:
+            return None
+        return power_of_time(self.t[kept], self.position[kept], ENVELOPES)
+
+    def ellipse(self, rest: tuple[float, float]) -> EllipseErrors:
+        """Turn of the swing plane and delay; `rest` is x, y of the rest position in m."""
+        error = np.column_stack([self.components["x"], self.components["y"]])
+        return ellipse_errors(self.t, self.truth.states, error, rest)
+
+
+def errors_of(candidate: Candidate, truth: Dense, golden: Golden) -> Errors:
+    """Subtract the truth, evaluated at the candidate's times, from the candidate.
+
+    Args:
+        candidate: with a double and what it lacks per number.
+        truth: at its times.
+        golden: where the truth comes from; the scales are those of its whole grid, whatever the candidate's rows.
+    """
+    late = candidate.rest.get("t")
+    rates = None if late is None else _rates(truth.states, constants_in_double(golden.scene.exact))
+    components = {}
+    for i, name in enumerate(COLUMNS):
+        if name not in candidate.columns:
+            continue
+        difference = (candidate.columns[name] - truth.states[:, i]) - truth.rest[:, i]
+        difference = difference + candidate.rest[name] if name in candidate.rest else difference
+        components[name] = difference if late is None or rates is None else difference - rates[:, i] * late
+    position = np.sqrt(sum(components[name] ** 2 for name in ("x", "y", "z") if name in components))
+    aside = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
+    amplitude = max(float(part.max()) for part in aside) or float(golden.scene.exact.length)
+    moving = [np.column_stack([golden.vx, golden.vy, golden.vz]), truth.states[:, 3:]]
+    speed = max(float(np.sqrt((part**2).sum(axis=1)).max()) for part in moving)
+    return Errors(candidate.t, components, np.asarray(position), truth, truth.bound_m, amplitude, speed)
+
+
+def _rates(states: Array, k: Constants) -> Array:
+    """Velocity and acceleration, shape (rows, 6), in m/s and m/s²."""
+    n, v = (tuple(part.T / k.length) for part in (states[:, :3], states[:, 3:]))
+    bent = acceleration(n, v, k)
+    return np.hstack([states[:, 3:], np.column_stack(bent) * k.length])
+
+
+def drifts(candidate: Candidate, scene: Scene | Inputs) -> dict[str, float]:
+    """Largest change of h (m²/s²) from the first row, where there are velocities and no drag, and of |r| - l (m)."""
+    inputs = scene.exact if isinstance(scene, Scene) else scene
+    found: dict[str, float] = {}
+    have = candidate.columns
+    k = constants_in_double(inputs)
+    if "z" not in have:
+        return found
+    n = tuple(have[name] / k.length for name in ("x", "y", "z"))
+    square = n[0] ** 2 + n[1] ** 2 + n[2] ** 2
+    found["length_m"] = float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())
+    if all(name in have for name in ("vx", "vy", "vz")) and not inputs.drag:
+        v = tuple(have[name] / k.length for name in ("vx", "vy", "vz"))
+        # R²Ω²/2 is constant and a million times larger than what varies: it is left out, not cancelled
+        near = replace(k, axis_distance=0)
+        h = invariant(n, v, near) - k.rate**2 * k.axis_distance * (k.cos * n[2] - k.sin * n[1]) * k.length**2
+        found["h_m2_s2"] = float(np.abs(h - h[0]).max())
+    return found

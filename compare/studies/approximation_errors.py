@@ -1,0 +1,170 @@
+"""How good each approximation is: its error against the reference over time; and numbers beside the reference's.
+
+Two errors are looked at: `error_m`, the largest distance between the approximate and the true bob up to a time, and
+`plane_error_arcsec`, the largest difference of the swing planes (`measure`), each about its own point of rest: the
+direction that somebody who believes the approximation would draw on the floor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from reference import FoucaultError, InputError, Scene, UnreachableError, trajectory
+
+from ..approximations import Motion, Quantity, approximation, motions, quantities
+from ..approximations.approximation import Array
+from ..approximations.observed import Gauge
+
+TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
+_PER_SWING = 16
+_SWINGS = 100  # so many periods' samples where nothing swings
+_MOST = 500_000  # samples; a motion of more swings than that is looked at less often than _PER_SWING times in each
+_ARCSEC = 180 * 3600 / np.pi
+
+
+@dataclass(frozen=True)
+class TimeRow:
+    """Largest errors from the release up to time t in s; None where there is none, and `status` says why."""
+
+    approximation: str
+    t: float
+    error_m: float | None
+    plane_error_arcsec: float | None
+    status: str = "ok"
+
+
+@dataclass(frozen=True)
+class QuantityRow:
+    """An approximate number beside the reference's."""
+
+    approximation: str
+    value: str | None
+    truth: str | None
+    unit: str
+    relative_error: float | None
+    status: str = "ok"
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Errors of one approximation since the release, running maxima over a fine grid of times.
+
+    Attributes:
+        times: in s.
+        position: in m.
+        plane: in arcseconds; NaN as long as one of the two swings has no plane.
+    """
+
+    times: Array
+    position: Array
+    plane: Array
+
+    def at(self, t: float) -> tuple[float, float | None]:
+        """Both up to time t."""
+        i = int(np.searchsorted(self.times, t * (1 + 1e-12), side="right")) - 1
+        plane = float(self.plane[i])
+        return float(self.position[i]), None if np.isnan(plane) else plane
+
+
+class Truth:
+    """The reference's motion of a scene on a fine grid, to hold approximations against.
+
+    Args:
+        scene: what is approximated.
+        t_end: end in s; the grid has 16 times in a period, and holds `marks` exactly.
+        marks: further times in s.
+    """
+
+    def __init__(self, scene: Scene, t_end: float, marks: Iterable[float] = ()) -> None:
+        self.scene, self.gauge = scene, _gauge(scene)
+        period = t_end / _SWINGS if self.gauge is None else min(self.gauge.period, t_end)
+        if not 0 < t_end < np.inf:
+            raise InputError("t_end", t_end, "a time above 0 in s")
+        fine = np.arange(0.0, t_end, max(period / _PER_SWING, t_end / _MOST))
+        self.times: Array = np.unique(np.concatenate((fine, [t_end], [t for t in marks if 0 <= t <= t_end])))
+        self.rows = trajectory(scene, self.times)
+        self.plane = self._plane(self.gauge, self.rows)
+
+    def errors(self, motion: Motion) -> Errors:
+        """Errors of an approximation on the grid.
+
+        Raises:
+            FoucaultError: the approximation does not apply, or fails.
+        """
+        rows = motion.trajectory(self.scene, self.times)
+        gauge = self.gauge if motion.rest is None else _gauge(self.scene, motion.rest(self.scene))
+        apart = np.linalg.norm(rows[:, :3] - self.rows[:, :3], axis=1)
+        turned = self._plane(gauge, rows) - self.plane
+        plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
+        return Errors(self.times, np.maximum.accumulate(apart), np.fmax.accumulate(plane))
+
+    def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
+        return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
+
+
+def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
+    """None where nothing swings, so that there is no plane."""
+    try:
+        return Gauge.of(scene, rest)
+    except UnreachableError:
+        return None
+
+
+def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
+    """Approximations of the motion by their ids, all if None; InputError names what is none."""
+    made = [approximation(word) for word in (motions() if ids is None else ids)]
+    wrong = [one.id for one in made if not isinstance(one, Motion)]
+    if wrong:
+        raise InputError("approximations", ", ".join(wrong), "approximations of the motion", "See quantity_table.")
+    return [one for one in made if isinstance(one, Motion)]
+
+
+def error_table(
+    scene: Scene, ids: Sequence[str] | None = None, t_end: float = TIMES[-1], times: Sequence[float] = TIMES
+) -> list[TimeRow]:
+    """Errors of approximations of the motion up to each of `times` before t_end, and up to t_end.
+
+    Args:
+        scene: what is approximated.
+        ids: which; all of the motion if None.
+        t_end: in s.
+        times: in s.
+
+    Raises:
+        InputError: an unknown id, or one of a single number.
+    """
+    chosen, marks = chosen_motions(ids), [*(t for t in times if t < t_end), t_end]
+    truth, rows = Truth(scene, t_end, marks), []
+    for motion in chosen:
+        try:
+            errors = truth.errors(motion)
+        except FoucaultError as error:
+            rows += [TimeRow(motion.id, t, None, None, str(error)) for t in marks]
+        else:
+            rows += [TimeRow(motion.id, t, *errors.at(t)) for t in marks]
+    return rows
+
+
+def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[QuantityRow]:
+    """Approximations of a number (rest, gravity, frequency, precession) beside the reference's, to 15 digits."""
+    rows, known = [], dict[Any, Any]()
+    for word in quantities() if ids is None else ids:
+        one = approximation(word)
+        if not isinstance(one, Quantity):
+            raise InputError("approximations", word, "an approximation of a number", "See error_table.")
+        try:
+            value = one.value(scene)
+            if one.truth not in known:
+                known[one.truth] = one.truth(scene)
+        except FoucaultError as error:
+            rows.append(QuantityRow(word, None, None, one.unit, None, str(error)))
+        else:
+            truth = value.context.mpf(known[one.truth])
+            relative = float(abs(value / truth - 1)) if truth else None
+            shown, wanted = (str(value.context.nstr(number, 15)) for number in (value, truth))
+            rows.append(QuantityRow(word, shown, wanted, one.unit, relative))
+    return rows

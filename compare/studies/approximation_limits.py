@@ -1,0 +1,150 @@
+"""Where each approximation stops being good: over time, amplitude, latitude and length, to 1 mm, 1 µm, 1 arcsecond."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from reference import FoucaultError, InputError, Scene
+
+from ..approximations.approximation import Motion
+from .approximation_errors import TIMES, Truth, chosen_motions
+from .variation import UNITS, varied
+
+LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
+SWEEP_S = 3600.0
+_SOON, _EARLY = 1e-3, 400  # s and count: a limit that is passed within the first swing is placed in it
+
+
+@dataclass(frozen=True)
+class SweepRow:
+    """Largest errors up to t in s with one thing of the scene changed to `value` (unit: `variation.UNITS`)."""
+
+    approximation: str
+    over: str
+    value: float
+    t: float
+    error_m: float | None
+    plane_error_arcsec: float | None
+    status: str = "ok"
+
+
+@dataclass(frozen=True)
+class LimitRow:
+    """Where an approximation is good to a limit: intervals of time in s or of what was varied; none if it never is.
+
+    `status` is why it could not be tried anywhere, or "ok".
+    """
+
+    approximation: str
+    over: str
+    unit: str
+    limit: str
+    good: tuple[tuple[float, float], ...]
+    status: str = "ok"
+
+
+def sweep_values(scene: Scene, over: str) -> tuple[float, ...]:
+    """Values that a sweep takes by itself: amplitudes of 1e-5 to 0.1 l, latitudes every 15°, lengths of 1 to 200 m."""
+    if over == "amplitude":
+        return tuple(float(v) for v in np.geomspace(1e-5, 0.1, 9) * float(scene.exact.length))
+    if over == "latitude":
+        return tuple(float(v) for v in range(-90, 91, 15))
+    if over == "length":
+        return (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)
+    raise InputError("over", over, "amplitude, latitude or length")
+
+
+def sweep(
+    scene: Scene,
+    ids: Sequence[str] | None = None,
+    over: str = "amplitude",
+    values: Sequence[float] | None = None,
+    t: float = SWEEP_S,
+) -> list[SweepRow]:
+    """Errors up to t in s with the amplitude, latitude, length or rotation rate of the scene changed by `varied`."""
+    chosen, rows = chosen_motions(ids), []
+    for value in sweep_values(scene, over) if values is None else values:
+        changed = varied(scene, over, value)
+        truth = Truth(changed, t)
+        for motion in chosen:
+            try:
+                found = truth.errors(motion).at(t)
+            except FoucaultError as error:
+                rows.append(SweepRow(motion.id, over, value, t, None, None, str(error)))
+            else:
+                rows.append(SweepRow(motion.id, over, value, t, *found))
+    return rows
+
+
+def limits(
+    scene: Scene, ids: Sequence[str] | None = None, over: str = "time", t_end: float | None = None
+) -> list[LimitRow]:
+    """Where each approximation is good to 1 mm, 1 µm and 1 arcsecond of swing plane.
+
+    Args:
+        scene: what is approximated.
+        ids: which; all of the motion if None.
+        over: `time` up to t_end (a day), or `amplitude`, `latitude`, `length` up to t_end (an hour). Between the
+            values of a sweep the logarithm of the error is interpolated.
+        t_end: in s.
+    """
+    if over == "time":
+        return _time_limits(scene, chosen_motions(ids), TIMES[-1] if t_end is None else t_end)
+    rows = sweep(scene, ids, over, t=SWEEP_S if t_end is None else t_end)
+    found = []
+    for word in dict.fromkeys(row.approximation for row in rows):
+        mine = sorted((row for row in rows if row.approximation == word), key=lambda row: row.value)
+        status = mine[0].status if all(row.error_m is None for row in mine) else "ok"
+        for name, what, limit in LIMITS:
+            errors = [getattr(row, what) for row in mine]
+            good = _below(over, [row.value for row in mine], errors, limit)
+            found.append(LimitRow(word, over, UNITS[over], name, good, status))
+    return found
+
+
+def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[LimitRow]:
+    truth, rows = Truth(scene, t_end, np.geomspace(_SOON, t_end, _EARLY)), []
+    for motion in chosen:
+        try:
+            errors = truth.errors(motion)
+        except FoucaultError as error:
+            rows += [LimitRow(motion.id, "time", "s", name, (), str(error)) for name, _, _ in LIMITS]
+            continue
+        for name, what, limit in LIMITS:
+            over = np.flatnonzero(~((errors.position if what == "error_m" else errors.plane) <= limit))
+            last = len(truth.times) - 1 if not len(over) else int(over[0]) - 1
+            rows.append(LimitRow(motion.id, "time", "s", name, ((0.0, float(truth.times[last])),) if last > 0 else ()))
+    return rows
+
+
+def _below(
+    over: str, values: Sequence[float], errors: Sequence[float | None], limit: float
+) -> tuple[tuple[float, float], ...]:
+    """Intervals of `values` in which the error is at most the limit; crossings where log(error) is interpolated."""
+    scale, back = (float, float) if over == "latitude" else (np.log, np.exp)
+    good: list[tuple[float, float]] = []
+    inside = [error is not None and error <= limit for error in errors]
+    for i, value in enumerate(values):
+        if not inside[i]:
+            continue
+        low = value if i == 0 or inside[i - 1] else _crossing(scale, back, values, errors, limit, i - 1)
+        high = value if i == len(values) - 1 or inside[i + 1] else _crossing(scale, back, values, errors, limit, i)
+        if good and i and inside[i - 1]:
+            low = good.pop()[0]
+        good.append((low, high))
+    return tuple(good)
+
+
+def _crossing(scale: Any, back: Any, values: Sequence[float], errors: Any, limit: float, i: int) -> float:
+    """Where the error meets the limit between values i and i + 1."""
+    a, b = errors[i], errors[i + 1]
+    if a is None or b is None:
+        return values[i] if a is not None else values[i + 1]
+    tiny = np.finfo(float).tiny
+    first, second = np.log(max(a, tiny)), np.log(max(b, tiny))
+    share = (np.log(limit) - first) / (second - first)
+    return float(back(scale(values[i]) + share * (scale(values[i + 1]) - scale(values[i]))))

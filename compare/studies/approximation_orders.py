@@ -1,0 +1,57 @@
+"""Does the error of an approximation grow as its theory says? Measured against the reference."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from reference import Scene, parse_scene, trajectory
+
+from ..approximations.approximation import Approximation, Motion, Order, Quantity
+from .variation import released, varied
+
+BASE = parse_scene(
+    {"id": "order", "title": "Paris, against which orders are measured", "release": {"x": "0.3", "y": "0.4"}}
+)
+OBSERVED_S = 60.0
+_SAMPLES = 121
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Errors of an approximation at an order's values, and the slope of their logarithms.
+
+    Attributes:
+        errors: of a motion the largest distance in m within OBSERVED_S seconds, of a quantity as it declares.
+        slope: least squares fit of log(error) against log(value); NaN from a single value.
+    """
+
+    order: Order
+    errors: tuple[float, ...]
+    slope: float
+
+
+def error(approximation: Approximation, scene: Scene) -> float:
+    """Largest distance from the reference in m over OBSERVED_S seconds, or the error of a quantity."""
+    if isinstance(approximation, Motion):
+        times = np.linspace(0.0, OBSERVED_S, _SAMPLES)
+        gap = approximation.trajectory(scene, times)[:, :3] - trajectory(scene, times)[:, :3]
+        return float(np.max(np.linalg.norm(gap, axis=1)))
+    assert isinstance(approximation, Quantity)
+    truth = approximation.truth(scene)
+    gap = approximation.value(scene) - truth
+    return float(abs(gap / truth if approximation.relative else gap))
+
+
+def measure(approximation: Approximation, order: Order, base: Scene = BASE) -> Measured:
+    """The errors at an order's values, in its setting."""
+    setting = base.with_values(order.setting)
+    scenes = [varied(setting, order.against, value) for value in order.values]
+    if order.amplitude is not None:
+        scenes = [released(scene, 0.6 * order.amplitude, 0.8 * order.amplitude) for scene in scenes]
+    errors = tuple(error(approximation, scene) for scene in scenes)
+    slope = float("nan")
+    if len(errors) > 1 and min(errors) > 0:
+        slope = float(np.polyfit(np.log(order.values), np.log(errors), 1)[0])
+    return Measured(order, errors, slope)

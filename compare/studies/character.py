@@ -1,0 +1,127 @@
+"""What makes a scene hard, measured on the true trajectory: rates and their ratio, what the flow magnifies, the rod.
+
+Rates are eigenvalues of the equations' Jacobian on the tangent space of the sphere: four of them, what the
+motion has, and not what a formulation adds off the sphere.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from reference import Scene
+from reference.model.constants import Constants
+from reference.model.mechanics import FORMULATIONS, tension
+from reference.precision import Array
+from reference.solver.sensitivity import sensitivity
+
+from ..rhs.constants import constants_in_double
+
+SAMPLES = 64  # states of the trajectory at which it is looked at
+_NUDGE = 1e-6
+
+
+@dataclass(frozen=True)
+class Character:
+    """A scene's difficulty.
+
+    Attributes:
+        fastest: largest size of a rate along the trajectory, 1/s.
+        damping: largest rate of decay, 1/s.
+        ratio: largest over smallest size of the rates that are not zero.
+        magnified: how much the flow magnifies a displacement at the release, at most.
+        least_tension: least pull of the cord per mass and length, 1/s²; below zero a rod is pushed.
+        nearest: least distance from the vertical through the suspension, over the length.
+        amplitude: largest distance from it, over the length.
+        span: t_end in s.
+    """
+
+    fastest: float
+    damping: float
+    ratio: float
+    magnified: float
+    least_tension: float
+    nearest: float
+    amplitude: float
+    span: float
+
+    @property
+    def stiff(self) -> bool:
+        """True if decay dictates the step of an explicit method although the motion is slow."""
+        return self.damping * self.span > 1e3 and self.ratio > 1e3
+
+    @property
+    def digits_lost(self) -> float:
+        """Decimal digits of the input that the flow costs between release and end."""
+        return max(0.0, math.log10(self.magnified)) if self.magnified > 0 else 0.0
+
+
+def character(scene: Scene, times: Array, states: Array) -> Character:
+    """Measure a scene.
+
+    Args:
+        scene: whose constants are used.
+        times: increasing, from 0, in s.
+        states: the true x, y, z, vx, vy, vz in m and m/s at these times, shape (times, 6).
+    """
+    k = constants_in_double(scene.exact)
+    length = float(k.length)
+    chosen = np.unique(np.linspace(0, len(times) - 1, SAMPLES).astype(int))
+    scaled = states / length
+    sizes, decays, ratios, pulls = [0.0], [0.0], [1.0], []
+    for state in scaled[chosen]:
+        rates = np.linalg.eigvals(_tangent_jacobian(state, k))
+        size = np.abs(rates)
+        sizes.append(float(size.max()))
+        decays.append(float(-rates.real.min()))
+        kept = size[size > 1e-12 * max(size.max(), 1e-300)]
+        ratios.append(float(kept.max() / kept.min()) if len(kept) else 1.0)
+        pulls.append(float(tension(tuple(state[:3]), tuple(state[3:]), k)))
+    aside = np.hypot(scaled[:, 0], scaled[:, 1])
+    return Character(
+        fastest=max(sizes),
+        damping=max(decays),
+        ratio=max(ratios),
+        magnified=_magnified(scene, times[chosen], length),
+        least_tension=min(pulls),
+        nearest=float(aside.min()),
+        amplitude=float(aside.max()),
+        span=float(times[-1]),
+    )
+
+
+def _tangent_jacobian(state: Array, k: Constants) -> Array:
+    """The 4 by 4 Jacobian of n'' = F - n (v·v + n·F) on the tangent space of |n| = 1, n·v = 0."""
+    model = FORMULATIONS["space"]
+    n, v = state[:3], state[3:]
+    size = np.array([1.0] * 3 + [max(1.0, float(np.abs(v).max()))] * 3)
+    columns = []
+    for i in range(6):
+        nudge = np.zeros(6)
+        nudge[i] = _NUDGE * size[i]
+        ahead, behind = (
+            np.array(model.derivatives(tuple(state + side * nudge), k, math), dtype=np.float64) for side in (1, -1)
+        )
+        columns.append((ahead - behind) / (2 * nudge[i]))
+    jacobian = np.array(columns).T
+    normals = np.array([np.concatenate([n, np.zeros(3)]), np.concatenate([v, n])])
+    scaled = normals * size  # rates and positions on one footing before the tangent space is taken
+    _, _, basis = np.linalg.svd(scaled)
+    tangent = basis[2:].T
+    return np.asarray(tangent.T @ (jacobian * size / size[:, None]) @ tangent)
+
+
+def _magnified(scene: Scene, times: Array, length: float) -> float:
+    """The largest response of the position to a displacement of the release, by the variational equations."""
+    response = sensitivity(scene, times)
+    names = [name for name in ("x", "y", "angle", "azimuth") if f"release.{name}" in response.values]
+    grown = [1.0]
+    for name in names:
+        moved = response.derivative(f"release.{name}")[:, :3]
+        sizes = np.sqrt((moved**2).sum(axis=1))
+        at_release = float(sizes[0]) if name in ("angle", "azimuth") else 1.0
+        if at_release > 1e-12 * length:
+            grown.append(float(sizes.max()) / at_release)
+    return max(grown)

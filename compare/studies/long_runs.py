@@ -1,0 +1,184 @@
+"""Long runs: does an error grow in proportion to t, to t^1.5 (Brouwer's law, rounding alone), or to t²?
+
+A phase error that comes from a constant drift of the energy grows like t², one from a random walk of the energy
+like t^1.5, and one from a constant error of the frequency like t.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference import FoucaultError, Golden, Scene, load, load_scene, parse_scene
+from reference.process import Emit
+
+from ..methods import METHODS, Problem, available
+from ..truth import golden_of
+from .isolated import lane
+from .journal import Journal
+from .method_errors import Truth
+from .power_of_time import power_of_time
+
+SCENE = "paris_30d"
+TRUTH_DIGITS = 36  # so that 113 bits can be judged
+TRUTH_LEVEL = "self_consistent"  # two precisions: a confirmation takes heyoka twenty minutes (it was made once)
+LAWS = {"t": 1.0, "t^1.5": 1.5, "t^2": 2.0}
+PATIENCE_S = 1800.0  # wall-clock time for one method
+FROM = 1 / 40  # of the run: growth is fitted from here to the end
+PARTS = 24  # of the logarithm of time, whose largest errors make the curve that is fitted
+
+Item = tuple[str, str, float]
+
+ITEMS: tuple[Item, ...] = (
+    ("heyoka_double", "momentum", 2.0**-52),
+    ("heyoka_double", "space", 2.0**-52),
+    ("heyoka_long_double", "momentum", 2.0**-63),
+    ("heyoka_long_double", "space", 2.0**-63),
+    ("heyoka_real128", "momentum", 2.0**-112),
+    ("limbs", "momentum", 100),
+    ("gauss_legendre", "momentum", 4.0),
+    ("rkng67", "plane", 0.25),
+    ("rk4", "plane", 0.05),
+    ("numbalsoda_dop853", "space", 1e-14),
+    ("rebound_bs", "space", 1e-12),
+)
+
+
+@dataclass(frozen=True)
+class LongRun:
+    """A method's errors over a long run.
+
+    Attributes:
+        method, formulation, setting: what ran.
+        status: ok, or why not.
+        t: times in s.
+        error_m: position error there.
+        cpu_s: CPU seconds.
+        bound_m: of the truth.
+    """
+
+    method: str
+    formulation: str
+    setting: float
+    status: str
+    reason: str = ""
+    t: list[float] = field(default_factory=list, repr=False)
+    error_m: list[float] = field(default_factory=list, repr=False)
+    cpu_s: float | None = None
+    bound_m: float = 0.0
+
+    @property
+    def key(self) -> Item:
+        """What tells rows apart."""
+        return self.method, self.formulation, self.setting
+
+    @property
+    def exponent(self) -> float | None:
+        """The exponent p of error ∝ t^p, fitted to the largest error so far; None where nothing was measured."""
+        t, error = np.array(self.t), np.maximum.accumulate(np.array(self.error_m or [0.0]))
+        kept = (t >= FROM * t[-1]) & (error > 0) if len(t) else np.zeros(0, dtype=bool)
+        return power_of_time(t[kept], error[kept], PARTS) if kept.sum() >= PARTS else None
+
+    @property
+    def law(self) -> str | None:
+        """The law nearest to the exponent."""
+        exponent = self.exponent
+        return None if exponent is None else min(LAWS, key=lambda word: abs(LAWS[word] - exponent))
+
+    def document(self) -> dict[str, Any]:
+        """As JSON."""
+        return asdict(self) | {"exponent": self.exponent, "law": self.law}
+
+
+def long_run(
+    scene: Scene,
+    golden: Golden,
+    items: Sequence[Item] = ITEMS,
+    *,
+    kept: Path | None = None,
+    report: Callable[[int, int, str], None] | None = None,
+) -> list[LongRun]:
+    """The errors of methods over a long run.
+
+    Args:
+        scene: in the binary64 reading.
+        golden: its truth.
+        items: method, formulation and setting of each run.
+        kept: a file that results are appended to and taken from again.
+        report: called with runs done, runs in all and what runs now.
+    """
+    journal = Journal(kept, f"{scene.id} {scene.run.t_end} {golden.manifest.files['grid.csv'].sha256[:16]}")
+    done = {row.key: row for row in (LongRun(**result) for result in journal)}
+    document = scene.model_dump(exclude_none=True)
+    for item in items:
+        if report is not None:
+            report(len(done), len(items), item[0])
+        if item not in done:
+            for row in lane(grown, (document, golden.path), [item], PATIENCE_S, _failed):
+                done[row.key] = row
+                journal.add(asdict(row))
+    return [done[item] for item in items]
+
+
+def _failed(item: Item, late: bool, reason: str) -> LongRun:
+    return LongRun(*item, "out_of_time" if late else "gave_up", reason)
+
+
+def grown(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item]) -> None:
+    """In a process of its own: run a method over the whole span and measure its error at the grid times."""
+    scene = parse_scene(document)
+    truth = Truth(load(folder), float(scene.exact.t_end))
+    bound_m = float(truth.golden.manifest.bounds.position_m)
+    for name, formulation, setting in items:
+        method = METHODS[name]
+        missing = available(method)
+        if missing is not None:
+            emit(LongRun(name, formulation, setting, "not_installed", missing))
+            continue
+        try:
+            work = method.prepare(Problem.of(scene, formulation, truth.times), setting)
+            begun = time.process_time()
+            outcome = work()
+            cpu_s = time.process_time() - begun
+        except FoucaultError as error:
+            emit(LongRun(name, formulation, setting, "refused", str(error)))
+            continue
+        errors = truth.position_errors(outcome)
+        t = truth.times[: len(errors)]
+        emit(
+            LongRun(
+                name, formulation, setting, outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m
+            )
+        )
+
+
+def laws(rows: Sequence[LongRun]) -> Iterator[str]:
+    """A sentence a method."""
+    for row in rows:
+        exponent = row.exponent
+        if exponent is None:
+            yield f"{row.method} ({row.formulation}): {row.status}. {row.reason}"
+        else:
+            end = row.error_m[-1]
+            days = row.t[-1] / 86400
+            yield (
+                f"{row.method} ({row.formulation}): {end:.2g} m after {days:g} days, grows like t^{exponent:.2f}: "
+                f"nearest law {row.law}"
+            )
+
+
+def over_thirty_days(
+    methods: Sequence[str] | None = None,
+    *,
+    kept: Path | None = None,
+    report: Callable[[int, int, str], None] | None = None,
+) -> list[LongRun]:
+    """`long_run` on Paris over 30 days, with its truth; see there."""
+    scene = load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
+    golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)
+    return long_run(scene, golden, [i for i in ITEMS if methods is None or i[0] in methods], kept=kept, report=report)

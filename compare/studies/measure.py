@@ -1,0 +1,162 @@
+"""One measurement: a method at a setting on a scene, its cost and its error against the truth, never a gap.
+
+Timed is the work alone, in one thread, with output at the golden grid times. Before it a probe over a short
+span warms up and tells what the whole span will cost; where that is beyond the limit, a part of the span is
+measured and the cost is extrapolated, which the row says.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference import FoucaultError, Scene, load, parse_scene
+from reference.precision import Array
+from reference.process import Emit
+
+from ..methods import METHODS, Method, Outcome, Problem, available
+from .method_errors import Truth, h_drift
+from .row import EXTRAPOLATED, OK, Row
+
+PROBE = 64  # part of the span that is run first, to warm up and to estimate
+LEAST_ROWS = 4  # of the grid in any span
+REPEAT_S = 1.0  # a run is repeated until so much CPU time is spent on a setting, or
+REPEATS = 5  # so often
+TRANSIT_S = 3.0  # transit times cost a second, untimed run: only up to this much CPU time
+TRANSIT_FLOOR_S = 1e-29  # what one Newton step from the double next to a transit leaves; nothing finer is reported
+MISSED = 0.5  # of the gap to the next transit: a transit that is further off than that is missed
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A scene ready for measurements.
+
+    Attributes:
+        scene: in the reading that the methods get.
+        truth: its golden states.
+        limit_s: CPU seconds that one run may take.
+        repeats: runs of a setting at most.
+        transits: whether to look at their times as well.
+    """
+
+    scene: Scene
+    truth: Truth
+    limit_s: float
+    repeats: int = REPEATS
+    transits: bool = True
+
+    def row(self, method: Method, formulation: str, setting: float) -> Row:
+        """Measure a method at a setting; whatever goes wrong becomes the row's status and reason."""
+        base = Row(method.id, formulation, setting, method.setting, self.scene.inputs, OK)
+        missing = available(method)
+        if missing is not None:
+            return replace(base, status="not_installed", reason=missing)
+        try:
+            return self._measured(base, method)
+        except FoucaultError as error:
+            return replace(base, status="refused", reason=str(error))
+        except (ArithmeticError, ValueError, RuntimeError, MemoryError) as error:
+            return replace(base, status="gave_up", reason=f"{type(error).__name__}: {error}")
+
+    def _measured(self, base: Row, method: Method) -> Row:
+        times = self.truth.times
+        longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
+        begun = time.process_time()
+        probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
+        probe = method.prepare(self._problem(base, probe_times), base.setting)
+        compile_s = time.process_time() - begun
+        tried, probe_s = _timed(probe)
+        base = replace(base, compile_s=compile_s)
+        if tried.status != OK:
+            return self._failed(base, tried, probe_s)
+        probe_s = min(probe_s, _timed(probe)[1]) if probe_s < self.limit_s / PROBE else probe_s
+        expected = probe_s * float(times[-1] / probe_times[-1])
+        rows = min(len(times), longest)
+        if expected > self.limit_s:
+            rows = min(rows, max(LEAST_ROWS, int(self.limit_s / 4 / expected * len(times))))
+        if rows <= len(probe_times):
+            return self._finished(base, tried, [probe_s], probe_times)
+        begun = time.process_time()
+        work = method.prepare(self._problem(base, times[:rows]), base.setting)
+        base = replace(base, compile_s=compile_s + time.process_time() - begun)
+        outcome, cpu_s = _timed(work)
+        if outcome.status != OK:
+            return self._failed(base, outcome, cpu_s)
+        taken = [cpu_s]
+        while len(taken) < self.repeats and sum(taken) + cpu_s < REPEAT_S:
+            taken.append(_timed(work)[1])
+        return self._finished(base, outcome, taken, times[:rows])
+
+    def _problem(self, base: Row, times: Array) -> Problem:
+        return Problem.of(self.scene, base.formulation, times)
+
+    def _failed(self, base: Row, outcome: Outcome, cpu_s: float) -> Row:
+        return replace(
+            base,
+            status=outcome.status,
+            reason=outcome.reason,
+            cpu_s=cpu_s,
+            reached_t=outcome.reached_t,
+            steps=outcome.steps,
+            rhs_evaluations=outcome.rhs_evaluations,
+        )
+
+    def _finished(self, base: Row, outcome: Outcome, taken: Sequence[float], times: Array) -> Row:
+        whole = len(times) == len(self.truth.times)
+        share = float(self.truth.times[-1] / times[-1])
+        errors = self.truth.position_errors(outcome)
+        cpu_s = statistics.median(taken)
+        reason = "" if whole else f"measured to t = {times[-1]:g} s; the cost is scaled to {self.truth.times[-1]:g} s"
+        row = replace(
+            base,
+            status=OK if whole else EXTRAPOLATED,
+            reason=reason,
+            error_m=float(errors.max()),
+            end_error_m=float(errors[-1]),
+            h_drift=h_drift(self.scene, outcome),
+            cpu_s=cpu_s * share,
+            cpu_spread=(max(taken) - min(taken)) / cpu_s if cpu_s and len(taken) > 1 else None,
+            rhs_evaluations=outcome.rhs_evaluations,
+            steps=outcome.steps,
+            reached_t=float(times[-1]),
+        )
+        return self._with_transits(row) if self.transits and whole and cpu_s <= TRANSIT_S else row
+
+    def _with_transits(self, row: Row) -> Row:
+        """The row with the largest error of a transit's time, or as failed if one is missed."""
+        found = self.truth.transits
+        if not len(found):
+            return row
+        work = METHODS[row.method].prepare(self._problem(row, np.concatenate([[0.0], found])), row.setting)
+        outcome = work()
+        if outcome.status != OK:
+            return row
+        late = self.truth.transit_errors(self.scene, outcome)
+        gaps = np.diff(np.concatenate([[0.0], found, [np.inf]]))
+        missed = late > MISSED * np.minimum(gaps[1:], gaps[:-1])
+        if missed.any():
+            first = float(found[np.argmax(missed)])
+            text = f"{int(missed.sum())} of {len(found)} transits are missed, the first at t = {first:.6f} s"
+            return replace(row, status="missed_transits", reason=text)
+        return replace(row, transit_error_s=max(float(late.max()), TRANSIT_FLOOR_S))
+
+
+def _timed(work: Any) -> tuple[Outcome, float]:
+    begun = time.process_time()
+    outcome = work()
+    spent = time.process_time() - begun
+    return outcome, spent if outcome.cpu_s is None else outcome.cpu_s
+
+
+def ladder(emit: Emit, scene: dict[str, Any], golden: Path, t_end: float, limit_s: float, todo: list[Any]) -> None:
+    """In a process of its own: measure (method, formulation, setting) one after the other and send each row."""
+    bench = Bench(parse_scene(scene), Truth(load(golden), t_end), limit_s)
+    for name, formulation, setting in todo:
+        emit(bench.row(METHODS[name], formulation, setting))

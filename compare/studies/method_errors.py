@@ -1,0 +1,107 @@
+"""How far a method's run is off: positions on the grid, times of transits, drift of h; in any number type."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from reference import Golden, Scene
+from reference.model.constants import constants
+from reference.model.mechanics import acceleration, invariant
+from reference.precision import Array, context
+from reference.solver.solution import GRID_COLUMNS
+
+from ..methods import Outcome
+from ..rhs.constants import constants_in_double
+
+H_ROWS = 64  # at which the drift of h is taken
+
+
+@dataclass(frozen=True)
+class Truth:
+    """The golden states that rows are measured against.
+
+    Args:
+        golden: of the scene in the reading that the methods get.
+        t_end: end of the span in s.
+    """
+
+    golden: Golden
+    t_end: float
+
+    @cached_property
+    def times(self) -> Array:
+        """Grid times of the span in s."""
+        t: Array = self.golden.t
+        return np.asarray(t[t <= self.t_end])
+
+    @cached_property
+    def exact(self) -> list[list[Fraction]]:
+        """x, y, z in m as printed, per grid time."""
+        columns = [self.golden.exact(name)[: len(self.times)] for name in GRID_COLUMNS[:3]]
+        return [list(row) for row in zip(*columns, strict=True)]
+
+    @cached_property
+    def transits(self) -> Array:
+        """Times of the transits within the span in s."""
+        t = self.golden.transits["t"]
+        return np.asarray(t[t < self.times[-1]])
+
+    @cached_property
+    def transits_rounded_by(self) -> Array:
+        """How far the doubles of `transits` are from the printed times, in s."""
+        texts = self.golden.transits_text["t"][: len(self.transits)]
+        pairs = zip(self.transits, texts, strict=True)
+        return np.array([float(Fraction(float(t)) - Fraction(text)) for t, text in pairs])
+
+    def position_errors(self, outcome: Outcome) -> Array:
+        """Distance from the truth at each row, in m, without cancellation in any number type."""
+        finer = outcome.exact
+        if finer is not None:
+            unit = Fraction(1, 2**finer.scale)
+            found: Any = [[unit * part for part in row[:3]] for row in finer.rows]
+        else:
+            found = [[Fraction(float(part)) for part in row] for row in outcome.states[:, :3]]
+        differences = [
+            [float(p - q) for p, q in zip(row, true, strict=True)]
+            for row, true in zip(found, self.exact[: len(found)], strict=True)
+        ]
+        return np.asarray(np.sqrt((np.array(differences) ** 2).sum(axis=1)))
+
+    def transit_errors(self, scene: Scene, outcome: Outcome) -> Array:
+        """How late each transit is in s, by one Newton step from the states at the true times, in any number type.
+
+        Args:
+            scene: in the reading that the method got.
+            outcome: of a run to t = 0 and `transits`.
+        """
+        finer, states = outcome.exact, outcome.states[1:]
+        vx = states[:, 3] if finer is None else np.array([row[3] / (1 << finer.scale) for row in finer.rows[1:]])
+        k = constants_in_double(scene.exact)
+        n, v = (tuple(states[:, part] / k.length for part in parts) for parts in ((0, 1, 2), (3, 4, 5)))
+        ax = np.asarray(acceleration(n, v, k)[0] * k.length)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            late = np.abs(self.transits_rounded_by - vx / ax)
+        return np.where(np.isfinite(late), late, np.inf)
+
+
+def h_drift(scene: Scene, outcome: Outcome) -> float | None:
+    """Drift of h over the largest kinetic energy, in the precision of the outcome; None with drag."""
+    if scene.exact.drag:
+        return None
+    ctx = context(80 if outcome.exact is None else outcome.exact.scale + 64)
+    k = constants(scene.exact, ctx)
+    finer = outcome.exact
+    rows: Any = outcome.states if finer is None else finer.rows
+    unit = ctx.mpf(1) if finer is None else ctx.mpf(2) ** -finer.scale
+    values, kinetic = [], ctx.mpf(0)
+    for i in np.unique(np.linspace(0, len(rows) - 1, H_ROWS).astype(int)):
+        numbers = [ctx.mpf(float(part) if finer is None else part) * unit / k.length for part in rows[i][:6]]
+        n, v = tuple(numbers[:3]), tuple(numbers[3:])
+        values.append(invariant(n, v, k))
+        kinetic = max(kinetic, sum(part * part for part in v) * k.length**2 / 2)
+    return float(max(abs(value - values[0]) for value in values) / kinetic) if kinetic else None

@@ -1,0 +1,75 @@
+"""Scenes that differ from a given one in amplitude, latitude, length or rotation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from reference import InputError, Scene, parse_scene
+
+from ..approximations.case import Case
+
+UNITS: dict[str, str] = {"amplitude": "m", "latitude": "degrees", "length": "m", "rotation_rate": "rad/s"}
+_DIGITS = 40
+_FIELDS = {"latitude": "site.latitude", "rotation_rate": "site.rotation_rate"}
+
+
+def varied(scene: Scene, over: str, value: float | str) -> Scene:
+    """The scene with one thing changed.
+
+    Args:
+        scene: to start from.
+        over: `latitude` or `rotation_rate`: that field; `length`: the cord, with the angle of release kept;
+            `amplitude`: displacement from the point of rest in m along the sphere's horizontal projection, with its
+            direction kept, and the velocity of release in proportion.
+        value: its new value.
+
+    Raises:
+        InputError: unknown `over`, or a value that no scene can have.
+    """
+    text = value if isinstance(value, str) else repr(float(value))
+    if over in _FIELDS:
+        return scene.with_values([f"{_FIELDS[over]}={text}"])
+    if over == "length":
+        return _lengthened(scene, text)
+    if over == "amplitude":
+        return _displaced(scene, text)
+    raise InputError("over", over, f"one of {', '.join(UNITS)}")
+
+
+def _lengthened(scene: Scene, text: str) -> Scene:
+    case = Case.of(scene)
+    if scene.exact.position is not None:
+        ratio = case.ctx.mpf(text) / case.length
+        place, speed = (tuple(part * ratio for part in v) for v in (case.position, case.velocity))
+        document = scene.model_dump(exclude_none=True) | {"release": _release(case, place, speed)}
+        document["pendulum"]["length"] = text
+        return parse_scene(document)
+    return scene.with_values([f"pendulum.length={text}"])
+
+
+def released(scene: Scene, east: float, north: float) -> Scene:
+    """The scene released at rest, so many m east and north of its point of rest (horizontally)."""
+    case = Case.of(scene)
+    y = case.ctx.mpf(case.rest[1]) * case.length + case.ctx.mpf(north)
+    return _with_release(scene, _release(case, (case.ctx.mpf(east), y), (0, 0)))
+
+
+def _displaced(scene: Scene, text: str) -> Scene:
+    case = Case.of(scene)
+    north = case.ctx.mpf(case.rest[1]) * case.length
+    east, up = case.position[0], case.position[1] - north
+    present = case.ctx.hypot(east, up)
+    if not present:
+        raise InputError("release", f"x = {scene.release.x}, y = {scene.release.y}", "a release off the point of rest")
+    ratio = case.ctx.mpf(text) / present
+    velocity = tuple(part * ratio for part in case.velocity)
+    return _with_release(scene, _release(case, (east * ratio, north + up * ratio), velocity))
+
+
+def _with_release(scene: Scene, release: dict[str, str]) -> Scene:
+    return parse_scene(scene.model_dump(exclude_none=True) | {"release": release})
+
+
+def _release(case: Case, place: Any, velocity: Any) -> dict[str, str]:
+    values = {"x": place[0], "y": place[1], "vx": velocity[0], "vy": velocity[1]}
+    return {name: str(case.ctx.nstr(case.ctx.mpf(value), _DIGITS)) for name, value in values.items()}

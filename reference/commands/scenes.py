@@ -1,0 +1,20 @@
+"""`foucault scenes`: list the scenes that come with the project."""
+
+from __future__ import annotations
+
+import typer
+
+from ..scene import load_scene, scene_ids
+from .terminal import AsJson, emit
+
+
+def command(as_json: AsJson = False) -> None:
+    """List the scenes that come with the project."""
+    found = [load_scene(name) for name in scene_ids()]
+    if as_json:
+        emit({"scenes": [scene.model_dump(exclude_none=True) for scene in found]})
+        return
+    width = max((len(scene.id) for scene in found), default=0)
+    for scene in found:
+        flags = f"  [{', '.join(scene.flags)}]" if scene.flags else ""
+        typer.echo(f"{scene.id:{width}}  {scene.title}{flags}")

@@ -1,0 +1,79 @@
+"""`foucault show`: a scene, what follows from it, and the equations that are compiled for it."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+
+from ..scene import Scene, load_scene
+from .terminal import AsJson, Assignments, SceneWord, emit
+
+
+def command(
+    scene_word: SceneWord,
+    equations: Annotated[bool, typer.Option("--equations", help="The compiled lines, and what was left out.")] = False,
+    sensitivity: Annotated[
+        bool, typer.Option("--sensitivity", help="How many digits the flow costs between release and end.")
+    ] = False,
+    set_: Assignments = None,
+    as_json: AsJson = False,
+) -> None:
+    """Show a scene: its inputs, what follows from them, and with --equations what is compiled for it."""
+    scene = load_scene(scene_word, set_ or ())
+    document: dict[str, Any] = {**scene.model_dump(exclude_none=True), "derived": _derived(scene)}
+    if equations:
+        from ..engines.equations import lines_and_left_out
+
+        document["equations"], document["left_out"] = lines_and_left_out(scene, "momentum")
+    if sensitivity:
+        from ..solver.pilot import digits_lost
+
+        document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
+    if as_json:
+        emit(document)
+        return
+    from ..dataset.sheets import scene_inputs
+
+    typer.echo(f"{scene.id}: {scene.title}")
+    if scene.source:
+        typer.echo(f"source: {scene.source}")
+    typer.echo(f"inputs are read as: {scene.inputs}")
+    for section, table in scene_inputs(scene).items():
+        typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
+    typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
+    if sensitivity:
+        lost = document["digits_lost"]
+        typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
+        typer.echo(f"  the inputs have to be right to n + {lost:.1f}")
+    if equations:
+        typer.echo("compiled (momentum form; n = r/l, H = n × (n' + Ω × n), c = pull/l):")
+        for line in document["equations"]:
+            typer.echo(f"  {line}")
+        typer.echo("left out:")
+        for line in document["left_out"] or ["nothing"]:
+            typer.echo(f"  {line}")
+
+
+def _derived(scene: Scene) -> dict[str, str]:
+    """Distance from the axis, apparent gravity at the pivot, rest position, small-swing period; 15 digits."""
+    from ..model.constants import constants
+    from ..model.mechanics import rest_position
+    from ..precision import context
+
+    ctx = context(96)
+    k = constants(scene.exact, ctx)
+
+    def text(value: Any) -> str:
+        return str(ctx.nstr(ctx.mpf(value), 15))
+
+    derived = {"axis_distance_m": text(k.axis_distance * k.length)}
+    strength = ctx.sqrt(sum(part * part for part in k.pull))
+    derived["pivot_gravity_m_s2"] = text(strength * k.length)
+    if strength:
+        derived["small_swing_period_s"] = text(2 * ctx.pi / ctx.sqrt(strength))
+    try:
+        _, y, z = rest_position(k, ctx)
+    except ValueError:
+        return derived
+    return derived | {"rest_y_m": text(y * k.length), "rest_z_m": text(z * k.length)}

@@ -1,0 +1,41 @@
+"""`foucault verify`: check golden datasets, or solve them again and compare every byte."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from ..errors import InputError
+from ..scene import data_root
+from .terminal import AsJson, emit, progress
+
+
+def command(
+    paths: Annotated[list[str] | None, typer.Argument(metavar="[PATH]...", help="Datasets; all by default.")] = None,
+    recompute: Annotated[bool, typer.Option("--recompute", help="Solve again and compare every byte.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Check datasets: schema, hashes, physics; with --recompute the same bytes again."""
+    from ..dataset.read import golden_folder, read_manifest, scene_of
+    from ..dataset.verify import problems_of
+    from ..dataset.write import recompute as recomputed
+
+    folders = [golden_folder(path) for path in paths or ()] or sorted((data_root() / "golden").glob("[a-z]*"))
+    if not folders:
+        raise InputError("PATH", "nothing", "a golden dataset", "Make one with `foucault generate`.")
+    rows = []
+    for folder in folders:
+        problems = problems_of(folder)
+        if recompute and not problems:
+            with progress(folder.name, float(scene_of(read_manifest(folder)).exact.t_end)) as report:
+                problems = recomputed(folder, report)
+        rows.append({"path": str(folder), "ok": not problems, "problems": problems})
+        if not as_json:
+            typer.echo(f"{folder}: {'ok' if not problems else 'WRONG'}")
+            for problem in problems:
+                typer.echo(f"  {problem}")
+    if as_json:
+        emit({"rows": rows})
+    if not all(row["ok"] for row in rows):
+        raise typer.Exit(1)

@@ -1,0 +1,130 @@
+"""A solution as text: tables with a fixed number of digits per column, and their nearest doubles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ..errors import UnreachableError
+from ..precision import fixed_decimal, point, rounded_up
+from ..scene import Scene
+from ..solver.solution import Solution, Table, grid_decimals, transit_decimals
+
+GRID_HEADER = ("t", "x", "y", "z", "vx", "vy", "vz")
+TRANSITS_HEADER = ("k", "t", "direction", "x", "y", "z", "vy", "ax", "bound")
+WORDS = frozenset({"k", "direction", "bound"})  # columns that are not decimals of fixed length
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """A printed table: header, rows of text, and digits after the point per column."""
+
+    header: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+    decimals: dict[str, int]
+
+    def csv(self) -> str:
+        """The file as it is written: one header line, commas, LF."""
+        return "".join(",".join(row) + "\n" for row in (self.header, *self.rows))
+
+
+def exact_decimals(values: tuple[Fraction, ...]) -> int:
+    """Digits after the point that print terminating decimals exactly."""
+    digits = 0
+    for value in values:
+        while (value * 10**digits).denominator != 1:
+            digits += 1
+    return digits
+
+
+def decimals_of(solution: Solution) -> tuple[dict[str, int], dict[str, int]]:
+    """Digits after the point of the columns of the grid and of the transits (empty without transits)."""
+    grid, met, digits = solution.grid, solution.transits, solution.scene.run.digits
+    of_grid = grid_decimals(grid.largest(), grid.largest_bounds(), digits)
+    named = dict(zip(grid.columns, of_grid, strict=True))
+    if met is None:
+        return named, {}
+    t, *_, ax = met.largest()
+    return named, dict(zip(met.columns, transit_decimals(of_grid, t, ax, digits), strict=True))
+
+
+def _printed(table: Table, decimals: dict[str, int], proven: bool) -> list[tuple[str, ...]]:
+    """Every number rounded to its column's digits; where it is proven, both ends of its interval must round alike."""
+    units = [10 ** decimals[name] for name in table.columns]
+    rows = []
+    for values, errors in zip(table.values, table.errors, strict=True):
+        whole = [_nearest(value * unit, table.scale) for value, unit in zip(values, units, strict=True)]
+        texts = tuple(point(n, decimals[name]) for n, name in zip(whole, table.columns, strict=True))
+        if proven:
+            for n, value, error, unit, name, text in zip(
+                whole, values, errors, units, table.columns, texts, strict=True
+            ):
+                low, high = (_nearest((value + side * error) * unit, table.scale) for side in (-1, 1))
+                if not low == n == high:
+                    raise UndecidedRounding(name, text)
+        rows.append(texts)
+    return rows
+
+
+def _nearest(value: int, scale: int) -> int:
+    """The integer nearest to value / 2**scale (ties upwards)."""
+    return (value + (1 << scale >> 1)) >> scale
+
+
+class UndecidedRounding(UnreachableError):
+    """A proven interval holds a number halfway between two printed ones: a finer enclosure is needed."""
+
+    def __init__(self, column: str, text: str) -> None:
+        super().__init__(f"The enclosure of {column} = {text} does not decide its last digit.")
+
+
+def grid_sheet(solution: Solution) -> Sheet:
+    """`grid.csv`: exact times, and the state at each."""
+    decimals = {"t": exact_decimals(solution.times), **decimals_of(solution)[0]}
+    printed = _printed(solution.grid, decimals, solution.level == "enclosed")
+    times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
+    return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, printed, strict=True)], decimals)
+
+
+def transits_sheet(solution: Solution) -> Sheet:
+    """`transits.csv`: every zero of xdot; the bound on t includes the rounding of t to its digits."""
+    table = solution.transits
+    if table is None:
+        return Sheet(TRANSITS_HEADER, [], {})
+    decimals = decimals_of(solution)[1]
+    half_unit = Fraction(1, 2 * 10 ** decimals["t"])
+    rows = []
+    printed = _printed(table, decimals, solution.level == "enclosed")
+    for k, (row, errors, direction) in enumerate(zip(printed, table.errors, solution.directions, strict=True), 1):
+        bound = rounded_up(Fraction(errors[0], 1 << table.scale) + half_unit)
+        rows.append((str(k), row[0], f"{direction:+d}", *row[1:], bound))
+    return Sheet(TRANSITS_HEADER, rows, decimals)
+
+
+def binary64_sheet(sheet: Sheet) -> Sheet:
+    """Each number of a sheet as the nearest double: 17 significant digits, then all again as hexfloats."""
+    names = [name for name in sheet.header if name not in WORDS]
+    rows = []
+    for row in sheet.rows:
+        doubles = [float(text) for name, text in zip(sheet.header, row, strict=True) if name in names]
+        again = iter(doubles)
+        plain = (f"{next(again):.16e}" if name in names else text for name, text in zip(sheet.header, row, strict=True))
+        rows.append((*plain, *(value.hex() for value in doubles)))
+    return Sheet((*sheet.header, *(f"{name}_hex" for name in names)), rows, {})
+
+
+def largest_bound(table: Table, columns: tuple[str, ...], decimals: dict[str, int]) -> Fraction:
+    """The largest bound of some columns, rounding to the printed digits included."""
+    return max(
+        (max(table.bound(name), default=Fraction(0)) + Fraction(1, 2 * 10 ** decimals[name]) for name in columns),
+        default=Fraction(0),
+    )
+
+
+def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
+    """All inputs of a scene as strings, section by section."""
+    document = scene.model_dump(exclude_none=True, include={"pendulum", "site", "release", "run"})
+    return {
+        section: {key: str(value).lower() if isinstance(value, bool) else str(value) for key, value in table.items()}
+        for section, table in document.items()
+    }

@@ -1,0 +1,168 @@
+"""Is a golden dataset whole, and is it physics? Nothing here integrates."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+
+from ..errors import DatasetError, FoucaultError
+from ..model.constants import constants
+from ..model.mechanics import invariant
+from ..precision import bits_of, context, fixed_decimal, rounded_up, to_fraction, to_mpf
+from ..scene import Scene
+from .manifest import Manifest
+from .read import changed_files, read_manifest, read_table, scene_of
+from .sheets import GRID_HEADER, TRANSITS_HEADER, WORDS, Sheet, binary64_sheet
+
+MAX_PROBLEMS = 20
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
+
+
+def problems_of(folder: Path) -> list[str]:
+    """What is wrong with a dataset, in sentences; empty if nothing is.
+
+    Raises:
+        InputError: there is no dataset at `folder`.
+    """
+    try:
+        manifest = read_manifest(folder)
+    except DatasetError as error:
+        return error.problems
+    found = changed_files(folder, manifest)
+    if found:
+        return found
+    try:
+        scene = scene_of(manifest)
+    except FoucaultError as error:
+        return [f"the manifest's scene is refused: {error}"]
+    tables = {name: _sheet(folder / name) for name in manifest.files if name.endswith(".csv")}
+    found = [problem for check in (_shape, _doubles) for problem in check(manifest, tables)]
+    if found:
+        return found[:MAX_PROBLEMS]
+    physics: tuple[Callable[[Scene, Manifest, Sheet, Sheet], Iterator[str]], ...] = (_grid, _sphere, _invariant, _zeros)
+    grid, transits = tables["grid.csv"], tables["transits.csv"]
+    return [p for check in physics for p in check(scene, manifest, grid, transits)][:MAX_PROBLEMS]
+
+
+def _sheet(path: Path) -> Sheet:
+    columns = read_table(path)
+    return Sheet(tuple(columns), list(zip(*columns.values(), strict=True)), {})
+
+
+def _shape(manifest: Manifest, tables: dict[str, Sheet]) -> Iterator[str]:
+    """Headers, counts, and the number of digits after the point."""
+    for name, header, count, decimals in (
+        ("grid.csv", GRID_HEADER, manifest.counts.grid, manifest.decimals.get("grid", {})),
+        ("transits.csv", TRANSITS_HEADER, manifest.counts.transits, manifest.decimals.get("transits", {})),
+    ):
+        sheet = tables.get(name)
+        if sheet is None or sheet.header != header:
+            yield f"{name}: the header must be {','.join(header)}"
+            continue
+        if len(sheet.rows) != count:
+            yield f"{name}: {len(sheet.rows)} rows, the manifest counts {count}"
+        for number, row in enumerate(sheet.rows, 1):
+            for column, text in zip(header, row, strict=True):
+                if column not in WORDS and (
+                    not _NUMBER.fullmatch(text) or len(text.partition(".")[2]) != decimals.get(column)
+                ):
+                    yield f"{name}: row {number}, {column} = {text} is not a number of {decimals.get(column)} decimals"
+
+
+def _doubles(manifest: Manifest, tables: dict[str, Sheet]) -> Iterator[str]:
+    for name in ("grid", "transits"):
+        if f"{name}.csv" in tables and binary64_sheet(tables[f"{name}.csv"]) != tables.get(f"{name}.binary64.csv"):
+            yield f"{name}.binary64.csv: does not hold the nearest doubles of {name}.csv"
+
+
+def _grid(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
+    if [Fraction(row[0]) for row in grid.rows] != scene.exact.grid:
+        yield "grid.csv: the times are not those of the scene"
+
+
+def _slack(manifest: Manifest) -> tuple[Fraction, Fraction]:
+    return Fraction(manifest.bounds.position_m), Fraction(manifest.bounds.velocity_m_s)
+
+
+def _sphere(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
+    """|r| = l and r·v = 0 as far as the bounds say."""
+    length = scene.exact.length
+    dr, dv = _slack(manifest)
+    for row in grid.rows:
+        x, y, z, vx, vy, vz = map(Fraction, row[1:])
+        if abs(x * x + y * y + z * z - length**2) > 4 * length * dr + 3 * dr**2:
+            yield f"grid.csv: t = {row[0]}: the bob is not at the distance {float(length)} m from the pivot"
+        speed = abs(vx) + abs(vy) + abs(vz)
+        if abs(x * vx + y * vy + z * vz) > 2 * (speed * dr + 2 * length * dv + 3 * dr * dv):
+            yield f"grid.csv: t = {row[0]}: the velocity is not along the sphere"
+
+
+def _invariant(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
+    """Without drag h stays put as far as the bounds say; the manifest says how far it moved."""
+    initial, drift = invariant_drift(scene, grid)
+    if (initial, drift) != (manifest.invariant.h_m2_s2, manifest.invariant.drift_m2_s2):
+        yield f"manifest.json: the invariant is {initial}, drift {drift}, and not what the manifest says"
+    if Fraction(drift) > invariant_tolerance(scene, manifest, grid) and scene.exact.drag == 0:
+        yield f"grid.csv: the invariant h drifts by {drift} m²/s², more than the bounds allow"
+
+
+def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
+    """H of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
+    ctx = context(bits_of(scene.run.digits) + 96)  # (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
+    k = constants(scene.exact, ctx)
+
+    def h_of(row: tuple[str, ...]) -> Fraction:
+        x, y, z, vx, vy, vz = (to_mpf(Fraction(text), ctx) / k.length for text in row[1:])
+        return to_fraction(invariant((x, y, z), (vx, vy, vz), k) + ctx.mpf(0))
+
+    values = [h_of(row) for row in grid.rows]
+    digits = scene.run.digits
+    return fixed_decimal(values[0], digits), rounded_up(max(abs(value - values[0]) for value in values))
+
+
+def invariant_tolerance(scene: Scene, manifest: Manifest, grid: Sheet) -> Fraction:
+    """How much h may change between two rows by the bounds on position and velocity alone, in m²/s²."""
+    ctx = context(64)
+    k = constants(scene.exact, ctx)
+    length = scene.exact.length
+    dr, dv = _slack(manifest)
+    fastest = max(abs(Fraction(text)) for row in grid.rows for text in row[4:])
+    reach = length * (to_fraction(k.axis_distance + ctx.mpf(0)) + 3) + 3 * dr
+    slope = scene.exact.gravity + 4 * scene.exact.rotation_rate**2 * reach
+    return Fraction(101, 100) * 2 * (slope * dr + 3 * (fastest + dv) * dv)
+
+
+def _zeros(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
+    """In order, alternating, with ax of the crossing's sign, and as many as the sign of vx on the grid demands."""
+    moments = [Fraction(row[1]) for row in transits.rows]
+    directions = [int(row[2]) for row in transits.rows]
+    if [row[0] for row in transits.rows] != [str(k + 1) for k in range(len(moments))]:
+        yield "transits.csv: k does not count from 1"
+    if moments and not (moments[0] > 0 and moments[-1] <= scene.exact.t_end):
+        yield "transits.csv: a transit lies outside (0, t_end]"
+    for k, (a, b) in enumerate(pairwise(moments), 1):
+        if not a < b:
+            yield f"transits.csv: transits {k} and {k + 1} are not in order"
+    for k, (p, q) in enumerate(pairwise(directions), 1):
+        if p == q and manifest.transits == "complete":
+            yield f"transits.csv: transits {k} and {k + 1} do not alternate"
+    for row, direction in zip(transits.rows, directions, strict=True):
+        if abs(direction) != 1 or Fraction(row[7]) * direction < 0:
+            yield f"transits.csv: transit {row[0]}: direction {row[2]} contradicts ax = {row[7]}"
+    if manifest.transits == "complete":
+        yield from _signs_on_grid(grid, moments, directions, _slack(manifest)[1])
+
+
+def _signs_on_grid(grid: Sheet, moments: list[Fraction], directions: list[int], dv: Fraction) -> Iterator[str]:
+    """After a crossing upwards vx is positive until the next: every surely signed grid row must agree."""
+    passed = 0
+    for row in grid.rows[1:]:
+        t, vx = Fraction(row[0]), Fraction(row[4])
+        while passed < len(moments) and moments[passed] <= t:
+            passed += 1
+        expected = directions[passed - 1] if passed else -directions[0] if directions else 0
+        if expected and abs(vx) > dv and vx * expected < 0:
+            yield f"grid.csv: t = {row[0]}: the sign of vx contradicts the transits before it"

@@ -1,0 +1,37 @@
+"""Which terms a scene has: what is compiled, what is left out, and why."""
+
+from __future__ import annotations
+
+from ..model.constants import constants, release, scaled
+from ..model.mechanics import FORMULATIONS
+from ..model.vanishing import xdot_vanishes
+from ..precision import context
+from ..scene import Scene
+from .heyoka.taylor import equations_text
+
+_PREC = 128  # only exact zeros matter here
+
+
+def lines_and_left_out(scene: Scene, formulation: str) -> tuple[list[str], list[str]]:
+    """The compiled lines "name' = …", and a sentence for each group of terms that the scene does not need."""
+    ctx = context(_PREC)
+    k = constants(scene.exact, ctx)
+    inputs, left_out = scene.exact, []
+    if inputs.rotation_rate == 0:
+        left_out.append("Coriolis and centrifugal terms: rotation_rate is 0.")
+    elif abs(inputs.latitude) == 90:
+        left_out.append("the distance R from the axis and the terms with Omega_y: the latitude is a pole.")
+    elif inputs.latitude == 0:
+        left_out.append("the terms with Omega_z and c_y: the latitude is 0.")
+    if inputs.drag == 0:
+        left_out.append("drag: it is 0.")
+    if inputs.gravity == 0:
+        left_out.append("gravity: it is 0.")
+    r, v = release(inputs, ctx)
+    if not scene.run.transits:
+        left_out.append("event detection: transits are off.")
+    elif xdot_vanishes(scaled(r, k.length), v, k):
+        left_out.append("event detection: xdot is identically zero.")
+    if scene.run.level != "enclosed":
+        left_out.append("the enclosure: the level does not ask for it.")
+    return equations_text(FORMULATIONS[formulation], k), left_out

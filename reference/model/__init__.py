@@ -1,0 +1,1 @@
+"""The equations of motion, written once: constants of a scene, force, formulations, what vanishes."""

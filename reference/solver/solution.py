@@ -1,0 +1,185 @@
+"""What a solved scene is: tables of exact numbers, each with a bound, and where they came from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ..engines.plan import Run
+from ..precision import Array, decimals_for
+from ..scene import Level, Scene
+
+GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
+TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
+NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of numbers, as integers over 2**scale, with a bound of the same shape on every one."""
+
+    columns: tuple[str, ...]
+    scale: int
+    values: list[tuple[int, ...]] = field(repr=False)
+    errors: list[tuple[int, ...]] = field(repr=False)
+
+    def exact(self, name: str) -> list[Fraction]:
+        """A column's values, exactly as computed."""
+        return self._fractions(self.values, name)
+
+    def bound(self, name: str) -> list[Fraction]:
+        """A column's bounds: how far the exact values may be from the truth."""
+        return self._fractions(self.errors, name)
+
+    def _fractions(self, rows: Sequence[tuple[int, ...]], name: str) -> list[Fraction]:
+        i = self.columns.index(name)
+        return [Fraction(row[i], 1 << self.scale) for row in rows]
+
+    def largest(self) -> tuple[Fraction, ...]:
+        """Per column the largest size of its values."""
+        return self._maxima(self.values)
+
+    def largest_bounds(self) -> tuple[Fraction, ...]:
+        """Per column the largest of its bounds."""
+        return self._maxima(self.errors)
+
+    def _maxima(self, rows: Sequence[tuple[int, ...]]) -> tuple[Fraction, ...]:
+        return tuple(
+            Fraction(max((abs(row[i]) for row in rows), default=0), 1 << self.scale) for i in range(len(self.columns))
+        )
+
+    def array(self, name: str) -> Array:
+        """A column as the nearest doubles, shape (rows,)."""
+        i, unit = self.columns.index(name), 1 << self.scale
+        return np.array([row[i] / unit for row in self.values])
+
+
+def grid_decimals(largest: Sequence[Fraction], errors: Sequence[Fraction], digits: int) -> list[int]:
+    """Digits after the point of x, y, z, vx, vy, vz, from each column's largest number and error.
+
+    A column that is nothing but error takes the digits of the largest column of its kind: a coordinate
+    that vanishes by symmetry comes out of a run as rounding noise, and noise has no significant digits.
+    """
+    resolved = [size if size > NOISE * error else Fraction(0) for size, error in zip(largest, errors, strict=True)]
+    scales = [max(resolved[:3])] * 3 + [max(resolved[3:])] * 3
+    return [decimals_for(size or scale, digits) for size, scale in zip(resolved, scales, strict=True)]
+
+
+def transit_decimals(of_grid: Sequence[int], t: Fraction, ax: Fraction, digits: int) -> list[int]:
+    """Digits after the point of t, x, y, z, vy, ax: states as in the grid, t and ax by their own largest number."""
+    x, y, z, _, vy, _ = of_grid
+    return [decimals_for(t, digits), x, y, z, vy, decimals_for(ax, digits)]
+
+
+@dataclass(frozen=True)
+class CrossCheck:
+    """A second run and its largest disagreement with the published one, in m, m/s and s."""
+
+    formulation: str
+    number: str
+    order: int
+    steps: int
+    position_m: Fraction
+    velocity_m_s: Fraction
+    transit_s: Fraction | None
+    cpu_s: float
+
+    @classmethod
+    def of(
+        cls, witness: Run, grid_gap: Sequence[Fraction], zero_gap: Sequence[tuple[Fraction, ...]] | None
+    ) -> CrossCheck:
+        """From a run and its differences per grid column and per transit."""
+        return cls(
+            formulation=witness.plan.formulation,
+            number=str(witness.plan.number),
+            order=witness.order,
+            steps=witness.steps,
+            position_m=max(grid_gap[:3]),
+            velocity_m_s=max(grid_gap[3:]),
+            transit_s=max((row[0] for row in zero_gap), default=Fraction(0)) if zero_gap is not None else None,
+            cpu_s=witness.cpu_s,
+        )
+
+
+@dataclass(frozen=True)
+class Source:
+    """The run that published numbers come from: formulation, number type, order, steps, cost."""
+
+    formulation: str
+    number: str
+    order: int
+    steps: int
+    cpu_s: float
+    compile_s: float
+
+    @classmethod
+    def of(cls, run: Run) -> Source:
+        """From a run."""
+        return cls(run.plan.formulation, str(run.plan.number), run.order, run.steps, run.cpu_s, run.compile_s)
+
+
+@dataclass(frozen=True)
+class Proof:
+    """An enclosure's method and size, its largest radii in m, m/s and s, and heyoka's agreement with it."""
+
+    method: str
+    prec: int
+    order: int
+    steps: int
+    position_radius: Fraction
+    velocity_radius: Fraction
+    transit_radius: Fraction | None
+    agreement_bits: int
+    cpu_s: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solved scene.
+
+    Attributes:
+        scene: the scene as solved.
+        times: grid times in s, exact.
+        grid: x, y, z in m and vx, vy, vz in m/s at those times.
+        transits: t in s, x, y, z in m, vy in m/s, ax in m/s² of every zero of xdot; None if not asked
+            for, or if xdot is identically zero.
+        directions: +1 where xdot goes from - to +, per transit.
+        run: the run that the numbers come from.
+        checks: runs that agree with it.
+        pilot_s: CPU seconds of the runs that the precision was chosen from.
+        proof: the enclosure, at the level enclosed.
+        possible: intervals in s, with a parity, that may hold transits no enclosure decides.
+
+    `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,).
+    """
+
+    scene: Scene
+    times: tuple[Fraction, ...]
+    grid: Table
+    transits: Table | None
+    directions: list[int] = field(repr=False)
+    run: Source
+    checks: tuple[CrossCheck, ...] = ()
+    pilot_s: float = 0.0
+    proof: Proof | None = None
+    possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
+
+    @property
+    def level(self) -> Level:
+        """How far the numbers can be trusted: one of `scene.LEVELS`."""
+        return self.scene.run.level
+
+    @property
+    def t(self) -> Array:
+        """Grid times in s, shape (rows,)."""
+        return np.array([float(t) for t in self.times])
+
+    def __getattr__(self, name: str) -> Any:
+        """A grid column by name."""
+        if name in ("x", "y", "z", "vx", "vy", "vz"):
+            return self.grid.array(name)
+        raise AttributeError(name)

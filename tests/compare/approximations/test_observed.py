@@ -1,0 +1,98 @@
+"""The swing plane, the apsides, the frequency and the precession that are read off a motion."""
+
+from __future__ import annotations
+
+import math
+
+import mpmath
+import numpy as np
+import pytest
+
+from compare.approximations import approximation
+from compare.approximations.observed import PER_SWING, Gauge, frequency, precession_period
+from reference import UnreachableError, load_scene, parse_scene, trajectory
+
+PARIS = load_scene("paris")
+
+
+def rows_of(z, rate):
+    still = np.zeros(len(z))
+    return np.column_stack((z.real, z.imag, still - 1, rate.real, rate.imag, still))
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, -0.2])
+@pytest.mark.parametrize("direction", [0.1, 1.4, -1.2])
+def test_the_plane_of_a_turntable_ellipse_is_its_major_axis_at_every_phase(turn, direction):
+    omega, t = 2.0, np.linspace(0.0, 9.0, 50)
+    gauge = Gauge((0.0, 0.0, -1.0), 1.0, omega, turn)
+    ellipse = np.exp(1j * direction) * (np.cos(omega * t) + 0.2j * np.sin(omega * t))
+    speed = np.exp(1j * direction) * omega * (0.2j * np.cos(omega * t) - np.sin(omega * t))
+    frame = np.exp(-1j * turn * t)
+    seen = gauge.swing_plane(rows_of(frame * ellipse, frame * (speed - 1j * turn * ellipse)))
+    assert np.abs(np.sin(seen - direction + turn * t)) == pytest.approx(0, abs=1e-14)
+
+
+def test_a_circle_has_no_plane():
+    t = np.linspace(0.0, 3.0, 7)
+    circle = np.exp(2j * t)
+    assert np.isnan(Gauge((0.0, 0.0, -1.0), 1.0, 2.0, 0.0).swing_plane(rows_of(circle, 2j * circle))).all()
+
+
+def test_the_plane_of_the_reference_turns_evenly_by_the_sine_of_the_apparent_latitude():
+    gauge = Gauge.of(PARIS)
+    times = np.linspace(0.0, 3600.0, 3601)
+    plane = np.unwrap(2 * gauge.swing_plane(trajectory(PARIS, times))) / 2
+    line = np.polyfit(times, plane, 1)
+    rate = -7.292115e-5 * math.sin(math.radians(48.846111) + 0.00171948)
+    assert line[0] == pytest.approx(rate, rel=1e-4)
+    assert np.max(np.abs(plane - np.polyval(line, times))) < math.radians(1 / 3600) * 2  # seconds of arc
+
+
+def test_apsides_of_an_ellipse_are_found_to_rounding():
+    omega, minor, start = 0.7, 0.1, 0.4
+    gauge = Gauge((0.0, 0.0, -1.0), 1.0, omega, 0.0)
+    t = np.arange(600) * (gauge.period / PER_SWING)
+    phase = omega * t - start
+    found, azimuths = gauge.apsides(
+        t, rows_of(np.cos(phase) + 1j * minor * np.sin(phase), omega * (1j * minor * np.cos(phase) - np.sin(phase)))
+    )
+    wanted = (start + np.pi * np.arange(len(found) + 1)) / omega
+    wanted = wanted[wanted > found[0] - 1][: len(found)]
+    assert len(found) > 15
+    assert found == pytest.approx(wanted, abs=1e-10)
+    assert np.sin(azimuths) == pytest.approx(0, abs=1e-10)
+
+
+@pytest.mark.parametrize("amplitude", ["1", "30", "85", "150"])
+def test_the_frequency_without_rotation_is_that_of_the_complete_elliptic_integral(amplitude):
+    scene = parse_scene(
+        {"id": "plane", "site": {"rotation_rate": "0"}, "release": {"angle": amplitude, "azimuth": "20"}}
+    )
+    quarter = mpmath.ellipk(mpmath.sin(mpmath.radians(int(amplitude)) / 2) ** 2)
+    assert frequency(scene, 20) == pytest.approx(
+        float(mpmath.sqrt(mpmath.mpf("9.80665") / 67) / (4 * quarter)), rel=1e-9
+    )
+
+
+def test_at_the_pole_the_plane_comes_round_in_a_sidereal_day_and_the_drift():
+    scene = load_scene("pole")
+    day = 2 * math.pi / 7.292115e-5
+    assert precession_period(scene) == pytest.approx(day * (1 + 3 / 8 * (0.5 / 67) ** 2), rel=1e-8)
+
+
+def test_what_does_not_swing_or_turn_is_refused():
+    with pytest.raises(UnreachableError, match="does not turn"):
+        precession_period(load_scene("equator"))
+    with pytest.raises(UnreachableError, match="point of rest"):
+        Gauge.of(PARIS.with_values(["site.gravity=0", "site.rotation_rate=0"]))
+    fast = PARIS.with_values(["site.latitude=90", "site.rotation_rate=3", "release.x=0", "release.y=0"])
+    with pytest.raises(UnreachableError):
+        frequency(fast)
+
+
+def test_an_approximation_swings_about_its_own_point_of_rest():
+    motion = approximation("linear_g")
+    gauge = Gauge.of(PARIS, motion.rest(PARIS))
+    plane = gauge.swing_plane(motion.trajectory(PARIS, np.linspace(0.0, 20.0, 41)))
+    assert plane[0] == pytest.approx(math.atan2(0.4, 0.3), abs=1e-6)
+    assert np.ptp(plane) < 2e-3  # turned by 20 s of 11 degrees an hour

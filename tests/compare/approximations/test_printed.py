@@ -1,0 +1,218 @@
+"""The documents' own numbers come out of their formulas; the printed and the right forms differ as they must."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from compare.approximations import APPROXIMATIONS, Motion, approximation
+from compare.approximations.case import Case
+from compare.approximations.gastebois_small import small_angles
+from compare.approximations.observed import frequency, precession_period
+from reference import load_scene, parse_scene
+
+PARIS = load_scene("paris")
+HOUR = 3600
+
+
+def gastebois(sidereal_hours="23.93", latitude="48.87"):
+    """His Panthéon: r0 = 6.5 m, sphere of 6370 km, 23.92 h for the Earth's turn (23.93 h gives his periods)."""
+    return parse_scene(
+        {
+            "id": "gastebois",
+            "site": {
+                "latitude": latitude,
+                "equatorial_radius": "6370000",
+                "inverse_flattening": "inf",
+                "rotation_rate": repr(2 * math.pi / (float(sidereal_hours) * HOUR)),
+                "gravity": "9.81",
+            },
+            "release": {"x": "6.5", "y": "0"},
+        }
+    )
+
+
+def shown(word, scene, decimals, unit=1):
+    return f"{float(approximation(word).value(scene)) / unit:.{decimals}f}"
+
+
+# Mathar, section VII -----------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(
+    ("word", "printed"),
+    [
+        ("frequency_harmonic", "0.0608896"),  # printed 0.0608895, cut off
+        ("frequency_planar", "0.06088938"),
+        ("frequency_turntable", "0.06088959"),
+        ("frequency_apparent", "0.060843935"),
+        ("frequency_anharmonic", "0.060843634"),
+    ],
+)
+def test_the_frequencies_of_section_vii(word, printed):
+    assert shown(word, PARIS, len(printed) - 2) == printed
+
+
+def test_the_period_of_the_plane_pendulum_and_the_apparent_gravity_of_48():
+    assert 1 / float(approximation("frequency_planar").value(PARIS)) == pytest.approx(16.423225, abs=5e-7)
+    assert shown("apparent_gravity", PARIS, 5) == "9.79195"
+
+
+def test_the_frequency_of_the_reference_is_the_papers_cut_off_after_nine_decimals():
+    found = frequency(PARIS, 1000)
+    assert math.floor(found * 1e9) == 60843633
+    assert float(approximation("frequency_anharmonic").value(PARIS)) == pytest.approx(found, rel=1e-8)
+
+
+def test_the_papers_point_of_rest_is_right_to_four_digits_only():
+    angle = approximation("rest_equation").value(PARIS)
+    north = -67 * math.sin(angle)
+    assert north == pytest.approx(-0.115202, abs=5e-6)
+    assert abs(north + 0.115202) > 1e-6
+    assert math.degrees(angle) < 0.1
+
+
+def test_the_series_47_comes_nearer_with_every_order():
+    truth = approximation("rest_equation").value(PARIS)
+    gaps = [abs(approximation(f"rest_series_{i}").value(PARIS) / truth - 1) for i in (1, 2, 3)]
+    assert [f"{float(gap):.0e}" for gap in gaps] == ["1e-03", "1e-06", "1e-09"]
+    assert float(approximation("rest_triangle").value(PARIS) / truth - 1) == pytest.approx(67 / 6390000, rel=0.02)
+
+
+# Gastebois -----------------------------------------------------------------------------------------------------------
+def test_the_periods_of_precession_of_6_3():
+    assert shown("precession_sine", gastebois(), 2, HOUR) == "31.77"
+    assert float(approximation("precession_tilted").value(gastebois("23.9345"))) / HOUR == pytest.approx(
+        31.74, abs=0.02
+    )
+    drift = approximation("precession_spherical").value(gastebois()) / approximation("precession_tilted").value(
+        gastebois()
+    )
+    assert f"{31.74 * float(drift):.2f}" == "31.85"
+    assert f"{float(approximation('precession_spherical').value(gastebois())) / HOUR:.1f}" == "31.8"
+
+
+def test_the_swing_plane_turns_by_11_3_degrees_an_hour_in_paris():
+    assert f"{360 * HOUR / float(approximation('precession_sine').value(PARIS)):.1f}" == "11.3"
+    assert f"{360 * HOUR / precession_period(PARIS):.1f}" == "11.3"
+
+
+def test_at_49_degrees_the_plane_comes_round_in_31_hours_and_48_minutes():
+    hours = float(approximation("precession_sine").value(gastebois("24", "49"))) / HOUR
+    assert (int(hours), round(hours % 1 * 60)) == (31, 48)
+
+
+def test_the_apparent_latitude_and_the_ellipse_of_6_3():
+    case = Case.of(gastebois())
+    assert f"{float(case.ctx.degrees(case.apparent_latitude)):.2f}" == "48.97"
+    _, omega, _ = small_angles(case)
+    turn = float(case.rate * case.sin)  # its 5.49e-5 rad/s is without the centrifugal force
+    minor = 6.5 * turn / float(omega)
+    assert f"{turn:.2e}" == "5.49e-05"
+    assert f"{minor * 1e3:.2f}" == "0.93"
+    assert 2 * math.pi * minor * 1e3 == pytest.approx(5.88, abs=0.02)
+    assert 6.5 * turn * 1e3 == pytest.approx(0.357, abs=5e-4)
+
+
+def test_the_offset_at_the_first_passage_and_after_one_swing_is_that_of_6_3():
+    scene = gastebois().with_values(["site.equatorial_radius=0"])
+    _, omega, turn = (float(v) if i else v for i, v in enumerate(small_angles(Case.of(scene))))
+    period = 2 * math.pi / omega
+    rows = approximation("gastebois_6_3").trajectory(scene, [0.0, period / 4, period])
+    assert rows[1, 1] * 1e3 == pytest.approx(0.93, abs=0.01)
+    assert rows[2, 1] * 1e3 == pytest.approx(-5.88, abs=0.02)
+    assert omega**2 - turn**2 == pytest.approx(9.81 / 67, rel=1e-12)
+
+
+def test_the_spherical_drift_is_nearer_to_the_truth_at_the_pole_than_without():
+    scene = load_scene("pantheon", ["site.latitude=90"])
+    truth = precession_period(scene)
+    gaps = {
+        w: abs(float(approximation(w).value(scene)) / truth - 1) for w in ("precession_tilted", "precession_spherical")
+    }
+    assert gaps["precession_tilted"] == pytest.approx(3 / 8 * (6.5 / 67) ** 2, rel=0.01)
+    assert gaps["precession_spherical"] < 0.02 * gaps["precession_tilted"]
+
+
+# Printed forms -------------------------------------------------------------------------------------------------------
+MOVING = PARIS.with_values(["release.vx=0.05", "release.vy=-0.11"])
+TIMES = np.linspace(0.0, 3600.0, 3601)
+
+
+def printed_motion(word, scene, times=TIMES):
+    made = approximation(word)
+    assert isinstance(made, Motion)
+    return made.printed.compute(scene, times), made.trajectory(scene, times)
+
+
+def test_every_printed_form_that_has_a_meaning_differs_from_the_right_one():
+    with_meaning = [made for made in APPROXIMATIONS.values() if made.printed and made.printed.compute]
+    assert len(with_meaning) >= 7
+    for made in with_meaning:
+        assert made.printed.text != made.printed.right
+        if isinstance(made, Motion):
+            printed, right = printed_motion(made.id, MOVING if made.id != "gastebois_6_3" else PARIS)
+            assert np.max(np.abs(printed - right)) > 1e-6, made.id
+        else:
+            assert abs(made.printed.compute(PARIS) / made.value(PARIS) - 1) > 1e-6, made.id
+
+
+def test_the_printed_velocity_of_6_1_is_not_that_of_its_positions():
+    step = 1e-3
+    times = np.array([0.0, 20.0 - step, 20.0, 20.0 + step])
+    printed, right = printed_motion("gastebois_6_1", MOVING, times)
+    assert printed[:, 1:3] == pytest.approx(right[:, 1:3], abs=1e-12)
+    slope = (right[3, 0] - right[1, 0]) / (2 * step)
+    assert right[2, 3] == pytest.approx(slope, abs=1e-7)
+    assert abs(printed[2, 3] - slope) > 1e-2
+
+
+def test_the_printed_sense_of_the_ellipse_of_6_3_is_no_release_at_rest():
+    printed, right = printed_motion("gastebois_6_3", PARIS)
+    _, _, turn = small_angles(Case.of(PARIS))
+    away = float(np.hypot(0.3, 0.4 + 67 * 0.00171948))
+    assert np.linalg.norm(right[0, 3:]) < 1e-14
+    assert np.linalg.norm(printed[0, 3:]) == pytest.approx(2 * float(turn) * away, rel=1e-4)
+
+
+def test_one_error_of_method_2_alone_changes_the_square_of_the_frequency_by_two_squares_of_the_turn():
+    far = np.linspace(86380.0, 86400.0, 401)
+    printed, right = printed_motion("method_2", PARIS, far)
+    turn, omega = 7.292115e-5 * math.sin(math.radians(48.846111)), math.sqrt(9.80665 / 67)
+    late = turn**2 / omega * 86400  # rad of phase
+    assert np.max(np.linalg.norm((printed - right)[:, :2], axis=1)) == pytest.approx(0.5 * late, rel=2e-3)
+
+
+def test_with_the_sign_of_the_conclusion_method_3_turns_the_wrong_way():
+    printed, right = printed_motion("method_3", PARIS)
+    far = [np.argmax(np.hypot(rows[-17:, 0], rows[-17:, 1])) for rows in (printed, right)]
+    turned = [
+        math.remainder(math.atan2(rows[-17 + i, 1], rows[-17 + i, 0]) - math.atan2(0.4, 0.3), math.pi)
+        for rows, i in zip((printed, right), far, strict=True)
+    ]
+    assert math.degrees(turned[0]) == pytest.approx(11.3, abs=0.3)
+    assert math.degrees(turned[1]) == pytest.approx(-11.3, abs=0.3)
+
+
+def test_printed_numbers_miss_by_their_lost_factor():
+    made = approximation("frequency_anharmonic")
+    assert float(made.value(PARIS) / made.printed.compute(PARIS)) == pytest.approx(2 * math.pi, rel=1e-14)
+    made = approximation("precession_tilted")
+    assert float(made.printed.compute(PARIS)) == pytest.approx(16.4358 / math.sin(math.radians(48.9446)), rel=1e-4)
+    made, outward = approximation("apparent_gravity"), Case.of(PARIS).outward
+    missing = made.printed.compute(PARIS) ** 2 - made.value(PARIS) ** 2
+    assert float(missing) == pytest.approx(float(outward - outward**2), rel=1e-14)
+
+
+def test_the_printed_45_has_no_solution_in_paris():
+    # y² = sqrt(l² - y²) (y - R s - 2 y c²) Ω²/g + c (R y + (l² - 2 y²) s) Ω²/g; the right one has y on the left.
+    case = Case.of(PARIS)
+    ctx, cord, s, c, R = case.ctx, case.length, case.sin, case.cos, case.axis_distance
+
+    def right_side(y):
+        inner = ctx.sqrt(cord**2 - y**2) * (y - R * s - 2 * y * c**2) + c * (R * y + (cord**2 - 2 * y**2) * s)
+        return inner * case.rate**2 / case.gravity
+
+    rest = -cord * ctx.sin(approximation("rest_equation").value(PARIS))
+    assert abs(right_side(rest) - rest) < 1e-50
+    assert all(right_side(y) < y**2 for y in ctx.linspace(-cord, cord, 401))

@@ -1,0 +1,110 @@
+"""The registry: lazy, complete, and plain about what it refuses."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from compare.approximations import (
+    _MODULES,
+    APPROXIMATIONS,
+    Approximation,
+    Motion,
+    Quantity,
+    approximation,
+    motions,
+    quantities,
+)
+from compare.approximations.mathar_items import PROGRAM_BITS
+from reference import InputError, UnreachableError, load_scene
+
+PARIS = load_scene("paris")
+
+
+def test_every_module_declares_what_the_registry_says_it_does():
+    for words in _MODULES.values():
+        assert [APPROXIMATIONS[word].id for word in words] == list(words)
+    assert len(APPROXIMATIONS) == len(set(APPROXIMATIONS)) == len(motions()) + len(quantities())
+
+
+def test_every_declaration_is_filled_in():
+    for word, made in APPROXIMATIONS.items():
+        assert isinstance(made, Approximation)
+        assert made.id == word
+        assert all((made.title, made.where, made.domain, made.drops, made.orders)), word
+    assert all(isinstance(approximation(word), Motion) for word in motions())
+    assert all(isinstance(approximation(word), Quantity) for word in quantities())
+
+
+def test_listing_the_approximations_loads_no_heavy_library():
+    code = (
+        "import sys, compare.approximations as a, compare.studies.approximation_limits, compare.report.approximations;"
+        "[a.approximation(w) for w in a.APPROXIMATIONS];"
+        "print(sorted({'heyoka', 'flint', 'scipy', 'numba', 'matplotlib'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_an_unknown_word_is_answered_with_the_known_ones():
+    with pytest.raises(InputError, match="linear_g"):
+        approximation("linear")
+    with pytest.raises(KeyError):
+        APPROXIMATIONS["linear"]
+
+
+def test_the_bits_of_the_papers_program_name_motions():
+    assert sorted(PROGRAM_BITS) == [1, 2, 3]
+    assert set(PROGRAM_BITS.values()) <= set(motions())
+    # Its first bit is item 2, its second item 1.
+    assert PROGRAM_BITS[1] == "mathar_item_2"
+    assert PROGRAM_BITS[2] == "mathar_item_1"
+
+
+@pytest.mark.parametrize(
+    ("word", "change", "reason"),
+    [
+        ("linear_g", "pendulum.drag=0.1", "drag"),
+        ("linear_g", "site.gravity=0", "gravity"),
+        ("linear_anharmonic", "release.vx=1", "at rest"),
+        ("gastebois_6_3", "release.vy=1", "at rest"),
+        ("planar", "release.vx=1", "velocity"),
+        ("conical", "release.vx=1", "circle"),
+        ("precession_sine", "site.latitude=0", "turn"),
+        ("rest_series_1", "site.latitude=-90", "pole"),
+        ("frequency_harmonic", "site.gravity=0", "gravity"),
+    ],
+)
+def test_a_scene_outside_the_domain_is_refused_with_the_reason(word, change, reason):
+    made, scene = approximation(word), PARIS.with_values([change])
+    with pytest.raises(InputError, match=reason) as refused:
+        made.trajectory(scene, [0.0, 1.0]) if isinstance(made, Motion) else made.value(scene)
+    assert word in str(refused.value)
+
+
+@pytest.mark.parametrize("word", ["linear_g", "mathar_item_1", "linear_3d", "gastebois_6_1", "conical"])
+def test_above_the_suspension_the_plane_forms_say_so(word):
+    with pytest.raises(InputError, match="below the suspension"):
+        approximation(word).trajectory(load_scene("two_radians"), [0.0])
+
+
+@pytest.mark.parametrize("times", [[], [-1.0, 0.0], [0.0, 0.0], [[0.0]], [0.0, float("nan")]])
+def test_times_must_increase_from_zero_or_later(times):
+    with pytest.raises(InputError, match="increasing"):
+        approximation("linear_g").trajectory(PARIS, times)
+
+
+def test_a_motion_that_leaves_the_sphere_gives_no_numbers():
+    thrown = PARIS.with_values(["release.vx=40"])
+    with pytest.raises(UnreachableError, match="sphere"):
+        approximation("linear_g").trajectory(thrown, np.linspace(0.0, 20.0, 50))
+    with pytest.raises(UnreachableError, match="horizontal"):
+        approximation("mathar_item_1").trajectory(thrown, np.linspace(0.0, 20.0, 50))
+
+
+def test_gravity_that_the_centrifugal_force_cancels_leaves_no_swing():
+    with pytest.raises(UnreachableError, match="cancel"):
+        approximation("linear_apparent").trajectory(load_scene("weightless"), [0.0, 1.0])

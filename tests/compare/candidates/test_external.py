@@ -1,0 +1,238 @@
+"""Somebody's program: its words are filled in, its time and output are bounded, and nothing of it stays behind."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from places import ROOT
+from small_scenes import make_scene
+
+from compare.candidates.external import arguments, placeholders, run_program, timed
+from compare.candidates.family import MARK
+from reference import InputError
+
+
+def python(code: str) -> list[str]:
+    return [sys.executable, "-c", code]
+
+
+def alive(pid: int) -> bool:
+    """Whether a process runs; one that is dead and waits for its parent does not."""
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except FileNotFoundError:
+        return False
+
+
+def ends_within(pid: int, seconds: float) -> bool:
+    for _ in range(int(seconds / 0.05)):
+        if not alive(pid):
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_placeholders_are_the_scenes_own_words(paris):
+    words = arguments("prog {x0} --l={length} '{t_end} s' {latitude} {vx0} {inverse_flattening}", paris)
+    assert words == ["prog", "0.3", "--l=67", "86400 s", "48.846111", "0.0", "298.257223564"]
+
+
+def test_what_a_scene_gives_in_angles_is_also_there_in_metres():
+    scene = make_scene(pendulum={"length": "2"}, release={"angle": "90", "azimuth": "0", "azimuth_rate": "90"})
+    known = placeholders(scene)
+    assert (known["angle"], known["azimuth_rate"], known["angle_rate"]) == ("90", "90", "0")
+    assert float(known["x0"]) == 2.0
+    assert float(known["vy0"]) == pytest.approx(3.141592653589793, rel=1e-15)
+    assert float(known["z0"]) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_no_shell_is_between(paris):
+    assert arguments("echo $HOME ';' rm '*'", paris) == ["echo", "$HOME", ";", "rm", "*"]
+
+
+def test_braces_that_are_no_placeholder_stay_and_doubled_ones_too(paris):
+    assert arguments("awk '{print $1}' {{x0}} {x0}", paris) == ["awk", "{print $1}", "{x0}", "0.3"]
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("", "a command"),
+        ("prog 'open", "balanced quotes"),
+        ("prog {x1}", r"one of {x0}, {y0}"),
+        ("prog {X0}", r"got '{X0}'"),
+    ],
+)
+def test_a_command_that_cannot_be_filled_in_is_refused(paris, command, words):
+    with pytest.raises(InputError, match=words) as caught:
+        arguments(command, paris)
+    assert caught.value.field == "--run"
+
+
+def test_output_and_cpu_time_come_back():
+    busy = "import time; b = time.process_time()\nwhile time.process_time() < b + 0.2: pass\nprint('t,x,y')"
+    output, cpu, wall = run_program(python(busy))
+    with output:
+        assert output.read() == b"t,x,y\n"
+    assert 0.2 < cpu < 2
+    assert wall > 0.2
+
+
+def test_children_count_in_the_cpu_time():
+    busy = "import time\\nb = time.process_time()\\nwhile time.process_time() < b + 0.3: pass"
+    code = f"import subprocess, sys; subprocess.run([sys.executable, '-c', \"{busy}\"])"
+    output, cpu, _ = run_program(python(code))
+    output.close()
+    assert cpu > 0.3
+
+
+def test_the_program_gets_no_input():
+    output, _, _ = run_program(python("import sys; print(repr(sys.stdin.read()))"))
+    with output:
+        assert output.read() == b"''\n"
+
+
+def test_a_program_that_is_not_there_is_said():
+    with pytest.raises(InputError, match="a program that can be started"):
+        run_program(["./no/such/program"])
+
+
+def test_a_failure_is_said_with_the_end_of_what_it_wrote():
+    code = "import sys; sys.stderr.write('x' * 5000 + ' the reason'); sys.exit(3)"
+    with pytest.raises(InputError, match=r"exit status 3 .* the reason$") as caught:
+        run_program(python(code))
+    assert len(str(caught.value)) < 800
+
+
+def test_a_signal_is_a_failure_too():
+    with pytest.raises(InputError, match="exit status -11"):
+        run_program(python("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"))
+
+
+FAMILY = """
+import subprocess, sys, time
+child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+open(sys.argv[1], "w").write(str(child.pid))
+{then}
+"""
+
+
+def family(tmp_path, then):
+    note = tmp_path / "pid"
+    return [sys.executable, "-c", FAMILY.format(then=then), str(note)], note
+
+
+def test_a_timeout_ends_the_program_and_its_children(tmp_path):
+    words, note = family(tmp_path, "time.sleep(60)")
+    begun = time.monotonic()
+    with pytest.raises(InputError, match=r"ends within 1\.5 s \(--timeout\)"):
+        run_program(words, timeout_s=1.5)
+    assert time.monotonic() - begun < 20
+    assert ends_within(int(note.read_text()), 5)
+
+
+def test_what_a_program_leaves_running_is_ended(tmp_path):
+    words, note = family(tmp_path, "print('done')")
+    output, _, _ = run_program(words)
+    output.close()
+    assert ends_within(int(note.read_text()), 5)
+
+
+DAEMON = """
+import os, sys, time
+if os.fork() == 0:
+    os.setsid()
+    if os.fork() == 0:
+        with open(sys.argv[1], "w") as note:
+            note.write(f"{os.getpid()} {os.getsid(0)}")
+        time.sleep(60)
+    os._exit(0)
+os.wait()
+while not (os.path.exists(sys.argv[1]) and open(sys.argv[1]).read()):
+    time.sleep(0.01)
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the mark is looked for in /proc")
+@pytest.mark.parametrize(("then", "late"), [("time.sleep(60)", True), ("print('done')", False)])
+def test_what_forks_into_a_session_of_its_own_is_ended_as_well(tmp_path, then, late):
+    note = tmp_path / "pid"
+    words = [*python(DAEMON + then), str(note)]
+    if late:
+        with pytest.raises(InputError, match="--timeout"):
+            run_program(words, timeout_s=2.0)
+    else:
+        run_program(words)[0].close()
+    pid, session = map(int, note.read_text().split())
+    assert session != os.getsid(0)
+    assert not alive(pid)  # at once: nothing of it runs on when this returns
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the mark is looked for in /proc")
+def test_nobody_elses_processes_are_ended_with_a_program():
+    with subprocess.Popen(python("import time; time.sleep(60)"), start_new_session=True) as bystander:
+        run_program(python("print(1)"))[0].close()
+        assert alive(bystander.pid)
+        bystander.kill()
+
+
+def test_a_program_within_a_program_has_the_marks_of_both(monkeypatch):
+    monkeypatch.setenv(MARK, "outer")
+    output, _, _ = run_program(python(f"import os; print(os.environ[{MARK!r}])"))
+    with output:
+        outer, inner = output.read().split()
+    assert outer == b"outer"
+    assert len(inner) == 32
+
+
+def test_too_much_output_ends_the_program():
+    flood = "import sys\nwhile True: sys.stdout.write('0,0,0\\n' * 100000)"
+    with pytest.raises(InputError, match="at most 1000000 bytes of output"):
+        run_program(python(flood), max_bytes=1_000_000)
+
+
+def test_too_much_on_stderr_ends_it_too():
+    flood = "import sys\nwhile True: sys.stderr.write('0,0,0\\n' * 100000)"
+    with pytest.raises(InputError, match="at most 1000000 bytes of output"):
+        run_program(python(flood), max_bytes=1_000_000)
+
+
+def test_repeats_are_timed_after_a_warm_up(tmp_path):
+    note = tmp_path / "runs"
+    output, took = timed(python(f"open({str(note)!r}, 'a').write('x'); print(1)"), repeats=2)
+    output.close()
+    assert note.read_text() == "xxx"
+    assert (took.runs, took.warm) == (2, True)
+    assert took.spread >= 0
+    assert 0 < took.cpu_s < 10
+
+
+def test_a_single_run_says_that_nothing_warmed_it_up():
+    output, took = timed(python("print(1)"), repeats=0)
+    output.close()
+    assert (took.runs, took.warm, took.spread) == (1, False, 0.0)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
+    words, note = family(tmp_path, "time.sleep(60)")
+    command = [sys.executable, "-m", "foucault", "score", "paris", "--run", shlex.join(words)]
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE) as process:
+        for _ in range(200):
+            if note.exists() and note.read_text():
+                break
+            time.sleep(0.1)
+        child = int(note.read_text())
+        process.send_signal(number)
+        _, err = process.communicate(timeout=30)
+    assert process.returncode not in (0, None)
+    assert b"Traceback" not in err
+    assert ends_within(child, 5)
+    assert not os.path.exists(f"/proc/{process.pid}")

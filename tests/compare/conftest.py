@@ -1,0 +1,23 @@
+"""The page is built once for all tests: every row judged, every figure drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from compare.papers import build
+from compare.papers.checks import Row
+
+
+@pytest.fixture(scope="session")
+def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Row]]:
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("numba")
+    folder = tmp_path_factory.mktemp("paper") / "page"
+    return folder, build(folder)
+
+
+@pytest.fixture(scope="session")
+def judged(built: tuple[Path, list[Row]]) -> dict[str, Row]:
+    return {row.id: row for row in built[1]}

@@ -1,0 +1,203 @@
+"""What every method promises, held against the reference on a gentle and on a steep scene."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from method_cases import case
+
+from compare.methods import METHODS, available
+from compare.methods.method import Method
+from compare.rhs.swing import suited
+from reference import InputError
+
+# looser than the tight end of the ladder, which would take longer than a test may
+SETTINGS = {"heyoka_real": 160, "mpmath_odefun": 53}
+ROWS = {"mpmath_odefun": 2}
+ERROR = 1e-7  # of the cord length: every method gets there …
+ERRORS = {
+    "scipy_bdf": 1e-5,
+    "scipy_radau": 1e-6,
+    "scipy_rk45": 1e-6,
+}  # … but for those whose ladder ends where they become too dear
+
+
+def run(name, scene, setting=None):
+    method, made = METHODS[name], case(scene)
+    problem = made.problem(name, rows=ROWS.get(name))
+    return problem, method.prepare(problem, setting or SETTINGS.get(name) or method.settings(made.scene)[-1])()
+
+
+@pytest.fixture(params=list(METHODS))
+def name(request):
+    missing = available(METHODS[request.param])
+    if missing:
+        pytest.skip(missing)
+    return request.param
+
+
+@pytest.mark.parametrize("scene", ["paris", "steep"])
+def test_every_method_finds_the_reference(name, scene):
+    problem, done = run(name, scene)
+    truth, length = case(scene).truth[: len(problem.times)], float(case(scene).scene.exact.length)
+    assert (done.status, done.reached_t) == ("ok", problem.times[-1])
+    assert done.states.shape == (len(problem.times), 6)
+    assert np.abs(done.states - truth)[:, :3].max() < ERRORS.get(name, ERROR) * length
+    assert np.abs(done.states - truth)[:, 3:].max() < ERRORS.get(name, ERROR) * length * np.sqrt(9.8 / length)
+
+
+def test_a_run_can_be_repeated_and_gives_the_same_bits(name):
+    method, made = METHODS[name], case("paris")
+    work = method.prepare(made.problem(name, rows=2), method.ladder[0])
+    first, second = work(), work()
+    assert np.array_equal(first.states, second.states)
+    assert (first.steps, first.rhs_evaluations) == (second.steps, second.rhs_evaluations)
+
+
+def test_a_tighter_setting_is_better(name):
+    method, made = METHODS[name], case("paris")
+    problem = made.problem(name, rows=ROWS.get(name))
+    errors = [
+        np.abs(method.prepare(problem, setting)().states - made.truth[: len(problem.times)])[:, :3].max()
+        for setting in (method.ladder[0], SETTINGS.get(name) or method.ladder[-1])
+    ]
+    assert errors[1] < errors[0] or errors[0] < 1e-13
+
+
+def test_problems_of_one_moment_need_no_integration(name):
+    method, made = METHODS[name], case("paris")
+    done = method.prepare(made.problem(name, rows=1), method.ladder[0])()
+    np.testing.assert_allclose(done.states, made.truth[:1], atol=1e-13)
+    assert done.status == "ok"
+
+
+def test_a_declaration_is_complete(name):
+    method = METHODS[name]
+    assert method.id == name
+    assert method.title
+    assert method.source
+    assert method.licence
+    assert len(method.ladder) >= 2
+    finer = method.setting == "precision"
+    assert list(method.ladder) == sorted(method.ladder, reverse=not finer)
+    assert not method.requires or method.extra
+
+
+@pytest.mark.parametrize("name", ["heyoka_long_double", "heyoka_real128", "heyoka_real", "limbs", "mpmath_odefun"])
+def test_exact_states_show_errors_far_below_a_doubles(name):
+    if available(METHODS[name]):
+        pytest.skip("not installed")
+    setting = {"heyoka_real": 160, "mpmath_odefun": 113}.get(name)
+    problem, done = run(name, "paris", setting)
+    grid = case("paris").solution.grid
+    errors = [
+        abs(Fraction(row[0], 1 << done.exact.scale) - truth)
+        for row, truth in zip(done.exact.rows, grid.exact("x"), strict=False)
+    ]
+    assert len(done.exact.rows) == len(problem.times)
+    assert float(max(errors)) < {"heyoka_long_double": 1e-17}.get(name, 1e-27)
+    nearest = [float(Fraction(row[0], 1 << done.exact.scale)) for row in done.exact.rows]
+    np.testing.assert_allclose(done.states[:, 0], nearest, rtol=3e-16, atol=1e-19)
+
+
+def test_doubles_have_no_finer_form():
+    assert run("heyoka_double", "paris")[1].exact is None
+
+
+def test_fixed_steps_are_counted_by_the_step():
+    for name, stages in (("rk4", 4), ("rkng56", 8), ("rkng67", 10), ("rkmk4", 4)):
+        if available(METHODS[name]) is None:
+            _, done = run(name, "paris", 0.1)
+            assert (done.steps, done.rhs_evaluations) == (600, 600 * stages)
+
+
+def test_steps_end_on_output_times_that_they_do_not_divide():
+    if available(METHODS["rk4"]):
+        pytest.skip("not installed")
+    problem = case("paris").problem("rk4")
+    assert METHODS["rk4"].prepare(problem, 3.0)().steps == 6 * 4  # 10 s in four steps
+
+
+@pytest.mark.parametrize("name", ["scipy_rk45", "scipy_dop853", "scipy_radau", "scipy_bdf", "scipy_lsoda"])
+def test_scipy_reports_every_call_of_the_right_hand_side(name):
+    if available(METHODS[name]):
+        pytest.skip("not installed")
+    problem, calls = case("steep").problem(name), []
+    inner = problem.rhs
+    problem.__dict__["rhs"] = lambda t, y: calls.append(t) or inner(t, y)
+    work = METHODS[name].prepare(problem, 1e-6)
+    calls.clear()
+    assert work().rhs_evaluations == len(calls)
+
+
+@pytest.mark.parametrize("name", ["cvode_adams", "cvode_bdf"])
+def test_cvode_reports_every_call_of_the_right_hand_side(name):
+    if available(METHODS[name]):
+        pytest.skip("not installed")
+    from types import SimpleNamespace
+
+    problem, calls = case("steep").problem(name), []
+    inner = problem.rates.rhs_into
+    problem.__dict__["rates"] = SimpleNamespace(rhs_into=lambda *of: calls.append(1) or inner(*of))
+    assert METHODS[name].prepare(problem, 1e-6)().rhs_evaluations == len(calls)
+
+
+def test_dop853_needs_about_the_same_calls_in_scipy_and_compiled():
+    names = ["scipy_dop853", "numbalsoda_dop853"]
+    if any(available(METHODS[name]) for name in names):
+        pytest.skip("not installed")
+    first, second = (run(name, "steep", 1e-9)[1].rhs_evaluations for name in names)
+    assert abs(first - second) < 0.3 * first
+
+
+def test_the_registry_knows_every_id_of_the_issue():
+    assert {"rk4", "rkng56", "rkng67", "heyoka_double", "heyoka_long_double", "heyoka_real128", "heyoka_real"} <= set(
+        METHODS
+    )
+    assert {"scipy_rk45", "scipy_dop853", "scipy_radau", "scipy_bdf", "scipy_lsoda", "mpmath_odefun"} <= set(METHODS)
+    assert {"numbalsoda_dop853", "numbalsoda_lsoda", "cvode_adams", "cvode_bdf", "rebound_bs"} <= set(METHODS)
+    assert {"rebound_ias15", "diffrax_dopri8", "gauss_legendre", "rkmk4", "limbs"} <= set(METHODS)
+    assert len(METHODS) == len(list(METHODS))
+
+
+def test_an_unknown_method_is_refused_by_name():
+    with pytest.raises(InputError, match=r"runge.*Known ids: rk4"):
+        METHODS["runge"]
+
+
+def test_declarations_load_no_library():
+    code = (
+        "import sys, compare.methods as m; [m.METHODS[name] for name in m.METHODS]; "
+        "print([x for x in ('heyoka', 'scipy', 'numba', 'flint', 'rebound', 'jax', 'sksundae') if x in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_what_is_not_installed_says_what_brings_it():
+    nothing = Method("x", "x", "step", (1,), "", "", lambda problem, setting: None, requires=("no_such_thing",))
+    assert available(nothing) == "not installed (no_such_thing)"
+    extra = Method("x", "x", "step", (1,), "", "", lambda p, s: None, requires=("no.such.thing",), extra="methods")
+    assert "pip install 'foucault-reference[methods]'" in available(extra)
+
+
+def test_steps_are_scaled_to_the_swing_of_the_scene():
+    rk4 = METHODS["rk4"]
+    assert rk4.settings(case("paris").scene) == rk4.ladder
+    assert rk4.settings(case("steep").scene)[:2] == (0.02, 0.01)
+    dop853 = METHODS["scipy_dop853"]
+    assert dop853.settings(case("steep").scene) == dop853.ladder
+
+
+def test_the_formulation_suits_the_motion():
+    words = ("plane", "space", "momentum")
+    steep = case("steep").scene
+    assert suited(steep, words) == "plane"
+    assert suited(steep.with_values(["release.angle=100"]), words) == "momentum"
+    assert suited(steep.with_values(["release.azimuth_rate=400"]), words) == "momentum"
+    assert suited(steep.with_values(["site.rotation_rate=3"]), words) == "momentum"
+    assert suited(steep.with_values(["release.angle=100"]), ("plane", "space")) == "space"

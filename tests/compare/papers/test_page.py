@@ -1,0 +1,93 @@
+"""The page and its files: complete, and self-contained."""
+
+from __future__ import annotations
+
+import base64
+import csv
+import json
+import re
+import xml.etree.ElementTree as ET
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from compare.papers import figures, page
+from compare.papers.captions import CAPTIONS
+from compare.papers.checks import VERDICTS, Row
+from reference import InputError
+
+Built = tuple[Path, list[Row]]
+ROW = Row("a_b", "Mathar II (1)", "x < y & z", "1.5", "misprint", correction="x > y", remark="both")
+
+
+def test_the_folder_holds_the_page_the_figures_and_the_rows(built: Built) -> None:
+    numbers = [1, 3, 4, 5, 6, 7, 8, 9]
+    assert [caption.number for caption in CAPTIONS] == numbers
+    expected = {"index.html", "rows.csv", "rows.json", *(f"figure_{n}.svg" for n in numbers)}
+    assert {path.name for path in built[0].iterdir()} == expected
+
+
+def test_json_and_csv_hold_the_same_rows(built: Built) -> None:
+    folder, rows = built
+    as_json = json.loads((folder / "rows.json").read_text(encoding="utf-8"))["rows"]
+    with (folder / "rows.csv").open(encoding="utf-8", newline="") as handle:
+        as_csv = list(csv.DictReader(handle))
+    assert as_json == as_csv == [page.document(row) for row in rows]
+    assert {"id", "place", "printed", "recomputed", "verdict"} <= set(as_json[0])
+
+
+def test_the_page_needs_nothing_from_outside_and_shows_each_figure_beside_its_caption(built: Built) -> None:
+    text = (built[0] / "index.html").read_text(encoding="utf-8")
+    assert not re.search(r"""(src|href)=["'](?!data:|#)""", text)
+    assert "http" not in re.sub(r'base64,[^"]*', "", text)
+    for caption in CAPTIONS:
+        drawn = re.search(rf'id="figure-{caption.number}" class="plate">\n<img [^>]*base64,([^"]*)"', text)
+        assert drawn is not None
+        assert base64.b64decode(drawn[1]).decode() == (built[0] / f"figure_{caption.number}.svg").read_text("utf-8")
+    for row in built[1]:
+        assert f'id="{row.id}"' in text
+
+
+def test_a_box_hides_the_lines_of_its_verdict(built: Built) -> None:
+    text = (built[0] / "index.html").read_text(encoding="utf-8")
+    for verdict in VERDICTS:
+        count = sum(row.verdict == verdict for row in built[1])
+        assert f'<input type="checkbox" id="show-{verdict}" checked> {verdict} ({count})' in text
+        assert f"body:has(#show-{verdict}:not(:checked)) .whole tr.{verdict}" in text
+        assert text.count(f'<tr class="{verdict}" id=') == count
+
+
+def test_every_figure_is_well_formed_svg_with_text_and_lines_and_no_date(built: Built) -> None:
+    for caption in CAPTIONS:
+        text = (built[0] / f"figure_{caption.number}.svg").read_text(encoding="utf-8")
+        root = ET.fromstring(text)
+        words = [node.text for node in root.iter("{http://www.w3.org/2000/svg}text")]
+        assert len(words) > 5, caption.number
+        assert len(list(root.iter("{http://www.w3.org/2000/svg}path"))) > 5
+        assert "<dc:date>" not in text
+
+
+def test_the_same_figure_has_the_same_bytes(built: Built) -> None:
+    assert figures.svg(1) == (built[0] / "figure_1.svg").read_text(encoding="utf-8")
+
+
+def test_what_stands_in_a_row_cannot_break_the_page() -> None:
+    text = page.page_text([replace(ROW, printed="<script>alert(1)</script>")], dict.fromkeys(range(10), "<svg/>"))
+    assert "<script>alert" not in text
+    assert "&lt;script&gt;alert" in text
+
+
+def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    import builtins
+
+    imported = builtins.__import__
+
+    def refusing(name: str, *rest: object, **more: object) -> object:
+        if name == "matplotlib":
+            raise ImportError(name)
+        return imported(name, *rest, **more)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(builtins, "__import__", refusing)
+    with pytest.raises(InputError, match=r"foucault-reference\[plot\]"):
+        figures.svg(1)

@@ -1,0 +1,130 @@
+"""Every number in docs/physics.md is recomputed here."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from places import ROOT
+
+from compare.papers.digits import MP, degrees, mpf, norm, pi, shown, sin, sqrt
+from compare.papers.mathar.frequency import (
+    amplitude,
+    day_frequency,
+    estimate,
+    first_period_frequency,
+    planar_period,
+    released,
+    slow_down,
+    swings_surplus,
+    transit_frequency,
+)
+from compare.papers.mathar.rest import pull_at_rest
+from compare.papers.points import paris
+from compare.papers.runs import paris_day, transit_times
+from compare.papers.truth import rest, rest_angle
+
+PAGE = " ".join((ROOT / "docs/physics.md").read_text(encoding="utf-8").split())
+P = paris()
+OUTWARD = P.R * P.rate**2
+TURN = P.rate * sin(P.phi + rest_angle(P))  # of the swing plane, rad/s
+
+
+def fixed(value: Any, decimals: int) -> str:
+    return f"{float(value):.{decimals}f}"
+
+
+def half_axes() -> tuple[Any, Any]:
+    _, y, _ = rest(P)
+    long = norm((P.x, P.y - y))
+    return long, long * TURN / (2 * pi * day_frequency())
+
+
+def without_the_centrifugal_part() -> tuple[Any, Any]:
+    """Latitude and gravity that give the geodetic vertical and 9.80665 m/s² once the centrifugal force is added."""
+    c, s = MP.cos(P.phi), sin(P.phi)
+    down, south = P.gravity + OUTWARD * c, OUTWARD * s
+    return P.latitude - degrees(MP.atan2(south, down)), sqrt(down**2 + south**2)
+
+
+def estimate_with_square_rate() -> Any:
+    """Stiffness east T/l - Ω², along the meridian T/l - w²; their mean, and w² for the turning axes."""
+    square = pull_at_rest(P) / P.length - (P.rate**2 + TURN**2) / 2 + TURN**2
+    return sqrt(square) / (2 * pi) / slow_down(amplitude())
+
+
+def jump() -> Any:
+    times = transit_times()
+    extra = next(i for i in range(2, len(times)) if times[i] - times[i - 1] < 6)
+    assert extra + 1 == 5786
+    return (extra + 2) / (2 * times[extra + 1])
+
+
+def gaps() -> list[Any]:
+    times = transit_times()
+    return [times[i + 1] - times[i] for i in range(len(times) - 1)]
+
+
+def last_run_that_prints_633() -> Any:
+    times = transit_times()
+    return next(times[n - 1] for n in range(2, 400, 2) if n / (2 * times[n - 1]) > mpf("0.0608436335"))
+
+
+DETUNED = 1 / planar_period() - day_frequency()
+NUMBERS = {
+    "radius": f"*R* of {fixed(P.R / 1000, 0)} km",
+    "outward": f"*R*Ω² of {fixed(OUTWARD, 5)} m/s²",
+    "share": f"{fixed(100 * OUTWARD / P.gravity, 3)} % of gravity",
+    "turn": f"clockwise by {fixed(degrees(TURN) * 3600, 2)}° an hour",
+    "full turn": f"a full turn in {fixed(2 * pi / TURN / 3600, 1)} hours",
+    "ellipse": f"{fixed(half_axes()[0], 3)} m long and {fixed(1000 * half_axes()[1], 3)} mm wide",
+    "tilt": f"hangs {fixed(degrees(rest_angle(P)), 4)}° south of straight down, which at 67 m is",
+    "aside": f"{fixed(-100 * rest(P)[1], 1)} cm",
+    "rise": f"ends {fixed(1000 * (mpf(paris_day().transits_text['z'][0]) - released()[2]), 2)} mm *higher*",
+    "away": f"0.5 m from the one and {fixed(half_axes()[0], 3)} m from the other",
+    "leans": f"leans {fixed(degrees(rest_angle(P)), 4)}°",
+    "apparent": f"apparent gravity is {fixed(pull_at_rest(P), 5)} m/s²",
+    "slower": f"slower by {fixed(DETUNED, 7)} Hz",
+    "half": f"after {int(1 / (2 * DETUNED) / 3600)} h {fixed((1 / (2 * DETUNED) % 3600) / 60, 0)} min",
+    "latitude": f"site.latitude={fixed(without_the_centrifugal_part()[0], 4)}",
+    "gravity": f"site.gravity={fixed(without_the_centrifugal_part()[1], 4)}",
+    "passage": f"falls {fixed((pi / 2 + MP.atan2(P.y - rest(P)[1], P.x)) / TURN / 3600, 1)} hours after the release",
+    "spacing": f"each other {fixed(sorted(gaps())[5000], 2)} s apart",
+    "gaps": " s and then ".join(fixed(gap, 2) for gap in gaps() if gap < 6) + " s: number 5786 is the extra one",
+    "jump": f"from {fixed(first_period_frequency(), 7)} Hz to {fixed(jump(), 7)} Hz",
+    "end": f"still {fixed(transit_frequency(), 7)} Hz",
+    "count": f"{len(transit_times()) - swings_surplus()} of them for {len(transit_times())} transits, gives "
+    f"{fixed(day_frequency(), 11)} Hz",
+    "estimate": f"amplitude | {fixed(estimate(), 11)} Hz",
+    "first": f"the first swing | {fixed(first_period_frequency(), 11)} Hz",
+    "day": f"not rounded | {fixed(day_frequency(), 11)} Hz",
+    "minutes": f"less than about {int(last_run_that_prints_633() / 60)} minutes",
+    "higher": f"higher by {float(estimate() - estimate_with_square_rate()):.0e} Hz",
+    "corrected": f"estimate is {fixed(estimate_with_square_rate(), 11)} Hz",
+    "agree": f"agree to {float(abs(estimate_with_square_rate() - day_frequency())):.0e} Hz",
+}
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_a_number_on_the_page_is_the_recomputed_one(name: str) -> None:
+    assert NUMBERS[name] in PAGE
+
+
+def test_the_page_s_remedy_hangs_the_bob_along_the_geodetic_vertical() -> None:
+    taken = P.but(latitude=mpf("48.7479"), gravity=mpf("9.8214"))
+    tilt = degrees(rest_angle(taken))
+    # R follows the scene's latitude, so that it is larger by the ratio of the cosines; and the latitude is rounded
+    nearer = tilt * (MP.cos(taken.phi) / MP.cos(P.phi) - 1) + mpf("5e-5")
+    assert abs(taken.latitude + tilt - P.latitude) < nearer < mpf("3e-4")
+    assert f"{fixed(degrees(rest_angle(taken)), 4)}° from the scene's own *z* axis" in PAGE
+    assert f"apparent gravity is {fixed(pull_at_rest(taken), 4)}" in PAGE
+
+
+def test_the_page_is_at_most_two_pages_long() -> None:
+    assert len(PAGE.split()) < 1200
+
+
+def test_between_transits_of_the_passage_the_plane_lies_north_south() -> None:
+    times = transit_times()
+    passage = (pi / 2 + MP.atan2(P.y - rest(P)[1], P.x)) / TURN
+    assert times[5784] < passage < times[5786], shown(passage)

@@ -1,0 +1,133 @@
+"""The verdicts on the three documents, against what was known of them before and independently."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from compare.papers.checks import VERDICTS, Row
+
+# found by deriving the equations symbolically from the kinetic energy, before this code was written
+KNOWN_MISPRINTS = {
+    "mathar_6_text": "exactly",
+    "mathar_32_text": "z⁴",
+    "mathar_40_text": "velocities",
+    "mathar_44_text": "β_x2",
+    "mathar_45": "is y",
+    "mathar_51": "dot on",
+    "mathar_vii_slow": "2K/π",
+    "mathar_fig5_start": "-66.998",
+    "mathar_vii_rest_y": "-0.115205",
+    "mathar_vii_amplitude": "0.008898350",
+    "mathar_a_prolate": "oblate",
+    "mathar_a_flattening": "298.257223563",
+    "gastebois_4_2_ga": "Ω⁴",
+    "gastebois_5_newton": "m a",
+    "gastebois_6_1_part": "réelle",
+    "gastebois_6_1_vx": "cos",
+    "gastebois_6_3_sense": "counter-clockwise",
+    "gastebois_6_3_speed": "+r0",
+    "gastebois_6_3_tf": "T_p",
+    "gastebois_6_3_rate": "-Ω_z",
+    "gastebois_7_1_newton": "m a",
+    "gastebois_7_2_general": "dq'",
+    "gastebois_7_2_fx": "cosφ",
+    "gastebois_7_2_fy": "sinφ",
+    "gastebois_7_2_fz": "sinφ",
+    "gastebois_7_3_y": "+",
+    "methods_2_centrifugal": "+m",
+    "methods_2_force": "ω_p × x'",
+    "methods_end_rate": "+ω sinα",
+}
+# found by this code
+FURTHER_MISPRINTS = {
+    "mathar_4_text": "longitude",
+    "mathar_a_order_5": "5",
+    "mathar_a_order_6": "6",
+    "gastebois_2_day": "23.93",
+    "gastebois_6_2_turn": "-Ω_z",
+    "gastebois_6_3_apparent": "31.73",
+}
+ENDS_BEFORE = {
+    *("mathar_4_text", "mathar_6_text", "mathar_12", "mathar_27_l", "mathar_39_bias", "mathar_44_text"),  # zeros
+    *("mathar_46_root", "gastebois_7_1_newton", "methods_away", "methods_1_rate", "methods_3_w", "methods_end_frame"),
+    *("mathar_vii_l", "mathar_vii_lat", "mathar_a_g", "mathar_a_omega", "mathar_a_flattening", "mathar_a_radius"),
+    *("mathar_a_stages_4", "mathar_a_stages_5", "mathar_a_stages_6", "mathar_a_order_5", "mathar_a_order_6"),
+    *("mathar_a_two", "mathar_vi_1_size", "gastebois_2_radius", "gastebois_2_rate"),  # exact decimals
+    *("mathar_fig7_ahead", "mathar_a_parabola", "gastebois_4_1_equator"),  # what a double run knows
+}
+EXACT_IN_MATHAR = [1, 2, 3, *range(7, 15), 16, 17, 18, 19, 20, 21, 22, 24, 26, 27, 28, 29, 30]
+EXACT_IN_MATHAR += [32, 33, 34, 35, 36, 38, 39, 40, 41, 42, 43, 44, 49, 52]
+
+
+def test_there_is_a_row_for_more_than_a_hundred_lines_of_all_three_documents(judged: dict[str, Row]) -> None:
+    assert len(judged) >= 250
+    for document in ("mathar_", "gastebois_", "methods_"):
+        assert sum(word.startswith(document) for word in judged) >= 30
+
+
+def test_ids_are_unique_words(judged: dict[str, Row], built: tuple[object, list[Row]]) -> None:
+    assert len(judged) == len(built[1])
+    assert all(re.fullmatch(r"[a-z][a-z0-9_]*", word) for word in judged)
+
+
+@pytest.mark.parametrize(("word", "part"), [*KNOWN_MISPRINTS.items(), *FURTHER_MISPRINTS.items()])
+def test_a_misprint_is_found_and_corrected(judged: dict[str, Row], word: str, part: str) -> None:
+    assert judged[word].verdict == "misprint"
+    assert part in judged[word].correction
+
+
+def test_nothing_else_is_called_a_misprint(judged: dict[str, Row]) -> None:
+    found = {word for word, row in judged.items() if row.verdict == "misprint"}
+    assert found == set(KNOWN_MISPRINTS) | set(FURTHER_MISPRINTS)
+
+
+@pytest.mark.parametrize("number", EXACT_IN_MATHAR)
+def test_the_paper_s_numbered_equations_are_exact_as_printed(judged: dict[str, Row], number: int) -> None:
+    assert judged[f"mathar_{number}"].verdict == "exact"
+
+
+@pytest.mark.parametrize("power", [2, 4, 6])
+def test_the_series_47_is_exact_at_each_power(judged: dict[str, Row], power: int) -> None:
+    assert judged[f"mathar_47_{power}"].verdict == "exact"
+
+
+def test_every_row_says_what_its_verdict_asks_for(judged: dict[str, Row]) -> None:
+    for row in judged.values():
+        assert row.verdict in VERDICTS
+        assert row.place
+        assert row.printed
+        assert row.recomputed
+        assert bool(row.error) == (row.verdict == "approximation"), row.id
+        assert bool(row.correction) == (row.verdict == "misprint"), row.id
+
+
+def digits_of(row: Row) -> int:
+    """Significant digits of the longest number."""
+    numbers = re.findall(r"\d+\.?\d*", row.recomputed)
+    return max(len(number.replace(".", "").strip("0")) for number in numbers)
+
+
+def test_recomputed_numbers_have_fifteen_digits_unless_they_end_before(judged: dict[str, Row]) -> None:
+    short = {word for word, row in judged.items() if digits_of(row) < 15}
+    assert short == ENDS_BEFORE
+
+
+def test_the_paper_s_two_last_frequencies_are_both_explained(judged: dict[str, Row]) -> None:
+    estimate, run = judged["mathar_vii_estimate"], judged["mathar_vii_frequency"]
+    assert (estimate.verdict, run.verdict) == ("reproduced", "reproduced")
+    assert estimate.recomputed.startswith("0.06084363411")
+    assert run.recomputed.startswith("0.06084363348")
+    assert "0.0608436336996" in run.remark
+    assert "0.060849421166" in run.remark
+
+
+def test_the_orders_of_the_approximations_are_those_of_theory(judged: dict[str, Row]) -> None:
+    orders = {
+        word: float(match[1]) for word, row in judged.items() if (match := re.search(r"order (\d[.\d]*) in", row.error))
+    }
+    assert len(orders) >= 25
+    assert orders["mathar_vi_2"] == pytest.approx(2, abs=0.05)
+    assert orders["mathar_50_two"] == pytest.approx(3, abs=0.05)
+    assert orders["gastebois_6_3_wide"] == pytest.approx(4, abs=0.05)

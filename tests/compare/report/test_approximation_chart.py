@@ -1,0 +1,57 @@
+"""The picture: every name stands in it, none twice, and the same rows give the same bytes."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from itertools import pairwise
+
+import pytest
+
+from compare.report.charts.approximations import _apart as apart
+from compare.report.charts.approximations import plot
+from compare.studies.approximation_errors import TimeRow, error_table
+from compare.studies.approximation_limits import SweepRow
+from reference import InputError, load_scene
+
+pytest.importorskip("matplotlib")
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def texts(svg):
+    return [(element.text or "").strip() for element in ET.fromstring(svg).iter(f"{SVG}text")]
+
+
+def test_names_units_and_limits_stand_in_the_picture():
+    rows = error_table(load_scene("paris"), ["linear_g", "method_1", "linear_3d"], 600.0, times=(1.0, 10.0, 60.0))
+    svg = plot(rows, title="Paris")
+    words = texts(svg)
+    assert "Paris" in words
+    assert "linear_g, method_1" in words  # one line to the eye, drawn once
+    assert "linear_3d" in words
+    assert "1 mm" in words
+    assert any("position" in word and word.endswith(", m") for word in words)
+    assert plot(rows, title="Paris") == svg
+
+
+def test_a_sweep_is_drawn_over_its_own_axis():
+    rows = [SweepRow("planar", "latitude", value, 60.0, 1e-3 * (1 + value), 1.0) for value in (0.0, 45.0, 90.0)]
+    words = texts(plot(rows, "plane_error_arcsec"))
+    assert "latitude, degrees" in words
+    assert "planar" in words
+
+
+def test_labels_do_not_touch_and_stay_near_their_lines():
+    wanted, tall = [0.9, 0.9, 0.9, 0.5, 0.1, 0.1], [0.05, 0.1, 0.05, 0.05, 0.05, 0.05]
+    places = apart(wanted, tall)
+    for (a, b), (upper, lower) in zip(pairwise(places), pairwise(tall), strict=True):
+        assert a - b >= (upper + lower) / 2 - 1e-12
+    assert places[3] == pytest.approx(0.5)
+    assert sum(places[:3]) / 3 == pytest.approx(0.9, abs=0.02)
+
+
+def test_nothing_to_draw_is_said():
+    empty = [TimeRow("conical", 20.0, None, None, "no circle")]
+    with pytest.raises(InputError, match="error_m"):
+        plot(empty)
+    with pytest.raises(InputError, match="colour"):
+        plot(empty, "colour")

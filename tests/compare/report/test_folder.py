@@ -1,0 +1,96 @@
+"""A report's folder: all files or none, whatever happens on the way, and nobody else's touched."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import os
+from pathlib import Path
+
+import pytest
+
+from compare.report.folder import check_folder, csv_text, json_text, write_files
+from compare.report.page import page
+from reference import InputError
+
+FILES = {"rows.csv": "new", "rows.json": "new", "index.html": page("new", [])}
+OLD = {"rows.csv": "old", "rows.json": "old", "index.html": page("old", [])}
+
+
+def contents(folder: Path) -> dict[str, str]:
+    return {path.name: path.read_text() for path in folder.iterdir()}
+
+
+def test_a_folder_is_made_and_one_that_an_earlier_run_made_is_renewed(tmp_path: Path) -> None:
+    out = tmp_path / "deep" / "page"
+    write_files(out, OLD)
+    write_files(out, FILES)
+    assert contents(out) == FILES
+    assert [path.name for path in out.parent.iterdir()] == ["page"]
+
+
+def test_what_else_is_in_the_folder_stays(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("ten years of work")
+    write_files(tmp_path, FILES)
+    assert contents(tmp_path) == {**FILES, "thesis.tex": "ten years of work"}
+
+
+@pytest.mark.parametrize("name", ["rows.csv", "index.html"])
+def test_a_file_of_somebody_elses_is_not_replaced(tmp_path: Path, name: str) -> None:
+    (tmp_path / name).write_text("ten years of work")
+    for refused in (write_files, check_folder):
+        with pytest.raises(InputError, match=rf"--out: got '.*a {name} of its own', expected a new folder"):
+            refused(tmp_path, FILES)
+    assert contents(tmp_path) == {name: "ten years of work"}
+
+
+def test_a_folder_with_a_page_of_ours_may_be_written_again_whatever_was_added(tmp_path: Path) -> None:
+    write_files(tmp_path, {"index.html": OLD["index.html"]})
+    (tmp_path / "rows.csv").write_text("an earlier version's")
+    write_files(tmp_path, FILES)
+    assert contents(tmp_path) == FILES
+
+
+@pytest.mark.parametrize("failing", [1, 2, 3])
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize("before", [{}, {"index.html": OLD["index.html"]}, OLD])
+def test_what_ends_between_two_files_brings_the_old_ones_back(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failing: int, error: BaseException, before: dict[str, str]
+) -> None:
+    out = tmp_path / "page"
+    write_files(out, before)
+    renamed, calls = os.replace, 0
+
+    def fails_once(source: Path, target: Path) -> None:
+        nonlocal calls
+        calls += 1
+        if calls == failing:
+            raise error
+        renamed(source, target)
+
+    monkeypatch.setattr("os.replace", fails_once)
+    with pytest.raises(InputError if isinstance(error, OSError) else KeyboardInterrupt, match=r"No space left|^$"):
+        write_files(out, FILES)
+    assert contents(out) == before
+
+
+def test_a_folder_in_the_place_of_a_file_is_a_message_and_nothing_is_written(tmp_path: Path) -> None:
+    (tmp_path / "index.html").mkdir()
+    with pytest.raises(InputError, match="--out"):
+        write_files(tmp_path, FILES)
+    assert [path.name for path in tmp_path.iterdir()] == ["index.html"]
+
+
+def test_csv_has_one_header_line_all_digits_unix_line_ends_and_nothing_for_none() -> None:
+    text = csv_text(["a", "b"], [{"a": 0.1 + 0.2, "b": None}, {"a": "x,\ny", "b": 1}])
+    assert text.startswith("a,b\n0.30000000000000004,\n")
+    assert "\r" not in text
+    assert list(csv.reader(io.StringIO(text)))[2] == ["x,\ny", "1"]
+
+
+def test_numbers_that_are_none_become_null_in_json() -> None:
+    text = json_text({"rows": [(math.nan, 1.5), {"deep": -math.inf}], "word": "φ"})
+    assert json.loads(text) == {"rows": [[None, 1.5], {"deep": None}], "word": "φ"}
+    assert "φ" in text

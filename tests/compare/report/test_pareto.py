@@ -1,0 +1,216 @@
+from __future__ import annotations
+
+import math
+from dataclasses import asdict
+from itertools import pairwise
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.stats import linregress
+
+from compare.report.pareto import (
+    cost_at,
+    cost_of_digits,
+    cost_sentence,
+    costs_at,
+    curves,
+    front,
+    sentences,
+    whole_evaluations,
+)
+from compare.report.power_law import power_law
+from compare.studies.row import Row
+from reference import InputError
+
+BOUND = 1e-40
+
+
+def row(method="rk4", setting=0.1, error_m=1e-3, cpu_s=1.0, status="ok", formulation="plane", kind="step", **more):
+    return Row(method, formulation, setting, kind, "binary64", status, error_m=error_m, cpu_s=cpu_s, **more)
+
+
+def ladder(method, points, *, status="ok", kind="tolerance", formulation="space"):
+    """Rows of falling tolerance from (error, cpu) pairs."""
+    return [
+        row(method, 10.0 ** -(i + 1), error, cpu, status, formulation, kind) for i, (error, cpu) in enumerate(points)
+    ]
+
+
+def document(rows, bound_m=BOUND):
+    return {
+        "scene": "paris",
+        "t_end": 86400.0,
+        "reference": {"level": "confirmed", "bound_m": bound_m, "transits": 2},
+        "machine": {},
+        "rows": [asdict(one) for one in rows],
+    }
+
+
+def beats(a, b, bound_m):
+    """a dominates b: nowhere worse, somewhere better."""
+    errors = [max(one.error_m, bound_m) for one in (a, b)]
+    return errors[0] <= errors[1] and a.cpu_s <= b.cpu_s and (errors[0] < errors[1] or a.cpu_s < b.cpu_s)
+
+
+def same(a, b, bound_m):
+    return a.cpu_s == b.cpu_s and max(a.error_m, bound_m) == max(b.error_m, bound_m)
+
+
+FEW = st.sampled_from([1e-12, 1e-9, 2e-9, 1e-6, 1e-3, 1.0])  # so that ties happen
+ROWS = st.lists(
+    st.builds(
+        lambda i, error, cpu, status: row(f"m{i}", 0.1, error, cpu, status),
+        st.integers(0, 99),
+        FEW | st.floats(1e-14, 1.0),
+        FEW | st.floats(1e-3, 1e3),
+        st.sampled_from(["ok", "ok", "extrapolated", "missed_transits"]),
+    ),
+    max_size=40,
+)
+
+
+@given(ROWS, st.sampled_from([0.0, 1e-40, 1e-9]))
+def test_no_row_of_the_front_is_beaten_and_every_other_measured_row_is(rows, bound_m):
+    best = front(rows, bound_m)
+    measured = [one for one in rows if one.measured]
+    assert not any(beats(other, one, bound_m) for one in best for other in measured)
+    for one in measured:
+        assert any(one is other or beats(other, one, bound_m) or same(other, one, bound_m) for other in best)
+
+
+@given(ROWS)
+def test_along_the_front_cost_rises_and_error_falls(rows):
+    for a, b in pairwise(front(rows)):
+        assert a.cpu_s < b.cpu_s
+        assert a.error_m > b.error_m
+
+
+def test_a_failed_row_is_never_on_the_front_however_good_its_numbers():
+    failed = row(error_m=1e-30, cpu_s=1e-6, status="missed_transits")
+    assert front([failed, row(setting=0.2)]) == [row(setting=0.2)]
+
+
+def test_a_row_with_a_number_that_is_none_is_not_on_the_front():
+    broken = [row(error_m=math.nan), row(cpu_s=None), row(error_m=math.inf)]
+    assert front([*broken, row(setting=0.2)]) == [row(setting=0.2)]
+
+
+def test_below_the_bound_of_the_reference_errors_are_equal():
+    cheap, dear = row("a", error_m=3e-41, cpu_s=1.0), row("b", error_m=1e-60, cpu_s=2.0)
+    assert front([cheap, dear], BOUND) == [cheap]
+    assert front([cheap, dear]) == [cheap, dear]
+
+
+def test_the_first_formulation_of_a_method_is_its_own_and_others_are_named():
+    rows = [row("a", formulation="momentum"), row("a", formulation="space"), row("b", formulation="space")]
+    assert [one.label for one in curves(rows)] == ["a", "a (space)", "b"]
+
+
+def test_a_ladder_goes_from_loose_to_tight_whatever_order_it_comes_in():
+    steps = curves([row(setting=0.1), row(setting=0.5), row(setting=0.2)])[0]
+    bits = curves([row(setting=s, kind="precision") for s in (256, 64, 113)])[0]
+    assert [one.setting for one in steps.rows] == [0.5, 0.2, 0.1]
+    assert [one.setting for one in bits.rows] == [64, 113, 256]
+
+
+def test_the_cost_of_an_order_four_method_is_interpolated_exactly():
+    curve = curves([row(setting=h, error_m=h**4, cpu_s=2 / h) for h in (0.5, 0.2, 0.05, 0.01)])[0]
+    for error in (1e-2, 1e-5, 1e-7):
+        cost = cost_at(curve, error)
+        assert cost.cpu_s == pytest.approx(2 / error**0.25, rel=1e-12)
+        assert cost.interpolated
+        assert not cost.extrapolated
+
+
+def test_a_cost_is_never_extrapolated_beyond_the_ladder():
+    curve = curves(ladder("a", [(1e-6, 1.0), (1e-9, 2.0)]))[0]
+    assert cost_at(curve, 1e-10) is None
+    loose = cost_at(curve, 1e-3)
+    assert (loose.cpu_s, loose.interpolated) == (1.0, False)
+
+
+def test_nothing_is_interpolated_across_a_failed_setting():
+    rows = ladder("a", [(1e-2, 1.0), (1e-5, 2.0), (1e-8, 4.0)])
+    rows[1] = row("a", 1e-2, None, None, "gave_up", "space", "tolerance")
+    cost = cost_at(curves(rows)[0], 1e-5)
+    assert (cost.cpu_s, cost.interpolated) == (4.0, False)
+
+
+def test_a_ladder_that_turns_back_counts_its_cheapest_way():
+    curve = curves(ladder("a", [(1e-3, 1.0), (1e-9, 4.0), (1e-8, 8.0)]))[0]
+    assert cost_at(curve, 2e-9).cpu_s < 4.0
+    assert cost_at(curve, 1e-9).cpu_s == 4.0
+
+
+def test_no_error_below_the_bound_has_a_cost():
+    curve = curves(ladder("a", [(1e-3, 1.0), (1e-60, 4.0)]))[0]
+    assert cost_at(curve, 1e-45, BOUND) is None
+    assert cost_at(curve, 1e-40, BOUND).cpu_s == pytest.approx(4.0)
+
+
+def test_whole_runs_go_before_extrapolated_ones():
+    whole, part = ladder("a", [(1e-9, 5.0)]), ladder("b", [(1e-9, 1.0)], status="extrapolated")
+    assert [cost.label for cost in costs_at(part + whole, 1e-9)] == ["a", "b"]
+
+
+def test_the_sentence_names_the_cheapest_and_how_many_times_dearer_the_papers_method_is():
+    rows = [row(setting=h, error_m=h**4, cpu_s=0.01 / h) for h in (0.5, 0.1, 0.01)]
+    rows += ladder("fast", [(1e-2, 0.001), (1e-12, 0.01)])
+    told = sentences(document(rows))
+    assert len(told) == 4
+    assert told[1].startswith("At 1e-6 m the cheapest is fast, ")
+    assert "130 times cheaper than the paper's RK4" in told[1]  # 0.01 / 1e-6**0.25 over 0.001 * 10**0.4, two digits
+    assert "the paper's RK4 does not reach it (1.0e-08 m at best)" in told[2]
+
+
+def test_there_is_no_sentence_where_no_method_reaches():
+    assert len(sentences(document(ladder("a", [(1e-2, 1.0), (1e-7, 2.0)])))) == 2
+    assert sentences(document([row(status="gave_up")])) == []
+
+
+def test_where_the_papers_method_is_the_cheapest_the_next_is_named():
+    told = sentences(document([row(error_m=1e-4, cpu_s=1.0), *ladder("a", [(1e-4, 3.0)])]))
+    assert told[0] == "At 1e-3 m the cheapest is rk4, 1 s of CPU time: 3 times cheaper than the next, a."
+
+
+def test_an_extrapolated_winner_is_marked_in_its_sentence():
+    told = sentences(document(ladder("a", [(1e-4, 3.0)], status="extrapolated")))
+    assert "extrapolated" in told[0]
+
+
+def test_the_power_law_and_its_standard_error_are_those_of_scipy():
+    x = [10.0, 19.0, 31.0, 45.0, 74.0]
+    y = [0.9, 2.1, 6.3, 11.0, 37.0]
+    law, truth = power_law(x, y), linregress([math.log(v) for v in x], [math.log(v) for v in y])
+    assert law.exponent == pytest.approx(truth.slope, rel=1e-12)
+    assert law.standard_error == pytest.approx(truth.stderr, rel=1e-12)
+    assert law.factor == pytest.approx(math.exp(truth.intercept), rel=1e-12)
+    assert (law.points, law.low, law.high) == (5, pytest.approx(10), pytest.approx(74))
+
+
+@pytest.mark.parametrize("x", [[], [1.0, 2.0], [3.0, 3.0, 3.0], [-1.0, 0.0, 2.0]])
+def test_a_power_law_needs_three_points_at_different_places(x):
+    with pytest.raises(InputError):
+        power_law(x, [1.0] * len(x))
+
+
+def test_the_cost_of_digits_leaves_out_rows_at_the_bound():
+    rows = [
+        row("heyoka_real", bits, 10.0**-digits, 0.01 * digits**1.5, "ok", "momentum", "precision")
+        for bits, digits in ((64, 15), (113, 30), (160, 39), (256, 70), (512, 150))
+    ]
+    law = cost_of_digits(rows, BOUND)
+    assert law.points == 3
+    assert law.exponent == pytest.approx(1.5)
+    assert law.standard_error < 1e-12
+    assert "a = 1.50 ± 0.00" in cost_sentence(law)
+    assert cost_of_digits(rows, 1e-35) is None
+    assert cost_of_digits(rows).points == 5
+
+
+def test_evaluations_of_a_part_are_scaled_to_the_whole_span():
+    part = row(status="extrapolated", rhs_evaluations=1000, reached_t=100.0)
+    assert whole_evaluations(part, 1000.0) == 10000
+    assert whole_evaluations(row(rhs_evaluations=7, reached_t=1000.0), 1000.0) == 7
+    assert whole_evaluations(row(), 1000.0) is None

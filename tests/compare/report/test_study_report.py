@@ -1,0 +1,279 @@
+from __future__ import annotations
+
+import csv
+import importlib.util
+import json
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from dataclasses import asdict
+from html.parser import HTMLParser
+
+import pytest
+from places import ROOT
+
+from compare.report import page as parts
+from compare.report import study as report
+from compare.report.page import Column, Html, TableRow
+from compare.report.tables import cpu, setting, tidy
+from compare.studies.row import Row
+from reference import InputError
+
+VOID = {"meta", "br", "link", "path", "use"}
+NASTY = 'died of <script>alert("x")</script> & "quotes"'
+
+
+def row(method, setting_, error_m, cpu_s, status="ok", formulation="space", kind="tolerance", **more):
+    return Row(method, formulation, setting_, kind, "binary64", status, error_m=error_m, cpu_s=cpu_s, **more)
+
+
+def made(rows=None, **more):
+    rows = rows or [
+        row("rk4", 0.1, 1e-4, 0.1, formulation="plane", kind="step", rhs_evaluations=4_000_000, cpu_spread=0.02),
+        row("rk4", 0.01, 1e-8, 1.0, formulation="plane", kind="step", rhs_evaluations=40_000_000, steps=10_000_000),
+        row("heyoka_double", 1e-8, 2e-7, 0.01, formulation="momentum", h_drift=1e-12, transit_error_s=3e-9),
+        row("heyoka_double", 2.0**-52, 3e-13, 0.02, formulation="momentum"),
+        row("heyoka_double", 2.0**-52, 9e-13, 0.025),
+        row("scipy_dop853", 1e-6, 1e-5, 40.0, "extrapolated", reason="measured to t = 90 s"),
+        row("scipy_lsoda", 1e-12, None, 0.7, "gave_up", reason=NASTY, reached_t=123.5),
+        row("scipy_bdf", 1e-12, 0.5, 0.7, "missed_transits", reason="1 of 9 transits is missed", reached_t=900.0),
+        row("mpmath_odefun", 53, None, None, "not_installed", kind="precision",
+            reason="not installed (mpmath): pip install 'foucault-reference[methods]'"),
+    ]  # fmt: skip
+    return {
+        "scene": "paris",
+        "t_end": 900.0,
+        "reference": {"level": "enclosed", "bound_m": 5e-39, "transits": 109},
+        "machine": {"processor": "Some <CPU>", "system": "Linux", "python": "3.11", "heyoka": "7.13"},
+        "rows": [asdict(one) for one in rows],
+        **more,
+    }
+
+
+class Reader(HTMLParser):
+    """Checks that tags close in order, and collects tables and text."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.tables, self.text = [], [], []
+        self.feed(text)
+        self.close()
+        assert not self.open, self.open
+
+    def handle_starttag(self, tag, attributes):
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "table":
+            self.tables.append([])
+        if tag == "tr":
+            self.tables[-1].append((dict(attributes).get("class", ""), []))
+        if tag in ("td", "th"):
+            self.tables[-1][-1][1].append("")
+
+    def handle_startendtag(self, tag, attributes):
+        pass
+
+    def handle_endtag(self, tag):
+        if tag not in VOID:
+            assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text.append(data)
+        if {"td", "th"} & set(self.open):
+            self.tables[-1][-1][1][-1] += data
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    out = tmp_path_factory.mktemp("report") / "new" / "folder"
+    assert report.write_report(made(), out) == out / "index.html"
+    return out
+
+
+@pytest.fixture(scope="module")
+def read(written):
+    return Reader((written / "index.html").read_text(encoding="utf-8"))
+
+
+def table_of(read, *titles):
+    return next(one for one in read.tables if set(titles) <= set(one[0][1]))
+
+
+def test_the_folder_holds_three_files_and_nothing_else(written):
+    assert sorted(path.name for path in written.iterdir()) == ["index.html", "rows.csv", "study.json"]
+
+
+def test_the_csv_gives_every_row_back(written):
+    with (written / "rows.csv").open(newline="") as stream:
+        back = list(csv.DictReader(stream))
+    assert len(back) == 9
+    assert list(back[0])[:4] == ["method", "formulation", "setting", "kind"]
+    assert float(back[3]["setting"]) == 2.0**-52
+    assert back[6]["reason"] == NASTY
+    assert back[8]["error_m"] == ""
+
+
+def test_the_json_is_the_document(written):
+    assert json.loads((written / "study.json").read_text()) == made()
+
+
+def test_the_page_has_every_row_with_its_marks(read):
+    head, *body = table_of(read, "status", "reason")
+    assert len(body) == 9
+    place = {title: i for i, title in enumerate(head[1])}
+    found = {
+        (cells[place["method"]], cells[place["formulation"]], cells[place["setting"]]): (kind, cells)
+        for kind, cells in body
+    }
+    assert found["rk4", "plane", "0.01 s"][1][place["evaluations"]].replace("\u202f", "") == "40000000"
+    assert "front" in found["heyoka_double", "momentum", "2.22e-16"][0]
+    assert "front" not in found["heyoka_double", "space", "2.22e-16"][0]
+    assert found["scipy_dop853", "space", "1e-6"][1][place["CPU s"]] == "~40.0"
+    kind, cells = found["scipy_lsoda", "space", "1e-12"]
+    assert "failed" in kind
+    assert cells[place["last t, s"]] == "123.5"
+    assert cells[place["reason"]] == NASTY
+
+
+def test_failures_are_listed_with_their_reason_and_the_extra_that_is_missing(read):
+    rows = {cells[0]: cells for _, cells in table_of(read, "settings", "reason")[1:]}
+    assert set(rows) == {"scipy_lsoda", "scipy_bdf", "mpmath_odefun"}
+    assert "foucault-reference[methods]" in rows["mpmath_odefun"][-1]
+    assert rows["scipy_bdf"][2] == "missed transits"
+
+
+def test_the_front_is_a_table_of_its_own(read):
+    fronts = next(one for one in read.tables if one[0][1] == ["method", "setting", "error m", "CPU s", ""])
+    assert [cells[:2] for _, cells in fronts[1:]] == [["heyoka_double", "1e-8"], ["heyoka_double", "2.22e-16"]]
+
+
+def test_what_was_said_by_others_is_escaped(written, read):
+    html = (written / "index.html").read_text()
+    assert "<script" not in html
+    assert NASTY in "".join(read.text)
+    assert "Some <CPU>" in "".join(read.text)
+
+
+def test_the_page_is_self_contained(written):
+    html = (written / "index.html").read_text()
+    assert not re.search(r"<(link|script|img|iframe)\b|@import|url\((?!#)", html)
+    assert set(re.findall(r'(?:src|href)="([^#"][^"]*)"', html)) == set()
+
+
+def test_the_pictures_in_the_page_are_well_formed(written):
+    html = (written / "index.html").read_text()
+    pictures = re.findall(r"<svg.*?</svg>", html, flags=re.DOTALL)
+    assert len(pictures) == 5  # no precision ladder: heyoka_real is not among the rows
+    for svg in pictures:
+        ET.fromstring(svg)
+
+
+def test_ids_are_unique_and_links_lead_somewhere(written):
+    html = (written / "index.html").read_text()
+    ids = re.findall(r' id="([^"]+)"', html)
+    assert len(ids) == len(set(ids))
+    assert set(re.findall(r'href="#([^"]+)"', html)) <= set(ids)
+
+
+def test_the_page_says_where_and_how_it_was_measured(read):
+    text = "".join(read.text)
+    for word in ("python 3.11, heyoka 7.13", "level enclosed, bound 5.0e-39 m", "in one thread", "nearest double"):
+        assert word in text
+    assert "At 1e-6 m the cheapest is heyoka_double" in text
+
+
+def test_title_and_limit_are_used_where_they_are_given():
+    html = report.page_text(made(title="A & B", limit_s=8.0))
+    assert "<title>Error against run time: A &amp; B</title>" in html
+    assert "8 CPU seconds" in html
+
+
+def test_the_same_document_makes_the_same_bytes(written, tmp_path):
+    report.write_report(json.loads((written / "study.json").read_text()), tmp_path)
+    for path in written.iterdir():
+        assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
+
+
+def test_a_study_in_which_everything_failed_still_has_a_page():
+    html = report.page_text(made([row("my_program", 0.1, None, None, "gave_up", reason="broken")]))
+    assert "No method reached 1e-3 m." in html
+    assert "broken" in html
+    Reader(html)
+
+
+def test_without_matplotlib_the_page_says_what_is_missing(monkeypatch):
+    real = importlib.util.find_spec
+    monkeypatch.setattr(
+        importlib.util, "find_spec", lambda name, *more: None if name == "matplotlib" else real(name, *more)
+    )
+    html = report.page_text(made())
+    assert "<svg" not in html
+    assert "foucault-reference[plot]" in html
+
+
+def test_an_interrupted_write_leaves_the_old_report(tmp_path, monkeypatch):
+    report.write_report(made(), tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def interrupted(descriptor):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("os.fsync", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        report.write_report(made(title="another"), tmp_path)
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
+
+
+def test_a_place_that_cannot_be_written_is_a_message(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(InputError, match="--out"):
+        report.write_report(made(), tmp_path / "file")
+
+
+def test_the_text_table_has_every_row_and_the_sentences():
+    text = report.text_table(made())
+    for word in ("rk4", "scipy_dop853", "mpmath_odefun", "~40.0", "At 1e-6 m", "1 of 9 transits is missed"):
+        assert word in text
+    marked = [line for line in text.splitlines() if line.startswith("* ") and "Pareto" not in line]
+    assert len(marked) == 2
+    assert all("heyoka_double" in line for line in marked)
+    assert all(len(line) <= 100 for line in text.split("Failed:")[0].splitlines())
+    assert text.count("not installed") == 1
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(1e-4, "1e-4"), (2.0**-52, "2.22e-16"), (0.05, "0.05"), (113, "113"), (0.002, "0.002")]
+)
+def test_settings_are_short(value, text):
+    assert tidy(value) == text
+    assert setting(row("x", value, 1.0, 1.0, kind="step")) == f"{text} s"
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.012345, "0.0123"), (1.2345, "1.23"), (123.4, "123"), (0.0, "0"), (None, "")]
+)
+def test_cpu_seconds_have_three_digits(value, text):
+    assert cpu(value) == text
+
+
+def test_parts_escape_text_and_keep_html():
+    assert parts.text("a < b") == "a &lt; b"
+    assert parts.text(Html("<b>")) == "<b>"
+    made_table = parts.table([Column("<x>", "number")], [TableRow(["1 & 2"], "front")], "a < b")
+    for piece in ("&lt;x&gt;", "1 &amp; 2", "a &lt; b", '<tr class="front">', 'class="number"'):
+        assert piece in made_table
+    assert "<em>" in parts.page("t", [parts.section("A b, c", Html("<em>x</em>"))])
+    assert '<a href="#a-b-c">A b, c</a>' in parts.page("t", [parts.section("A b, c", "x")])
+
+
+def test_a_row_of_a_table_has_a_cell_for_every_column():
+    with pytest.raises(ValueError, match="zip"):
+        parts.table([Column("one"), Column("two")], [TableRow(["1"])])
+
+
+def test_neither_the_report_nor_its_parts_load_matplotlib():
+    modules = "compare.report.study, compare.report.page, compare.report.charts"
+    code = f"import {modules}, sys; print('matplotlib' in sys.modules)"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert found.stdout.strip() == "False"

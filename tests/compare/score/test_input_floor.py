@@ -1,0 +1,69 @@
+"""The input floor: what rounding the inputs to doubles does, once per scene, and read off for any end."""
+
+from __future__ import annotations
+
+import json
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from small_scenes import make_scene
+
+from compare.score import input_floor as module
+from compare.score.input_floor import input_floor
+from reference import load, load_scene
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "floor"
+
+
+def test_it_is_how_far_the_two_golden_readings_of_a_scene_are_apart():
+    decimal, rounded = load("paris"), load("paris.binary64")
+    apart = [[float(a - b) for a, b in zip(decimal.exact(c), rounded.exact(c), strict=True)] for c in "xyz"]
+    moved = np.maximum.accumulate(np.linalg.norm(np.array(apart), axis=0))
+    paris = load_scene("paris")
+    for row in (60, 720, 1440):
+        assert input_floor(paris, 60.0 * row) == pytest.approx(moved[row], rel=0.05), row
+
+
+def test_ends_within_a_factor_of_two_share_one_run(own_cache, monkeypatch):
+    paris = load_scene("paris")
+    whole = input_floor(paris, 86400.0)
+    monkeypatch.setattr(module, "sensitivity", None)
+    assert input_floor(paris.with_values(["inputs=binary64"]), 86400.0) == whole
+    assert 0 < input_floor(paris, 43201.0) < input_floor(paris, 80000.0) <= whole
+    assert len(list(own_cache.iterdir())) == 1
+
+
+def test_a_short_run_is_not_told_what_a_long_one_loses(own_cache):
+    paris = load_scene("paris")
+    short = input_floor(paris, 10.0)
+    assert 0 < short < input_floor(paris, 86400.0) / 100
+    (entry,) = (path for path in own_cache.iterdir() if json.loads(path.read_text())[-1] < 1e-14)
+    assert len(json.loads(entry.read_text())) == module.TIMES
+
+
+def test_an_end_at_the_start_or_beyond_the_scene_has_a_floor_too():
+    scene = make_scene("mine", run={"t_end": "20", "grid_step": "5"})
+    rounded = [float(Fraction(text) - Fraction(float(text))) for text in (scene.release.x, scene.release.y)]
+    assert input_floor(scene, 0.0) == pytest.approx(np.hypot(*rounded), rel=1e-3)
+    assert input_floor(scene, 25.0) > input_floor(scene, 20.0) > 0
+
+
+def test_inputs_that_are_doubles_have_no_floor():
+    release = {"x": "0.25", "y": "0.5"}
+    site = {"latitude": "45", "gravity": "9.75", "rotation_rate": "0.0001220703125", "equatorial_radius": "6378137",
+            "inverse_flattening": "256"}  # fmt: skip
+    assert input_floor(make_scene("exact", site=site, release=release, run={"t_end": "20"}), 20.0) == 0
+
+
+def test_a_damaged_entry_is_made_again(own_cache):
+    paris = load_scene("paris")
+    first = input_floor(paris, 600.0)
+    (entry,) = own_cache.iterdir()
+    for junk in ("[1.0]", "half"):
+        entry.write_text(junk)
+        assert input_floor(paris, 600.0) == first

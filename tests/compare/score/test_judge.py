@@ -1,0 +1,390 @@
+"""`foucault score` as a user meets it: verdict, exit status, JSON, pictures, and what is said of bad input."""
+
+from __future__ import annotations
+
+import io
+import json
+import sys
+import time
+from decimal import Context, Decimal, localcontext
+
+import numpy as np
+import pytest
+
+from foucault import main
+from reference import load, load_scene, trajectory
+from reference.engines.trajectory import Variants
+
+COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
+OWN = """id = "mine"
+[pendulum]
+length = "2"
+drag = "{drag}"
+[site]
+latitude = "{latitude}"
+[release]
+{release}
+[run]
+t_end = "{t_end}"
+grid_step = "5"
+digits = 22
+transits = {transits}
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def own_cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FOUCAULT_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture
+def foucault(monkeypatch, capfd):
+    """Run a command in this process; gives exit status, stdout, stderr."""
+
+    def call(*words, stdin=b""):
+        monkeypatch.setattr(sys, "argv", ["foucault", *map(str, words)])
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(stdin)))
+        status = 0
+        try:
+            main()
+        except SystemExit as stop:
+            status = int(stop.code or 0)
+        seen = capfd.readouterr()
+        return status, seen.out, seen.err
+
+    return call
+
+
+def write_csv(path, t, states, columns=COLUMNS, digits=17):
+    lines = [",".join(("t", *columns))]
+    lines += [f"{a:.{digits}g}," + ",".join(f"{v:.{digits}g}" for v in row) for a, row in zip(t, states, strict=True)]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+@pytest.fixture(scope="module")
+def golden():
+    return load("paris.binary64")
+
+
+@pytest.fixture(scope="module")
+def states(golden):
+    return np.column_stack([getattr(golden, name) for name in COLUMNS])
+
+
+@pytest.fixture
+def good(tmp_path, golden, states):
+    return write_csv(tmp_path / "good.csv", golden.t, states)
+
+
+def off_by(tmp_path, golden, states, column, error):
+    wrong = states.copy()
+    wrong[:, COLUMNS.index(column)] += error
+    return write_csv(tmp_path / "wrong.csv", golden.t, wrong)
+
+
+KEYS = {"scene", "verdict", "max_error_m", "rms_error_m", "end_error_m", "digits", "tolerance_m", "input_floor_m"}
+WORST = {"t", "component", "expected", "got"}
+TRANSITS = {"matched", "missed", "extra", "max_error_s", "max_conditioned_error_m"}
+
+
+def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(foucault, good, golden):
+    zeros = golden.path / "transits.binary64.csv"
+    status, out, err = foucault("score", "paris", good, "--transits", zeros, "--json")
+    said = json.loads(out)
+    assert (status, said["verdict"], err) == (0, "agrees", "")
+    assert KEYS | {"worst", "transits"} <= set(said)
+    assert set(said["worst"]) >= WORST
+    assert set(said["transits"]) >= TRANSITS
+    assert said["max_error_m"] < 1e-16 * 100
+    assert said["transits"]["matched"] == 10514
+    assert said["reference"]["level"] == golden.manifest.level
+    assert 4e-13 < said["input_floor_m"] < 6e-13  # facts/peers.md
+
+
+def test_the_table_says_the_same_in_words(foucault, good):
+    status, out, _ = foucault("score", "paris", good)
+    assert status == 0
+    assert "good.csv agrees with paris (1441 rows, t = 0 to 86400 of 86400 s)" in out
+    for word in (
+        "largest error",
+        "digits",
+        "scd, mescd",
+        "worst",
+        "swing plane",
+        "drifts",
+        "inputs read as",
+        "reference",
+    ):
+        assert word in out
+
+
+def test_a_wrong_run_disagrees_with_exit_status_1(foucault, tmp_path, golden, states):
+    path = off_by(tmp_path, golden, states, "y", 1e-3 * np.sin(golden.t))
+    status, out, _ = foucault("score", "paris", path, "--json", "--no-diagnosis")
+    said = json.loads(out)
+    assert (status, said["verdict"]) == (1, "disagrees")
+    assert said["max_error_m"] == pytest.approx(1e-3, rel=0.01)
+    assert said["worst"]["component"] == "y"
+    assert said["worst"]["got"] - said["worst"]["expected"] == pytest.approx(said["worst"]["difference"], rel=1e-9)
+
+
+def test_without_a_diagnosis_nothing_is_claimed_about_one(foucault, tmp_path, golden, states):
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(len(golden.t))
+    path = off_by(tmp_path, golden, states, "y", noise)
+    assert "No single mistake" not in foucault("score", "paris", path, "--no-diagnosis")[1]
+    assert "No single mistake" in foucault("score", "paris", path)[1]
+
+
+def test_the_tolerance_decides(foucault, tmp_path, golden, states):
+    path = off_by(tmp_path, golden, states, "x", 1e-4)
+    assert foucault("score", "paris", path, "--tolerance", "2e-4")[0] == 0
+    assert foucault("score", "paris", path, "--tolerance", "0.5e-4", "--no-diagnosis")[0] == 1
+
+
+@pytest.mark.parametrize(("error", "agrees"), [("1e-30", True), ("1e-28", False)])
+def test_a_reference_is_never_judged_finer_than_its_own_bound(foucault, tmp_path, error, agrees):
+    """Golden rows to 40 digits are held as pairs of doubles, to 3e-30 m: below that nobody is blamed."""
+    lines = (load("paris").path / "grid.csv").read_text().splitlines()[:6]
+    for i, line in enumerate(lines[1:], 1):
+        t, x, rest = line.split(",", 2)
+        with localcontext(Context(prec=60)):
+            lines[i] = f"{t},{Decimal(x) + Decimal(error)},{rest}"
+    path = tmp_path / "close.csv"
+    path.write_text("\n".join([*lines, ""]))
+    status, out, _ = foucault("score", "paris", path, "--tolerance", "1e-60", "--json", "--no-diagnosis")
+    said = json.loads(out)
+    assert status == (0 if agrees else 1)
+    assert said["at_or_below_bound"] is agrees
+    assert said["max_error_m"] == pytest.approx(float(error), rel=0.1)
+    assert 1e-30 < said["reference"]["bound_m"] < 1e-29
+    said = foucault("score", "paris", path, "--tolerance", "1e-60", "--no-diagnosis")[1]
+    assert ("at or below the reference's bound" in said) is agrees
+
+
+def test_the_reading_of_the_inputs_is_chosen_and_said(foucault, good):
+    read = {}
+    for inputs in ("auto", "decimal", "binary64"):
+        read[inputs] = json.loads(foucault("score", "paris", good, "--inputs", inputs, "--json")[1])
+    assert read["auto"]["inputs"] == "binary64"
+    assert "doubles" in read["auto"]["why_inputs"]
+    assert read["decimal"]["why_inputs"] == "as asked"
+    assert read["auto"]["max_error_m"] == read["binary64"]["max_error_m"]
+    # the same numbers in the other reading are off by the input floor
+    assert read["decimal"]["max_error_m"] == pytest.approx(read["auto"]["input_floor_m"], rel=0.1)
+
+
+def test_more_digits_than_a_doubles_are_judged_as_decimals(foucault, golden):
+    decimal = load("paris")
+    said = json.loads(foucault("score", "paris", decimal.path / "grid.csv", "--json")[1])
+    assert (said["inputs"], said["verdict"]) == ("decimal", "agrees")
+    assert said["digits"] > 28
+    assert "more digits" in said["why_inputs"]
+
+
+def test_a_good_double_run_is_about_as_good_as_its_inputs(foucault, tmp_path):
+    scene = load_scene("paris", ["inputs=binary64"])
+    times = np.sort(np.random.default_rng(2).uniform(0, 86400, 500))
+    path = write_csv(tmp_path / "run.csv", times, trajectory(scene, np.concatenate([[0.0], times]))[1:])
+    said = json.loads(foucault("score", "paris", path, "--json", "--tolerance", "1e-11")[1])
+    assert said["verdict"] == "agrees"
+    assert 1e-15 < said["max_error_m"] < 1e-11
+    assert said["error_over_floor"] == pytest.approx(said["max_error_m"] / said["input_floor_m"])
+
+
+def test_several_candidates_are_judged_one_by_one(foucault, good, tmp_path, golden, states):
+    wrong = off_by(tmp_path, golden, states, "x", 1.0)
+    status, out, _ = foucault("score", "paris", good, wrong, "--json", "--no-diagnosis")
+    said = json.loads(out)
+    assert (status, said["verdict"]) == (1, "disagrees")
+    assert [row["verdict"] for row in said["rows"]] == ["agrees", "disagrees"]
+
+
+def test_standard_input_is_a_candidate(foucault, good):
+    status, out, _ = foucault("score", "paris", "-", stdin=good.read_bytes())
+    assert status == 0
+    assert "standard input agrees" in out
+
+
+def test_a_program_is_run_and_timed(foucault, good):
+    status, out, _ = foucault("score", "paris", "--run", f"cat {good}", "--repeats", "1", "--json")
+    said = json.loads(out)
+    assert status == 0
+    assert said["timing"]["runs"] == 1
+    assert said["timing"]["warm"]
+    assert "no warm-up" in foucault("score", "paris", "--run", f"cat {good}", "--repeats", "0")[1]
+
+
+def test_missed_and_extra_transits_disagree_and_are_named(foucault, good, golden, tmp_path):
+    zeros = np.sort([*np.delete(golden.transits["t"], 100), 1234.5])
+    path = tmp_path / "zeros.csv"
+    path.write_text("t\n" + "\n".join(map(repr, zeros.tolist())) + "\n")
+    status, out, _ = foucault("score", "paris", good, "--transits", path)
+    assert status == 1
+    assert "10513 matched, 1 missed, 1 extra" in out
+    assert f"missed at         {golden.transits['t'][100]:.6f} s" in out
+    assert "extra at          1234.500000 s" in out
+
+
+def test_a_release_at_rest_and_what_lies_beyond_the_end_are_no_extra_transits(foucault, good, golden, tmp_path):
+    path = tmp_path / "zeros.csv"
+    path.write_text("t\n" + "\n".join(map(repr, [0.0, *golden.transits["t"].tolist(), 86400.5])) + "\n")
+    assert foucault("score", "paris", good, "--transits", path)[0] == 0
+
+
+@pytest.mark.parametrize(("suffix", "start"), [("svg", b"<?xml"), ("png", b"\x89PNG")])
+def test_a_picture_is_drawn(foucault, tmp_path, golden, states, suffix, start):
+    pytest.importorskip("matplotlib")
+    path = off_by(tmp_path, golden, states, "x", 1e-9 * golden.t / 60)
+    drawn = tmp_path / f"error.{suffix}"
+    assert foucault("score", "paris", path, path, "--plot", drawn, "--no-diagnosis")[0] == 1
+    assert drawn.read_bytes().startswith(start)
+    if suffix == "svg":
+        text = drawn.read_text()
+        assert "bound of the reference" in text
+        first = text
+        foucault("score", "paris", path, path, "--plot", drawn, "--no-diagnosis")
+        assert drawn.read_text() == first  # the same picture has the same bytes
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ([], "CANDIDATE: got 'nothing'"),
+        (["none.csv"], "No such file"),
+        (["-", "-"], "only once"),
+        (["-", "--transits", "-"], "only once"),
+        (["-"], "no header and no rows"),
+        (["{good}", "--tolerance", "0"], "--tolerance: got '0'"),
+        (["{good}", "--tolerance", "nan"], "--tolerance: got 'nan'"),
+        (["{good}", "--tolerance", "soon"], "--tolerance"),
+        (["{good}", "--inputs", "exact"], "--inputs"),
+        (["{good}", "--transits", "none.csv"], "--transits: got"),
+        (["{good}", "--transits", "{good}.npz"], "--transits: got"),
+        (["{good}", "--plot", "error.jpeg2"], "--plot: got"),
+        (["{good}", "--plot", "no/such/folder/error.svg"], "a folder that exists"),
+        (["--run", ""], "--run: got"),
+        (["--run", "cat {{x9}}"], "--run: got '{x9}'"),
+        (["--run", "false"], "exit status 1"),
+        (["--run", "true"], "no header and no rows"),
+        (["--run", "sleep 9", "--timeout", "0.2"], "ends within 0.2 s"),
+        (["--run", "true", "--timeout", "-1"], "--timeout: got"),
+        (["--run", "true", "--repeats", "-1"], "--repeats: got"),
+        (["{good}", "--set", "site.latitude=91"], "site.latitude: got '91'"),
+        (["{good}", "--set", "release.x=a lot"], "release.x: got 'a lot'"),
+    ],
+)
+def test_a_users_mistake_gets_a_message_and_exit_status_2(foucault, good, words, said):
+    status, out, err = foucault("score", "paris", *(word.format(good=good) for word in words))
+    assert status == 2
+    assert said in err
+    assert out == ""
+    assert "Traceback" not in err
+
+
+def own_scene(tmp_path, drag="0", latitude="48.846111", release='x = "0.1"\ny = "0.2"', t_end="60", transits="true"):
+    path = tmp_path / "mine.toml"
+    path.write_text(OWN.format(drag=drag, latitude=latitude, release=release, t_end=t_end, transits=transits))
+    return path
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"drag": "0.05"},
+        {"latitude": "90"},
+        {"release": 'angle = "120"\nazimuth = "30"\nazimuth_rate = "20"', "t_end": "20"},
+        {"release": 'angle = "0"\nazimuth = "0"', "latitude": "90", "transits": "false"},  # at rest
+        {"release": 'angle = "180"\nazimuth = "0"', "latitude": "90", "transits": "false"},  # upside down
+    ],
+    ids=["plain", "drag", "pole", "above", "at_rest", "inverted"],
+)
+def test_a_scene_of_the_users_own_is_judged(foucault, tmp_path, changes):
+    path = own_scene(tmp_path, **changes)
+    scene = load_scene(path, ["inputs=binary64"])
+    times = np.linspace(0, float(scene.run.t_end), 77)
+    rows = write_csv(tmp_path / "run.csv", times, trajectory(scene, times))
+    status, out, _ = foucault("score", path, rows, "--json", "--tolerance", "1e-8")
+    said = json.loads(out)
+    assert (status, said["verdict"]) == (0, "agrees")
+    rows = write_csv(tmp_path / "run.csv", times, trajectory(scene, times) + 1e-3)
+    assert foucault("score", path, rows, "--no-diagnosis")[0] == 1
+
+
+def test_transits_that_the_scene_does_not_ask_for_are_not_judged(foucault, tmp_path):
+    path = own_scene(tmp_path, transits="false")
+    zeros = tmp_path / "zeros.csv"
+    zeros.write_text("t\n1\n2\n3\n")
+    scene = load_scene(path, ["inputs=binary64"])
+    rows = write_csv(tmp_path / "run.csv", np.linspace(0, 60, 5), trajectory(scene, np.linspace(0, 60, 5)))
+    status, out, _ = foucault("score", path, rows, "--transits", zeros)
+    assert status == 0
+    assert "were not judged" in out
+
+
+def test_rows_a_little_beyond_the_end_are_judged(foucault, tmp_path, golden, states):
+    t = np.append(golden.t[-3:-1], 86400.00000000003)
+    path = write_csv(tmp_path / "late.csv", t, states[-3:])
+    assert foucault("score", "paris", path)[0] == 0
+
+
+@pytest.mark.parametrize("columns", [("x", "y"), ("y", "x", "vz")])
+def test_one_row_of_two_columns_is_enough(foucault, tmp_path, golden, states, columns):
+    picked = states[7:8, [COLUMNS.index(name) for name in columns]]
+    path = write_csv(tmp_path / "one.csv", golden.t[7:8], picked, columns)
+    status, out, _ = foucault("score", "paris", path)
+    assert status == 0
+    assert "(1 row, t = 420 to 420 of 86400 s)" in out
+
+
+def test_errors_as_large_as_numbers_go_are_judged(foucault, tmp_path, golden, states):
+    status, out, _ = foucault("score", "paris", write_csv(tmp_path / "big.csv", golden.t, states * 1e90), "--json")
+    said = json.loads(out)
+    assert status == 1
+    assert said["diagnosis"] is None
+    assert all(np.isfinite(said[key]) for key in ("max_error_m", "rms_error_m", "digits", "h_drift_m2_s2"))
+
+
+def test_collinear_inputs_are_both_named(foucault, tmp_path):
+    """The Earth's size and shape and the height enter by one number only, the distance from the axis."""
+    scene = load_scene("paris", ["inputs=binary64"])
+    times = np.linspace(0, 86400, 400)
+    higher = Variants().states(scene.with_values(["site.altitude=1000"]).exact, times)
+    path = write_csv(tmp_path / "high.csv", times, higher)
+    found = json.loads(foucault("score", "paris", path, "--json")[1])["diagnosis"]
+    assert found["id"] == "site.altitude"
+    assert found["shift"] == pytest.approx(1000, rel=1e-6)
+    assert set(found["also"]) == {"site.equatorial_radius", "site.inverse_flattening"}
+    assert "which explains as much" in found["text"]
+
+
+@pytest.mark.parametrize("kind", ["csv", "npz"])
+def test_a_day_of_100000_rows_is_judged_in_less_than_three_times_its_reading_and_one_run(tmp_path, kind):
+    """Cold, that is with the truth evaluated at its times; imports and compilation apart."""
+    from compare.candidates.read import read
+    from compare.score.judge import score
+
+    paris = load_scene("paris", ["inputs=binary64"])
+    times = np.linspace(0, 86400, 100_000)
+    path = tmp_path / f"day.{kind}"
+    made = trajectory(paris, times)
+    if kind == "csv":
+        write_csv(path, times, made)
+    else:
+        np.savez(path, t=times, **dict(zip(COLUMNS, made.T, strict=True)))
+    score(read(write_csv(tmp_path / "short.csv", times[:100], trajectory(paris, times[:100]))), paris)  # compiles
+    ratios = []
+    for k in range(5):
+        begun = time.process_time()
+        candidate = read(path)
+        trajectory(paris, candidate.t)
+        alone = time.process_time() - begun
+        object.__setattr__(candidate, "t", candidate.t * (1 - k * 2.0**-40))  # times that no cache knows
+        begun = time.process_time()
+        read(path)
+        score(candidate, paris)
+        ratios.append((time.process_time() - begun) / alone)
+    assert min(ratios) < 3

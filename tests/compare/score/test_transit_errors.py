@@ -1,0 +1,119 @@
+"""Transits of a candidate against the truth's: matched, missed, extra, shifted, and what nobody can decide."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from compare.score.transits import transit_errors
+
+TRUTH = np.arange(1, 21) * 8.2
+AX = 0.05 * (-1.0) ** np.arange(20)
+OMEGA = 0.38
+END = 170.0
+
+
+def against(found, truth=TRUTH, ax=AX, until=END, **more):
+    return transit_errors(np.asarray(found, dtype=float), truth, ax, OMEGA, until, **more)
+
+
+def test_the_truth_matches_itself():
+    made = against(TRUTH)
+    assert (made.matched, made.missed, made.extra, made.max_error_s) == (20, [], [], 0.0)
+
+
+def test_errors_are_weighed_by_the_acceleration():
+    off = np.linspace(-1e-3, 1e-3, 20)
+    made = against(TRUTH + off)
+    assert np.allclose(made.errors_s, off, atol=1e-12)
+    assert made.max_error_s == pytest.approx(1e-3)
+    assert made.max_conditioned_m == pytest.approx(1e-3 * 0.05 / OMEGA)
+
+
+def test_a_missed_one_is_named():
+    made = against(np.delete(TRUTH, 7))
+    assert made.missed == [TRUTH[7]]
+    assert (made.matched, made.extra, made.max_error_s) == (19, [], 0.0)
+
+
+def test_an_extra_one_is_named():
+    made = against(np.sort([*TRUTH, 40.0]))
+    assert made.extra == [40.0]
+    assert (made.matched, made.missed) == (20, [])
+
+
+def test_a_shifted_one_is_named_with_its_shift():
+    moved = TRUTH.copy()
+    moved[3] += 0.5
+    made = against(moved)
+    assert [round(t, 6) for t, _ in made.shifted(1e-3)] == [TRUTH[3]]
+    assert made.shifted(1e-3)[0][1] == pytest.approx(0.5)
+    assert made.shifted(0.1) == []
+
+
+def test_one_shifted_beyond_the_window_is_missed_and_extra():
+    moved = np.sort([*np.delete(TRUTH, 3), TRUTH[3] + 4.3])
+    made = against(moved)
+    assert (made.missed, made.extra) == ([TRUTH[3]], [TRUTH[3] + 4.3])
+
+
+def test_what_the_candidate_did_not_reach_is_not_missed():
+    made = against(TRUTH[:5], until=TRUTH[5] - 1)
+    assert (made.matched, made.missed, made.extra) == (5, [], [])
+    assert against(TRUTH[:5], until=TRUTH[5] + 1).missed == [TRUTH[5]]
+
+
+def test_one_at_the_very_end_may_fall_beyond_it():
+    until = TRUTH[5] + 1e-7
+    assert against(TRUTH[:5], until=until, tolerance_m=1e-6).missed == []
+    assert against(TRUTH[:5], until=until, tolerance_m=1e-9).missed == [TRUTH[5]]
+
+
+PAIR = np.sort([*TRUTH, 42.0, 42.002])
+PAIR_AX = np.insert(AX, 5, [1e-5, -1e-5])  # between two zeros the velocity reaches 1e-5 * 0.002 / 4 m/s
+
+
+def test_a_close_pair_that_moves_together_is_matched_one_to_one():
+    moved = PAIR + 0.005
+    made = against(moved, PAIR, PAIR_AX)
+    assert (made.matched, made.missed, made.extra) == (22, [], [])
+    assert np.allclose(made.errors_s, 0.005)
+    assert made.conditioned_m[5] == pytest.approx(0.005 * 1e-5 / OMEGA)
+
+
+def test_an_ill_conditioned_pair_that_vanishes_is_no_fault():
+    made = against(TRUTH, PAIR, PAIR_AX, tolerance_m=1e-6)
+    assert (made.missed, made.undecided) == ([], [42.0, 42.002])
+    strict = against(TRUTH, PAIR, PAIR_AX, tolerance_m=1e-9)
+    assert (strict.missed, strict.undecided) == ([42.0, 42.002], [])
+
+
+def test_a_pair_that_appears_where_the_truth_nearly_stands_still_is_no_fault():
+    found = np.sort([*TRUTH, 42.0, 42.002])
+    asked = []
+
+    def xdot(times):
+        asked.append(times)
+        return np.full(len(times), 1e-8)
+
+    made = against(found, tolerance_m=1e-6, xdot=xdot)
+    assert (made.extra, made.undecided) == ([], [42.0, 42.002])
+    assert np.array_equal(asked[0], [42.0, 42.002])
+    assert against(found, tolerance_m=1e-9, xdot=xdot).extra == [42.0, 42.002]
+
+
+def test_no_transits_at_all_are_all_missed_or_all_extra():
+    assert len(against([]).missed) == 20
+    assert against(TRUTH, np.empty(0), np.empty(0)).extra == TRUTH.tolist()
+    none = against([], np.empty(0), np.empty(0))
+    assert (none.matched, none.missed, none.extra, none.max_error_s, none.max_conditioned_m) == (0, [], [], 0.0, 0.0)
+
+
+@given(st.lists(st.floats(0, 170), max_size=30, unique=True))
+def test_every_transit_is_matched_missed_or_extra_exactly_once(found):
+    made = against(sorted(found))
+    assert made.matched + len(made.missed) + len(made.undecided) == len(TRUTH)
+    assert made.matched + len(made.extra) == len(found)
+    assert (np.diff(made.at + made.errors_s) > 0).all()  # in order

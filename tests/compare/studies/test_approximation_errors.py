@@ -1,0 +1,205 @@
+"""Tables of errors and of limits: what they say agrees with the motions themselves."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from compare.approximations import approximation, motions, quantities
+from compare.studies.approximation_errors import TIMES, Truth, error_table, quantity_table
+from compare.studies.approximation_limits import LIMITS, limits, sweep, sweep_values
+from compare.studies.approximation_limits import _below as below
+from compare.studies.variation import varied
+from reference import InputError, load, load_scene, trajectory
+from reference.model.mechanics import rest_position
+
+PARIS = load_scene("paris")
+FEW = ("linear_anharmonic", "gastebois_general", "conical")
+
+
+def test_a_row_for_every_approximation_and_time():
+    rows = error_table(PARIS, FEW, 20000.0)
+    assert [(row.approximation, row.t) for row in rows] == [
+        (word, t) for word in FEW for t in (20.0, 3600.0, 12000.0, 20000.0)
+    ]
+    assert error_table(PARIS, FEW[:1], 20.0)[-1].t == 20.0
+    assert TIMES == (20.0, 3600.0, 12000.0, 86400.0)
+    json.dumps([vars(row) for row in rows])
+
+
+def test_errors_are_those_of_the_motions_and_never_shrink():
+    rows = error_table(PARIS, ["linear_anharmonic"], 3600.0, times=(20.0, 1000.0))
+    fine = np.linspace(0.0, 3600.0, 36001)
+    gap = approximation("linear_anharmonic").trajectory(PARIS, fine)[:, :3] - trajectory(PARIS, fine)[:, :3]
+    for row in rows:
+        worst = np.max(np.linalg.norm(gap[fine <= row.t], axis=1))
+        assert row.error_m == pytest.approx(worst, rel=0.02)
+    assert rows[0].error_m <= rows[1].error_m <= rows[2].error_m
+    assert rows[0].plane_error_arcsec <= rows[1].plane_error_arcsec <= rows[2].plane_error_arcsec
+
+
+def test_the_uniform_field_is_the_best_of_all_after_a_day_and_good_to_a_fifth_of_a_millimetre():
+    at_end = {row.approximation: row for row in error_table(PARIS) if row.t == 86400.0}
+    assert set(at_end) == set(motions())
+    best = min((row for row in at_end.values() if row.error_m is not None), key=lambda row: row.error_m)
+    assert best.approximation == "gastebois_general"
+    assert 1e-4 < best.error_m < 2e-4
+    # The slow-down is what the recentred harmonic pendulum lacks for a day.
+    assert at_end["linear_anharmonic"].error_m < 0.05 * at_end["linear_recentred"].error_m
+    # Both have the right gravity and the right centre, so that only the amplitude costs: ω t A³/(16 l²).
+    for word in ("linear_recentred", "gastebois_6_1", "linear_3d"):
+        assert at_end[word].error_m == pytest.approx(0.38229 * 86400 * 0.5963**3 / (16 * 67**2), rel=0.02)
+    assert at_end["linear_apparent"].error_m < 0.25 < 1 < at_end["linear_g"].error_m
+    # λ_a and the tilt are what it lacks for the plane: 1444" against 27".
+    assert at_end["gastebois_6_1"].plane_error_arcsec < 0.02 * at_end["linear_recentred"].plane_error_arcsec
+
+
+def test_the_run_that_approximations_are_held_against_is_the_golden_dataset():
+    golden = load("paris")
+    times = [float(t) for t in golden.exact("t")]
+    rows = trajectory(PARIS, times)
+    for i, name in enumerate("xyz"):
+        gap = np.abs(rows[:, i] - np.array([float(v) for v in golden.exact(name)]))
+        assert np.max(gap) < 1e-9
+
+
+def test_what_does_not_apply_says_why_and_gives_no_numbers():
+    rows = error_table(PARIS, ["conical"], 20.0)
+    assert all(row.error_m is None and row.plane_error_arcsec is None for row in rows)
+    assert "circle" in rows[0].status
+
+
+def test_a_scene_without_a_swing_still_has_errors_of_position():
+    drifting = PARIS.with_values(["site.gravity=0", "site.rotation_rate=0", "release.vx=0.1"])
+    row = error_table(drifting, ["mathar_item_4"], 20.0)[-1]
+    assert row.error_m < 1e-12
+    assert row.plane_error_arcsec is None
+
+
+def test_numbers_stand_beside_the_reference():
+    rows = {row.approximation: row for row in quantity_table(PARIS)}
+    assert set(rows) == set(quantities())
+    assert rows["rest_equation"].relative_error < 1e-50
+    assert rows["frequency_apparent"].value == "0.0608439352207779"
+    assert rows["rest_series_1"].relative_error == pytest.approx(1.5e-3, rel=0.01)
+    refused = {row.approximation: row for row in quantity_table(load_scene("equator"))}
+    assert refused["precession_sine"].value is None
+    assert "turn" in refused["precession_sine"].status
+
+
+@pytest.mark.parametrize("call", [error_table, sweep, limits])
+def test_a_number_is_no_motion_and_an_unknown_word_is_named(call):
+    with pytest.raises(InputError, match="rest_equation"):
+        call(PARIS, ["rest_equation"])
+    with pytest.raises(InputError, match="Known ids"):
+        call(PARIS, ["nothing"])
+
+
+def test_a_motion_is_no_number():
+    with pytest.raises(InputError, match="linear_g"):
+        quantity_table(PARIS, ["linear_g"])
+
+
+# Limits --------------------------------------------------------------------------------------------------------------
+def test_limits_over_time_are_where_the_error_passes_them():
+    ids = ["linear_3d", "gastebois_6_1", "mathar_item_4"]
+    rows = limits(PARIS, ids, t_end=7200.0)
+    assert [(row.approximation, row.limit) for row in rows] == [(word, name) for word in ids for name, _, _ in LIMITS]
+    truth = Truth(PARIS, 7200.0)
+    for row in rows:
+        _, what, limit = next(entry for entry in LIMITS if entry[0] == row.limit)
+        (start, end), index = row.good[0], ("error_m", "plane_error_arcsec").index(what)
+        errors = truth.errors(approximation(row.approximation))
+        assert start == 0.0
+        assert errors.at(end)[index] <= limit
+        if end < 7200.0:
+            assert errors.at(min(end + 17.0, 7200.0))[index] > limit * 0.999
+
+
+def test_intervals_end_where_the_logarithm_of_the_error_meets_the_limit():
+    values, errors = (1.0, 10.0, 100.0), (1e-5, 1e-3, 1e-1)  # slope 2
+    assert below("amplitude", values, errors, 1e-2) == ((1.0, pytest.approx(10**1.5)),)
+    assert below("amplitude", values, errors[::-1], 1e-2) == ((pytest.approx(10**0.5), 100.0),)
+    assert below("amplitude", values, errors, 1e-6) == ()
+    assert below("amplitude", values, errors, 1.0) == ((1.0, 100.0),)
+    latitudes, dip = (-90.0, -45.0, 0.0, 45.0, 90.0), (1e-8, 1.0, 1e-4, 1.0, 1e-8)
+    assert below("latitude", latitudes, dip, 1e-2) == (
+        (-90.0, pytest.approx(-90 + 45 * 6 / 8)),
+        (pytest.approx(-22.5), pytest.approx(22.5)),
+        (pytest.approx(90 - 45 * 6 / 8), 90.0),
+    )
+    assert below("length", (1.0, 2.0, 4.0), (None, 1e-5, None), 1e-3) == ((2.0, 2.0),)
+
+
+def test_the_amplitude_at_which_the_harmonic_swing_loses_a_millimetre_in_an_hour():
+    # ω t A³/(16 l²) = 1 mm at 3600 s.
+    (good,) = (row.good for row in limits(PARIS, ["linear_3d"], "amplitude") if row.limit == "1 mm")
+    expected = (1e-3 * 16 * 67**2 / (0.3826 * 3600)) ** (1 / 3)
+    assert good[0][1] == pytest.approx(expected, rel=0.05)
+
+
+def test_without_rotation_of_the_plane_the_vertical_approximations_are_good_at_the_pole_and_not_between():
+    rows = sweep(PARIS, ["mathar_item_1"], "latitude", (45.0, 90.0), 600.0)
+    assert rows[0].error_m > 0.1
+    assert rows[1].error_m < 1e-5
+    assert (rows[0].over, rows[0].value, rows[0].t) == ("latitude", 45.0, 600.0)
+
+
+def test_limits_of_what_does_not_apply_say_why():
+    for over in ("time", "length"):
+        rows = limits(PARIS, ["conical"], over, 20.0)
+        assert len(rows) == len(LIMITS)
+        assert all(row.good == () and "circle" in row.status for row in rows)
+
+
+@pytest.mark.parametrize("t_end", [0.0, -5.0, float("inf"), float("nan")])
+def test_a_table_ends_at_a_time_after_the_release(t_end):
+    with pytest.raises(InputError, match="t_end"):
+        error_table(PARIS, ["linear_g"], t_end)
+
+
+# Varied scenes -------------------------------------------------------------------------------------------------------
+def test_amplitude_is_the_distance_from_the_point_of_rest_in_the_same_direction():
+    from compare.approximations.case import Case
+
+    for scene in (PARIS, PARIS.with_values(["release.vx=0.1"]), load_scene("hard")):
+        before, after = Case.of(scene), Case.of(varied(scene, "amplitude", 0.25))
+        rest = rest_position(after.k, after.ctx)
+        away = [case.ctx.mpc(case.position[0], case.position[1] - rest[1] * case.length) for case in (before, after)]
+        assert abs(abs(away[1]) - 0.25) < 1e-30
+        assert abs((away[1] / away[0]).imag) < 1e-30
+        ratio = abs(away[1] / away[0])
+        assert abs(after.velocity[0] - ratio * before.velocity[0]) < 1e-30
+
+
+def test_a_longer_cord_keeps_the_angle():
+    longer = varied(PARIS, "length", 134.0)
+    assert longer.exact.length == 134
+    assert [float(v) for v in longer.exact.position] == [0.6, 0.8, 0.0, 0.0]
+    assert varied(load_scene("two_radians"), "length", 3.0).release == load_scene("two_radians").release
+
+
+def test_a_latitude_or_a_rotation_rate_changes_nothing_else():
+    for over, field in (("latitude", "site.latitude"), ("rotation_rate", "site.rotation_rate")):
+        assert varied(PARIS, over, 0.5) == PARIS.with_values([f"{field}=0.5"])
+
+
+@pytest.mark.parametrize(("over", "value"), [("size", 1.0), ("latitude", 91.0), ("length", -1.0), ("amplitude", 70.0)])
+def test_impossible_variations_are_refused(over, value):
+    with pytest.raises(InputError):
+        varied(PARIS, over, value)
+
+
+def test_a_bob_at_rest_has_no_direction_to_vary():
+    with pytest.raises(InputError, match="point of rest"):
+        varied(PARIS.with_values(["site.rotation_rate=0", "release.x=0", "release.y=0"]), "amplitude", 1.0)
+
+
+def test_a_sweep_chooses_its_values_unless_told():
+    assert sweep_values(PARIS, "latitude")[0] == -90.0
+    assert sweep_values(PARIS, "amplitude")[-1] == pytest.approx(6.7)
+    assert sweep_values(PARIS, "length")
+    with pytest.raises(InputError):
+        sweep_values(PARIS, "time")

@@ -1,0 +1,48 @@
+"""Long runs, made short: growth is measured, kept, and a method that is not there is a row."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from compare.studies import long_runs as longrun
+from compare.studies.long_runs import LongRun, laws, long_run
+from compare.truth import golden_of
+from reference import load_scene
+
+ITEMS = (("rkmk4", "momentum", 0.1), ("heyoka_double", "plane", 2.0**-52), ("rk4", "plane", 0.1))
+
+
+def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path: Path) -> None:
+    scene = load_scene("paris", ["inputs=binary64", "run.t_end=7200"])
+    golden, kept = golden_of(scene), tmp_path / "long.jsonl"
+    rows = long_run(scene, golden, ITEMS[:1], kept=kept)
+    assert rows[0].status == "ok"
+    assert rows[0].exponent == pytest.approx(1, abs=0.15)  # a constant error of the frequency
+    assert rows[0].bound_m == float(golden.manifest.bounds.position_m)
+    seen: list[str] = []
+    again = long_run(scene, golden, ITEMS, kept=kept, report=lambda done, total, now: seen.append(f"{done} of {total}"))
+    assert again[0] == rows[0]
+    assert seen == ["1 of 3", "1 of 3", "2 of 3"]
+    assert [row.key for row in again] == list(ITEMS)
+
+
+def test_what_cannot_run_is_a_row_with_its_reason() -> None:
+    upright = load_scene("two_radians", ["inputs=binary64", "run.t_end=1", "run.transits=false"])
+    (row,) = long_run(upright, golden_of(upright), [("rk4", "plane", 0.1)])
+    assert (row.status, row.exponent, row.law) == ("refused", None, None)
+    assert next(laws([row])).startswith("rk4 (plane): refused")
+
+
+def test_thirty_days_are_paris_with_a_truth_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def short(scene, golden, items, **keywords):  # type: ignore[no-untyped-def]
+        asked.append(f"{scene.id} {scene.inputs} {float(scene.exact.t_end):g} {golden} {[item[0] for item in items]}")
+        return [LongRun("m", "f", 1.0, "ok")]
+
+    monkeypatch.setattr(longrun, "golden_of", lambda scene, digits, level: f"{digits} {level}")
+    monkeypatch.setattr(longrun, "long_run", short)
+    longrun.over_thirty_days(["rk4"])
+    assert asked == ["paris_30d binary64 2.592e+06 36 self_consistent ['rk4']"]

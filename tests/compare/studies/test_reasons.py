@@ -1,0 +1,58 @@
+"""Reasons of failures: the strongest cause that the numbers point to, in a sentence."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from compare.studies.character import Character
+from compare.studies.reasons import reason_of
+from compare.studies.row import Row
+
+CALM = Character(0.4, 0.0, 1.0, 2.0, 9.0, 0.001, 0.01, 600.0)
+ROW = Row("rk4", "space", 0.1, "step", "binary64", "ok", steps=6000, h_drift=1e-7, cpu_s=12.0)
+
+
+@pytest.mark.parametrize(
+    ("status", "row", "marks", "words"),
+    [
+        ("out_of_time", ROW, replace(CALM, damping=4000.0, ratio=1e6), ["about 12 s", "stiff: rates up to 4e+03/s"]),
+        (
+            "gave_up",
+            replace(ROW, reason="Step too small."),
+            replace(CALM, least_tension=-9.8),
+            ["the rod is pushed", "It said: Step too small"],
+        ),
+        (
+            "silently_wrong",
+            ROW,
+            CALM,
+            ["success reported with 1.0 digits", "local errors of 6000 steps add up", "h drifts"],
+        ),
+        ("silently_wrong", ROW, replace(CALM, magnified=1e8), ["magnifies an error at the release 1e+08 times"]),
+        ("silently_wrong", ROW, replace(CALM, amplitude=1e-11), ["costs 11 digits"]),
+        (
+            "silently_wrong",
+            replace(ROW, formulation="angles"),
+            replace(CALM, nearest=1e-9),
+            ["passes the vertical within 1e-09"],
+        ),
+        (
+            "silently_wrong",
+            replace(ROW, formulation="plane"),
+            replace(CALM, amplitude=1.0),
+            ["height of the suspension"],
+        ),
+        ("not_finite", replace(ROW, reason=""), CALM, ["nothing in the scene's numbers explains it"]),
+        ("refused", replace(ROW, reason="not below"), CALM, ["not below"]),
+    ],
+)
+def test_each_cause_is_named(status: str, row: Row, marks: Character, words: list[str]) -> None:
+    said = reason_of(row, status, marks, 1.0, 9.0, 3.0)
+    for word in words:
+        assert word.lower() in said.lower()
+
+
+def test_what_is_right_needs_no_reason() -> None:
+    assert reason_of(ROW, "ok", CALM, 9.0, 9.0, 3.0) == ""

@@ -1,0 +1,105 @@
+"""What fails on extreme scenes, and the reason given for it."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from compare.studies.character import character
+from compare.studies.long_runs import LongRun, laws
+from compare.studies.stability import Cell, cut, default_scenes, stability
+from foucault import app
+from reference import load_scene, trajectory
+from reference.scene import data_root
+
+
+def measured(scene_id: str, *changes: str):  # type: ignore[no-untyped-def]
+    scene = load_scene(scene_id, changes)
+    times = np.linspace(0, float(scene.exact.t_end), 200)
+    return character(scene, times, trajectory(scene, times))
+
+
+def test_the_rates_of_a_small_swing_are_those_of_the_linear_pendulum() -> None:
+    found = measured("paris", "run.t_end=600", "site.rotation_rate=0", "release.x=1e-4", "release.y=0")
+    assert found.fastest == pytest.approx(math.sqrt(9.80665 / 67), rel=1e-5)
+    assert found.ratio == pytest.approx(1, abs=1e-3)
+    assert found.magnified == pytest.approx(1, rel=0.01)
+    assert not found.stiff
+
+
+def test_the_rates_of_a_creeping_bob_are_its_drag_and_gravity_over_drag() -> None:
+    found = measured("creeping", "run.t_end=1", "run.grid_step=0.01")
+    assert found.damping == pytest.approx(4000, rel=1e-3)
+    assert found.ratio > 1e6
+    assert found.stiff
+
+
+def test_near_the_top_the_flow_magnifies_and_the_rod_is_pushed() -> None:
+    found = measured("near_inverted", "run.t_end=5", "run.grid_step=0.1")
+    assert found.least_tension < 0
+    assert found.magnified > 100  # exp(t sqrt(g/l)) while it lingers there
+
+
+def test_there_are_thirty_extreme_scenes_and_each_says_what_it_catches() -> None:
+    names = default_scenes()
+    assert len(names) >= 31
+    for name in names:
+        scene = load_scene(name)
+        assert scene.title and scene.source
+        assert float(cut(scene).exact.t_end) <= float(scene.exact.t_end)
+
+
+@pytest.fixture(scope="module")
+def cells(tmp_path_factory: pytest.TempPathFactory) -> list[Cell]:
+    folder = tmp_path_factory.mktemp("stability")
+    kept, short = folder / "cells.jsonl", folder / "creeping.toml"
+    text = (data_root() / "scenes" / "creeping.toml").read_text()
+    short.write_text(text.replace('t_end = "100"', 't_end = "10"').replace('grid_step = "0.2"', 'grid_step = "0.125"'))
+    names = ["near_inverted", str(short), "hard"]
+    methods = ["heyoka_double", "scipy_dop853", "scipy_radau", "rkmk4"]
+    made = stability(names, methods, kept=kept)
+    assert stability(names, methods, kept=kept) == made  # from the journal
+    return made
+
+
+def test_space_is_silently_wrong_above_the_horizontal_and_momentum_is_not(cells: list[Cell]) -> None:
+    found = {(cell.scene, cell.precision): cell for cell in cells if cell.method == "heyoka_double"}
+    space = found["near_inverted", "double, space"]
+    assert space.status == "silently_wrong"
+    assert "the rod is pushed" in space.reason
+    assert found["near_inverted", "double, momentum"].status == "ok"
+
+
+def test_a_stiff_method_wins_where_it_is_stiff_and_loses_where_it_is_not(cells: list[Cell]) -> None:
+    cost = {(Path(cell.scene).stem, cell.method): cell.cpu_s for cell in cells}
+    assert 10 * cost["creeping", "scipy_radau"] < cost["creeping", "scipy_dop853"]
+    assert cost["hard", "scipy_radau"] > 3 * cost["hard", "scipy_dop853"]
+
+
+def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:
+    for cell in cells:
+        assert bool(cell.reason) == (cell.status != "ok"), cell
+        if cell.status == "silently_wrong":
+            assert cell.digits is not None and cell.digits < cell.asked - 3
+
+
+def test_a_growth_of_known_power_is_named() -> None:
+    t = np.linspace(0, 100, 400)
+    made = LongRun("m", "f", 1.0, "ok", "", t.tolist(), (1e-9 * t**1.5).tolist(), 1.0)
+    assert made.exponent == pytest.approx(1.5, abs=0.02)
+    assert made.law == "t^1.5"
+    assert "grows like t^1.5" in next(laws([made]))
+
+
+def test_the_command_reports_rows_and_a_page(tmp_path: Path) -> None:
+    asked = ["stability", "--scenes", "hard,two_radians", "--methods", "rkmk4,heyoka_double", "--json"]
+    result = CliRunner().invoke(app, [*asked, "--out", str(tmp_path)])
+    assert result.exit_code == 0, result.output
+    rows = json.loads(result.stdout)["rows"]
+    assert {"scene", "method", "precision", "status", "digits", "cpu_s", "reason"} <= rows[0].keys()
+    assert "<svg" in (tmp_path / "index.html").read_text()

@@ -1,0 +1,140 @@
+"""Studies: rows that say what they measured, failures as rows, and the same ranking twice."""
+
+from __future__ import annotations
+
+import itertools
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import compare.studies.measure as measure
+from compare.methods import METHODS
+from compare.report.pareto import front
+from compare.studies.measure import Bench
+from compare.studies.method_errors import Truth
+from compare.studies.precisions import bits_of, precision_items, precision_scene
+from compare.studies.row import Row
+from compare.studies.study import plan, study
+from compare.truth import golden_of
+from foucault import app
+from reference import InputError, Scene, load_scene
+
+T_END = "600"
+CLEARLY = 1.5  # a factor that other work on the machine does not turn round
+
+
+@pytest.fixture(scope="module")
+def short() -> Scene:
+    return load_scene("paris", [f"run.t_end={T_END}", "inputs=binary64"])
+
+
+@pytest.fixture(scope="module")
+def bench(short: Scene) -> Bench:
+    return Bench(short, Truth(golden_of(short), float(T_END)), 8.0)
+
+
+def test_the_error_of_rk4_falls_with_the_fourth_power_of_its_step(bench: Bench) -> None:
+    rows = [bench.row(METHODS["rk4"], "plane", step) for step in (0.2, 0.1)]
+    assert [row.status for row in rows] == ["ok", "ok"]
+    assert rows[0].error_m is not None and rows[1].error_m is not None
+    assert rows[0].error_m / rows[1].error_m == pytest.approx(16, rel=0.1)
+    assert rows[1].rhs_evaluations == 4 * 6000
+
+
+def test_extended_precision_is_not_measured_in_double(bench: Bench) -> None:
+    row = bench.row(METHODS["heyoka_real128"], "momentum", METHODS["heyoka_real128"].ladder[-1])
+    assert row.error_m is not None and row.error_m < 1e-27 + float(bench.truth.golden.manifest.bounds.position_m)
+    assert row.h_drift is not None and row.h_drift < 1e-25
+    assert row.transit_error_s is not None and row.transit_error_s < 1e-18
+
+
+def test_a_transit_that_is_missed_makes_a_failed_row(bench: Bench) -> None:
+    row = bench.row(METHODS["rk4"], "plane", 4.0)
+    assert row.status == "missed_transits"
+    assert "transits are missed, the first at t = " in row.reason
+
+
+def test_a_run_beyond_the_limit_is_extrapolated_and_says_so(short: Scene) -> None:
+    slow = Bench(short, Truth(golden_of(short), float(T_END)), 1e-3)
+    row = slow.row(METHODS["rk4"], "plane", 0.001)
+    assert row.status == "extrapolated"
+    assert row.reached_t is not None and row.reached_t < 600
+    assert row.reason.startswith("measured to t = ")
+
+
+def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+    upright = load_scene("two_radians", ["inputs=binary64", "run.t_end=1"])
+    over = Bench(upright, Truth(golden_of(upright), 1.0), 8.0)
+    assert over.row(METHODS["rk4"], "plane", 0.1).status == "refused"
+    monkeypatch.setattr(measure, "available", lambda method: "not installed (x)")
+    row = bench.row(METHODS["rk4"], "plane", 0.1)
+    assert (row.status, row.reason, row.cpu_s) == ("not_installed", "not installed (x)", None)
+
+
+def test_a_study_goes_on_where_it_stopped_and_gives_the_same_front(short: Scene, tmp_path: Path) -> None:
+    items = [item for item in plan(short, ["rk4", "heyoka_double", "gauss_legendre"], False) if item[2] != 0.002]
+    seen: list[str] = []
+    kept = tmp_path / "rows.jsonl"
+    first = study(short, items=items[:4], kept=kept)
+    again = study(short, items=items, kept=kept, report=lambda done, total, now: seen.append(now))
+    assert again.rows[:4] == first.rows
+    assert len(seen) == len(items) - 4
+    other = study(short, items=items)
+    costs = [{row.key: row.cpu_s for row in one.rows if row.measured} for one in (again, other)]
+    ahead = {row.key for one in (again, other) for row in front(one.rows)} & costs[0].keys() & costs[1].keys()
+    assert len(ahead) > 5
+    for one, two in itertools.combinations(ahead, 2):
+        ratios = [found[one] / found[two] for found in costs]
+        assert not min(ratios) < 1 / CLEARLY < CLEARLY < max(ratios), (one, two)
+    assert Row.parsed(json.loads(json.dumps(vars(again.rows[0])))) == again.rows[0]
+
+
+def test_the_command_writes_a_report_and_one_json_document(tmp_path: Path) -> None:
+    asked = ["study", "paris", "--methods", "heyoka_double", "--no-formulations", "--t-end", T_END, "--json"]
+    result = CliRunner().invoke(app, [*asked, "--out", str(tmp_path / "out")])
+    assert result.exit_code == 0, result.output
+    said = json.loads(result.stdout)
+    assert {"scene", "t_end", "reference", "rows"} <= said.keys()
+    keys = {"method", "setting", "inputs", "status", "error_m", "end_error_m", "transit_error_s", "h_drift", "cpu_s"}
+    assert keys | {"compile_s", "rhs_evaluations", "steps"} <= said["rows"][0].keys()
+    assert (tmp_path / "out" / "index.html").read_text().startswith("<!doctype html>")
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["--methods", "rk5"], ["--limit", "0"], ["--precisions", "12"], ["--precisions", "x"], ["--t-end", "-1"]],
+)
+def test_wrong_options_are_refused(options: list[str]) -> None:
+    result = CliRunner().invoke(app, ["study", "paris", *options])
+    assert isinstance(result.exception, InputError)
+    assert result.exception.exit_status == 2
+
+
+def test_somebody_elses_program_is_a_row_of_the_study(tmp_path: Path) -> None:
+    script = tmp_path / "still.py"
+    script.write_text(
+        "import sys\nend, step = float(sys.argv[1]), float(sys.argv[2])\nprint('t,x,y')\n"
+        "for i in range(round(end / step) + 1):\n    print(f'{i * step!r},0.3,0.4')\n"
+    )
+    command = f"python3 {script} {{t_end}} {{grid_step}}"
+    asked = ["study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--settings", "1", "--json"]
+    result = CliRunner().invoke(app, asked)
+    assert result.exit_code == 0, result.output
+    row = json.loads(result.stdout)["rows"][-1]
+    assert row["method"] == f"external: {command}"
+    assert row["error_m"] > 0.5
+
+
+def test_the_precision_ladder_gains_digits_with_bits() -> None:
+    bits = bits_of("53,64,113,160")
+    scene, digits = precision_scene(load_scene("paris"), bits, whole=False)
+    assert (scene.run.t_end, digits) == ("600", 57)
+    items = [item for item in precision_items(bits) if item[0].startswith("heyoka")]
+    assert [item[0] for item in items] == ["heyoka_double", "heyoka_long_double", "heyoka_real", "heyoka_real"]
+    found = study(scene.with_values(["run.t_end=60"]), items=items, digits=digits)
+    errors = [row.error_m for row in found.rows]
+    assert all(
+        later is not None and earlier is not None and later < earlier for earlier, later in itertools.pairwise(errors)
+    )

@@ -1,0 +1,132 @@
+"""`assert_agrees` in others' tests: silent where a trajectory is right, and telling where it is not."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import compare
+from compare import assert_agrees
+from reference import InputError, load, load_scene
+
+
+@pytest.fixture(scope="module")
+def golden():
+    return load("paris.binary64")
+
+
+@pytest.fixture(scope="module")
+def states(golden):
+    return np.column_stack([getattr(golden, name) for name in ("x", "y", "z", "vx", "vy", "vz")])
+
+
+@pytest.mark.parametrize("columns", [2, 3, 6])
+def test_the_golden_numbers_agree(golden, states, columns):
+    made = assert_agrees("paris", golden.t, states[:, :columns], tolerance=1e-13, transits=golden.transits["t"])
+    assert made.agrees
+    assert made.transits.matched == 10514
+
+
+def test_what_nobody_asks_for_is_not_computed(monkeypatch):
+    """The input floor costs a run of the variational equations."""
+    asked = []
+    monkeypatch.setattr("compare.score.judge.input_floor", lambda scene, until: asked.append(until) or 5e-13)
+    made = assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-15)
+    assert asked == []
+    assert (made.input_floor_m, made.input_floor_m, asked) == (5e-13, 5e-13, [0.0])
+
+
+def test_lists_will_do():
+    assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-15)
+
+
+def test_a_scene_of_ones_own_will_do(golden, states):
+    assert_agrees(load_scene("paris"), golden.t[:10], states[:10, :2], tolerance=1e-13)
+
+
+def test_a_failure_tells_time_component_expected_got_difference_and_allowed(golden, states):
+    wrong = states[:50, :3].copy()
+    wrong[30, 1] += 1e-3
+    with pytest.raises(AssertionError) as caught:
+        assert_agrees("paris", golden.t[:50], wrong, tolerance=1e-6)
+    said = str(caught.value)
+    assert "y at t = 1800.0 s (row 30)" in said
+    assert f"expected   {float(golden.y[30])!r}" in said
+    assert f"got        {float(wrong[30, 1])!r}" in said
+    assert "difference +1.000e-03 m" in said
+    assert "allowed 1.000e-06 m" in said
+
+
+def test_a_failure_of_transits_tells_which(golden, states):
+    zeros = np.delete(golden.transits["t"], [5])
+    with pytest.raises(AssertionError, match="missed at") as caught:
+        assert_agrees("paris", golden.t, states[:, :2], tolerance=1e-6, transits=zeros)
+    assert f"{golden.transits['t'][5]!r}".removeprefix("np.float64(")[:9] in str(caught.value)
+
+
+def test_long_doubles_keep_their_digits(golden, states):
+    wide = states[:3, :2].astype(np.longdouble)
+    wide[1, 0] += np.longdouble("1e-18")
+    made = assert_agrees("paris", golden.t[:3], wide, tolerance=1e-12, inputs="binary64")
+    assert made.candidate.extended
+
+
+@pytest.mark.parametrize(
+    ("t", "rows", "more", "words"),
+    [
+        ([0.0], [0.3, 0.4], {}, "states: got 'shape"),
+        ([0.0], [[0.3, 0.4, 0, 0]], {}, "states: got 'shape"),
+        ([0.0, 1.0], [[0.3, 0.4]], {}, "2 numbers, as t"),
+        ([[0.0]], [[0.3, 0.4]], {}, "states: t"),
+        ([0.0], [[0.3, float("nan")]], {}, "nan in row 1"),
+        ([0.0], [["0.3", "0.4"]], {}, "real numbers"),
+        ([0.0], [[0.3, 0.4j]], {}, "real numbers"),
+        ([1.0, 0.0], [[0.3, 0.4]] * 2, {}, "strictly increasing"),
+        ([1e9], [[0.3, 0.4]], {}, "run.t_end"),
+        ([0.0], [[0.3, 0.4]], {"tolerance": -1.0}, "tolerance"),
+        ([0.0], [[0.3, 0.4]], {"tolerance": float("nan")}, "tolerance"),
+        ([0.0], [[0.3, 0.4]], {"inputs": "floats"}, "inputs"),
+        ([0.0], [[0.3, 0.4]], {"transits": [2.0, 1.0]}, "transits"),
+        ([0.0], [[0.3, 0.4]], {"transits": [float("inf")]}, "transits"),
+    ],
+)
+def test_a_mistake_in_the_call_is_no_failed_assertion(t, rows, more, words):
+    with pytest.raises(InputError, match=words):
+        assert_agrees("paris", t, rows, **{"tolerance": 1e-6, **more})
+
+
+def test_the_names_of_the_package_are_there():
+    for name in compare.__all__:
+        assert getattr(compare, name)
+    with pytest.raises(AttributeError, match="nothing"):
+        _ = compare.nothing
+
+
+OTHERS = """
+def test_right(assert_agrees):
+    assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
+
+def test_wrong(assert_agrees):
+    assert_agrees("paris", [0.0], [[0.3, 0.5]], tolerance=1e-12)
+"""
+
+
+def test_the_fixture_is_found_in_somebody_elses_tests(tmp_path):
+    (tmp_path / "test_theirs.py").write_text(OTHERS)
+    words = [sys.executable, "-m", "pytest", "-q", "-W", "error", "-p", "no:cacheprovider", str(tmp_path)]
+    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "1 failed, 1 passed" in done.stdout
+    assert "y at t = 0.0 s (row 0)" in done.stdout
+    assert "got        0.5" in done.stdout
+
+
+def test_the_examples_in_the_docstrings_run():
+    import doctest
+
+    import compare.testing
+
+    assert doctest.testmod(compare.testing).failed == 0
+    assert doctest.testmod(compare).failed == 0

@@ -1,0 +1,154 @@
+"""Where the truth comes from: what ships, or what is solved once and kept; never half, and never lost to bad luck."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from places import ROOT
+from small_scenes import make_scene
+
+from compare import cache
+from compare.truth import golden_of, shipped, solves, truth_at
+from reference import load, load_scene
+
+RUN = {"t_end": "20", "grid_step": "5", "digits": 22}
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))
+    return tmp_path / "cache"
+
+
+@pytest.mark.parametrize(("inputs", "folder"), [("decimal", "paris"), ("binary64", "paris.binary64")])
+def test_a_shipped_dataset_is_taken_in_the_reading_asked(inputs, folder, own_cache):
+    golden = golden_of(load_scene("paris", [f"inputs={inputs}"]))
+    assert golden.path.name == folder
+    assert not (own_cache / "golden").exists()
+
+
+def test_a_dataset_solves_a_scene_only_with_its_inputs_span_and_transits():
+    paris = load_scene("paris")
+    golden = load("paris")
+    assert solves(golden, paris)
+    assert solves(golden, paris.with_values(["run.t_end=100", "run.grid_step=7"]))
+    for change in ("site.latitude=1", "inputs=binary64", "run.t_end=86401", "release.x=0.31", "pendulum.drag=1e-9"):
+        assert not solves(golden, paris.with_values([change]))
+    assert shipped(make_scene("unheard_of")) == []
+
+
+def test_a_scene_of_the_users_own_is_solved_once_and_kept(own_cache):
+    said: list[str] = []
+    scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
+    first = golden_of(scene, announce=said.append)
+    again = golden_of(scene, announce=said.append)
+    assert first.path == again.path
+    assert first.path.is_relative_to(own_cache)
+    assert len(said) == 1
+    assert "mine" in said[0]
+    renamed = golden_of(
+        make_scene("mine", title="other words", pendulum={"length": "5"}, run=RUN), announce=said.append
+    )
+    assert renamed.path == first.path
+
+
+def test_a_damaged_entry_is_solved_again():
+    scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
+    path = golden_of(scene).path
+    grid = path / "grid.csv"
+    grid.write_text(grid.read_text().replace("1", "2", 1))
+    said: list[str] = []
+    golden_of(scene, announce=said.append)
+    assert len(said) == 1
+    load(path)
+
+
+def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched(monkeypatch):
+    scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
+    golden = golden_of(scene)
+    assert golden_of(scene) is golden
+    transits = golden.path / "transits.csv"
+    transits.write_bytes(transits.read_bytes())
+    again = golden_of(scene)
+    assert again is not golden
+    assert again.manifest == golden.manifest
+    (golden.path / "stranger").touch()
+    said: list[str] = []
+    golden_of(scene, announce=said.append)
+    assert len(said) == 1  # a folder with something else in it is no dataset: it was solved again
+
+
+@pytest.mark.parametrize("place", ["file", "proc"])
+def test_a_cache_that_cannot_be_written_costs_time_only(place, tmp_path, monkeypatch):
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    monkeypatch.setenv("FOUCAULT_CACHE", str(blocked) if place == "file" else "/proc/nothing")
+    said: list[str] = []
+    scene = make_scene(f"mine_{place}", pendulum={"length": "5"}, run=RUN)
+    golden = golden_of(scene, announce=said.append)
+    assert "cannot be written" in said[0]
+    found = truth_at(golden, np.array([0.0, 1.5]))
+    assert found.states[0, 0] == 0.3
+    assert blocked.read_text() == "in the way"
+
+
+def test_the_truth_is_evaluated_once_for_the_same_times(monkeypatch):
+    golden = load("paris")
+    times = np.linspace(0, 90, 7)
+    first = truth_at(golden, times)
+    monkeypatch.setattr("compare.truth.dense", None)
+    again = truth_at(golden, times)
+    for name in ("t", "states", "rest"):
+        assert np.array_equal(getattr(first, name), getattr(again, name))
+    assert (first.bound_m, first.number) == (again.bound_m, again.number)
+
+
+def test_a_damaged_evaluation_is_made_again(own_cache):
+    golden = load("paris")
+    times = np.linspace(0, 90, 7)
+    first = truth_at(golden, times)
+    (entry,) = (own_cache / "dense").iterdir()
+    entry.write_bytes(b"PK junk")
+    assert np.array_equal(truth_at(golden, times).states, first.states)
+    assert entry.stat().st_size > 100
+
+
+def test_what_fails_leaves_nothing_behind(own_cache):
+    def fails(path: Path) -> None:
+        path.write_text("half")
+        raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        cache.kept("kind", "name", fails, Path.read_text)
+    assert list((own_cache / "kind").iterdir()) == []
+
+
+def test_old_entries_go(own_cache, monkeypatch):
+    monkeypatch.setattr(cache, "KEEP", 3)
+    for i in range(6):
+        cache.kept("kind", str(i), lambda path, i=i: path.write_text(str(i)), Path.read_text)
+        os.utime(own_cache / "kind" / str(i), (i, i))
+    assert sorted(path.name for path in (own_cache / "kind").iterdir()) == ["3", "4", "5"]
+
+
+def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
+    own = tmp_path / "long.toml"
+    own.write_text('id = "long"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "864000"\n')
+    rows = tmp_path / "rows.csv"
+    rows.write_text("t,x,y\n0,0.3,0.4\n864000,0.3,0.4\n")
+    words = [sys.executable, "-m", "foucault", "score", str(own), str(rows)]
+    with subprocess.Popen(words, stderr=subprocess.PIPE, cwd=ROOT, start_new_session=True) as process:
+        time.sleep(4)  # well into the solve, also on a busy machine
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=30)
+    assert process.returncode not in (0, None)
+    assert b"Traceback" not in err
+    assert b"solving it" in err
+    assert list((own_cache / "golden").iterdir()) == []

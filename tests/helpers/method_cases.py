@@ -1,0 +1,47 @@
+"""What the tests of methods share: two short scenes with their truth, from inputs that are doubles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from small_scenes import make_scene
+
+import reference
+from compare.methods import METHODS, Problem
+from compare.rhs.swing import suited
+from reference import Scene, Solution
+
+SECTIONS = {
+    "paris": {"run": {"t_end": "60", "grid_step": "10"}},
+    "steep": {
+        "pendulum": {"length": "1"},
+        "release": {"angle": "80", "azimuth": "20"},
+        "run": {"t_end": "20", "grid_step": "2"},
+    },
+}
+
+
+@dataclass(frozen=True)
+class Case:
+    scene: Scene
+    solution: Solution
+
+    @property
+    def times(self):
+        return [float(t) for t in self.solution.times]
+
+    @property
+    def truth(self):
+        return np.array([getattr(self.solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]).T
+
+    def problem(self, name, *, rows=None, formulation=None):
+        words = formulation or suited(self.scene, METHODS[name].formulations)
+        return Problem.of(self.scene, words, self.times[:rows])
+
+
+@cache
+def case(name):
+    scene = make_scene(name, inputs="binary64", **SECTIONS[name])
+    return Case(scene, reference.solve(scene, digits=40, level="computed", transits=False))

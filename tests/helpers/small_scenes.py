@@ -1,0 +1,32 @@
+"""What several tests need: small scenes, and the model's constants at a precision."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from reference.engines.run import start_of
+from reference.model.constants import constants, release, scaled
+from reference.model.mechanics import FORMULATIONS
+from reference.precision import NumberType, context
+from reference.scene import Scene, parse_scene
+
+
+def make_scene(scene_id: str = "test", **sections: Any) -> Scene:
+    """A scene from sections given as dicts; Paris where nothing is said."""
+    return parse_scene({"id": scene_id, "release": {"x": "0.3", "y": "0.4"}, **sections})
+
+
+def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
+    """Context, constants, n and v of a scene at a precision."""
+    ctx = context(prec)
+    k = constants(scene.exact, ctx)
+    position, velocity = release(scene.exact, ctx)
+    return ctx, k, scaled(position, k.length), scaled(velocity, k.length)
+
+
+def stepper_of(scene: Scene, number: NumberType, name: str = "momentum", **keywords: Any) -> Any:
+    """heyoka's integrator of a scene at its release."""
+    from reference.engines.heyoka.taylor import Stepper
+
+    ctx, k, n, v = start_of(scene.exact, number)
+    return Stepper(FORMULATIONS[name], k, n, v, ctx, number, **keywords)

@@ -1,0 +1,141 @@
+"""Measure the structure of the code: rooms, floors, arrows, circles, class names, lines.
+
+    python tests/helpers/structure.py [ROOT]
+
+A room is a file or a folder directly inside a package; an arrow goes from a room to another room that it imports,
+imports for type checkers included. A room stands one floor above the highest room that it imports.
+"""
+
+from __future__ import annotations
+
+import ast
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+PACKAGES = ("reference", "compare")
+Arrows = set[tuple[str, str]]
+
+
+def sources(root: Path) -> list[Path]:
+    """Every source file of the project, tests excepted."""
+    return sorted([root / "foucault.py", *(path for name in PACKAGES for path in (root / name).rglob("*.py"))])
+
+
+def imported(path: Path, root: Path) -> Iterator[Path]:
+    """The files and packages of the project that a file imports anywhere, as paths without a suffix."""
+    inside = list(path.relative_to(root).parts[:-1])
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (target for alias in node.names for target in _existing(root, alias.name.split(".")))
+        elif isinstance(node, ast.ImportFrom):
+            base = inside[: len(inside) + 1 - node.level] if node.level else []
+            words = [*base, *(node.module.split(".") if node.module else [])]
+            for alias in node.names:
+                yield from _existing(root, [*words, alias.name])
+
+
+def _existing(root: Path, words: list[str]) -> Iterator[Path]:
+    """The longest part of a dotted name that is a module or a package here."""
+    for count in range(len(words), 0, -1):
+        target = root.joinpath(*words[:count])
+        if target.with_suffix(".py").is_file() or (target / "__init__.py").is_file():
+            yield target
+            return
+
+
+def arrows(root: Path, place: str = "") -> tuple[set[str], Arrows]:
+    """The rooms of a package ("" for the whole project) and the arrows between them."""
+    home = root / place
+    rooms = {path.relative_to(home).parts[0].removesuffix(".py") for path in sources(root) if home in path.parents}
+    rooms.discard("__init__")
+    found = set()
+    for path in sources(root):
+        if home not in path.parents:
+            continue
+        start = path.relative_to(home).parts[0].removesuffix(".py")
+        for target in imported(path, root):
+            if home in target.parents:
+                end = target.relative_to(home).parts[0]
+                if start != end and {start, end} <= rooms:
+                    found.add((start, end))
+    return rooms, found
+
+
+def modules(root: Path) -> tuple[set[str], Arrows]:
+    """All files, and the arrows between files; a package's `__init__` stands for the package."""
+    names = {
+        path: path.relative_to(root).with_suffix("").as_posix().removesuffix("/__init__") for path in sources(root)
+    }
+    found = set()
+    for path, name in names.items():
+        ends = {target.relative_to(root).as_posix() for target in imported(path, root)}
+        found |= {(name, end) for end in ends if end != name}
+    return set(names.values()), found
+
+
+def circles(rooms: set[str], found: Arrows) -> list[set[str]]:
+    """The groups of rooms from each of which every other can be reached."""
+    reach = {room: {b for a, b in found if a == room} for room in rooms}
+    for middle in rooms:
+        for room in rooms:
+            if middle in reach[room]:
+                reach[room] |= reach[middle]
+    groups = {frozenset(other for other in rooms if other in reach[room] and room in reach[other]) for room in rooms}
+    return [set(group) for group in groups if len(group) > 1]
+
+
+def floors(rooms: set[str], found: Arrows) -> list[set[str]]:
+    """The rooms by floors, top first; the rooms of a circle share a floor."""
+    together = {room: group for group in circles(rooms, found) for room in group}
+    height = dict.fromkeys(rooms, 0)
+    for _ in rooms:
+        for a, b in found:
+            if b not in together.get(a, ()):
+                height[a] = max(height[a], height[b] + 1)
+        for group in together.values():
+            height.update(dict.fromkeys(group, max(height[room] for room in group)))
+    return [{room for room in rooms if height[room] == h} for h in range(max(height.values()), -1, -1)]
+
+
+def upwards(found: Arrows, declared: list[list[str]]) -> Arrows:
+    """The arrows that do not lead to a lower one of the declared floors (top first)."""
+    floor = {room: i for i, rooms in enumerate(declared) for room in rooms}
+    return {(a, b) for a, b in found if floor[a] >= floor[b]}
+
+
+def class_names(root: Path) -> dict[str, list[str]]:
+    """The files of every class name that is used more than once."""
+    places: dict[str, list[str]] = {}
+    for path in sources(root):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                places.setdefault(node.name, []).append(path.relative_to(root).as_posix())
+    return {name: files for name, files in sorted(places.items()) if len(files) > 1}
+
+
+def main(root: Path) -> None:
+    """Print the figures of a checkout."""
+    for place in ("", *PACKAGES):
+        rooms, found = arrows(root, place)
+        stack, rings = floors(rooms, found), circles(rooms, found)
+        inside = sum(a in ring and b in ring for ring in rings for a, b in found)
+        print(
+            f"{place or 'project':10} {len(rooms):3} rooms, {len(stack):2} floors, {len(found):3} arrows, "
+            f"{len(rings)} circles ({inside} arrows in them)"
+        )
+    rings = circles(*modules(root))
+    print(f"files      {len(sources(root))}, circles of files: {len(rings)} {[sorted(ring) for ring in rings] or ''}")
+    repeated = class_names(root)
+    print(f"class names used more than once: {len(repeated)}: {', '.join(repeated)}")
+    names = Counter(path.name for path in sources(root) if path.name != "__init__.py")
+    again = {name: count for name, count in sorted(names.items()) if count > 1}
+    print(f"file names used more than once: {len(again)}: {', '.join(again)}")
+    for name in PACKAGES:
+        lines = sum(len(path.read_text().splitlines()) for path in (root / name).rglob("*.py"))
+        print(f"lines of {name}: {lines}")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve())

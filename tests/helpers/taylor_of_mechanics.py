@@ -1,0 +1,52 @@
+"""Taylor coefficients from `mechanics` itself, in mpmath: a number type whose numbers are polynomials in time."""
+
+from __future__ import annotations
+
+from reference.model import mechanics
+from reference.model.constants import constants, release, scaled
+from reference.precision import context
+
+
+class Polynomial:
+    def __init__(self, coefficients):
+        self.coefficients = list(coefficients)
+
+    def _like(self, other):
+        if isinstance(other, Polynomial):
+            return other.coefficients
+        return [other, *([0] * (len(self.coefficients) - 1))]
+
+    def __add__(self, other):
+        return Polynomial(a + b for a, b in zip(self.coefficients, self._like(other), strict=True))
+
+    __radd__ = __add__
+
+    def __sub__(self, other):
+        return Polynomial(a - b for a, b in zip(self.coefficients, self._like(other), strict=True))
+
+    def __rsub__(self, other):
+        return Polynomial(b - a for a, b in zip(self.coefficients, self._like(other), strict=True))
+
+    def __neg__(self):
+        return Polynomial(-a for a in self.coefficients)
+
+    def __mul__(self, other):
+        a, b = self.coefficients, self._like(other)
+        return Polynomial(sum((a[i] * b[k - i] for i in range(k + 1)), start=0 * a[0]) for k in range(len(a)))
+
+    __rmul__ = __mul__
+
+
+def taylor(inputs, formulation, order, prec):
+    """Context, constants and the rows of coefficients of a formulation's variables at release."""
+    ctx = context(prec)
+    k = constants(inputs, ctx)
+    n, v = (scaled(vector, k.length) for vector in release(inputs, ctx))
+    model = mechanics.FORMULATIONS[formulation]
+    rows = [[ctx.mpf(value)] for value in model.start(n, v, k, ctx)]
+    for j in range(order):
+        rates = model.derivatives([Polynomial(row) for row in rows], k, ctx)
+        for row, rate in zip(rows, rates, strict=True):
+            value = rate.coefficients[j] if isinstance(rate, Polynomial) else (rate if j == 0 else 0)
+            row.append(ctx.mpf(value) / (j + 1))
+    return ctx, k, rows

@@ -1,0 +1,245 @@
+"""The command line as a user meets it: exit codes, messages, JSON, nothing half written."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from places import ROOT
+
+from foucault import main
+
+
+@pytest.fixture
+def foucault(monkeypatch, capfd):
+    """Run a command in this process; gives exit status, stdout, stderr."""
+
+    def call(*words: str) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["foucault", *words])
+        status = 0
+        try:
+            main()
+        except SystemExit as stop:
+            status = int(stop.code or 0)
+        seen = capfd.readouterr()
+        return status, seen.out, seen.err
+
+    return call
+
+
+SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
+
+
+def test_scenes_lists_every_scene(foucault):
+    status, out, _ = foucault("scenes")
+    assert status == 0
+    assert all(name in out for name in ("paris", "pantheon", "pole", "equator", "southern", "spherical"))
+    assert {scene["id"] for scene in json.loads(foucault("scenes", "--json")[1])["scenes"]} >= {"paris"}
+
+
+def test_show_gives_inputs_and_what_follows_from_them(foucault):
+    status, out, _ = foucault("show", "paris")
+    assert status == 0
+    assert "latitude = 48.846111" in out
+    assert "pivot_gravity_m_s2 = 9.7919" in out
+    assert "rest_y_m = -0.1152" in out
+
+
+def test_show_equations_says_what_was_left_out_and_why(foucault):
+    _, out, _ = foucault("show", "pole", "--equations")
+    assert "the latitude is a pole" in out
+    assert "Omega_y" not in out.partition("left out")[0]
+    _, out, _ = foucault("show", "spherical", "--equations")
+    assert "rotation_rate is 0" in out
+    _, out, _ = foucault("show", "equator", "--equations", "--set", "pendulum.drag=0.1", "--set", "site.gravity=0")
+    assert "gamma" in out
+    assert "gravity: it is 0" in out
+    document = json.loads(foucault("show", "paris", "--equations", "--json")[1])
+    assert len(document["equations"]) == 6
+    shown = foucault("show", "paris", "--equations", "--set", "run.transits=false", "--set", "run.level=enclosed")[1]
+    assert "transits are off" in shown
+    assert "the enclosure" not in shown
+    planar = foucault("show", "spherical", "--equations", "--set", "release.x=0", "--set", "release.vx=0")[1]
+    assert "xdot is identically zero" in planar
+
+
+def test_generate_writes_a_dataset_that_verify_accepts(foucault, tmp_path):
+    target = tmp_path / "paris"
+    status, out, err = foucault("generate", "paris", *SHORT, "--out", str(target))
+    assert (status, err) == (0, "")
+    assert "7 transits" in out
+    status, out, _ = foucault("verify", str(target), "--recompute")
+    assert (status, out) == (0, f"{target}: ok\n")
+
+
+def test_generate_json_has_the_keys_of_the_contract_and_nothing_else_on_stdout(foucault, tmp_path):
+    status, out, _ = foucault("generate", "paris", *SHORT, "--json", "--out", str(tmp_path / "p"))
+    document = json.loads(out)
+    assert status == 0
+    assert {"scene", "out", "level", "digits", "engine", "transits", "bound_m", "cpu_s", "compile_s"} <= set(document)
+    assert (document["scene"], document["level"], document["digits"]) == ("paris", "computed", 10)
+    assert (document["engine"], document["transits"]) == ("heyoka", 7)
+    assert 0 < document["bound_m"] < 1e-8
+    assert 0 < document["cpu_s"] < 60
+
+
+def test_a_changed_scene_does_not_replace_the_shipped_golden(foucault, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    status, out, _ = foucault("generate", "paris", *SHORT, "--json")
+    assert status == 0
+    assert json.loads(out)["out"] == "golden/paris"
+    assert (tmp_path / "golden/paris/manifest.json").is_file()
+
+
+def test_verify_reports_damage_with_exit_1(foucault, tmp_path):
+    target = tmp_path / "paris"
+    foucault("generate", "paris", *SHORT, "--out", str(target))
+    page = target / "certified.txt"
+    page.write_text(page.read_text() + "x")
+    status, out, _ = foucault("verify", str(target))
+    assert status == 1
+    assert "certified.txt" in out
+    status, out, _ = foucault("verify", str(target), "--json")
+    assert status == 1
+    (row,) = json.loads(out)["rows"]
+    assert (row["path"], row["ok"]) == (str(target), False)
+    assert row["problems"]
+
+
+BAD = [
+    (("generate", "atlantis"), "SCENE", "Known ids"),
+    (("generate", "../paris"), "SCENE", "TOML file"),
+    (("generate", "paris", "--digits", "0"), "run.digits", "from 1 to 1000"),
+    (("generate", "paris", "--digits", "99999"), "run.digits", "from 1 to 1000"),
+    (("generate", "paris", "--digits", "many"), "run.digits", "whole number"),
+    (("generate", "paris", "--t-end", "soon"), "run.t_end", "decimal number"),
+    (("generate", "paris", "--t-end", "nan"), "run.t_end", "decimal number"),
+    (("generate", "paris", "--t-end", "-5"), "run.t_end", "above 0"),
+    (("generate", "paris", "--set", "site.latitude=91"), "site.latitude", "at most 90"),
+    (("generate", "paris", "--set", "pendulum.length=0"), "pendulum.length", "above 0"),
+    (("generate", "paris", "--set", "release.x=70"), "release", "below the suspension"),
+    (("generate", "paris", "--set", "site.colour=blue"), "site.colour", "no such key"),
+    (("generate", "paris", "--set", "id=a/b"), "id", "lower-case"),
+    (("generate", "paris", "--set", "nonsense"), "--set", "section.key=value"),
+    (("generate", "paris", "--out", "/proc/nowhere/x"), "--out", "writable"),
+    (("show", "/nowhere/at/all.toml"), "SCENE", "TOML file"),
+    (("verify", "/nowhere/at/all"), "PATH", "golden dataset"),
+]
+
+
+@pytest.mark.parametrize(("words", "field", "expected"), BAD, ids=[" ".join(row[0][1:]) for row in BAD])
+def test_a_users_mistake_ends_with_exit_2_a_message_and_nothing_written(
+    foucault, words, field, expected, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = foucault(*words)
+    assert status == 2
+    assert out == ""
+    assert err.startswith(f"foucault: {field}: got ")
+    assert expected in err
+    assert "Traceback" not in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unknown_level_or_command_is_wrong_usage(foucault):
+    assert foucault("generate", "paris", "--level", "perfect")[0] == 2
+    assert foucault("dance")[0] == 2
+    assert foucault("generate", "paris", "--engine", "steam")[0] == 2
+
+
+def test_what_cannot_be_reached_ends_with_exit_3_and_no_file(foucault, tmp_path, monkeypatch):
+    from reference.solver import pilot as growth
+
+    monkeypatch.setattr(growth, "MAX_PREC", 60)
+    status, out, err = foucault("generate", "paris", "--t-end", "60", "--out", str(tmp_path / "p"))
+    assert (status, out) == (3, "")
+    assert "keep no digit" in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_verify_without_any_dataset_says_so(foucault, tmp_path, monkeypatch):
+    from reference.commands import verify
+
+    monkeypatch.setattr(verify, "data_root", lambda: tmp_path)
+    status, _, err = foucault("verify")
+    assert status == 2
+    assert "foucault generate" in err
+
+
+def test_help_loads_neither_heyoka_nor_flint_nor_numpy():
+    heavy = ("heyoka", "flint", "numpy", "mpmath", "scipy", "matplotlib")
+    code = (
+        "import sys, runpy; sys.argv = ['foucault', '--help']\n"
+        "try: runpy.run_module('foucault', run_name='__main__')\n"
+        f"except SystemExit: print([name for name in {heavy} if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout.strip().endswith("[]")
+
+
+def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
+    master, slave = pty.openpty()
+    words = [sys.executable, "-m", "foucault", "generate", "paris", "--t-end", "7200", "--digits", "12"]
+    with subprocess.Popen(
+        [*words, "--out", str(tmp_path / "p")], stdout=subprocess.DEVNULL, stderr=slave, cwd=ROOT
+    ) as process:
+        os.close(slave)
+        seen = b""
+        while True:
+            try:
+                piece = os.read(master, 4096)
+            except OSError:
+                break
+            if not piece:
+                break
+            seen += piece
+    os.close(master)
+    assert process.returncode == 0
+    assert b"of 7,200 s simulated" in seen
+
+
+def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
+    words = [sys.executable, "-m", "foucault", "generate", "paris", "--out", str(tmp_path / "p")]
+    with subprocess.Popen(
+        words,
+        stderr=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        cwd=ROOT,
+        start_new_session=True,
+    ) as process:
+        time.sleep(8)  # well into the run, also on a busy machine
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=30)
+    assert process.returncode not in (0, None)
+    assert b"Traceback" not in err
+    assert list(tmp_path.iterdir()) == []
+    assert gone_within(process.pid, 10)
+
+
+def gone_within(group: int, seconds: float) -> bool:
+    """True once no process of the group is left."""
+    for _ in range(int(seconds / 0.1)):
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.1)
+    return False
+
+
+def test_show_says_how_many_digits_the_flow_costs(foucault):
+    said = json.loads(foucault("show", "two_radians", "--sensitivity", "--json")[1])
+    assert 2 < said["digits_lost"] < 4
+    assert f"the flow costs {said['digits_lost']:.1f} digits" in foucault("show", "two_radians", "--sensitivity")[1]
+
+
+def test_an_end_beyond_all_numbers_is_refused(foucault):
+    status, _, err = foucault("generate", "paris", "--t-end", "1e399")
+    assert status == 2
+    assert "run.t_end" in err

@@ -1,0 +1,245 @@
+"""Golden datasets: what stands in the files, written whole or not at all, and read back."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from fractions import Fraction
+from importlib.resources import files
+from pathlib import Path
+
+import jsonschema
+import numpy as np
+import pytest
+from small_scenes import make_scene
+
+import reference
+from reference.dataset import read as golden
+from reference.dataset import write as publish
+from reference.dataset.manifest import json_schema
+from reference.dataset.read import MANIFEST, load
+from reference.dataset.verify import problems_of
+from reference.dataset.write import check_target, default_folder, render, write
+from reference.errors import DatasetError, InputError
+
+NAMES = {MANIFEST, "grid.csv", "transits.csv", "grid.binary64.csv", "transits.binary64.csv", "certified.txt"}
+
+
+@pytest.fixture(scope="module")
+def solution():
+    return reference.solve(reference.load_scene("paris"), t_end="300", digits=25)
+
+
+@pytest.fixture
+def dataset(solution, tmp_path):
+    return write(solution, tmp_path / "paris")
+
+
+def test_a_dataset_has_the_files_of_the_contract(dataset):
+    assert {path.name for path in dataset.iterdir()} == NAMES
+    assert problems_of(dataset) == []
+    for path in dataset.iterdir():
+        data = path.read_bytes()
+        assert b"\r" not in data
+        assert data.endswith(b"\n")
+        data.decode("utf-8")
+
+
+def test_the_same_command_gives_the_same_bytes(solution):
+    again = reference.solve(reference.load_scene("paris"), t_end="300", digits=25)
+    assert render(again) == render(solution)
+
+
+def test_headers_and_digits_after_the_point_are_fixed(dataset):
+    grid = (dataset / "grid.csv").read_text().splitlines()
+    assert grid[0] == "t,x,y,z,vx,vy,vz"
+    transits = (dataset / "transits.csv").read_text().splitlines()
+    assert transits[0] == "k,t,direction,x,y,z,vy,ax,bound"
+    for lines in (grid[1:], transits[1:]):
+        shapes = {tuple(len(text.partition(".")[2]) for text in line.split(",")[1:-1]) for line in lines}
+        assert len(shapes) == 1
+
+
+def test_the_largest_number_of_a_column_has_the_digits_asked(dataset):
+    columns = golden.read_table(dataset / "grid.csv")
+    for name in ("x", "y", "z", "vx", "vy"):
+        largest = max(columns[name], key=lambda text: abs(Fraction(text)))
+        assert len(largest.lstrip("-0.").replace(".", "")) == 25
+
+
+def test_doubles_are_given_with_seventeen_digits_and_as_hexfloats(dataset):
+    grid = golden.read_table(dataset / "grid.csv")
+    doubles = golden.read_table(dataset / "grid.binary64.csv")
+    for name in grid:
+        for text, plain, hexadecimal in zip(grid[name], doubles[name], doubles[f"{name}_hex"], strict=True):
+            assert float(Fraction(text)) == float(plain) == float.fromhex(hexadecimal)
+            assert len(plain.lstrip("-").partition("e")[0]) == 18
+
+
+def test_the_manifest_follows_the_published_schema(dataset):
+    document = json.loads((dataset / MANIFEST).read_text())
+    schema = json.loads(files("reference").joinpath("dataset/schema/manifest.schema.json").read_text())
+    jsonschema.validate(document, schema)
+    assert schema == json_schema(), "run: python -m reference.dataset.schema"
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**document, "extra": 1}, schema)
+
+
+def test_the_manifest_names_no_date_host_or_wall_time(dataset):
+    text = (dataset / MANIFEST).read_text().lower()
+    assert os.uname().nodename.lower() not in text
+    assert not any(word in text for word in ("date", "wall", "cpu", "host", str(Path.home()).lower()))
+
+
+def test_the_manifest_records_the_check_and_its_disagreement(dataset):
+    manifest = load(dataset).manifest
+    assert manifest.level == "confirmed"
+    (check,) = manifest.cross_checks
+    assert check.formulation == "space"
+    assert check.number != manifest.run.number
+    assert Fraction(check.position_m) < Fraction(manifest.bounds.position_m)
+    assert manifest.counts.grid == 6
+    assert manifest.counts.transits == 36
+
+
+def test_the_page_for_people_carries_the_certified_values(dataset):
+    page = (dataset / "certified.txt").read_text()
+    last = (dataset / "grid.csv").read_text().splitlines()[-1].split(",")
+    assert all(text in page for text in last)
+    assert "Transits (xdot = 0, t > 0): 36 (complete)" in page
+
+
+def test_a_dataset_is_read_back_as_arrays_strings_and_fractions(dataset, solution):
+    read = load(dataset)
+    assert np.array_equal(read.t, solution.t)
+    assert read.x.dtype == np.float64
+    assert read.exact("x")[3] == Fraction(read.decimals("x")[3])
+    assert abs(read.exact("x")[3] - solution.grid.exact("x")[3]) <= Fraction(1, 2 * 10**25)
+    assert len(read.transits["t"]) == 36
+    assert read.scene == solution.scene
+    with pytest.raises(AttributeError):
+        _ = read.nonsense
+
+
+def test_what_has_no_transits_says_why(tmp_path):
+    planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run={"t_end": "60", "digits": 10})
+    path = write(reference.solve(planar), tmp_path / "planar")
+    assert load(path).manifest.transits == "xdot is identically zero"
+    off = write(reference.solve(planar, transits=False), tmp_path / "off")
+    assert load(off).manifest.transits == "not asked for"
+    assert load(off).manifest.bounds.transit_s is None
+
+
+def test_a_changed_file_is_not_read(dataset):
+    page = dataset / "certified.txt"
+    page.write_text(page.read_text().replace("Certified", "Uncertified"))
+    with pytest.raises(DatasetError, match=r"certified\.txt"):
+        load(dataset)
+
+
+def test_a_missing_dataset_says_how_to_make_it(tmp_path):
+    with pytest.raises(InputError, match="foucault generate"):
+        load(tmp_path / "nothing")
+    with pytest.raises(InputError, match="foucault generate"):
+        load("atlantis")
+
+
+def test_a_target_that_is_something_else_is_left_alone(tmp_path):
+    (tmp_path / "thesis.txt").write_text("years of work")
+    with pytest.raises(InputError, match="an older dataset"):
+        check_target(tmp_path)
+    with pytest.raises(InputError, match="file of that name"):
+        check_target(tmp_path / "thesis.txt")
+    with pytest.raises(InputError, match="a writable place"):
+        check_target(Path("/proc/nowhere/paris"))
+    assert (tmp_path / "thesis.txt").read_text() == "years of work"
+
+
+def test_a_dataset_that_fails_its_own_checks_is_not_put_in_place(dataset, solution, monkeypatch):
+    before = {path.name: path.read_bytes() for path in dataset.iterdir()}
+    broken = {**render(solution), "grid.csv": "t,x\n"}
+    monkeypatch.setattr(publish, "render", lambda _: broken)
+    with pytest.raises(DatasetError):
+        write(solution, dataset)
+    assert {path.name: path.read_bytes() for path in dataset.iterdir()} == before
+    assert [path.name for path in dataset.parent.iterdir()] == ["paris"]
+
+
+def test_an_older_dataset_is_replaced_also_where_folders_cannot_be_swapped(dataset, solution, monkeypatch):
+    shorter = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level="computed")
+    write(shorter, dataset)
+    assert load(dataset).manifest.digits == 8
+    monkeypatch.setattr(publish, "_exchange", lambda *_: False)
+    write(solution, dataset)
+    assert load(dataset).manifest.digits == 25
+    assert [path.name for path in dataset.parent.iterdir()] == ["paris"]
+
+
+def test_what_a_killed_process_left_is_cleared_and_what_a_living_one_holds_is_not(dataset, solution):
+    dead = dataset.parent / ".paris.partial-999999999"
+    alive = dataset.parent / f".paris.partial-{os.getppid()}"
+    for folder in (dead, alive):
+        folder.mkdir()
+    write(solution, dataset)
+    assert not dead.exists()
+    assert alive.exists()
+
+
+def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch):
+    scene = reference.load_scene("paris")
+    assert default_folder(scene, as_shipped=True).parts[-3:] == ("data", "golden", "paris")
+    assert default_folder(scene, as_shipped=False) == Path("golden/paris")
+    binary = scene.with_values(["inputs=binary64"])
+    assert default_folder(binary, as_shipped=True).name == "paris.binary64"
+    monkeypatch.setattr(publish, "in_checkout", lambda: False)
+    assert default_folder(scene, as_shipped=True) == Path("golden/paris")
+
+
+WRITER = """
+import sys, reference
+from pathlib import Path
+from reference.dataset.write import write
+solution = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level="computed")
+print("ready", flush=True)
+while True:
+    write(solution, Path(sys.argv[1]))
+"""
+
+
+def test_killed_at_any_of_twenty_moments_the_dataset_is_whole(tmp_path):
+    target = tmp_path / "paris"
+    for moment in range(20):
+        with subprocess.Popen(
+            [sys.executable, "-c", WRITER, str(target)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
+        ) as process:
+            assert process.stdout is not None
+            process.stdout.readline()
+            time.sleep(0.003 * moment)
+            process.send_signal(signal.SIGKILL)
+        assert not target.exists() or problems_of(target) == []
+    assert target.exists()
+
+
+def test_bounds_cover_the_rounding_to_the_printed_digits(dataset):
+    manifest = load(dataset).manifest
+    coarsest = min(manifest.decimals["grid"][name] for name in "xyz")
+    assert Fraction(manifest.bounds.position_m) >= Fraction(1, 2 * 10**coarsest)
+    assert math.isfinite(float(manifest.bounds.position_m))
+
+
+def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
+    plain = "foucault generate paris --t-end 86400 --digits 40 --level confirmed"
+    assert publish.command(paris, "real(184)") == f"{plain} --engine heyoka"
+    assert publish.command(paris, "limbs(184)") == f"{plain} --engine limbs"
+    changed = paris.with_values(["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"])
+    sets = "--set site.latitude=0 --set release.vx=1 --set run.grid_step=600 --set inputs=binary64"
+    named = publish.command(changed, "double")
+    assert sets in named and named.startswith(plain)
+    words = [word for word in named.split() if "=" in word]
+    assert paris.with_values(words) == changed
+    assert publish.command(make_scene("mine"), "double").startswith("foucault generate mine.toml --t-end")

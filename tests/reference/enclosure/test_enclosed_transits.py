@@ -1,0 +1,213 @@
+"""Every zero of xdot, once; those that cannot be decided are said to be so."""
+
+from fractions import Fraction
+from itertools import pairwise
+
+import mpmath as mp
+import numpy as np
+import pytest
+from enclosure_oracle import PARIS, carry, doubles, scene, steps
+from flint import arb, ctx
+from scipy.integrate import solve_ivp
+
+from reference.enclosure import enclose
+from reference.enclosure.bound import Piece, World
+from reference.enclosure.shapes import Leaf, Step, Tube
+from reference.enclosure.transits import Scan, Slope, contract
+
+
+def scan(inputs, proposal, columns=False):
+    seen = None
+    for world, piece, tube in carry(inputs, proposal, columns):
+        seen = seen or Scan(world)
+        seen.advance(piece, tube)
+    return seen.finish()
+
+
+def middle(interval):
+    return (interval.low + interval.high) / 2
+
+
+def events(inputs, end):
+    """Zeros of xdot after t = 0, by scipy."""
+    rates, first = doubles(inputs)
+    zero = lambda _t, s: s[3]  # noqa: E731
+    run = solve_ivp(rates, (0, float(end)), first, method="DOP853", rtol=1e-12, atol=1e-13, events=zero)
+    return [t for t in run.t_events[0] if t > 1e-6]
+
+
+CASES = {
+    "paris": scene(),
+    "equator": scene(latitude="0"),
+    "pole": scene(latitude="90"),
+    "southern": scene(latitude="-33.3"),
+    "fast earth": scene(rotation_rate="0.001"),
+    "no rotation": scene(rotation_rate="0"),
+    "drag": scene(drag="0.01", vx="0.2"),
+    "steep": scene(length="1", angles=("114.59", "30", "0", "0")),
+    "near inverted": scene(length="1", angles=("177.6", "30", "0", "0")),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_transits_are_those_of_an_event_finder(name):
+    inputs = CASES[name]
+    end = {"steep": Fraction(10), "near inverted": Fraction(4)}.get(name, Fraction(100))
+    proof = enclose(inputs, [end], radius=Fraction(1, 10**20), workers=1)
+    expected = events(inputs, end)
+    assert [t.kind for t in proof.transits] == ["one"] * len(expected)
+    assert np.allclose([float(middle(t.t)) for t in proof.transits], expected, rtol=0, atol=1e-6)
+    for before, after in pairwise(proof.transits):
+        assert before.direction == -after.direction
+        assert before.t.high < after.t.low
+
+
+def test_values_at_a_transit_are_those_of_the_state_there():
+    proof = enclose(PARIS, [Fraction(60)], radius=Fraction(1, 10**30), workers=1)
+    hit = proof.transits[2]
+    (state,) = enclose(PARIS, [middle(hit.t)], radius=Fraction(1, 10**30), workers=1).states
+    for mine, other in zip((hit.x, hit.y, hit.z, hit.vy), (state[0], state[1], state[2], state[4]), strict=True):
+        assert mine.low <= other.high
+        assert other.low <= mine.high
+    assert hit.direction * middle(hit.ax) > 0
+    assert state[3].low < 0 < state[3].high
+
+
+@pytest.mark.parametrize("parts", [1, 2, 3])
+def test_a_transit_on_a_step_boundary_is_found_once(parts):
+    rows = list(steps(PARIS, Fraction(30)))
+    first = middle(scan(PARIS, rows)[0].t)
+    cut = Fraction(int(first * 2**110), 2**110)
+    out = []
+    for s in rows:
+        at = (cut - s.centre) / s.h
+        if s.low < at < s.high:
+            inner = [s.low + (at - s.low) * Fraction(i, parts) for i in range(parts + 1)]
+            out += [s._replace(low=a, high=b) for a, b in zip(inner, [*inner[1:], s.high], strict=True)]
+        else:
+            out.append(s)
+    found = scan(PARIS, out)
+    assert [t.kind for t in found] == ["one"] * len(scan(PARIS, rows))
+    assert found[0].t.low <= cut + Fraction(1, 2**100)
+    assert found[0].t.high >= cut - Fraction(1, 2**100)
+
+
+def test_a_moving_release_may_have_its_transit_in_the_first_leaf():
+    found = scan(scene(vx="0.067"), steps(scene(vx="0.067"), Fraction(10)))
+    assert abs(middle(found[0].t) - Fraction("1.38290078")) < Fraction(1, 10**8)
+
+
+def test_a_release_at_rest_in_the_meridian_has_no_transit_at_its_start():
+    inputs = scene(x="0", y="0.5")
+    proof = enclose(inputs, [Fraction(60)], radius=Fraction(1, 10**30), workers=1)
+    assert all(t.kind == "one" for t in proof.transits)
+    assert abs(middle(proof.transits[0].t) - Fraction("8.2266590196580988")) < Fraction(1, 10**15)
+
+
+def test_a_release_perpendicular_to_the_earths_axis_takes_few_leaves(monkeypatch):
+    """There ẋ ~ t⁴."""
+    count, sort = [0], Scan._sort
+
+    def counted(self, *args):
+        count[0] += 1
+        assert count[0] < 5000
+        return sort(self, *args)
+
+    monkeypatch.setattr(Scan, "_sort", counted)
+    inputs = scene(latitude="30", length="1", angles=("30", "90", "0", "0"))
+    found = enclose(inputs, [Fraction(5)], radius=Fraction(1, 10**40), workers=1).transits
+    assert [t.kind for t in found] == ["possible", "one", "one", "one", "one"]
+
+
+def test_release_at_rest_in_the_meridian_with_drag():
+    inputs = scene(x="0", y="0.5", drag="0.01", rotation_rate="0.001")
+    proof = enclose(inputs, [Fraction(60)], radius=Fraction(1, 10**20), workers=1)
+    assert [t.kind for t in proof.transits] == ["one"] * len(events(inputs, 60))
+
+
+@pytest.mark.parametrize("inputs", [
+    scene(rotation_rate="0", x="0"),
+    scene(rotation_rate="0", angles=("100", "90", "3", "0")),
+    scene(latitude="90", x="0", y="0"),
+    scene(latitude="0", angles=("180", "13", "0", "0")),
+])  # fmt: skip
+def test_no_transits_where_xdot_is_zero_for_ever(inputs):
+    proof = enclose(inputs, [Fraction(20)], radius=Fraction(1, 10**15), workers=1)
+    assert proof.still
+    assert proof.transits is None
+
+
+@pytest.mark.parametrize("inputs", [scene(drag="0.2", rotation_rate="0.01"), scene(x="0", y="0.5")])
+def test_third_derivative_by_the_equations_is_that_of_a_good_polynomial(inputs):
+    _, piece, tube = next(carry(inputs, steps(inputs, Fraction(5))))
+    third = piece.v[0].derivative().derivative()
+    for place in ("-0.7", "0", "0.4"):
+        with ctx.workprec(128):
+            gap = Slope(piece, tube).bend(arb(place)) - third(arb(place)) / piece.unit
+        assert gap.abs_upper() < arb("1e-30")
+
+
+def parabola(delta, u):
+    """A made-up step with xdot = (s - 1/3)² + delta, true within u."""
+    bits = 200
+    rows = [[0, Fraction(1, 9) + delta, Fraction(-1, 3), Fraction(1, 3)], *[[0]] * 3]
+    whole = tuple([int(c * 2**bits) for c in r] for r in rows)
+    step = Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, whole)
+    world = World(scene(vx="1"), 264)
+    out = Scan(world)
+    out.advance(Piece(world, step), Tube(arb(u), arb(u), arb(u) * 10))
+    return out.finish()
+
+
+@pytest.mark.parametrize("delta", [Fraction(0), Fraction(1, 10**41), -Fraction(1, 10**41)])
+def test_a_grazing_zero_is_possible_and_even(delta):
+    (found,) = parabola(delta, "1e-40")
+    assert (found.kind, found.parity) == ("possible", "even")
+    assert found.t.low < Fraction(4, 3) < found.t.high
+    assert found.t.high - found.t.low < Fraction(1, 10**15)
+
+
+def test_two_zeros_that_are_close_are_told_apart():
+    found = parabola(-Fraction(1, 10**6), "1e-40")
+    assert [t.kind for t in found] == ["one", "one"]
+    assert [t.direction for t in found] == [-1, 1]
+    for t, root in zip(found, (Fraction(4, 3) - Fraction(1, 1000), Fraction(4, 3) + Fraction(1, 1000)), strict=True):
+        assert abs(middle(t.t) - root) < Fraction(1, 10**35)
+
+
+def test_a_step_shorter_than_the_precision_is_refused():
+    world, third = World(scene(), 128), Fraction(1, 3)
+    step = Step(Fraction(1), Fraction(1), third, third + Fraction(1, 2**200), 128, ([0, 1 << 128], *[[0]] * 3))
+    with pytest.raises(ArithmeticError, match="too short"):
+        Scan(world).advance(Piece(world, step), Tube(arb(0), arb(0), arb(0)))
+
+
+def test_newton_asks_nothing_about_times_outside_of_its_leaves():
+    world = World(scene(), 128)
+    with ctx.workprec(world.prec):
+        row = [0, 1 << 128, 1 << 127]  # xdot = 1 + s
+        piece = Piece(world, Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
+        slope, third = Slope(piece, Tube(arb(0), arb(0), arb(0))), arb(1) / 3
+        # a leaf narrower than a ball: whether the middle of the ball lies in it is not known
+        leaf, time = Leaf(1, third, third, slope), 1 + third
+        assert contract([leaf], time, time).overlaps(time)
+        assert contract([Leaf(1, arb(0), third, slope)], arb(1), time) is None
+
+
+def test_a_parabola_that_stays_clear_has_no_zero():
+    assert parabola(Fraction(1, 10**6), "1e-40") == []
+
+
+def test_an_end_on_a_transit_is_undecided_and_a_little_later_is_not():
+    (hit, *_) = enclose(PARIS, [Fraction(12)], radius=Fraction(1, 10**30), workers=1).transits
+    at = middle(hit.t)
+    (last,) = enclose(PARIS, [at], radius=Fraction(1, 10**20), workers=1).transits
+    assert (last.kind, last.parity) == ("possible", "unknown")
+    (later,) = enclose(PARIS, [at + Fraction(1, 10**6)], radius=Fraction(1, 10**20), workers=1).transits
+    assert later.kind == "one"
+    assert enclose(PARIS, [at - Fraction(1, 10**6)], radius=Fraction(1, 10**20), workers=1).transits == []
+
+
+def test_counts_do_not_depend_on_mpmath_precision():
+    with mp.workprec(53):
+        assert len(scan(PARIS, steps(PARIS, Fraction(60)))) == len(events(PARIS, 60))

@@ -1,0 +1,233 @@
+"""Every bound against its definition, at random numbers of every magnitude: a term that is lost shows."""
+
+from fractions import Fraction
+from random import Random
+from types import SimpleNamespace
+
+import mpmath as mp
+import numpy as np
+from enclosure_oracle import scene
+from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
+
+from reference.enclosure.bound import Piece, Radius, Scaled, World
+from reference.enclosure.columns import CUT, FINE, Columns, cut, residuals
+from reference.enclosure.shapes import Sizes, Step
+
+
+def exact(x):
+    """The middle of a ball, or a number, as a fraction."""
+    m, e = x.mid().man_exp()
+    return Fraction(int(m)) * Fraction(2) ** int(e)
+
+
+def cross(a, b):
+    return [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+
+
+def lin(*terms):
+    return [sum(f * v[i] for f, v in terms) for i in range(3)]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def length(a):
+    with mp.workprec(60):
+        square = dot(a, a)
+        return mp.sqrt(mp.mpf(square.numerator) / square.denominator)
+
+
+def poly(row, s, n=0):
+    """The n-th derivative at s."""
+    for _ in range(n):
+        row = [k * c for k, c in enumerate(row)][1:]
+    return sum((c * s**k for k, c in enumerate(row)), Fraction(0))
+
+
+def anything(rng):
+    """A world whose constants have any size, and a polynomial step likewise."""
+    some = lambda low, high: f"{10 ** rng.uniform(low, high):.12f}"  # noqa: E731
+    world = World(
+        scene(
+            length="1", angles=("60", "30", "20", "10"), latitude=f"{rng.uniform(-90, 90):.6f}",
+            gravity=rng.choice(["0", some(-3, 3)]), drag=rng.choice(["0", some(-3, 3)]),
+            rotation_rate=rng.choice(["0", some(-3, 2), "-" + some(-3, 2)]), equatorial_radius=some(-9, 1),
+        ), 200,
+    )  # fmt: skip
+    bits = rng.choice([4, 10, 64])
+    scale = [10 ** rng.uniform(-4, 2) for _ in range(4)]
+    rows = [[round(2**bits * rng.choice((0, 1, -1)) * x) for x in scale[: rng.randint(1, 4)]] for _ in range(3)]
+    if rng.random() < 0.7:  # on the sphere at s = 0
+        for i, row in enumerate(rows):
+            row[0] = 2**bits if i == rng.randrange(3) else 0
+    rows.append([round(2**bits * rng.choice((0, 0, 1)) * 10 ** rng.uniform(-3, 2))])
+    return Piece(world, Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, tuple(rows)))
+
+
+def defects(piece, s):
+    """d1, d2, p, K, τ, d1' from their definitions in (1), not from Lemma 0."""
+    rows = [[Fraction(c, 1 << piece.step.bits) for c in row] for row in piece.step.coefficients]
+    k = piece.k
+    W, c, g = [exact(x) for x in k.omega], [exact(x) for x in k.c], exact(k.drag)
+    p, p1, p2 = ([poly(row, s, n) for row in rows[:3]] for n in range(3))
+    V, V1 = lin((1, p1), (1, cross(W, p))), lin((1, p2), (1, cross(W, p1)))
+    K, K1 = cross(p, V), lin((1, cross(p1, V)), (1, cross(p, V1)))
+    turn = lin((1, K), (-1, W))
+    d1 = lin((1, p1), (-1, cross(turn, p)))
+    d2 = lin((1, K1), (-1, cross(p, c)), (-1, cross(K, W)), (g, turn), (g * dot(W, p), p))
+    rate = lin((1, p2), (-1, cross(K1, p)), (-1, cross(turn, p1)))
+    return d1, d2, p, K, [dot(p, p) - 1], rate
+
+
+def test_sizes_bound_what_their_names_say_and_nearly_reach_it():
+    rng, best = Random(5), np.zeros(6)
+    for _ in range(600):
+        piece = anything(rng)
+        try:
+            bounds = piece.sizes()
+        except ArithmeticError:
+            continue
+        for s in (Fraction(-1), Fraction(0), Fraction(1)):
+            got = [length(x) for x in defects(piece, s)]
+            for i, (x, bound) in enumerate(zip(got, bounds, strict=True)):
+                assert x <= mp.mpf(float(bound)) * (1 + mp.mpf(10) ** -9), (Sizes._fields[i], piece.step)
+                best[i] = max(best[i], x / float(bound) if x else 0)
+    assert all(best > 0.97), best
+
+
+def numbers(rng, *names):
+    """Positive numbers, as balls and as floats."""
+    plain = {n: 10 ** rng.uniform(-1, 0.3) for n in names}
+    return SimpleNamespace(**{n: arb(x) for n, x in plain.items()}), SimpleNamespace(**plain)
+
+
+def drawn(rng):
+    """Constants of a step, sizes, and both again as floats."""
+    k, K = numbers(rng, "c_size", "omega_size", "drag_size", "w", "h", "speed", "below", "above")
+    d, D = numbers(rng, *Sizes._fields)
+    return k, K, Sizes(**vars(d)), D
+
+
+def section_3(K, P):
+    return (K.c_size + K.w**2 + K.drag_size * K.omega_size * (1 + P)) / (2 * K.w)
+
+
+def section_7(K, D, eta, gamma):
+    W, c, g = K.omega_size, K.c_size, K.drag_size
+    U = gamma + (D.k + W) * eta + D.d1
+    K1 = D.p * c + D.k * W + g * (D.k + W * (1 + D.p**2)) + D.d2
+    A = c * eta + W * gamma + g * (gamma + W * (1 + D.p) * eta) + D.d2
+    return eta, U, A + K1 * eta + gamma * ((D.k + W) * D.p + D.d1 + U) + (D.k + W) * U + D.d1_rate
+
+
+def same(got, expected):
+    return np.allclose([float(x) for x in got], expected, rtol=1e-9, atol=0)
+
+
+def carried(method, rng, K, span, monkeypatch):
+    """A bound that starts from given jumps, and a piece that is only its constants."""
+    jump = [10 ** rng.uniform(-2, -1) for _ in range(6)]
+    world = SimpleNamespace(prec=128, r=[arb(0)] * 3, H=[arb(0)] * 3, w0=arb(K.w) / arb(K.h))
+    monkeypatch.setattr(method, "join", lambda self, piece: [arb(x) for x in jump])
+    step = SimpleNamespace(low=Fraction(-1, 4), high=Fraction(-1, 4) + Fraction(span))
+    return method(world), step, jump
+
+
+def test_one_radius_is_carried_as_theorem_c_says(monkeypatch):
+    rng = Random(1)
+    for _ in range(50):
+        k, K, d, D = drawn(rng)
+        span = rng.randint(1, 32) / 1024
+        bound, step, jump = carried(Radius, rng, K, span, monkeypatch)
+        bound.eta = arb(10) ** -rng.randint(1, 3)
+        eta = float(bound.eta) + np.linalg.norm(jump[:3]) + np.linalg.norm(jump[3:]) / (K.w / K.h)
+        source, ck = D.d2 / K.w + D.d1, K.c_size + D.k**2
+        far = np.exp(span * section_3(K, D.p)) * (eta * (1 + D.k / K.w) + span * source)
+        rate = max(K.below, K.above + (K.speed + K.w * far) ** 2) + ck * far + K.drag_size * K.omega_size * D.p
+        end = (eta + span * (ck * D.tau / (2 * K.w) + source)) * np.exp(span * rate / (2 * K.w))
+        got = bound.advance(SimpleNamespace(k=k, step=step), d)
+        assert same(got, section_7(K, D, end, (K.w + D.k) * end))
+        assert same([bound.eta], [end])
+
+
+def test_six_columns_are_carried_as_theorem_e_says(monkeypatch):
+    rng = Random(2)
+    for _ in range(50):
+        k, K, d, D = drawn(rng)
+        span = rng.randint(1, 32) / 1024
+        bound, step, jump = carried(Columns, rng, K, span, monkeypatch)
+        rows = [[10 ** rng.uniform(-2, -1) for _ in range(4)] for _ in range(6)]
+        monkeypatch.setattr(
+            "reference.enclosure.columns.residuals", lambda *_, rows=rows: [[arb(x) for x in r] for r in rows]
+        )
+        rest, z, before = ([10 ** rng.uniform(-2, -1) for _ in range(n)] for n in (6, 6, 36))
+        bound.rest, bound.z = [arb(x) for x in rest], [arb(x) for x in z]
+        before = np.array(before).reshape(6, 6)
+        bound.carried = arb_mat(6, 6, [arb(x) for x in before.flat])
+        whole = [[[rng.randint(-(2**FINE), 2**FINE) for _ in range(3)] for _ in range(6)] for _ in range(6)]
+        got = bound.advance(SimpleNamespace(k=k, step=step), d, whole)
+        unit = np.repeat([1, 1 / K.h], 3)[:, None] / 2.0**FINE
+        start, end = (
+            unit * [[float(poly(whole[j][i], Fraction(s))) for j in range(6)] for i in range(6)]
+            for s in (step.low, step.high)
+        )
+        back = np.linalg.inv(start)
+        box = abs(back @ before) @ z + abs(back) @ np.add(rest, jump)
+        zp, zk, r1, r2 = box @ np.array(rows)
+        D1, D2 = D.d1 + r1 + zp * zk, D.d2 + r2 + K.drag_size * K.omega_size * zp**2
+        left = span * (D2 / K.w + D1) * np.exp(span * section_3(K, D.p + zp))
+        assert np.allclose([float(x) for x in bound.z], box, rtol=1e-6)
+        assert np.allclose([float(x) for x in bound.rest], [left] * 3 + [left * K.w / K.h] * 3, rtol=1e-6)
+        assert np.allclose(np.array([[float(bound.carried[i, j]) for j in range(6)] for i in range(6)]), end)
+        expected = section_7(K, D, zp + left, zk + left * K.w)
+        assert np.allclose([float(x) for x in got], expected, rtol=1e-6)
+
+
+def test_what_holds_for_the_whole_run_follows_from_the_energy():
+    rng = Random(3)
+    for _ in range(100):
+        piece = anything(rng)
+        world, k = piece.world, Scaled(piece.world, Fraction(1, 4), 64)
+        r, H, W, c = ([float(x) for x in v] for v in (world.r, world.H, world.omega, world.c))
+        J = np.dot(H, H) / 2 - np.dot(W, H) - np.dot(c, r)
+        turn, pull, w0 = np.linalg.norm(W), np.linalg.norm(c), float(world.w0)
+        S = turn + np.sqrt(turn**2 + 2 * (J + pull))
+        scale = w0**2 + turn**2 + S**2
+        got = [float(x) for x in (world.speed**2, world.below, world.above)]
+        assert np.allclose(got, [S**2, w0**2 + turn**2 / 2 + J, pull - w0**2], rtol=0, atol=1e-9 * scale)
+        got = [float(x) for x in (k.w, k.speed, k.below, k.above, k.drag, k.omega[2], *k.c)]
+        full = [w0, world.speed, world.below, world.above, world.drag, world.omega[2], *world.c]
+        assert np.allclose(got, [float(x) / 4**n for x, n in zip(full, (1, 1, 2, 2, 1, 1, 2, 2, 2), strict=True)])
+
+
+def test_residuals_bound_what_their_names_say_and_nearly_reach_it():
+    rng, best = Random(6), np.zeros(4)
+    for _ in range(300):
+        piece = anything(rng)
+        scale = [10 ** rng.uniform(-5, 2) for _ in range(6)]
+        column = [[round(2**FINE * x * rng.choice((0, 1, -1))) for _ in range(rng.randint(1, 2))] for x in scale]
+        (bounds,) = residuals(piece, [[fmpz_poly(f) for f in column]])
+        W, c, g = [exact(x) for x in piece.k.omega], [exact(x) for x in piece.k.c], exact(piece.k.drag)
+        for s in (Fraction(-1), Fraction(0), Fraction(1)):
+            _, _, p, K, _, _ = defects(piece, s)
+            whole = [[Fraction(x, 1 << FINE) for x in f] for f in column]
+            (P, Q), (P1, Q1) = ([[poly(f, s, n) for f in part] for part in (whole[:3], whole[3:])] for n in (0, 1))
+            R1 = lin((1, P1), (-1, cross(Q, p)), (-1, cross(lin((1, K), (-1, W)), P)))
+            R2 = lin((1, Q1), (-1, cross(P, c)), (-1, cross(Q, W)), (g, Q), (g * dot(W, P), p), (g * dot(W, p), P))
+            for i, (a, bound) in enumerate(zip((P, Q, R1, R2), bounds, strict=True)):
+                x = length(a)
+                assert x <= mp.mpf(float(bound)) * (1 + mp.mpf(10) ** -9), i
+                best[i] = max(best[i], x / float(bound) if x else 0)
+    assert all(best > 0.97), best
+
+
+def test_a_cut_polynomial_contains_the_whole():
+    with ctx.workprec(64):
+        for row in ([0] * CUT + [1], [0] * (CUT + 1) + [3, -4], [1] * (2 * CUT)):
+            short = cut(arb_poly(row))
+            assert len(short) <= CUT
+            for s in (Fraction(-1), Fraction(-7, 8), Fraction(1)):
+                value = sum(c * s**k for k, c in enumerate(row))
+                with ctx.workprec(400):
+                    assert short(arb(s.numerator) / s.denominator).contains(arb(value.numerator) / value.denominator)

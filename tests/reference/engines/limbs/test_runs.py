@@ -1,0 +1,191 @@
+"""Whole runs in digits beside heyoka's `real` at more bits: every scene that may be nasty, grid and transits."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+pytest.importorskip("numba")
+
+from small_scenes import make_scene
+
+from reference.engines import limbs
+from reference.engines.plan import Plan
+from reference.engines.run import run
+from reference.errors import InputError, IntegrationError
+from reference.precision import real
+from reference.solver.pilot import disagreement, largest_of
+
+PARIS = {"release": {"x": "0.3", "y": "0.4"}}
+SCENES = {
+    "paris": PARIS,
+    "pole": {"site": {"latitude": "90"}},
+    "equator": {"site": {"latitude": "0"}},
+    "no_rotation": {"site": {"rotation_rate": "0"}},
+    "drag": {"pendulum": {"drag": "0.03"}},
+    "fast_earth": {"site": {"rotation_rate": "0.05"}},
+    "fast_earth_with_drag": {"site": {"rotation_rate": "0.05"}, "pendulum": {"drag": "0.1"}},
+    "overdamped": {"pendulum": {"drag": "5"}},
+    "from_the_meridian": {"release": {"x": "0", "y": "0.5"}},
+    "off_the_vertical": {"release": {"x": "0", "y": "0"}},
+    "pushed": {"release": {"x": "0.3", "y": "0.4", "vx": "0.067", "vy": "0.01"}},
+    "tiny": {"release": {"x": "1e-9", "y": "2e-9"}},
+    "whirling": {
+        "pendulum": {"length": "1"},
+        "release": {"angle": "90", "azimuth": "45", "azimuth_rate": "200"},
+    },
+    "two_radian": {"release": {"angle": "114.6", "azimuth": "30"}},
+    "near_inverted": {"pendulum": {"length": "1"}, "release": {"angle": "177.6", "azimuth": "30"}},
+    "from_the_top": {
+        "pendulum": {"length": "1"},
+        "site": {"rotation_rate": "0"},
+        "release": {"angle": "179.999999999999", "azimuth": "30"},
+    },
+    "without_gravity": {"site": {"gravity": "0"}, "release": {"x": "1", "y": "0.5", "vx": "1", "vy": "2"}},
+}
+TIMES = tuple(Fraction(7 * k, 5) for k in range(26))
+FAST = {"fast_earth", "fast_earth_with_drag"}  # gravity is a thousand times the usual: a tenth of the time will do
+CASES = [(name, 45) for name in SCENES] + [("paris", 32), ("paris", 60), ("near_inverted", 32), ("near_inverted", 60)]
+CASES += [("from_the_top", digits) for digits in range(30, 60, 4)]
+SPARE = 8  # times what heyoka loses at the same precision: the conditioning of the scene, measured
+FLOOR_BITS = 6
+
+
+@pytest.mark.parametrize(("name", "digits"), CASES)
+def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
+    scene, prec = make_scene(**SCENES[name]), int(digits * 3.33) + 4
+    times = tuple(t / 10 for t in TIMES) if name in FAST else TIMES
+    ours = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(prec), times, transits=True))
+    same, finer = (
+        run(Plan(scene.exact, "momentum", real(bits), times, transits=transits))
+        for bits, transits in ((prec, False), (prec + 40, True))
+    )
+    lost = disagreement(same.grid, same.scale, finer.grid, finer.scale)
+    gaps = disagreement(ours.grid, ours.scale, finer.grid, finer.scale)
+    sizes = largest_of(finer.grid, finer.scale)
+    allowed = [
+        SPARE * max(lost[i : i + 3]) + max(sizes[i : i + 3]) * Fraction(2) ** (FLOOR_BITS - prec) for i in (0, 3)
+    ]
+    if name == "tiny":  # z is of the size of l, and its error is x's
+        allowed = [SPARE * max(lost[:2]) + max(sizes[:2]) * Fraction(2) ** (FLOOR_BITS - prec), allowed[1]]
+    assert max(gaps[:3]) <= allowed[0]
+    assert max(gaps[3:6]) <= allowed[1]
+    assert ours.directions == finer.directions
+    assert ours.zeros is not None
+    assert finer.zeros is not None
+    for one, other in zip(ours.zeros, finer.zeros, strict=True):
+        late, ax = abs(Fraction(one[0], 2**ours.scale) - Fraction(other[0], 2**finer.scale)), one[7] / 2**ours.scale
+        assert late <= 4 * allowed[1] / abs(Fraction(ax)) + times[-1] * Fraction(2) ** (FLOOR_BITS - prec)
+
+
+@pytest.mark.slow
+def test_an_hour_of_paris_keeps_32_digits_and_all_transits():
+    scene = make_scene(**PARIS)
+    times = tuple(Fraction(60 * k) for k in range(61))
+    ours = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), times, transits=True))
+    theirs = run(Plan(scene.exact, "momentum", real(144), times, transits=True))
+    assert max(disagreement(ours.grid, ours.scale, theirs.grid, theirs.scale)[:3]) < Fraction(1, 10**34)
+    assert ours.directions == theirs.directions
+    assert len(ours.directions) == 438
+
+
+def test_a_quarter_period_is_that_of_the_elliptic_integral():
+    scene = make_scene(
+        site={"rotation_rate": "0", "gravity": "9.81"},
+        pendulum={"length": "2"},
+        release={"angle": "150", "azimuth": "0"},
+    )
+    ctx = mpmath.mp.clone()
+    ctx.dps = 60
+    quarter = ctx.sqrt(ctx.mpf(2) / ctx.mpf("9.81")) * ctx.ellipk(ctx.sinpi(ctx.mpf(75) / 180) ** 2)
+    time = Fraction(int(ctx.floor(quarter * 2**190)), 2**190)
+    ran = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(160), (Fraction(0), time), transits=False))
+    x, y, z = (ctx.mpf(value) / 2**ran.scale for value in ran.grid[1][:3])
+    assert abs(x) < 1e-44
+    assert y == 0
+    assert abs(z + 2) < 1e-44
+
+
+def test_xdot_identically_zero_gives_no_transits():
+    scene = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.5"})
+    ran = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), TIMES, transits=True))
+    assert ran.zeros is None
+    assert all(row[0] == 0 for row in ran.grid)
+
+
+def test_a_transit_after_the_last_time_is_not_reported():
+    scene = make_scene(**PARIS)
+    every = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), TIMES, transits=True))
+    third = Fraction(every.zeros[2][0], 2**every.scale)
+    for end, count in ((third - Fraction(1, 10**9), 2), (third + Fraction(1, 10**9), 3)):
+        cut = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), (Fraction(0), end), transits=True))
+        assert len(cut.zeros) == count
+
+
+def test_more_bits_than_there_can_be_are_refused():
+    scene = make_scene(**PARIS)
+    with pytest.raises(InputError, match="heyoka"):
+        limbs.run(Plan(scene.exact, "momentum", limbs.limbs(limbs.most_bits() + 1), TIMES, transits=False))
+
+
+def test_a_transit_that_only_grazes_is_refused():
+    # swinging exactly north-south at the pole of a slow Earth, xdot is far below the precision at every turn
+    scene = make_scene(
+        site={"latitude": "90", "rotation_rate": "1e-300"}, release={"x": "0", "y": "0.5"}, pendulum={"length": "2"}
+    )
+    with pytest.raises(IntegrationError):
+        limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), TIMES, transits=True))
+
+
+def test_the_report_says_how_far_a_run_is():
+    seen = []
+    times = tuple(Fraction(3000 * k) for k in range(5))
+    limbs.run(Plan(make_scene(**PARIS).exact, "momentum", limbs.limbs(80), times, transits=False), seen.append)
+    assert seen == sorted(seen)
+    assert 0 < seen[0] < seen[-1] < 12000
+
+
+def test_states_are_double_doubles_of_a_finer_run():
+    scene = make_scene(**PARIS)
+    moments = np.linspace(0, 3600, 1001)
+    high, low = limbs.states(scene.exact, moments)
+    assert high.shape == low.shape == (1001, 6)
+    assert (np.abs(low) <= np.spacing(np.abs(high))).all()
+    times = tuple(Fraction(float(t)) for t in moments)
+    fine = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(150), times, transits=False))
+    for i in range(0, 1001, 10):
+        for j in range(6):
+            exact = Fraction(float(high[i, j])) + Fraction(float(low[i, j]))
+            assert abs(exact - Fraction(fine.grid[i][j], 2**fine.scale)) < Fraction(1, 10**28)
+
+
+@pytest.mark.parametrize("times", [[], [1.0, 1.0], [-1.0, 2.0], [0.0, float("nan")], [[1.0]]])
+def test_times_that_are_no_increasing_list_are_refused(times):
+    with pytest.raises(InputError, match="times"):
+        limbs.states(make_scene(**PARIS).exact, times)
+
+
+SHORT = """
+from fractions import Fraction
+from reference import load_scene
+from reference.engines import limbs
+from reference.engines.plan import Plan
+times = tuple(Fraction(7 * k, 5) for k in range(40))
+ran = limbs.run(Plan(load_scene("paris").exact, "momentum", limbs.limbs(113), times, transits=True))
+print((ran.grid, ran.zeros, ran.steps))
+"""
+
+
+@pytest.mark.slow
+def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, capsys):
+    plain = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(tmp_path)}
+    command = [sys.executable, "-c", SHORT]
+    there = subprocess.run(command, env={**os.environ, **plain}, capture_output=True, text=True, check=True)
+    exec(SHORT, {})
+    assert capsys.readouterr().out == there.stdout

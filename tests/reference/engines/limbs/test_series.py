@@ -1,0 +1,73 @@
+"""The recurrence in digits is the model of `mechanics`, coefficient by coefficient."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+pytest.importorskip("numba")
+
+from small_scenes import make_scene
+from taylor_of_mechanics import Polynomial, taylor
+
+from reference.engines import limbs
+from reference.engines.plan import Plan
+from reference.model.mechanics import FORMULATIONS, tension
+
+BITS = 150
+ORDER = 30  # of the comparison; the series goes further
+LAST_PLACES = 64  # units of the last digit: a coefficient is divided once an order
+
+
+def first_expansion(scene):
+    plan = Plan(scene.exact, "momentum", limbs.limbs(BITS), (Fraction(0),), transits=False)
+    return next(limbs.expand(plan))
+
+
+def assert_same_coefficients(scene, formulation="momentum"):
+    found = first_expansion(scene)
+    ctx, k, rows = taylor(scene.exact, formulation, ORDER, 3 * BITS)
+    n, v = FORMULATIONS[formulation].cartesian([Polynomial(row) for row in rows], k, ctx)
+    sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
+    expected = [n[0], sin * n[1] - cos * n[2], cos * n[1] + sin * n[2], tension(n, v, k)]
+    h = ctx.mpf(found.h.numerator) / found.h.denominator
+    for row, mine, polynomial in zip(("x", "m", "w", "pull"), found.coefficients, expected, strict=True):
+        for j, coefficient in enumerate(polynomial.coefficients):
+            exact = coefficient * h ** (j + (2 if row == "pull" else 0)) * 2**found.bits
+            assert abs(mine[j] - exact) < LAST_PLACES, (row, j)
+
+
+@pytest.mark.parametrize("formulation", ["momentum", "space", "spin"])
+def test_the_series_of_paris_is_that_of_every_polynomial_formulation(paris, formulation):
+    assert_same_coefficients(paris, formulation)
+
+
+degrees = st.decimals(min_value=-90, max_value=90, places=3).map(str)
+angles = st.decimals(min_value=0, max_value=180, places=3).map(str)
+rotations = st.sampled_from(["0", "7.292115e-5", "0.05", "-0.7"])
+turns = st.decimals(min_value=-360, max_value=360, places=3).map(str)
+
+
+@settings(max_examples=12)
+@given(
+    degrees, angles, turns, turns, turns, st.sampled_from(["0", "7.292115e-5", "0.05", "-0.7"]), st.sampled_from("01")
+)
+def test_the_series_is_that_of_the_model_at_random_states(latitude, angle, azimuth, rate, turn, rotation, drag):
+    scene = make_scene(
+        pendulum={"length": "3.7", "drag": drag},
+        site={"latitude": latitude, "rotation_rate": rotation, "equatorial_radius": "5"},
+        release={"angle": angle, "azimuth": azimuth, "angle_rate": rate, "azimuth_rate": turn},
+    )
+    assert_same_coefficients(scene)
+
+
+@pytest.mark.parametrize("latitude", ["0", "90", "-90"])
+@pytest.mark.parametrize("rotation", ["0", "7.292115e-5"])
+@pytest.mark.parametrize("drag", ["0", "0.1"])
+def test_terms_that_vanish_are_not_missed(latitude, rotation, drag):
+    assert_same_coefficients(
+        make_scene(site={"latitude": latitude, "rotation_rate": rotation}, pendulum={"drag": drag})
+    )

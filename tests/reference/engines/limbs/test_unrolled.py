@@ -1,0 +1,47 @@
+"""What is written out digit by digit is the sum of products that it stands for, exactly."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("numba")
+
+import numba
+
+from reference.engines.limbs.digits import DIGIT_BITS, LANES
+from reference.engines.limbs.series import room
+from reference.engines.limbs.unrolled import MOST_ORDER, MOST_ROWS, PLANES, WIDTH, add_convolved
+
+LARGEST = 2 ** (DIGIT_BITS - 1)
+
+
+def digits(shape, seed):
+    made = np.random.default_rng(seed).integers(-LARGEST, LARGEST + 1, size=shape)
+    made.flat[::7] = LARGEST
+    return made
+
+
+@pytest.mark.parametrize("fastmath", [False, True])
+@pytest.mark.parametrize("rows", range(MOST_ROWS + 1))
+def test_convolved_rows_are_exact_sums_of_all_pairs_of_digits(rows, fastmath):
+    @numba.njit(fastmath=fastmath, error_model="numpy")
+    def run(rows, planes, factors, sums):
+        add_convolved(rows, planes, 0, factors, 0, sums, 3)
+
+    planes, sums = digits((MOST_ROWS, PLANES, WIDTH), 1), digits((MOST_ROWS, PLANES, WIDTH), 2)
+    factors = np.repeat(2 * digits((MOST_ROWS, PLANES, 1), 3), LANES, axis=2)
+    expected, order = sums.copy(), slice(3, 3 + LANES)
+    for r in range(rows):
+        for p in range(r + 1):
+            for lane in range(3):
+                expected[r, lane, order] += factors[p, 3] * planes[r - p, lane, :LANES]
+                expected[r, lane, order] += factors[p, lane] * planes[r - p, 3, :LANES]
+    got = sums.astype(float)
+    run(rows, planes.astype(float).ravel(), factors.astype(float).ravel(), got.reshape(-1))
+    assert (got == expected).all()
+
+
+def test_a_series_of_too_high_an_order_is_refused():
+    with pytest.raises(ValueError, match="order"):
+        room(MOST_ORDER + 1, 3)

@@ -1,0 +1,132 @@
+"""heyoka as it is used here: number types, small systems, refusals."""
+
+from __future__ import annotations
+
+import os
+from fractions import Fraction
+
+import heyoka as hy
+import numpy as np
+import pytest
+from small_scenes import make_scene, model_at, stepper_of
+
+from reference.engines.heyoka.log import watched_log
+from reference.engines.heyoka.taylor import System, cartesian, equations_text, least_tension
+from reference.errors import IntegrationError
+from reference.model.mechanics import FORMULATIONS
+from reference.precision import DOUBLE, LONG_DOUBLE, real
+
+
+def end_of(scene, number, name="momentum", t_end=60):
+    stepper = stepper_of(scene, number, name)
+    states = stepper.propagate([stepper.numbers.of(0), stepper.numbers.of(t_end)])
+    rows = cartesian(stepper, states, 300).rows
+    return [Fraction(value, 2**300) for value in rows[-1][:6]]
+
+
+@pytest.mark.parametrize("name", ["space", "spin", "plane", "angles", "lagrangian"])
+def test_every_formulation_runs_to_the_same_place(paris, name):
+    expected = end_of(paris, real(180), t_end=20)
+    got = end_of(paris, real(180), name, t_end=20)
+    assert max(abs(a - b) for a, b in zip(got, expected, strict=True)) < Fraction(1, 10**47)
+
+
+@pytest.mark.parametrize(("number", "error"), [(DOUBLE, 1e-13), (LONG_DOUBLE, 1e-16), (real(113), 1e-31)], ids=str)
+def test_the_error_shrinks_with_the_precision_of_the_type(paris, number, error):
+    expected = end_of(paris, real(250))
+    got = end_of(paris, number)
+    assert max(abs(a - b) for a, b in zip(got, expected, strict=True)) < error
+
+
+@pytest.mark.parametrize(
+    "sections",
+    [{"rotation_rate": "0"}, {"latitude": "90"}, {"latitude": "0"}, {"latitude": "-90"}],
+    ids=["no rotation", "north pole", "equator", "south pole"],
+)
+@pytest.mark.parametrize("name", ["momentum", "space", "spin"])
+def test_a_scene_whose_terms_vanish_compiles_a_smaller_system(paris, sections, name):
+    full = stepper_of(paris, DOUBLE, name)
+    small = stepper_of(make_scene(site=sections), DOUBLE, name)
+    assert small.terms < full.terms
+
+
+def test_events_are_compiled_only_when_asked_for(paris):
+    assert not stepper_of(paris, DOUBLE)._ta.with_events
+    assert stepper_of(paris, DOUBLE, events=True)._ta.with_events
+
+
+def test_the_equations_shown_are_the_ones_compiled():
+    _, k, _, _ = model_at(make_scene(site={"latitude": "90"}), 100)
+    text = "\n".join(equations_text(FORMULATIONS["momentum"], k))
+    assert "Omega_z" in text
+    assert "Omega_y" not in text
+    assert "gamma" not in text
+
+
+def test_drag_is_in_the_equations_when_the_scene_has_it():
+    _, k, _, _ = model_at(make_scene(pendulum={"drag": "0.1"}), 100)
+    assert "gamma" in "\n".join(equations_text(FORMULATIONS["momentum"], k))
+
+
+def test_no_python_float_stands_in_a_real_system(paris):
+    """A float is a double for ever; every constant of the compiled lines must carry the run's digits."""
+    stepper = stepper_of(paris, real(200))
+    lines = System.build(FORMULATIONS["momentum"], stepper.constants).equations
+    numbers = [word.strip("()-") for _, rate in lines for word in str(rate).split()]
+    constants = [word for word in numbers if word[:1].isdigit()]
+    assert constants
+    assert all(len(word) > 55 for word in constants)
+
+
+def test_a_run_that_blows_up_is_an_error_and_gives_no_numbers():
+    pushed = make_scene("bad", pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
+    stepper = stepper_of(pushed, DOUBLE, "space")
+    with pytest.raises(IntegrationError):
+        stepper.propagate([0.0, 1e6])
+
+
+def test_a_step_that_blows_up_is_an_error_too():
+    pushed = make_scene("bad", pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
+    stepper = stepper_of(pushed, DOUBLE, "space", events=True)
+    with pytest.raises(IntegrationError):
+        for _ in range(100_000):
+            stepper.advance(1e6)
+
+
+def test_the_run_reports_the_time_it_has_reached(paris):
+    seen: list[float] = []
+    stepper = stepper_of(paris, DOUBLE)
+    stepper.propagate([0.0, 3600.0], seen.append)
+    assert seen == sorted(seen)
+    assert 0 < seen[0] < seen[-1] <= 3600
+
+
+def test_one_time_is_the_release_itself(paris):
+    stepper = stepper_of(paris, DOUBLE)
+    states = stepper.propagate([0.0])
+    assert states.shape == (1, 6)
+    assert least_tension(stepper, states) > 0
+
+
+def test_what_others_print_during_a_run_is_passed_on_and_heyokas_log_is_not(capfd):
+    with watched_log() as watch:
+        os.write(1, b"somebody else\n")
+        assert watch.fresh()
+        os.write(1, b"[2026] [heyoka-7] [warning] lost\n")
+        assert watch.fresh()
+        assert not watch.fresh()
+    out = capfd.readouterr().out
+    assert "somebody else" in out
+    assert "lost" not in out
+
+
+def test_the_disk_cache_is_off_for_real_where_it_never_hits(paris):
+    stepper_of(paris, DOUBLE)
+    assert hy.llvm_state.get_diskcache_enabled()
+    stepper_of(paris, real(160))
+    assert not hy.llvm_state.get_diskcache_enabled()
+
+
+def test_no_states_give_no_rows(paris):
+    stepper = stepper_of(paris, DOUBLE)
+    assert cartesian(stepper, np.array([]), 100).rows == []

@@ -1,0 +1,93 @@
+"""One run of any system: against closed forms, and the model against itself with every constant open."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from small_scenes import make_scene
+
+from reference import InputError, IntegrationError, integrate, trajectory
+from reference.engines.trajectory import Variants
+from reference.precision import LONG_DOUBLE, real
+
+TIMES = np.linspace(0.0, 100.0, 57)
+
+
+@pytest.fixture(scope="module")
+def variants():
+    return Variants()
+
+
+def test_a_harmonic_oscillator_comes_out_as_sine_and_cosine():
+    states = integrate(("q", "p"), lambda state, _: (state[1], -state[0]), (1.0, 0.0), TIMES)
+    assert np.abs(states - np.column_stack([np.cos(TIMES), -np.sin(TIMES)])).max() < 1e-13
+
+
+@pytest.mark.parametrize("number", [LONG_DOUBLE, real(120)])
+def test_a_finer_type_leaves_only_the_rounding_to_doubles(number):
+    times = [0.0, 1.0, 2.5]
+    states = integrate(("q", "p"), lambda state, _: (state[1], -state[0]), (Fraction(1), 0), times, number=number)
+    assert np.array_equal(states, np.column_stack([np.cos(times), -np.sin(times)]))
+
+
+def test_the_functions_are_those_of_the_number_type():
+    states = integrate(("q",), lambda state, functions: (functions.cos(state[0]),), (0.0,), [0.0, 2.0])
+    assert states[1, 0] == pytest.approx(2 * np.arctan(np.tanh(1.0)), abs=1e-15)  # the gudermannian
+
+
+def test_a_loose_tolerance_is_loose():
+    system = ("q", "p"), lambda state, _: (state[1], -state[0]), (1.0, 0.0), TIMES
+    exact = np.cos(TIMES)
+    loose, tight = (np.abs(integrate(*system, tolerance=tol)[:, 0] - exact).max() for tol in (1e-5, 1e-12))
+    assert 1e-9 < loose < 1e-2
+    assert tight < 1e-10
+
+
+def test_a_solution_that_escapes_gives_no_numbers():
+    with pytest.raises(IntegrationError):
+        integrate(("q",), lambda state, _: (state[0] * state[0],), (1.0,), [0.0, 2.0])  # 1/(1 - t)
+
+
+@pytest.mark.parametrize("formulation", ["space", "spin", "plane", "angles", "lagrangian"])
+def test_every_formulation_gives_the_same_motion(paris, formulation):
+    expected = trajectory(paris, TIMES, number=LONG_DOUBLE)
+    found = trajectory(paris, TIMES, formulation=formulation, number=LONG_DOUBLE)
+    assert np.abs(found - expected).max() < 1e-14
+
+
+def test_a_run_keeps_the_grid_of_the_golden_data(paris):
+    from reference import load
+
+    golden = load("paris")
+    states = trajectory(paris, golden.t[:20], number=LONG_DOUBLE)
+    assert np.abs(states[:, 0] - golden.x[:20]).max() < 1e-15
+
+
+def test_an_altered_constant_is_another_model(paris):
+    free = trajectory(paris, TIMES, alter=lambda k: replace(k, turn=(0, 0, 0)), formulation="spin")
+    still = trajectory(paris.with_values(["site.rotation_rate=0"]), TIMES)
+    assert np.abs(free - trajectory(paris, TIMES)).max() > 1e-3
+    assert not np.allclose(free, still, atol=1e-6)  # the centrifugal force is still there
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"site": {"latitude": "90"}},
+        {"site": {"rotation_rate": "0"}},
+        {"pendulum": {"length": "1", "drag": "0.01"}},
+        {"pendulum": {"length": "1"}, "release": {"angle": "120", "azimuth": "20", "azimuth_rate": "5"}},
+    ],
+)
+def test_the_model_with_open_constants_is_the_model(variants, changes):
+    scene, times = make_scene(**changes), TIMES[:12]
+    assert np.abs(variants.states(scene.exact, times) - trajectory(scene, times)).max() < 1e-12
+
+
+def test_a_release_beyond_the_cord_is_refused(variants, paris):
+    with pytest.raises(InputError, match="beyond the cord"):
+        variants.states(replace(paris.exact, length=Fraction(1, 2)), TIMES)

@@ -1,0 +1,253 @@
+"""Every trap of heyoka's event detection is first shown, then shown to be guarded against."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import heyoka as hy
+import numpy as np
+import pytest
+from small_scenes import make_scene, stepper_of
+
+from reference.engines.heyoka.log import watched_log
+from reference.engines.heyoka.taylor import Numbers, Stepper, System
+from reference.engines.plan import Plan
+from reference.engines.run import run, start_of
+from reference.engines.transits import march, quiet_start
+from reference.errors import IntegrationError
+from reference.model.vanishing import xdot_vanishes, zero_at_release
+from reference.precision import DOUBLE, LONG_DOUBLE, real
+
+
+def bare_heyoka(scene, number, t_end, first_step=None):
+    """What heyoka alone reports: times of xdot = 0 in (or at) 0 … t_end; its log is left on stdout."""
+    from reference.model.mechanics import FORMULATIONS
+
+    ctx, k, n, v = start_of(scene.exact, number)
+    numbers, model = Numbers(number), FORMULATIONS["momentum"]
+    system = System.build(model, k.converted(numbers.of))
+    found: list[float] = []
+    event = hy.nt_event(system.xdot, callback=lambda _, t, __: found.append(float(t)), fp_type=numbers.type)
+    start = np.array([numbers.of(part) for part in model.start(n, v, k, ctx)], dtype=numbers.dtype)
+    made = hy.taylor_adaptive(system.equations, start, nt_events=[event], fp_type=numbers.type, **numbers.keywords)
+    if first_step is not None:
+        made.step(first_step)
+    made.propagate_until(numbers.of(t_end))
+    return found
+
+
+def guarded(scene, number, t_end=60, stepper=None):
+    """What the guards make of it: the zeros, and how many steps it took."""
+    stepper = stepper or stepper_of(scene, number, events=True)
+    with watched_log() as watch:
+        quiet = quiet_start(stepper, zero_at_release(*start_of(scene.exact, number)[2:]))
+        _, zeros = march(stepper, [stepper.numbers.of(0), stepper.numbers.of(t_end)], watch, quiet)
+    return zeros
+
+
+def exact_first_transit(scene, number):
+    return guarded(scene, number, 10)[0].t
+
+
+def test_trap_a_root_on_a_steps_edge_makes_heyoka_warn_in_real(paris, capfd):
+    bare_heyoka(paris, real(192), 60)
+    assert "polynomial root finding during event detection failed" in capfd.readouterr().out
+
+
+def test_guard_the_same_run_is_silent_and_complete(paris, capfd):
+    zeros = guarded(paris, real(192))
+    assert capfd.readouterr().out == ""
+    assert [zero.direction for zero in zeros] == [1, -1, 1, -1, 1, -1, 1]
+
+
+class EdgeOnTransit(Stepper):
+    """A step boundary is forced onto the first transit, where heyoka loses or doubles it."""
+
+    edge: object = None
+
+    def advance(self, limit):
+        if self.edge is not None and self.time < self.edge:
+            limit = min(limit, self.edge - self.time)
+        super().advance(limit)
+
+
+@pytest.mark.parametrize("number", [DOUBLE, real(128), real(160), real(192)], ids=str)
+@pytest.mark.parametrize("offset", [0, 1, -1])
+def test_a_step_edge_on_a_transit_neither_loses_nor_doubles_it(paris, number, offset):
+    ctx, k, n, v = start_of(paris.exact, number)
+    from reference.model.mechanics import FORMULATIONS
+
+    stepper = EdgeOnTransit(FORMULATIONS["momentum"], k, n, v, ctx, number, events=True)
+    first = exact_first_transit(paris, number)
+    stepper.edge = first + first * stepper.numbers.power_of_two(-number.prec) * stepper.numbers.of(offset)
+    zeros = guarded(paris, number, stepper=stepper)
+    assert len(zeros) == 7
+    assert abs(zeros[0].t - first) < first * stepper.numbers.power_of_two(8 - number.prec)
+
+
+def test_trap_heyoka_reports_the_zero_at_the_release(paris):
+    assert bare_heyoka(paris, DOUBLE, 60)[0] < 1e-15
+    assert len(bare_heyoka(paris, DOUBLE, 60)) == 8
+
+
+def test_guard_the_zero_at_the_release_is_no_transit(paris):
+    zeros = guarded(paris, DOUBLE)
+    assert len(zeros) == 7
+    assert zeros[0].t > 8
+
+
+def test_trap_xdot_identically_zero_gives_bogus_events():
+    planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.5"})
+    assert len(bare_heyoka(planar, DOUBLE, 60)) > 7
+
+
+@pytest.mark.parametrize(
+    ("sections", "vanishes"),
+    [
+        ({"site": {"rotation_rate": "0"}, "release": {"x": "0", "y": "0.5"}}, True),
+        ({"site": {"rotation_rate": "0"}, "release": {"angle": "40", "azimuth": "-90"}}, True),
+        ({"site": {"rotation_rate": "0"}, "release": {"x": "0", "y": "0.5", "vy": "1"}}, True),
+        ({"site": {"rotation_rate": "0"}, "release": {"x": "0", "y": "0.5", "vx": "1"}}, False),
+        ({"site": {"latitude": "90"}, "release": {"x": "0", "y": "0"}}, True),
+        ({"site": {"latitude": "0"}, "release": {"x": "0", "y": "0"}}, True),
+        ({"site": {"latitude": "0"}, "release": {"angle": "180", "azimuth": "0"}}, True),
+        ({"site": {"gravity": "0", "rotation_rate": "0"}}, True),
+        ({"release": {"x": "0", "y": "0"}}, False),
+        ({"release": {"x": "0", "y": "0.5"}}, False),
+        ({"site": {"latitude": "90"}, "release": {"x": "0", "y": "0.5"}}, False),
+        ({}, False),
+    ],
+)
+def test_guard_xdot_identically_zero_is_known_from_the_exact_inputs(sections, vanishes):
+    scene = make_scene(**sections)
+    _, k, n, v = start_of(scene.exact, DOUBLE)
+    assert xdot_vanishes(n, v, k) == vanishes
+    if vanishes:
+        done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
+        assert done.zeros is None
+        assert all(row[0] == done.grid[0][0] for row in done.grid)
+
+
+class LosesEvents(Stepper):
+    """Forgets the events of one step, as heyoka does when its root finder gives up, but without a log line."""
+
+    lost = 0
+    forget: slice = slice(None)
+    when = 5000.0
+
+    def advance(self, limit):
+        super().advance(limit)
+        if self.lost == 0 and self.found and float(self.time) > self.when:
+            self.lost = len(self.found)
+            del self.found[self.forget]
+
+
+def losing(scene, number, kind=LosesEvents):
+    from reference.model.mechanics import FORMULATIONS
+
+    ctx, k, n, v = start_of(scene.exact, number)
+    return kind(FORMULATIONS["momentum"], k, n, v, ctx, number, events=True)
+
+
+def test_guard_a_root_lost_in_silence_is_found_again(paris):
+    stepper = losing(paris, DOUBLE)
+    assert len(guarded(paris, DOUBLE, 6000, stepper)) == len(guarded(paris, DOUBLE, 6000))
+    assert stepper.lost == 1
+
+
+def close_pair_scene():
+    """A fast small Earth at its equator: z drives x at twice the swing's frequency, and xdot dips through zero."""
+    return make_scene(
+        pendulum={"length": "1"},
+        site={"latitude": "0", "rotation_rate": "0.05", "equatorial_radius": "1"},
+        release={"x": "0", "y": "0.5", "vx": "-0.00775"},
+    )
+
+
+def test_guard_a_close_pair_lost_together_is_found_again():
+    """|xdot| dips through zero and back inside one step; both events vanish; only the dip shows."""
+    scene = close_pair_scene()
+    plain = guarded_moving(scene, stepper_of(scene, DOUBLE, events=True))
+    gaps = np.diff([float(zero.t) for zero in plain])
+    assert gaps.min() < 0.03, "the scene must have a pair inside one step of 0.1 s"
+
+    class LosesPair(LosesEvents):
+        def advance(self, limit):
+            Stepper.advance(self, limit)
+            if self.lost == 0 and len(self.found) == 2:
+                self.lost = 2
+                self.found.clear()
+
+    stepper = losing(scene, DOUBLE, LosesPair)
+    again = guarded_moving(scene, stepper)
+    assert stepper.lost == 2
+    assert len(again) == len(plain)
+
+
+def guarded_moving(scene, stepper, t_end=60):
+    with watched_log() as watch:
+        return march(stepper, [stepper.numbers.of(0), stepper.numbers.of(t_end)], watch)[1]
+
+
+def test_events_that_contradict_each_other_for_good_stop_the_run(paris):
+    class NeverSees(LosesEvents):
+        def advance(self, limit):
+            Stepper.advance(self, limit)
+            self.found.clear()
+
+    with pytest.raises(IntegrationError, match="zeros of xdot near t = "):
+        guarded(paris, DOUBLE, 60, losing(paris, DOUBLE, NeverSees))
+
+
+def test_the_transits_of_a_day_are_those_of_other_steps_and_another_form(paris):
+    times = (Fraction(0), Fraction(86400))
+    runs = [run(Plan(paris.exact, name, LONG_DOUBLE, times, transits=True)) for name in ("momentum", "space")]
+    assert [len(one.zeros or ()) for one in runs] == [10514, 10514]
+    assert runs[0].directions == runs[1].directions == [1, -1] * 5257
+    scale = runs[0].scale
+    moments = [[Fraction(row[0], 2**scale) for row in one.zeros] for one in runs]
+    slopes = [abs(Fraction(row[7], 2**scale)) for row in runs[0].zeros]
+    worst = max(abs(a - b) * slope for a, b, slope in zip(*moments, slopes, strict=True))
+    assert worst < 1e-13  # 64 bits, a phase of 3.3e4 rad and 0.2 m/s leave 4e-16 m/s, times the roundings met
+
+
+def test_the_time_of_a_transit_near_the_north_south_passage_is_worse_than_the_others(paris):
+    times = (Fraction(0), Fraction(86400))
+    done = run(Plan(paris.exact, "momentum", DOUBLE, times, transits=True))
+    slopes = sorted(abs(row[7]) / 2**done.scale for row in done.zeros)
+    assert slopes[0] < slopes[len(slopes) // 2] / 1000
+
+
+@pytest.mark.parametrize(
+    ("release", "multiplicity"),
+    [
+        ({"x": "0.3", "y": "0.4"}, 1),
+        ({"x": "0", "y": "0.5"}, 2),
+        ({"x": "0", "y": "0.5", "vy": "0.1"}, 1),
+        ({"x": "0.3", "y": "0.4", "vx": "0.067"}, 0),
+    ],
+)
+def test_the_order_of_the_zero_at_the_release_follows_from_the_inputs(release, multiplicity):
+    scene = make_scene(release=release)
+    assert zero_at_release(*start_of(scene.exact, DOUBLE)[2:]) == multiplicity
+
+
+@pytest.mark.parametrize("number", [DOUBLE, real(160)], ids=str)
+def test_a_release_at_rest_in_the_meridian_has_its_first_transit_where_the_proof_has_it(number):
+    """facts/enclosure.md H 6: y0 = 0.5 m, first transit 8.2266590196580988 s, no spurious one at 0."""
+    scene = make_scene(release={"x": "0", "y": "0.5"})
+    done = run(Plan(scene.exact, "momentum", number, (Fraction(0), Fraction(60)), transits=True))
+    first = Fraction(done.zeros[0][0], 2**done.scale)
+    assert abs(first - Fraction("8.2266590196580988")) < (1e-9 if number is DOUBLE else 1e-15)
+
+
+def test_a_moving_release_may_have_a_transit_in_its_first_step():
+    """facts/enclosure.md H 6: xdot(0) = 0.067 m/s, first transit 1.38290078 s."""
+    scene = make_scene(release={"x": "0.3", "y": "0.4", "vx": "0.067"})
+    done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
+    assert abs(done.zeros[0][0] / 2**done.scale - 1.38290078) < 1e-8
+
+
+def test_a_run_shorter_than_the_quiet_start_has_no_transit(paris):
+    done = run(Plan(paris.exact, "momentum", real(160), (Fraction(0), Fraction(1, 10)), transits=True))
+    assert done.zeros == []

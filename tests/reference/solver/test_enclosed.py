@@ -1,0 +1,266 @@
+"""The level enclosed: what is printed is what the balls prove, and heyoka's runs are held against them."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+import pytest
+from places import ROOT
+from small_scenes import make_scene
+
+import reference
+from reference import enclosure
+from reference.dataset.read import load
+from reference.dataset.sheets import grid_sheet, transits_sheet
+from reference.dataset.verify import problems_of
+from reference.dataset.write import write
+from reference.engines.plan import Plan
+from reference.engines.run import run
+from reference.errors import InputError, IntegrationError, UnreachableError
+from reference.precision import real
+from reference.solver import enclosed as proof
+from reference.solver.approximant import Feed, expand
+
+SHORT = {"t_end": "300", "digits": 30, "level": "enclosed"}
+
+
+@pytest.fixture(scope="module")
+def enclosed():
+    return reference.solve(reference.load_scene("paris"), t_end="600", level="enclosed")
+
+
+def finer(scene, prec=300):
+    """A run far finer than the balls, in a formulation that the proof does not use."""
+    return run(Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), transits=scene.run.transits))
+
+
+def test_an_enclosed_file_is_digit_for_digit_the_confirmed_one(enclosed):
+    confirmed = reference.solve(reference.load_scene("paris"), t_end="600", level="confirmed")
+    assert grid_sheet(enclosed) == grid_sheet(confirmed)
+    ours, theirs = transits_sheet(enclosed), transits_sheet(confirmed)
+    assert [row[:-1] for row in ours.rows] == [row[:-1] for row in theirs.rows]
+
+
+def test_every_ball_contains_a_much_finer_run(enclosed):
+    truth = finer(enclosed.scene)
+    for table, rows in (
+        (enclosed.grid, truth.grid),
+        (enclosed.transits, [z[:4] + z[5:6] + z[7:] for z in truth.zeros]),
+    ):
+        assert len(table.values) == len(rows)
+        for values, errors, row in zip(table.values, table.errors, rows, strict=True):
+            for value, error, exact in zip(values, errors, row, strict=False):
+                miss = abs(Fraction(value, 2**table.scale) - Fraction(exact, 2**truth.scale))
+                assert miss <= Fraction(error, 2**table.scale) + Fraction(1, 2**250)
+
+
+def test_the_manifest_carries_the_proof(enclosed, tmp_path):
+    path = write(enclosed, tmp_path / "paris")
+    assert problems_of(path) == []
+    manifest = load(path).manifest
+    assert manifest.level == "enclosed"
+    record = manifest.enclosure
+    assert record is not None
+    assert record.method == "radius"
+    assert Fraction(record.position_radius_m) < Fraction(1, 10**45)
+    assert record.agreement_bits > 160
+    assert [check.formulation for check in manifest.cross_checks] == ["inertial", "momentum"]
+
+
+SCENES = {
+    "equator": {"site": {"latitude": "0"}},
+    "pole": {"site": {"latitude": "90"}},
+    "south": {"site": {"latitude": "-33.9"}},
+    "fast Earth": {"site": {"rotation_rate": "0.001"}},
+    "no rotation": {"site": {"rotation_rate": "0"}},
+    "drag": {"pendulum": {"drag": "0.01"}},
+    "meridian": {"release": {"x": "0", "y": "0.5"}},
+    "moving": {"release": {"x": "0.3", "y": "0.4", "vx": "0.067", "vy": "-0.2"}},
+    "binary64": {"inputs": "binary64"},
+    "2 rad": {"pendulum": {"length": "1"}, "release": {"angle": "114.59155902616464", "azimuth": "53"}},
+    "3.1 rad": {"pendulum": {"length": "1"}, "release": {"angle": "177.61691649055521", "azimuth": "53"}},
+}
+
+
+@pytest.mark.parametrize("sections", SCENES.values(), ids=SCENES.keys())
+def test_every_kind_of_scene_is_proved_and_every_digit_is_right(sections):
+    scene = make_scene(**sections, run={**SHORT, "t_end": "60"})
+    solution = reference.solve(scene)
+    sheet, truth = grid_sheet(solution), finer(scene, 256)
+    for name, text, whole in zip(sheet.header[1:], sheet.rows[-1][1:], truth.grid[-1], strict=False):
+        assert abs(Fraction(text) - Fraction(whole, 2**truth.scale)) <= Fraction(1, 2 * 10 ** sheet.decimals[name])
+    assert solution.possible == ()
+    assert len(truth.zeros or ()) == len(solution.directions)
+    for row, whole in zip(transits_sheet(solution).rows, truth.zeros or (), strict=True):
+        assert abs(Fraction(row[1]) - Fraction(whole[0], 2**truth.scale)) <= Fraction(row[-1])
+
+
+HARD = {
+    "nearly linear, in heyoka's long steps": ("conical", "heyoka"),
+    "a flow that blurs what nine digits show": ("separatrix", "auto"),
+    "an unstable rest": ("inverted_rest", "auto"),
+    "no gravity to measure by": ("weightless", "auto"),
+}
+
+
+@pytest.mark.parametrize(("name", "engine"), HARD.values(), ids=HARD.keys())
+def test_scenes_that_bounds_find_hard_are_proved(name, engine):
+    solution = reference.solve(reference.load_scene(name), level="enclosed", engine=engine)
+    assert solution.level == "enclosed"
+    assert solution.possible == ()
+
+
+@pytest.mark.parametrize("engine", ["heyoka", "limbs"])
+def test_helpers_prove_the_same_of_any_engine(monkeypatch, engine):
+    if engine == "limbs":
+        pytest.importorskip("numba")
+    scene = reference.load_scene("paris", ["run.t_end=120"])
+    times = tuple(scene.exact.grid)
+    monkeypatch.setattr("reference.enclosure.run.WORTH", 0)
+    proofs = []
+    for workers in (1, 2):
+        feed = Feed(scene.exact, times, engine)
+        proofs.append(
+            enclosure.enclose(scene.exact, times, radius=Fraction(1, 10**40), candidate=feed, workers=workers)
+        )
+        feed.stop()
+    alone, shared = proofs
+    assert alone.states == shared.states
+    assert alone.transits == shared.transits
+
+
+def test_xdot_identically_zero_has_no_transits_to_enclose():
+    planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run=SHORT)
+    assert reference.solve(planar).transits is None
+
+
+def test_transits_can_be_left_out():
+    assert reference.solve(make_scene(run=SHORT), transits=False).transits is None
+
+
+def doctored(monkeypatch, change):
+    honest = enclosure.enclose
+    monkeypatch.setattr(enclosure, "enclose", lambda *words, **options: change(honest(*words, **options)))
+
+
+def test_what_cannot_be_decided_is_said_and_its_row_left_out(monkeypatch, tmp_path):
+    def doubt(proved):
+        unsure = replace(proved.transits[3], parity="odd", direction=0)
+        return replace(proved, transits=[*proved.transits[:3], unsure, *proved.transits[4:]])
+
+    doctored(monkeypatch, doubt)
+    path = write(reference.solve(make_scene(run=SHORT)), tmp_path / "doubt")
+    manifest = load(path).manifest
+    assert manifest.transits == "undecided intervals"
+    (possible,) = manifest.possible
+    assert possible.parity == "odd"
+    truth = finer(make_scene(run=SHORT))
+    assert Fraction(possible.from_s) < Fraction(truth.zeros[3][0], 2**truth.scale) < Fraction(possible.to_s)
+    assert Fraction(possible.to_s) - Fraction(possible.from_s) < Fraction(1, 10**19)
+    assert manifest.counts.transits == 35
+    assert "possible transit in [" in (path / "certified.txt").read_text()
+    assert problems_of(path) == []
+
+
+def test_a_possible_transit_is_reported_within_the_run(monkeypatch):
+    def doubt(proved):
+        first, last = proved.transits[0], proved.transits[-1]
+        early = replace(first, parity="odd", t=replace(first.t, low=Fraction(-1, 10**14)))
+        late = replace(last, parity="odd", t=replace(last.t, high=proved.times[-1] + Fraction(1, 10**14)))
+        return replace(proved, transits=[early, *proved.transits[1:-1], late])
+
+    doctored(monkeypatch, doubt)
+    early, late = reference.solve(make_scene(run=SHORT)).possible
+    assert (early[0], late[1]) == (0, 300)
+
+
+@pytest.mark.parametrize(("engine", "shift"), [("heyoka", Fraction(1, 10**35)), ("limbs", Fraction(1, 10**29))])
+def test_a_state_outside_its_ball_names_time_and_component(monkeypatch, engine, shift):
+    def move(proved):
+        row = list(proved.states[1])
+        row[2] = replace(row[2], low=row[2].low + shift, high=row[2].high + shift)
+        return replace(proved, states=[proved.states[0], tuple(row), *proved.states[2:]])
+
+    doctored(monkeypatch, move)
+    with pytest.raises(IntegrationError, match=r"outside the enclosure at t = 60\.0 s in z"):
+        reference.solve(make_scene(run=SHORT), engine=engine)
+
+
+def test_a_transit_that_heyoka_does_not_see_is_named(monkeypatch):
+    doctored(monkeypatch, lambda proved: replace(proved, transits=proved.transits[:-1]))
+    with pytest.raises(IntegrationError, match="heyoka finds 36 transits, the enclosure 35"):
+        reference.solve(make_scene(run=SHORT))
+
+    def shift(proved):
+        late = proved.transits[4]
+        moved = replace(late, t=replace(late.t, low=late.t.low + 1, high=late.t.high + 1))
+        return replace(proved, transits=[*proved.transits[:4], moved, *proved.transits[5:]])
+
+    doctored(monkeypatch, shift)
+    with pytest.raises(IntegrationError, match="transit"):
+        reference.solve(make_scene(run=SHORT))
+
+
+def test_a_number_exactly_between_two_decimals_is_refused_with_advice():
+    """x = 0.35 m has no nearest number of one digit."""
+    scene = make_scene(release={"x": "0.35", "y": "0.1"}, run={"t_end": "1", "digits": 1, "level": "enclosed"})
+    with pytest.raises(UnreachableError, match="ask for one digit more"):
+        reference.solve(scene)
+
+
+def test_balls_that_cannot_be_had_end_with_the_widths_reached():
+    scene = make_scene(
+        pendulum={"length": "1"},
+        release={"angle": "177", "azimuth": "53"},
+        run={"t_end": "60", "digits": 900, "level": "enclosed"},
+    )
+    with pytest.raises(UnreachableError, match="more than"):
+        reference.solve(scene)
+
+
+def test_without_flint_the_level_says_what_to_install(monkeypatch):
+    monkeypatch.delattr(reference, "enclosure")
+    monkeypatch.setitem(sys.modules, "reference.enclosure", None)
+    with pytest.raises(InputError, match=r"foucault-reference\[enclose\]"):
+        proof.solve_enclosed(make_scene(run=SHORT), (Fraction(0),), "heyoka", None)
+
+
+def test_nothing_of_the_proof_is_imported_at_a_lower_level():
+    code = (
+        "import sys, reference\n"
+        "reference.solve(reference.load_scene('paris'), t_end='60', digits=12)\n"
+        "print([m for m in sys.modules if m == 'flint' or 'enclosure' in m or m == 'reference.solver.enclosed'])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout.strip() == "[]"
+
+
+def test_the_feed_joins_step_to_step_without_a_gap(paris):
+    steps = list(expand(paris.exact, (Fraction(0), Fraction(60)), 128))
+    assert steps[0].t == 0
+    assert all(a.t + a.h == b.t for a, b in pairwise(steps))
+    assert steps[-1].t + steps[-1].h > 60
+    assert len({step.h for step in steps}) < len(steps)
+
+
+def test_a_feed_that_dies_is_an_error_and_leaves_no_process(paris):
+    feed = Feed(paris.exact, (Fraction(0), Fraction(86400)))
+    steps = feed(160)
+    next(steps)
+    feed._worker.kill()
+    with pytest.raises(IntegrationError, match="ended without"):
+        feed.finished()
+    feed.stop()
+    assert not feed._worker.alive
+
+
+def test_an_error_in_the_feeds_process_arrives(paris):
+    lost = make_scene(pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
+    feed = Feed(lost.exact, (Fraction(0), Fraction(10**6)))
+    with pytest.raises(IntegrationError):
+        list(feed(64))
+    feed.stop()

@@ -1,0 +1,198 @@
+"""What a scene asks of a run: digits lost against closed solutions, steps foreseen before they are taken."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+from small_scenes import make_scene
+
+import reference
+from reference.engines.plan import Plan
+from reference.engines.run import run
+from reference.errors import IntegrationError, UnreachableError
+from reference.precision import DOUBLE
+from reference.scene import load_scene
+from reference.solver import pilot as growth
+from reference.solver.pilot import Growth, check_pace, digits_lost, effort, measure_growth
+
+METRE = {"length": "1"}
+STILL = {"rotation_rate": "0"}
+
+
+def lost(scene, **run_):
+    scene = scene.with_values(f"run.{key}={value}" for key, value in run_.items())
+    return digits_lost(scene.exact, tuple(scene.exact.grid))
+
+
+def test_on_the_separatrix_digits_are_lost_as_the_exponential_of_the_time():
+    """Close to the top a deviation grows as exp(sqrt(g/l) t) = exp(3 t)."""
+    scene = load_scene("separatrix")
+    gained = lost(scene, t_end="20", grid_step="1") - lost(scene, t_end="10", grid_step="1")
+    assert gained == pytest.approx(30 / math.log(10), abs=0.1)
+
+
+def test_at_rest_at_the_top_the_digits_of_the_angle_are_lost_as_the_hyperbolic_cosine():
+    rate = math.sqrt(9.80665)
+    expected = math.log10(math.pi * math.cosh(rate * 20))
+    assert lost(load_scene("inverted_rest"), t_end="20") == pytest.approx(expected, abs=0.1)
+
+
+def test_a_small_swing_loses_digits_by_its_phase_alone():
+    """With g and l off by ε in opposite directions the phase w t is off by w t ε, and vz ~ sin 2 w t by twice that."""
+    scene = make_scene(site=STILL, release={"x": "0.1", "y": "0"}, run={"t_end": "3600", "grid_step": "1"})
+    phase = math.sqrt(9.80665 / 67) * 3600
+    assert lost(scene) == pytest.approx(math.log10(2 * phase), abs=0.05)
+
+
+def test_strong_drag_forgets_the_release():
+    assert lost(load_scene("overdamped")) < 0.5
+
+
+def test_the_growth_may_be_handed_over():
+    scene = load_scene("conical")
+    times = tuple(scene.exact.grid)
+    assert digits_lost(scene.exact, times, measure_growth(scene.exact, times)) == digits_lost(scene.exact, times)
+
+
+def test_twins_that_part_at_every_precision_are_refused(monkeypatch):
+    scene = load_scene("separatrix")
+    times = tuple(scene.exact.grid)
+    measured = measure_growth(scene.exact, times)
+    monkeypatch.setattr(growth, "MAX_PREC", 130)
+    with pytest.raises(UnreachableError, match="part company"):
+        digits_lost(scene.exact, times, measured)
+
+
+def test_growth_faster_than_any_precision_is_refused_from_the_first_runs():
+    scene = load_scene("separatrix", ["run.t_end=2400", "run.grid_step=1"])
+    with pytest.raises(UnreachableError, match=r"to the end it takes about (\d+) bits") as caught:
+        measure_growth(scene.exact, tuple(scene.exact.grid))
+    bits = int(re.findall(r"(\d+) bits", caught.value.reason)[0])
+    needed = 2400 * 3 / math.log(2)
+    assert needed * 0.9 < bits < needed * 1.1
+
+
+def test_a_velocity_that_shrinks_with_the_precision_is_zero_and_not_lost():
+    """On the axis of a body without mass or size the bob rests, but no input says so exactly."""
+    scene = make_scene(
+        pendulum=METRE,
+        site={"latitude": "30", "gravity": "0", "equatorial_radius": "0", "rotation_rate": "0.05"},
+        release={"angle": "120", "azimuth": "90"},
+        run={"t_end": "60", "transits": False, "digits": 20},
+    )
+    assert measure_growth(scene.exact, tuple(scene.exact.grid)).prec <= growth.ZERO_PREC
+    assert max(map(abs, reference.solve(scene).vx)) < 1e-20
+    with pytest.raises(IntegrationError, match=r"run\.transits = false"):
+        reference.solve(scene, transits=True)
+
+
+def pace_of(scene):
+    times = (Fraction(0), scene.exact.t_end)
+    plan = Plan(scene.exact, "momentum", DOUBLE, times, transits=False)
+    return run(plan, look_ahead=lambda stepper: check_pace(scene.exact, scene.exact.t_end, stepper))
+
+
+def test_looking_ahead_changes_nothing(paris):
+    plan = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(86400)), transits=False)
+    assert pace_of(paris).grid == run(plan).grid
+
+
+def test_a_stiff_scene_is_refused_with_its_rates_and_their_ratio():
+    scene = load_scene("creeping", ["run.t_end=1e7", "run.grid_step=1e5"])
+    with pytest.raises(UnreachableError) as caught:
+        reference.solve(scene)
+    assert caught.value.exit_status == 3
+    reason = caught.value.reason
+    assert reason.startswith("Stiff: drag takes the speed away at 4.0e+03/s")
+    slow, ratio = (float(text) for text in re.findall(r"creeps at (\S+)/s, rates (\S+) times apart", reason)[0])
+    assert slow == pytest.approx(9.79 / 4000, rel=0.02)
+    assert ratio == pytest.approx(4000**2 / 9.79, rel=0.05)
+
+
+def test_without_any_force_drag_ends_all_motion_and_the_reason_says_so():
+    scene = load_scene("force_free", ["pendulum.drag=1e9"])
+    with pytest.raises(UnreachableError, match="nothing moves any more"):
+        measure_growth(scene.exact, tuple(scene.exact.grid))
+
+
+def test_a_long_run_is_refused_for_its_length_and_the_advice_is_good(monkeypatch, paris):
+    monkeypatch.setattr(growth, "MAX_STEPS", 20000)
+    monkeypatch.setattr(growth, "LOOK_STEPS", 1000)
+    with pytest.raises(UnreachableError, match="steps a second") as caught:
+        pace_of(paris)
+    assert "Stiff" not in caught.value.reason
+    advised = re.findall(r"up to about (\S+)\)", caught.value.advice)[0]
+    done = pace_of(paris.with_values([f"run.t_end={advised}"]))
+    assert 15000 < done.steps <= 20000
+
+
+def test_a_fast_start_that_drag_brings_to_rest_is_waited_for(monkeypatch):
+    monkeypatch.setattr(growth, "MAX_STEPS", 8000)
+    monkeypatch.setattr(growth, "LOOK_STEPS", 64)
+    fast = make_scene(
+        pendulum={"length": "1", "drag": "1"},
+        release={"x": "0.1", "y": "0", "vx": "100", "vy": "1"},
+        run={"t_end": "500", "grid_step": "5"},
+    )
+    assert pace_of(fast).steps < 8000
+    with pytest.raises(UnreachableError, match="steps a second"):
+        pace_of(fast.with_values(["pendulum.drag=0"]))
+
+
+@pytest.mark.parametrize("change", ["pendulum.drag=1e300", "site.gravity=1e300"])
+def test_rates_beyond_what_double_holds_are_refused(paris, change):
+    with pytest.raises(IntegrationError, match="too far apart for double"):
+        reference.solve(paris.with_values([change]))
+
+
+def test_numbers_beyond_the_range_of_double_are_refused(paris):
+    with pytest.raises(UnreachableError, match="beyond the range of binary64"):
+        reference.solve(paris.with_values(["pendulum.drag=1e350"]))
+
+
+def test_effort_counts_steps_at_160_bits_and_grows_with_the_cube():
+    assert effort(1000, 160) == 1000
+    assert effort(1000, 320) == 8000
+    assert effort(1000, 53) < 1000
+
+
+def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(monkeypatch, paris):
+    honest = reference.solver.solve.measure_growth
+
+    def longer(inputs, times):
+        return replace(honest(inputs, times), steps=growth.MAX_STEPS // 10)
+
+    monkeypatch.setattr(reference.solver.solve, "measure_growth", longer)
+    for level in ("computed", "confirmed"):
+        with pytest.raises(UnreachableError, match=r"400 digits take \d+ bits over about \d+ steps"):
+            reference.solve(paris, t_end="60", digits=400, level=level)
+
+
+def test_a_column_that_is_only_rounding_is_measured_by_its_kind():
+    one, tiny = Fraction(1), Fraction(1, 10**20)
+    made = Growth(53, (tiny,) * 6, (one, tiny, 2 * one, tiny, tiny, tiny), (0.0), 0.0, 1)
+    assert made.sizes == (1, 2, 2, 0, 0, 0)
+
+
+@pytest.mark.parametrize("power", [-2000, -3, 0, 1, 5, 3000])
+def test_bits_are_counted_exactly_however_large_or_small(power):
+    exact = Fraction(2) ** power
+    assert growth.bits_in(exact) == power
+    assert growth.bits_in(exact * (1 + Fraction(1, 2**80))) == power + 1
+    assert growth.bits_in(exact * (1 - Fraction(1, 2**80))) == power
+    assert growth.bits_in(Fraction(0)) == 0
+
+
+def test_digits_lost_in_one_burst_are_not_taken_for_a_steady_loss():
+    """From 1e-17 degrees off the top the fall costs all of double within 15 s; what follows costs little."""
+    scene = make_scene(
+        pendulum=METRE,
+        site=STILL,
+        release={"angle": "179.99999999999999999", "azimuth": "30"},
+        run={"t_end": "300", "grid_step": "2", "digits": 10, "transits": False},
+    )
+    assert DOUBLE.prec < measure_growth(scene.exact, tuple(scene.exact.grid)).prec <= 256

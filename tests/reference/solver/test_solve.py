@@ -1,0 +1,241 @@
+"""Precision is chosen, confirmed and raised; hard scenes keep their digits; what cannot be had is refused."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from small_scenes import make_scene
+
+import reference
+from reference.dataset.sheets import grid_sheet, transits_sheet
+from reference.engines import run as runs
+from reference.engines.plan import Plan
+from reference.engines.run import run, run_both
+from reference.errors import InputError, IntegrationError, UnreachableError
+from reference.precision import DOUBLE, real
+from reference.solver import pilot as growth
+from reference.solver import solve as solver
+
+
+def by_higher_precision(scene, prec=256):
+    """x, y, z, vx, vy, vz at the end from one run far finer than any under test, in yet another formulation."""
+    done = run(Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), transits=False))
+    return [Fraction(value, 2**done.scale) for value in done.grid[-1][:6]]
+
+
+HARD = {
+    "80 degrees": {"angle": "80", "azimuth": "30"},
+    "2 rad": {"angle": "114.59155902616464", "azimuth": "30"},
+    "3.1 rad": {"angle": "177.61691649055521", "azimuth": "30"},
+}
+
+
+@pytest.mark.parametrize("release", HARD.values(), ids=HARD.keys())
+def test_large_angles_keep_forty_digits_for_a_minute(release):
+    scene = make_scene(pendulum={"length": "1"}, release=release, run={"t_end": "60", "digits": 40})
+    solution = reference.solve(scene)
+    sheet = grid_sheet(solution)
+    truth = by_higher_precision(scene)
+    for name, text, exact in zip(sheet.header[1:], sheet.rows[-1][1:], truth, strict=True):
+        unit = Fraction(1, 10 ** sheet.decimals[name])
+        assert abs(Fraction(text) - exact) <= unit, name
+        assert sheet.decimals[name] >= 39
+    assert solution.checks[0].formulation == ("space" if release["angle"] == "80" else "spin")
+    assert solution.checks[0].number != solution.run.number
+
+
+@pytest.mark.parametrize("digits", [1, 5, 12, 17, 25])
+@pytest.mark.parametrize("level", ["computed", "self_consistent", "confirmed"])
+def test_the_last_printed_digit_is_off_by_at_most_one_at_every_level(level, digits):
+    scene = make_scene(run={"t_end": "300", "digits": digits, "level": level})
+    solution = reference.solve(scene)
+    sheet, truth = grid_sheet(solution), by_higher_precision(scene, 300)
+    for name, text, exact in zip(sheet.header[1:], sheet.rows[-1][1:], truth, strict=True):
+        assert abs(Fraction(text) - exact) <= Fraction(1, 10 ** sheet.decimals[name])
+        assert abs(solution.grid.exact(name)[-1] - exact) <= solution.grid.bound(name)[-1]
+
+
+def test_the_bound_of_every_transit_holds_against_a_finer_run(paris):
+    solution = reference.solve(paris, t_end="3600", digits=20, level="confirmed")
+    finer = run(Plan(solution.scene.exact, "spin", real(160), solution.times, transits=True))
+    exact = [Fraction(row[0], 2**finer.scale) for row in finer.zeros]
+    sheet = transits_sheet(solution)
+    assert len(exact) == len(sheet.rows) == 438
+    for row, t in zip(sheet.rows, exact, strict=True):
+        assert abs(Fraction(row[1]) - t) <= Fraction(row[-1])
+
+
+def test_the_bound_of_a_transit_is_the_error_of_xdot_over_ax(paris):
+    solution = reference.solve(paris, t_end="60", digits=20)
+    late, ax = solution.transits.bound("t"), solution.transits.exact("ax")
+    speed = solution.grid.bound("vx")[0]
+    for bound, slope in zip(late, ax, strict=True):
+        assert bound >= speed / abs(slope) * Fraction(999, 1000)
+
+
+def test_double_serves_where_few_digits_are_asked_and_real_where_many_are(paris):
+    assert reference.solve(paris, t_end="60", digits=6, level="computed").run.number == "double"
+    many = {"t_end": "60", "digits": 30, "level": "computed"}
+    assert reference.solve(paris, **many, engine="heyoka").run.number.startswith("real")
+    assert reference.solve(paris, **many, engine="limbs").run.number.startswith("limbs")
+    assert reference.solve(paris, **many).run.number.startswith("limbs")  # the cheapest, where numba is installed
+    with pytest.raises(InputError, match="engine"):
+        reference.solve(paris, **many, engine="abacus")
+
+
+def test_arrays_are_the_nearest_doubles_of_the_exact_values(paris):
+    solution = reference.solve(paris, t_end="120", digits=25, level="self_consistent")
+    assert solution.t.tolist() == [0, 60, 120]
+    for name in ("x", "y", "z", "vx", "vy", "vz"):
+        assert getattr(solution, name).tolist() == [float(value) for value in solution.grid.exact(name)]
+    with pytest.raises(AttributeError):
+        _ = solution.nonsense
+
+
+def test_transits_can_be_left_out_and_are_not_looked_for_where_xdot_is_zero(paris):
+    assert reference.solve(paris, t_end="60", digits=10, transits=False).transits is None
+    planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run={"t_end": "60", "digits": 10})
+    assert reference.solve(planar).transits is None
+
+
+@pytest.mark.parametrize(
+    "sections",
+    [
+        {"site": {"latitude": "90"}},
+        {"site": {"latitude": "0"}},
+        {"site": {"latitude": "-33.9"}},
+        {"site": {"rotation_rate": "0"}},
+        {"site": {"rotation_rate": "0.001"}},
+        {"pendulum": {"drag": "0.01"}},
+        {"site": {"gravity": "0", "rotation_rate": "0"}, "release": {"x": "1", "y": "1", "vx": "1", "vy": "0"}},
+        {"release": {"x": "0", "y": "0"}},
+        {"release": {"x": "1e-9", "y": "0"}},
+    ],
+    ids=["pole", "equator", "south", "no rotation", "fast Earth", "drag", "no force", "straight down", "tiny"],
+)
+def test_every_kind_of_scene_is_confirmed_to_thirty_digits(sections):
+    scene = make_scene(**sections, run={"t_end": "120", "digits": 30})
+    solution = reference.solve(scene)
+    truth = by_higher_precision(scene, 300)
+    for name, exact in zip(solution.grid.columns, truth, strict=True):
+        assert abs(solution.grid.exact(name)[-1] - exact) <= solution.grid.bound(name)[-1]
+
+
+def test_precision_is_raised_when_the_first_guess_is_too_low(monkeypatch, paris):
+    honest = solver.measure_growth
+
+    def optimistic(inputs, times):
+        measured = honest(inputs, times)
+        return replace(measured, errors=tuple(error / 2**60 for error in measured.errors))
+
+    monkeypatch.setattr(solver, "measure_growth", optimistic)
+    solution = reference.solve(paris, t_end="60", digits=30)
+    truth = by_higher_precision(solution.scene, 300)
+    assert abs(solution.grid.exact("x")[-1] - truth[0]) <= solution.grid.bound("x")[-1]
+    assert max(solution.grid.bound("x")) < Fraction(1, 10**30)
+
+
+def test_two_runs_that_never_agree_are_refused_and_give_no_numbers(monkeypatch, paris):
+    honest = solver.run_both
+
+    def wrong(fine, coarse, *rest):
+        one, other = honest(fine, coarse, *rest)
+        return one, replace(other, grid=[tuple(value + 2 ** (other.scale - 60) for value in row) for row in other.grid])
+
+    monkeypatch.setattr(solver, "run_both", wrong)
+    with pytest.raises(UnreachableError, match="do not agree to 30 digits") as caught:
+        reference.solve(paris, t_end="60", digits=30)
+    assert caught.value.exit_status == 3
+
+
+def test_runs_that_find_different_transits_do_not_agree(monkeypatch, paris):
+    honest = solver.run_both
+
+    def loses_one(fine, coarse, *rest):
+        one, other = honest(fine, coarse, *rest)
+        return one, replace(other, zeros=other.zeros[:-1], directions=other.directions[:-1])
+
+    monkeypatch.setattr(solver, "run_both", loses_one)
+    with pytest.raises(UnreachableError):
+        reference.solve(paris, t_end="60", digits=10)
+
+
+def test_a_scene_that_loses_every_digit_of_double_is_measured_with_more(monkeypatch):
+    """Released 1e-14 degrees from the top: the double and long double runs part company wholly."""
+    scene = make_scene(
+        pendulum={"length": "1"},
+        site={"rotation_rate": "0"},
+        release={"angle": "179.999999999999", "azimuth": "30"},
+        run={"t_end": "60", "digits": 20},
+    )
+    assert growth.measure_growth(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
+    solution = reference.solve(scene)
+    truth = by_higher_precision(scene, 400)
+    assert abs(solution.grid.exact("x")[-1] - truth[0]) <= solution.grid.bound("x")[-1]
+
+
+def test_growth_beyond_every_precision_is_refused(monkeypatch, paris):
+    monkeypatch.setattr(growth, "MAX_PREC", 60)
+    with pytest.raises(UnreachableError, match="keep no digit"):
+        growth.measure_growth(paris.exact, (Fraction(0), Fraction(60)))
+    monkeypatch.undo()
+    monkeypatch.setattr(solver, "MAX_PREC", 100)
+    with pytest.raises(UnreachableError, match=r"60 digits take \d+ bits"):
+        reference.solve(paris, t_end="60", digits=60)
+
+
+def test_a_wrong_field_is_refused_before_anything_runs(paris):
+    with pytest.raises(InputError, match=r"run\.digits"):
+        reference.solve(paris, digits=0)
+
+
+def test_two_processes_give_what_one_gives(monkeypatch, paris):
+    fine = Plan(paris.exact, "momentum", real(120), (Fraction(0), Fraction(120)), transits=True)
+    coarse = replace(fine, formulation="space", number=real(100))
+    seen: list[float] = []
+    monkeypatch.setattr(runs.os, "cpu_count", lambda: 1)
+    alone = run_both(fine, coarse, 1e9, seen.append)
+    monkeypatch.setattr(runs.os, "cpu_count", lambda: 2)
+    together = run_both(fine, coarse, 1e9, seen.append)
+    for one, other in zip(alone, together, strict=True):
+        assert one.grid == other.grid
+        assert one.zeros == other.zeros
+    assert seen
+
+
+def test_an_error_in_the_second_process_arrives_in_the_first(paris):
+    good = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=False)
+    lost = make_scene(pendulum={"length": "1e-300"}, release={"angle": "170", "azimuth": "10"})
+    bad = Plan(lost.exact, "space", DOUBLE, (Fraction(0), Fraction(10**6)), transits=False)
+    with pytest.raises(IntegrationError):
+        run_both(good, bad, 1e9)
+
+
+def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
+    """facts/peers.md: rounding the inputs to binary64 alone moves the bob by 5e-13 m over the day."""
+    ends = [
+        reference.solve(paris.with_values([f"inputs={reading}"]), digits=11, level="computed", transits=False).x[-1]
+        for reading in ("decimal", "binary64")
+    ]
+    assert 1e-14 < abs(np.subtract(*ends)) < 5e-12
+
+
+SCRIPT = """
+import reference, reference.engines.run
+reference.engines.run.WORTH_A_PROCESS = 0.0
+for level in ("confirmed", "enclosed"):
+    solution = reference.solve(reference.load_scene("paris"), t_end="120", digits=20, level=level)
+    print(level, len(solution.directions))
+"""
+
+
+def test_a_plain_script_without_a_main_guard_may_use_both_cores(tmp_path):
+    script = tmp_path / "mine.py"
+    script.write_text(SCRIPT)
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("confirmed 14\nenclosed 14\n", "")
