@@ -23,7 +23,7 @@ from reference.scene import data_root
 from . import cache
 
 DIGITS = 22  # of a dataset solved only to judge programs in double
-MADE = b"dense 2"  # changes with what `reference.dataset.dense` gives, so that older entries are made again
+MADE = b"dense 3"  # changes with what `reference.dataset.dense` gives, so that older entries are made again
 FINE = 2.0**-110  # how near the truth is evaluated for candidates with more digits than a double
 
 Report = Callable[[float], None]
@@ -126,13 +126,11 @@ def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
     def make(path: Path) -> None:
         found = dense(golden, times, within)
         with path.open("wb") as stream:
-            np.savez(
-                stream, t=found.t, states=found.states, rest=found.rest, bound_m=found.bound_m, number=found.number
-            )
+            np.savez(stream, t=found.t, states=found.states, low=found.low, bound_m=found.bound_m, number=found.number)
 
     return cache.kept("dense", f"{recipe.hexdigest()[:32]}.npz", make, _read_dense)
 
 
 def _read_dense(path: Path) -> Dense:
     with np.load(path, allow_pickle=False) as arrays:
-        return Dense(arrays["t"], arrays["states"], arrays["rest"], float(arrays["bound_m"]), str(arrays["number"]))
+        return Dense(arrays["t"], arrays["states"], arrays["low"], float(arrays["bound_m"]), str(arrays["number"]))

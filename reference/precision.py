@@ -83,10 +83,10 @@ def bits_of(digits: float) -> int:
 
 def fixed_decimal(value: Fraction, decimals: int) -> str:
     """`value` rounded to nearest (ties to even) with `decimals` digits after the point, never "-0"."""
-    return point(round(value * 10**decimals), decimals)
+    return with_decimal_point(round(value * 10**decimals), decimals)
 
 
-def point(whole: int, decimals: int) -> str:
+def with_decimal_point(whole: int, decimals: int) -> str:
     """An integer with the decimal point `decimals` digits from its right, never "-0"."""
     sign, digits = ("-" if whole < 0 else ""), str(abs(whole)).rjust(decimals + 1, "0")
     return sign + (f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits)
@@ -95,7 +95,7 @@ def point(whole: int, decimals: int) -> str:
 def outward(value: Fraction, side: int, decimals: int = 20) -> str:
     """The end of an interval, rounded down (side -1) or up (side 1)."""
     whole = value * 10**decimals
-    return point(math.floor(whole) if side < 0 else math.ceil(whole), decimals)
+    return with_decimal_point(math.floor(whole) if side < 0 else math.ceil(whole), decimals)
 
 
 def decimals_for(largest: Fraction, digits: int) -> int:

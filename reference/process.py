@@ -57,11 +57,6 @@ class Worker:
                 return
             yield item
 
-    @property
-    def alive(self) -> bool:
-        """True while the process runs."""
-        return self._process.poll() is None
-
     def stop(self) -> None:
         """End the process: at once if it is still at work."""
         for pipe in (self._process.stdin, self._process.stdout):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from reference import Scene
-from reference.model.mechanics import tension
+from reference.model.force import tension
 
 from .approximation import Order, Printed, Quantity
 from .case import Case, under_gravity

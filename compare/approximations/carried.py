@@ -11,8 +11,8 @@ from dataclasses import replace
 from typing import Any
 
 from reference import integrate
+from reference.model.algebra import Functions, State
 from reference.model.constants import Constants, is_zero
-from reference.model.mechanics import Functions, State
 
 from .approximation import Array
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from reference import Scene, UnreachableError
 from reference.model.constants import Constants, Vector, constants, release
-from reference.model.mechanics import rest_position
+from reference.model.force import rest_position
 from reference.precision import context
 
 from .approximation import Array

@@ -13,7 +13,7 @@ import numpy as np
 
 from reference import Scene
 from reference.model.constants import Constants, scaled
-from reference.model.mechanics import FORMULATIONS
+from reference.model.formulations import FORMULATIONS
 
 from .approximation import Array, Motion, Order
 from .carried import integrated

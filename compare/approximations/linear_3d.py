@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, UnreachableError
+from reference.model.algebra import product
 from reference.model.constants import Vector
-from reference.model.mechanics import tension, times
+from reference.model.force import tension
 
 from .approximation import Array, Motion, Order
 from .case import Case, Level, below, hung
@@ -32,7 +33,9 @@ def stiffness(case: Case) -> tuple[Any, Any, Any]:
     level, rest = plumb_line(case)
     xx, yy, yz, zz = case.k.centrifugal
     pull = tension(rest, (0, 0, 0), case.k)
-    across = times(yy, level.cos, level.cos) + times(2, yz, level.cos, level.sin) + times(zz, level.sin, level.sin)
+    across = (
+        product(yy, level.cos, level.cos) + product(2, yz, level.cos, level.sin) + product(zz, level.sin, level.sin)
+    )
     turn = level.cos * case.ctx.mpf(case.k.turn[2]) - level.sin * case.ctx.mpf(case.k.turn[1])
     return pull - xx, pull - across, turn
 

@@ -15,8 +15,8 @@ from functools import partial
 from typing import Any
 
 from reference import IntegrationError, Scene
+from reference.model.algebra import Functions, State, minus, plus, product
 from reference.model.constants import Constants, scaled
-from reference.model.mechanics import Functions, State, minus, plus, times
 
 from .approximation import Array, Motion, Order
 from .carried import integrated
@@ -33,7 +33,7 @@ _RATES = (1e-5, 2e-5, 4e-5, 8e-5)
 
 
 def derivatives(state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()) -> State:
-    """(43) without the terms of items 2, 3, 5; with no item it is `reference.model.mechanics.Plane`.
+    """(43) without the terms of items 2, 3, 5; with no item it is `reference.model.formulations.Plane`.
 
     Args:
         state: x, y, vx, vy over the cord length.
@@ -46,33 +46,33 @@ def derivatives(state: State, k: Constants, functions: Functions, items: frozens
     cube, fourth = depth * depth * depth, depth * depth * depth * depth
     area = x * vy - y * vx
     centripetal = 0 if 3 in items else vx * vx + vy * vy - area * area  # item 3: (33), (39) keep g only
-    drive = minus(centripetal, times(cube, k.pull[2]))
+    drive = minus(centripetal, product(cube, k.pull[2]))
     _, north, up = k.turn
     _, yy, yz, zz = k.centrifugal
     beta_x = plus(
-        times(x, drive),  # (33)
-        times(-2, fourth, up, vy),  # (34)
-        times(2, y, vy, north, cube),
-        times(-1, x, fourth, yy),  # (35)
-        times(-1, x, y, cube, yz),
+        product(x, drive),  # (33)
+        product(-2, fourth, up, vy),  # (34)
+        product(2, y, vy, north, cube),
+        product(-1, x, fourth, yy),  # (35)
+        product(-1, x, y, cube, yz),
     )
     beta_y = plus(
-        times(y, drive),  # (39)
-        times(2, fourth, up, vx),  # (40)
-        times(-2, y, vx, north, cube),
-        times(fourth, minus(times(y, minus(zz, yy)), k.pull[1])),  # (41)
-        times(cube, yz, depth * depth - y * y),
+        product(y, drive),  # (39)
+        product(2, fourth, up, vx),  # (40)
+        product(-2, y, vx, north, cube),
+        product(fourth, minus(product(y, minus(zz, yy)), k.pull[1])),  # (41)
+        product(cube, yz, depth * depth - y * y),
     )
     crossed = 0 if 2 in items else x * y  # item 2: no outer diagonal
-    ax = minus(times(crossed, beta_y), (y * y + depth * depth) * beta_x) / fourth
-    ay = minus(times(crossed, beta_x), (x * x + depth * depth) * beta_y) / fourth
-    return (vx, vy, minus(ax, times(k.drag, vx)), minus(ay, times(k.drag, vy)))
+    ax = minus(product(crossed, beta_y), (y * y + depth * depth) * beta_x) / fourth
+    ay = minus(product(crossed, beta_x), (x * x + depth * depth) * beta_y) / fourth
+    return (vx, vy, minus(ax, product(k.drag, vx)), minus(ay, product(k.drag, vy)))
 
 
 def truncated(k: Constants, items: frozenset[Item]) -> Constants:
     """The constants without what items 1 (or its variant) and 4 leave out."""
     if 1 in items:
-        k = replace(k, pull=(0, 0, times(-1, k.gravity)), centrifugal=(0, 0, 0, 0))
+        k = replace(k, pull=(0, 0, product(-1, k.gravity)), centrifugal=(0, 0, 0, 0))
     if VARIANT in items:  # ḡ = g - RΩ² cos φ
         k = replace(k, pull=(0, 0, k.pull[2]), centrifugal=(0, 0, 0, 0))
     if 4 in items:

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from reference import Scene
-from reference.model.mechanics import dot
+from reference.model.algebra import dot
 
 from .approximation import Array, Motion, Order, Printed
 from .case import Case, at_rest, below, under_gravity

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, UnreachableError, trajectory
-from reference.model.mechanics import tension
+from reference.model.force import tension
 
 from .approximation import Array
 from .case import Case

@@ -23,7 +23,7 @@ class Candidate:
         name: where it came from.
         t: times in s, shape (rows,), strictly increasing, from 0 on.
         columns: x, y and any of z, vx, vy, vz in m and m/s, each of shape (rows,).
-        rest: what the doubles of t and `columns` lack against more precise numbers; empty if nothing.
+        low: what the doubles of t and `columns` lack against more precise numbers; empty if nothing.
         transits: times of xdot = 0 that came with it, or None.
         notes: what a reader ought to know.
     """
@@ -31,14 +31,14 @@ class Candidate:
     name: str
     t: Array = field(repr=False)
     columns: dict[str, Array] = field(repr=False)
-    rest: dict[str, Array] = field(default_factory=dict, repr=False)
+    low: dict[str, Array] = field(default_factory=dict, repr=False)
     transits: Array | None = field(default=None, repr=False)
     notes: tuple[str, ...] = ()
 
     @property
     def extended(self) -> bool:
         """True if some number has more digits than a double holds."""
-        return bool(self.rest)
+        return bool(self.low)
 
     @classmethod
     def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
@@ -86,11 +86,11 @@ def candidate_of(name: str, arrays: Mapping[str, Array], transits: Array | None 
         InputError: as `Candidate.of`.
     """
     near = {key: np.asarray(array, dtype=np.float64) for key, array in arrays.items()}
-    rest = {}
+    low = {}
     for key, array in arrays.items():
         if array.dtype.itemsize > 8 and np.isfinite(near[key]).all():
             spare = np.asarray(array - near[key].astype(array.dtype), dtype=np.float64)
             if spare.any():
-                rest[key] = spare
+                low[key] = spare
     columns = {key: near[key] for key in COLUMNS if key in near}
-    return Candidate.of(name, near["t"], columns, rest=rest, transits=transits)
+    return Candidate.of(name, near["t"], columns, low=low, transits=transits)

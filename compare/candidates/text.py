@@ -55,10 +55,10 @@ class Text:
                 self.name, "no header and no rows", "a CSV file, foucPend's output, or .npz", HEADER_ADVICE
             )
         columns = self._columns(self.blocks)
-        rest = self._columns(self.rests) if any(block.any() for block in self.rests) else {}
+        low = self._columns(self.rests) if any(block.any() for block in self.rests) else {}
         zeros = checked_transits(np.array(self.transits), f"{self.name}: # P") if self.marked else None
         t = columns.pop("t")
-        return Candidate.of(self.name, t, columns, rest=rest, transits=zeros, notes=tuple(self.notes))
+        return Candidate.of(self.name, t, columns, low=low, transits=zeros, notes=tuple(self.notes))
 
     @property
     def kept(self) -> list[str]:

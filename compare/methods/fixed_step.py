@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from reference.model.mechanics import plus, times
+from reference.model.algebra import plus, product
 
 from ..rhs.problem import Array, Problem
 from ..rhs.program import Program
@@ -108,8 +108,8 @@ def nystrom(tableau: NystromTableau) -> Step:
         forces: list[Sequence[Any]] = []
 
         def stage(c: Fraction, position: Sequence[Fraction], velocity: Sequence[Fraction]) -> list[Any]:
-            straight = moved(y, 1, (c,), [[times(h, v) for v in rate]])
-            bent = [times(h, h, part) for part in combined(position, forces, half)]
+            straight = moved(y, 1, (c,), [[product(h, v) for v in rate]])
+            bent = [product(h, h, part) for part in combined(position, forces, half)]
             return [*map(plus, straight, bent), *moved(rate, h, velocity, forces)]
 
         for c, position, velocity in zip(tableau.c, tableau.position, tableau.velocity, strict=True):
@@ -143,9 +143,9 @@ def nystrom_method(name: str, title: str, tableau: NystromTableau, ladder: tuple
 def combined(weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]], size: int) -> list[Any]:
     """Σ weight slope for each of `size` components; a weight of zero leaves its slope out."""
     exact = [0 if weight == 0 else weight for weight in weights]
-    return [plus(*(times(w, slope[i]) for w, slope in zip(exact, slopes, strict=True))) for i in range(size)]
+    return [plus(*(product(w, slope[i]) for w, slope in zip(exact, slopes, strict=True))) for i in range(size)]
 
 
 def moved(state: Sequence[Any], h: Any, weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]]) -> list[Any]:
     """State + h Σ weight slope."""
-    return [plus(x, times(h, part)) for x, part in zip(state, combined(weights, slopes, len(state)), strict=True)]
+    return [plus(x, product(h, part)) for x, part in zip(state, combined(weights, slopes, len(state)), strict=True)]

@@ -17,7 +17,7 @@ import numpy as np
 
 from reference.errors import IntegrationError
 from reference.model.constants import constants, release, scaled
-from reference.model.mechanics import FORMULATIONS
+from reference.model.formulations import FORMULATIONS
 from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, context, real
 
 from ..rhs.problem import Array, Problem
@@ -35,14 +35,16 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
     """
-    from reference.engines.heyoka import taylor
+    from reference.engines.heyoka.numbers import Numbers
+    from reference.engines.heyoka.propagator import Propagator
+    from reference.engines.heyoka.system import rates
 
     model, ctx = FORMULATIONS[problem.formulation], context(number.prec + GUARD_BITS)
     exact = constants(problem.scene.exact, ctx)
     n, v = (scaled(vector, exact.length) for vector in release(problem.scene.exact, ctx))
-    numbers = taylor.Numbers(number)
+    numbers = Numbers(number)
     k = exact.converted(numbers.of)
-    flow = taylor.Flow(model.variables, taylor.rates(model, k), number, tolerance=tolerance)
+    flow = Propagator(model.variables, rates(model, k), number, tolerance=tolerance)
     start = [numbers.of(value) for value in model.start(n, v, exact, ctx)]
     times = [numbers.of(Fraction(t)) for t in problem.times.tolist()]
 
@@ -54,9 +56,9 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
         return np.array([column.astype(float) for column in columns(states)]).T.copy()
 
     def finer(states: Any) -> Exact:
-        scale = number.prec + SPARE_BITS
-        fixed = [numbers.fixed(np.ascontiguousarray(column), scale) for column in columns(states)]
-        return Exact(scale, list(zip(*fixed, strict=True)))
+        bits = number.prec + SPARE_BITS
+        fixed = [numbers.fixed(np.ascontiguousarray(column), bits) for column in columns(states)]
+        return Exact(bits, list(zip(*fixed, strict=True)))
 
     def work() -> Outcome:
         before = flow.steps

@@ -29,10 +29,10 @@ def prepare(problem: Problem, setting: float) -> Work:
             return failed(problem, error.reason)
 
         def cartesian() -> Array:
-            return np.array([[value / (1 << done.scale) for value in row[:6]] for row in done.grid])
+            return np.array([[value / (1 << done.bits) for value in row[:6]] for row in done.grid])
 
         def finer() -> Exact:
-            return Exact(done.scale, [row[:6] for row in done.grid])
+            return Exact(done.bits, [row[:6] for row in done.grid])
 
         return Outcome("ok", "", float(problem.times[-1]), done.steps, None, cartesian, finer)
 

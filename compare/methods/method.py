@@ -26,9 +26,9 @@ UNITS: dict[Setting, str] = {"step": "s", "tolerance": "relative", "precision": 
 
 @dataclass(frozen=True)
 class Exact:
-    """States finer than binary64: x, y, z in m, vx, vy, vz in m/s per row, as integers over 2**scale."""
+    """States finer than binary64: x, y, z in m, vx, vy, vz in m/s per row, as integers over 2**bits."""
 
-    scale: int
+    bits: int
     rows: list[tuple[int, ...]] = field(repr=False)
 
 

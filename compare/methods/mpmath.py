@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any
 
 from reference.model.constants import constants, release, scaled
-from reference.model.mechanics import FORMULATIONS
+from reference.model.formulations import FORMULATIONS
 from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
 
 from ..rhs.problem import Array, Problem
@@ -48,8 +48,8 @@ def prepare(problem: Problem, setting: float) -> Work:
             return np.array([[float(value) for value in row] for row in rows()])
 
         def fixed() -> Exact:
-            scale = prec + SPARE_BITS
-            return Exact(scale, [tuple(int(to_fraction(value) * 2**scale) for value in row) for row in rows()])
+            bits = prec + SPARE_BITS
+            return Exact(bits, [tuple(int(to_fraction(value) * 2**bits) for value in row) for row in rows()])
 
         return Outcome("ok", "", float(problem.times[-1]), None, calls, cartesian, fixed)
 

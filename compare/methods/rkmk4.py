@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from reference.model.algebra import add, cross, dot, plus, product, scale, subtract
 from reference.model.constants import Vector, is_zero
-from reference.model.mechanics import add, cross, dot, plus, scale, subtract, times
 
 from ..rhs.problem import Problem
 from .fixed_step import Derivatives, combined, moved, prepare_fixed
@@ -25,12 +25,12 @@ def turned(n: Vector, u: Vector) -> Vector:
         return n
     once = cross(u, n)
     bent = add(once, scale(0.5, cross(u, once)))
-    return add(n, scale(1 / (1 + times(0.25, dot(u, u))), bent))
+    return add(n, scale(1 / (1 + product(0.25, dot(u, u))), bent))
 
 
 def rate_of_u(u: Vector, omega: Vector) -> Vector:
     """dcay⁻¹_u(ω) = ω - u × ω / 2 + (u·ω) u / 4 (Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.8.3)."""
-    return add(subtract(omega, scale(0.5, cross(u, omega))), scale(times(0.25, dot(u, omega)), u))
+    return add(subtract(omega, scale(0.5, cross(u, omega))), scale(product(0.25, dot(u, omega)), u))
 
 
 def step(state: Sequence[Any], h: Any, derivatives: Derivatives) -> Sequence[Any]:
@@ -39,12 +39,12 @@ def step(state: Sequence[Any], h: Any, derivatives: Derivatives) -> Sequence[Any
     turns: list[Vector] = []
     rates: list[Sequence[Any]] = []
     for row in TABLEAU.a:
-        u = _vector([times(h, part) for part in combined(row, turns, 3)])
+        u = _vector([product(h, part) for part in combined(row, turns, 3)])
         at = turned(n, u)
         found = derivatives((*at, *moved(rest, h, row, rates)))
         turns.append(rate_of_u(u, cross(at, _vector(found[:3]))))
         rates.append(found[3:])
-    u = _vector([times(h, part) for part in combined(TABLEAU.b, turns, 3)])
+    u = _vector([product(h, part) for part in combined(TABLEAU.b, turns, 3)])
     return (*turned(n, u), *moved(rest, h, TABLEAU.b, rates))
 
 

@@ -97,7 +97,7 @@ class Point:
 
     @cached_property
     def k(self) -> Constants:
-        """The model's constants at this point, for `reference.model.mechanics`."""
+        """The model's constants at this point, for `reference.model.formulations`."""
         return constants(_inputs(self), MP)
 
     @cached_property

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from reference import Golden, Scene, Solution, load, load_scene, solve
 from reference.engines.trajectory import trajectory
 from reference.model.constants import constants
-from reference.model.mechanics import rest_position
+from reference.model.force import rest_position
 from reference.precision import LONG_DOUBLE, context
 
 from .digits import mpf

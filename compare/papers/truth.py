@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.mechanics import acceleration, rest_position
+from reference.model.force import acceleration, rest_position
 
 from .digits import MP, Vector, add, cos, cross, derivative, dot, scale, sin, sqrt, tan, vector_derivative
 from .points import Point

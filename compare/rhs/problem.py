@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from reference.errors import InputError
 from reference.model.constants import Constants, constants, is_zero, release, scaled
-from reference.model.mechanics import FORMULATIONS
+from reference.model.formulations import FORMULATIONS
 from reference.precision import context
 from reference.scene import Scene
 
@@ -76,7 +76,7 @@ class Problem:
 
     Attributes:
         scene: its exact inputs, in the scene's own reading.
-        formulation: a word of `reference.model.mechanics.FORMULATIONS`.
+        formulation: a word of `reference.model.formulations.FORMULATIONS`.
         constants: of the model, folded in 200 bits and rounded once.
         start: state at t = 0, rounded once, shape (variables,).
         times: output times in s, increasing, from 0, shape (rows,).

@@ -1,6 +1,6 @@
 """From a generic function of numbers to straight-line source code, compiled by numba or not.
 
-The model is written once, for any number type (`reference.model.mechanics`). Called with numbers that record
+The model is written once, for any number type (`reference.model.formulations`). Called with numbers that record
 what happens to them, it leaves behind the list of its elementary operations: each expression once, what is
 exactly zero nowhere. Printed as Python that is a right-hand side, or a whole Runge-Kutta step, with nothing
 left in it but arithmetic, which numba compiles to what a C compiler would make of the same lines.

@@ -17,7 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import FoucaultError, Scene
-from reference.engines.trajectory import Variants
+from reference.engines.variants import Variants
 from reference.precision import Array
 from reference.scene import Inputs
 from reference.solver.sensitivity import Sensitivity, sensitivity, with_value

@@ -14,7 +14,7 @@ import numpy as np
 from reference import Golden, Scene
 from reference.dataset.dense import Dense
 from reference.model.constants import Constants
-from reference.model.mechanics import acceleration, invariant
+from reference.model.force import acceleration, invariant
 from reference.precision import Array
 from reference.scene import Inputs
 
@@ -131,14 +131,14 @@ def errors_of(candidate: Candidate, truth: Dense, golden: Golden) -> Errors:
         truth: at its times.
         golden: where the truth comes from; the scales are those of its whole grid, whatever the candidate's rows.
     """
-    late = candidate.rest.get("t")
+    late = candidate.low.get("t")
     rates = None if late is None else _rates(truth.states, constants_in_double(golden.scene.exact))
     components = {}
     for i, name in enumerate(COLUMNS):
         if name not in candidate.columns:
             continue
-        difference = (candidate.columns[name] - truth.states[:, i]) - truth.rest[:, i]
-        difference = difference + candidate.rest[name] if name in candidate.rest else difference
+        difference = (candidate.columns[name] - truth.states[:, i]) - truth.low[:, i]
+        difference = difference + candidate.low[name] if name in candidate.low else difference
         components[name] = difference if late is None or rates is None else difference - rates[:, i] * late
     position = np.sqrt(sum(components[name] ** 2 for name in ("x", "y", "z") if name in components))
     aside = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]

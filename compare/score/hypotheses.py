@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from reference import Scene
-from reference.engines.trajectory import Variants
+from reference.engines.variants import Variants
 from reference.model.constants import Constants
 from reference.precision import Array, context, to_fraction
 from reference.scene import Inputs

@@ -10,7 +10,7 @@ from functools import cached_property
 from reference import Golden, InputError, Scene
 from reference.dataset.dense import WITHIN
 from reference.model.constants import constants
-from reference.model.mechanics import rest_position
+from reference.model.force import rest_position
 from reference.precision import Array, context
 
 from ..candidates.candidate import Candidate

@@ -13,7 +13,8 @@ import numpy as np
 
 from reference import Scene
 from reference.model.constants import Constants
-from reference.model.mechanics import FORMULATIONS, tension
+from reference.model.force import tension
+from reference.model.formulations import FORMULATIONS
 from reference.precision import Array
 from reference.solver.sensitivity import sensitivity
 

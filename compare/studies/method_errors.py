@@ -11,7 +11,7 @@ import numpy as np
 
 from reference import Golden, Scene
 from reference.model.constants import constants
-from reference.model.mechanics import acceleration, invariant
+from reference.model.force import acceleration, invariant
 from reference.precision import Array, context
 from reference.solver.solution import GRID_COLUMNS
 
@@ -62,7 +62,7 @@ class Truth:
         """Distance from the truth at each row, in m, without cancellation in any number type."""
         finer = outcome.exact
         if finer is not None:
-            unit = Fraction(1, 2**finer.scale)
+            unit = Fraction(1, 2**finer.bits)
             found: Any = [[unit * part for part in row[:3]] for row in finer.rows]
         else:
             found = [[Fraction(float(part)) for part in row] for row in outcome.states[:, :3]]
@@ -80,7 +80,7 @@ class Truth:
             outcome: of a run to t = 0 and `transits`.
         """
         finer, states = outcome.exact, outcome.states[1:]
-        vx = states[:, 3] if finer is None else np.array([row[3] / (1 << finer.scale) for row in finer.rows[1:]])
+        vx = states[:, 3] if finer is None else np.array([row[3] / (1 << finer.bits) for row in finer.rows[1:]])
         k = constants_in_double(scene.exact)
         n, v = (tuple(states[:, part] / k.length for part in parts) for parts in ((0, 1, 2), (3, 4, 5)))
         ax = np.asarray(acceleration(n, v, k)[0] * k.length)
@@ -93,11 +93,11 @@ def h_drift(scene: Scene, outcome: Outcome) -> float | None:
     """Drift of h over the largest kinetic energy, in the precision of the outcome; None with drag."""
     if scene.exact.drag:
         return None
-    ctx = context(80 if outcome.exact is None else outcome.exact.scale + 64)
+    ctx = context(80 if outcome.exact is None else outcome.exact.bits + 64)
     k = constants(scene.exact, ctx)
     finer = outcome.exact
     rows: Any = outcome.states if finer is None else finer.rows
-    unit = ctx.mpf(1) if finer is None else ctx.mpf(2) ** -finer.scale
+    unit = ctx.mpf(1) if finer is None else ctx.mpf(2) ** -finer.bits
     values, kinetic = [], ctx.mpf(0)
     for i in np.unique(np.linspace(0, len(rows) - 1, H_ROWS).astype(int)):
         numbers = [ctx.mpf(float(part) if finer is None else part) * unit / k.length for part in rows[i][:6]]

@@ -27,7 +27,7 @@ def command(
 
         document["equations"], document["left_out"] = lines_and_left_out(scene, "momentum")
     if sensitivity:
-        from ..solver.pilot import digits_lost
+        from ..solver.digits_lost import digits_lost
 
         document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
     if as_json:
@@ -58,7 +58,7 @@ def command(
 def _derived(scene: Scene) -> dict[str, str]:
     """Distance from the axis, apparent gravity at the pivot, rest position, small-swing period; 15 digits."""
     from ..model.constants import constants
-    from ..model.mechanics import rest_position
+    from ..model.force import rest_position
     from ..precision import context
 
     ctx = context(96)

@@ -18,8 +18,8 @@ def command(
 ) -> None:
     """Check datasets: schema, hashes, physics; with --recompute the same bytes again."""
     from ..dataset.read import golden_folder, read_manifest, scene_of
+    from ..dataset.recompute import recompute as recomputed
     from ..dataset.verify import problems_of
-    from ..dataset.write import recompute as recomputed
 
     folders = [golden_folder(path) for path in paths or ()] or sorted((data_root() / "golden").glob("[a-z]*"))
     if not folders:

@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..model.constants import Constants, constants
-from ..model.mechanics import FORMULATIONS
+from ..model.formulations import FORMULATIONS
 from ..precision import GUARD_BITS, LONG_DOUBLE, Array, NumberType, context, real
 from ..solver.solution import GRID_COLUMNS
 from .read import Golden
@@ -40,14 +40,14 @@ class Dense:
     Attributes:
         t: times in s, shape (rows,), increasing, without repeats.
         states: nearest doubles of x, y, z (m), vx, vy, vz (m/s), shape (rows, 6).
-        rest: what the doubles lack, shape (rows, 6): the values are states + rest.
+        low: what the doubles lack, shape (rows, 6): the values are states + low.
         bound_m: how far any position may be from the truth.
         number: the type that was enough.
     """
 
     t: Array
     states: Array = field(repr=False)
-    rest: Array = field(repr=False)
+    low: Array = field(repr=False)
     bound_m: float
     number: str
 
@@ -71,11 +71,11 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
     tries = [(number, tolerance) for number in fine for tolerance in (ROOM * within, None)]
     for number, tolerance in tries:
         march = _March(golden, grid, wanted, number, tolerance)
-        states, rest = march.run(math.inf if (number, tolerance) == tries[-1] else within * length)
+        states, low = march.run(math.inf if (number, tolerance) == tries[-1] else within * length)
         if march.missed <= within * length:
             break
     lost = SAFETY * march.missed + (ULPS * 2.0**-number.prec + PAIR) * length
-    return Dense(wanted, states, rest, lost + float(golden.manifest.bounds.position_m), str(number))
+    return Dense(wanted, states, low, lost + float(golden.manifest.bounds.position_m), str(number))
 
 
 def _check(times: Array, grid: list[Fraction]) -> None:
@@ -98,12 +98,14 @@ class _March:
     def __init__(
         self, golden: Golden, grid: list[Fraction], wanted: Array, number: NumberType, tolerance: float | None
     ) -> None:
-        from ..engines.heyoka import taylor
+        from ..engines.heyoka.numbers import Numbers
+        from ..engines.heyoka.propagator import Propagator
+        from ..engines.heyoka.system import rates
 
-        self._numbers = taylor.Numbers(number)
+        self._numbers = Numbers(number)
         self._k = constants(golden.scene.exact, context(number.prec + GUARD_BITS)).converted(self._numbers.of)
         self._model = FORMULATIONS["momentum"]
-        self._flow = taylor.Flow(self._model.variables, taylor.rates(self._model, self._k), number, tolerance=tolerance)
+        self._flow = Propagator(self._model.variables, rates(self._model, self._k), number, tolerance=tolerance)
         self._grid, self._wanted = grid, wanted
         self._near = np.array([float(t) for t in grid])
         self._wide = _wide(self._near, self._numbers)
@@ -119,7 +121,7 @@ class _March:
 
     def run(self, most: float) -> tuple[Array, Array]:
         """States as doubles and what these lack, each of shape (times wanted, 6); given up beyond `most` m."""
-        near, rest = np.empty((len(self._wanted), 6)), np.empty((len(self._wanted), 6))
+        near, low = np.empty((len(self._wanted), 6)), np.empty((len(self._wanted), 6))
         held: list[Any] = []
         row = count = 0
         for states in self._intervals():
@@ -128,10 +130,10 @@ class _March:
             held.append(states)
             count += len(states)
             if count >= BLOCK or row + count == len(near):
-                near[row : row + count], rest[row : row + count] = self._converted(np.concatenate(held))
+                near[row : row + count], low[row : row + count] = self._converted(np.concatenate(held))
                 row, count, held = row + count, 0, []
         self.missed *= float(self._k.length)
-        return near, rest
+        return near, low
 
     def _intervals(self) -> Iterator[Any]:
         """States at the times wanted in each interval that has any; the one that starts at the end comes last."""

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ..errors import UnreachableError
-from ..precision import fixed_decimal, point, rounded_up
+from ..precision import fixed_decimal, rounded_up
 from ..scene import Scene
-from ..solver.solution import Solution, Table, grid_decimals, transit_decimals
+from ..solver.rounding import decimals_of, exact_decimals, printed_grid, printed_transits
+from ..solver.solution import Solution
+from ..table import Table
 
 GRID_HEADER = ("t", "x", "y", "z", "vx", "vy", "vz")
 TRANSITS_HEADER = ("k", "t", "direction", "x", "y", "z", "vy", "ax", "bound")
@@ -28,62 +29,12 @@ class Sheet:
         return "".join(",".join(row) + "\n" for row in (self.header, *self.rows))
 
 
-def exact_decimals(values: tuple[Fraction, ...]) -> int:
-    """Digits after the point that print terminating decimals exactly."""
-    digits = 0
-    for value in values:
-        while (value * 10**digits).denominator != 1:
-            digits += 1
-    return digits
-
-
-def decimals_of(solution: Solution) -> tuple[dict[str, int], dict[str, int]]:
-    """Digits after the point of the columns of the grid and of the transits (empty without transits)."""
-    grid, met, digits = solution.grid, solution.transits, solution.scene.run.digits
-    of_grid = grid_decimals(grid.largest(), grid.largest_bounds(), digits)
-    named = dict(zip(grid.columns, of_grid, strict=True))
-    if met is None:
-        return named, {}
-    t, *_, ax = met.largest()
-    return named, dict(zip(met.columns, transit_decimals(of_grid, t, ax, digits), strict=True))
-
-
-def _printed(table: Table, decimals: dict[str, int], proven: bool) -> list[tuple[str, ...]]:
-    """Every number rounded to its column's digits; where it is proven, both ends of its interval must round alike."""
-    units = [10 ** decimals[name] for name in table.columns]
-    rows = []
-    for values, errors in zip(table.values, table.errors, strict=True):
-        whole = [_nearest(value * unit, table.scale) for value, unit in zip(values, units, strict=True)]
-        texts = tuple(point(n, decimals[name]) for n, name in zip(whole, table.columns, strict=True))
-        if proven:
-            for n, value, error, unit, name, text in zip(
-                whole, values, errors, units, table.columns, texts, strict=True
-            ):
-                low, high = (_nearest((value + side * error) * unit, table.scale) for side in (-1, 1))
-                if not low == n == high:
-                    raise UndecidedRounding(name, text)
-        rows.append(texts)
-    return rows
-
-
-def _nearest(value: int, scale: int) -> int:
-    """The integer nearest to value / 2**scale (ties upwards)."""
-    return (value + (1 << scale >> 1)) >> scale
-
-
-class UndecidedRounding(UnreachableError):
-    """A proven interval holds a number halfway between two printed ones: a finer enclosure is needed."""
-
-    def __init__(self, column: str, text: str) -> None:
-        super().__init__(f"The enclosure of {column} = {text} does not decide its last digit.")
-
-
 def grid_sheet(solution: Solution) -> Sheet:
     """`grid.csv`: exact times, and the state at each."""
     decimals = {"t": exact_decimals(solution.times), **decimals_of(solution)[0]}
-    printed = _printed(solution.grid, decimals, solution.level == "enclosed")
+    rounded = printed_grid(solution)
     times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
-    return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, printed, strict=True)], decimals)
+    return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, rounded, strict=True)], decimals)
 
 
 def transits_sheet(solution: Solution) -> Sheet:
@@ -94,9 +45,9 @@ def transits_sheet(solution: Solution) -> Sheet:
     decimals = decimals_of(solution)[1]
     half_unit = Fraction(1, 2 * 10 ** decimals["t"])
     rows = []
-    printed = _printed(table, decimals, solution.level == "enclosed")
-    for k, (row, errors, direction) in enumerate(zip(printed, table.errors, solution.directions, strict=True), 1):
-        bound = rounded_up(Fraction(errors[0], 1 << table.scale) + half_unit)
+    rounded = printed_transits(solution)
+    for k, (row, errors, direction) in enumerate(zip(rounded, table.errors, solution.directions, strict=True), 1):
+        bound = rounded_up(Fraction(errors[0], 1 << table.bits) + half_unit)
         rows.append((str(k), row[0], f"{direction:+d}", *row[1:], bound))
     return Sheet(TRANSITS_HEADER, rows, decimals)
 

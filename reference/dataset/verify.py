@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ..errors import DatasetError, FoucaultError
 from ..model.constants import constants
-from ..model.mechanics import invariant
+from ..model.force import invariant
 from ..precision import bits_of, context, fixed_decimal, rounded_up, to_fraction, to_mpf
 from ..scene import Scene
 from .manifest import Manifest

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from ..model.constants import constants, release, scaled
-from ..model.mechanics import FORMULATIONS
+from ..model.formulations import FORMULATIONS
 from ..model.vanishing import xdot_vanishes
 from ..precision import context
 from ..scene import Scene
-from .heyoka.taylor import equations_text
+from .heyoka.system import equations_text
 
 _PREC = 128  # only exact zeros matter here
 

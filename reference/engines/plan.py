@@ -25,7 +25,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Run:
-    """What a run computed, as integers over 2**scale, and what it cost.
+    """What a run computed, as integers over 2**bits, and what it cost.
 
     Attributes:
         grid: per output time x, y, z (m), vx, vy, vz (m/s), ax (m/s²).
@@ -36,7 +36,7 @@ class Run:
     """
 
     plan: Plan
-    scale: int
+    bits: int
     grid: list[tuple[int, ...]] = field(repr=False)
     zeros: list[tuple[int, ...]] | None = field(repr=False)
     directions: list[int] = field(repr=False)

@@ -23,7 +23,7 @@ from ..errors import IntegrationError
 
 if TYPE_CHECKING:
     from .heyoka.log import Watch
-    from .heyoka.taylor import Stepper, Zero
+    from .heyoka.stepper import Stepper, Zero
 
 MAX_LOOKS = 6  # steps are retaken this often before a run is given up
 SHORTER = Fraction(79, 128)  # retaken steps are cut by this: no simple ratio, so that no edge returns

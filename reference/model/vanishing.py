@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from .algebra import cross
 from .constants import Constants, Vector
-from .mechanics import cross, force
+from .force import force
 
 
 def xdot_vanishes(n: Vector, v: Vector, k: Constants) -> bool:

@@ -22,13 +22,13 @@ from ..engines.plan import Plan, Run
 from ..engines.registry import HEYOKA, LIMBS, fastest
 from ..engines.run import result, start_of
 from ..errors import IntegrationError
-from ..model.mechanics import FORMULATIONS
+from ..model.formulations import FORMULATIONS
 from ..precision import real
 from ..process import Emit, Worker
 from ..scene import Inputs
 
 if TYPE_CHECKING:
-    from ..engines.heyoka.taylor import Polynomials
+    from ..engines.heyoka.stepper import Polynomials
 
 GUARD_BITS = 20  # coefficients carry this much below the run's epsilon
 ORDER_PER_BIT = (
@@ -108,7 +108,7 @@ class Feed:
 
 def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Generator[Polynomials, None, Run]:
     """The polynomials of a run at `prec` bits from t = 0 to one step beyond the last time; returns its `Run`."""
-    from ..engines.heyoka import taylor
+    from ..engines.heyoka import stepper as taylor
 
     plan = Plan(inputs, "momentum", real(prec), times, transits=False)
     ctx, k, n, v = start_of(inputs, plan.number)

@@ -11,15 +11,16 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
-from ..dataset.sheets import UndecidedRounding, grid_sheet, transits_sheet
 from ..engines.plan import Plan, Report, Run
 from ..engines.run import run
 from ..errors import InputError, IntegrationError, UnreachableError
 from ..precision import cheapest_type
 from ..scene import Scene
+from ..table import Table, bits_in
 from .approximant import GUARD_BITS, Feed
-from .pilot import Growth, bits_in, measure_growth
-from .solution import GRID_COLUMNS, TRANSIT_COLUMNS, CrossCheck, Proof, Solution, Source, Table, grid_decimals
+from .pilot import Pilot, run_pilot
+from .rounding import UndecidedRounding, check_decided, grid_decimals
+from .solution import GRID_COLUMNS, TRANSIT_COLUMNS, CrossCheck, Proof, Solution, Source
 
 ROUNDING_BITS = 20  # balls are this much smaller than the last digit: among 1e5 numbers few ties, mostly none
 ROUNDING_TRIES = 3
@@ -43,9 +44,9 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, repor
         advice = "Install it with pip install 'foucault-reference[enclose]'."
         raise InputError("--level", "enclosed", f"the package {error.name}, which the proof needs", advice) from None
 
-    growth = measure_growth(scene.exact, times)
+    pilot = run_pilot(scene.exact, times)
     span = float(times[-1])
-    radius = _usual_unit(growth, scene.run.digits) / 2**ROUNDING_BITS
+    radius = _usual_unit(pilot, scene.run.digits) / 2**ROUNDING_BITS
     feed = Feed(scene.exact, times, engine)
 
     try:
@@ -60,8 +61,8 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, repor
                 progress=report and _scaled(report, span),
             )
             try:
-                solution = _solution(scene, times, proved, feed.finished(), growth)
-                grid_sheet(solution), transits_sheet(solution)
+                solution = _solution(scene, times, proved, feed.finished(), pilot)
+                check_decided(solution)
             except UndecidedRounding as undecided:
                 radius, said = radius / FINER, str(undecided)
             else:
@@ -78,15 +79,15 @@ def _scaled(report: Report, span: float) -> Callable[[float], None]:
     return lambda part: report(part * span)
 
 
-def _usual_unit(growth: Growth, digits: int) -> Fraction:
+def _usual_unit(pilot: Pilot, digits: int) -> Fraction:
     """The last digit of the middle position and velocity columns; smaller ones, like vz, have smaller balls."""
-    decimals = grid_decimals(growth.largest, growth.errors, digits)
+    decimals = grid_decimals(pilot.largest, pilot.errors, digits)
     return Fraction(1, 10 ** max(sorted(decimals[:3])[1], sorted(decimals[3:])[1]))
 
 
-def _solution(scene: Scene, times: tuple[Fraction, ...], proved: Any, feed: Run, growth: Growth) -> Solution:
-    scale = proved.bits + SCALE_BITS
-    grid = _table(GRID_COLUMNS, proved.states, scale)
+def _solution(scene: Scene, times: tuple[Fraction, ...], proved: Any, feed: Run, pilot: Pilot) -> Solution:
+    bits = proved.bits + SCALE_BITS
+    grid = _table(GRID_COLUMNS, proved.states, bits)
     gaps = _checked_states(grid, times, feed)
     checks = [replace(CrossCheck.of(feed, gaps, None), cpu_s=0.0)]  # the run itself, not one more
     sure: list[Any] = []
@@ -95,9 +96,9 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], proved: Any, feed: Run,
         (sure if transit.kind == "one" else unsure).append(transit)
     met = None
     if proved.transits is not None:
-        met = _table(TRANSIT_COLUMNS, [(z.t, z.x, z.y, z.z, z.vy, z.ax) for z in sure], scale)
-        checks.append(_transit_check(scene, times, grid, met, [z.direction for z in sure], growth, bool(unsure)))
-    size = max(growth.largest[:3])
+        met = _table(TRANSIT_COLUMNS, [(z.t, z.x, z.y, z.z, z.vy, z.ax) for z in sure], bits)
+        checks.append(_transit_check(scene, times, grid, met, [z.direction for z in sure], pilot, bool(unsure)))
+    size = max(pilot.largest[:3])
     proof = Proof(
         method=proved.method,
         prec=proved.bits,
@@ -112,19 +113,19 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], proved: Any, feed: Run,
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in unsure)
     directions = [z.direction for z in sure]
-    return Solution(scene, times, grid, met, directions, Source.of(feed), tuple(checks), growth.cpu_s, proof, possible)
+    return Solution(scene, times, grid, met, directions, Source.of(feed), tuple(checks), pilot.cpu_s, proof, possible)
 
 
-def _table(columns: tuple[str, ...], rows: Sequence[Sequence[Any]], scale: int) -> Table:
+def _table(columns: tuple[str, ...], rows: Sequence[Sequence[Any]], bits: int) -> Table:
     """Middles and half-widths of intervals, as integers; rounded outwards."""
     values, errors = [], []
     for row in rows:
-        lows = [(x.low.numerator << scale) // x.low.denominator for x in row]
-        highs = [-((-x.high.numerator << scale) // x.high.denominator) for x in row]
+        lows = [(x.low.numerator << bits) // x.low.denominator for x in row]
+        highs = [-((-x.high.numerator << bits) // x.high.denominator) for x in row]
         middles = tuple((low + high) // 2 for low, high in zip(lows, highs, strict=True))
         values.append(middles)
         errors.append(tuple(high - middle for high, middle in zip(highs, middles, strict=True)))
-    return Table(columns, scale, values, errors)
+    return Table(columns, bits, values, errors)
 
 
 def _checked_states(grid: Table, times: tuple[Fraction, ...], feed: Run) -> tuple[Fraction, ...]:
@@ -137,9 +138,9 @@ def _checked_states(grid: Table, times: tuple[Fraction, ...], feed: Run) -> tupl
     gaps = [Fraction(0)] * len(GRID_COLUMNS)
     for t, row, middles, errors in zip(times, feed.grid, grid.values, grid.errors, strict=True):
         for i, name in enumerate(GRID_COLUMNS):
-            gap = abs(Fraction(row[i], 2**feed.scale) - Fraction(middles[i], 2**grid.scale))
+            gap = abs(Fraction(row[i], 2**feed.bits) - Fraction(middles[i], 2**grid.bits))
             gaps[i] = max(gaps[i], gap)
-            if gap > Fraction(errors[i], 2**grid.scale) + rounding:
+            if gap > Fraction(errors[i], 2**grid.bits) + rounding:
                 raise IntegrationError(f"the run is outside the enclosure at t = {float(t)} s in {name}.")
     return tuple(gaps)
 
@@ -150,7 +151,7 @@ def _transit_check(
     grid: Table,
     met: Table,
     directions: list[int],
-    growth: Growth,
+    pilot: Pilot,
     undecided: bool,
 ) -> CrossCheck:
     """Heyoka's event detection must find the enclosed transits, no other (unless some are undecided), where they are.
@@ -160,28 +161,26 @@ def _transit_check(
     """
 
     def seen_with(digits: int) -> Run:
-        number = cheapest_type(growth.bits_for(digits, times[-1], checked=False))
+        number = cheapest_type(pilot.bits_for(digits, times[-1], checked=False))
         return run(Plan(scene.exact, "momentum", number, times, transits=True))
 
     seen = seen_with(USUAL_DIGITS)
     try:
-        gaps = _matched(seen, met, directions, growth, undecided)
+        gaps = _matched(seen, met, directions, pilot, undecided)
     except IntegrationError:  # where the flow blurs its transits
         seen = seen_with(FINER_DIGITS)
-        gaps = _matched(seen, met, directions, growth, undecided)
+        gaps = _matched(seen, met, directions, pilot, undecided)
     state = [max(column) for column in zip(*_gaps(grid, seen), strict=True)]
     return CrossCheck.of(seen, state, gaps)
 
 
-def _matched(
-    seen: Run, met: Table, directions: list[int], growth: Growth, undecided: bool
-) -> list[tuple[Fraction, ...]]:
+def _matched(seen: Run, met: Table, directions: list[int], pilot: Pilot, undecided: bool) -> list[tuple[Fraction, ...]]:
     """How far the transits that a run found are from the enclosed ones, in s."""
-    found = [(Fraction(row[0], 2**seen.scale), way) for row, way in zip(seen.zeros or (), seen.directions, strict=True)]
+    found = [(Fraction(row[0], 2**seen.bits), way) for row, way in zip(seen.zeros or (), seen.directions, strict=True)]
     if len(found) != len(directions) and not undecided:
         raise IntegrationError(f"heyoka finds {len(found)} transits, the enclosure {len(directions)}.")
     prec = seen.plan.number.prec
-    late, rounding = growth.estimates(prec)[3], seen.plan.times[-1] / 2 ** (prec - ROUNDING_SLACK)
+    late, rounding = pilot.estimates(prec)[3], seen.plan.times[-1] / 2 ** (prec - ROUNDING_SLACK)
     nearest = iter(found)
     gaps: list[tuple[Fraction, ...]] = []
     for k, (t, ax, way) in enumerate(zip(met.exact("t"), met.exact("ax"), directions, strict=True), 1):
@@ -195,6 +194,6 @@ def _matched(
 
 def _gaps(grid: Table, seen: Run) -> list[tuple[Fraction, ...]]:
     return [
-        tuple(abs(Fraction(a, 2**grid.scale) - Fraction(b, 2**seen.scale)) for a, b in zip(middles, row, strict=False))
+        tuple(abs(Fraction(a, 2**grid.bits) - Fraction(b, 2**seen.bits)) for a, b in zip(middles, row, strict=False))
         for middles, row in zip(grid.values, seen.grid, strict=True)
     ]

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from ..model.constants import Constants, constants, release, scaled
-from ..model.mechanics import FORMULATIONS
+from ..model.formulations import FORMULATIONS
 from ..precision import DOUBLE, Array, context, to_fraction
 from ..scene import Inputs, Scene
 
@@ -92,10 +92,10 @@ class Sensitivity:
 
     @cached_property
     def _flow(self) -> Any:
-        from ..engines.heyoka import taylor
+        from ..engines.heyoka.propagator import Propagator
 
         count = 1 + 2 * _CONSTANTS
-        return taylor.Flow(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True)
+        return Propagator(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True)
 
 
 def _rates(state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:

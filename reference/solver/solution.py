@@ -10,69 +10,12 @@ from typing import Any
 import numpy as np
 
 from ..engines.plan import Run
-from ..precision import Array, decimals_for
+from ..precision import Array
 from ..scene import Level, Scene
+from ..table import Table
 
 GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
-NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
-
-
-@dataclass(frozen=True)
-class Table:
-    """Columns of numbers, as integers over 2**scale, with a bound of the same shape on every one."""
-
-    columns: tuple[str, ...]
-    scale: int
-    values: list[tuple[int, ...]] = field(repr=False)
-    errors: list[tuple[int, ...]] = field(repr=False)
-
-    def exact(self, name: str) -> list[Fraction]:
-        """A column's values, exactly as computed."""
-        return self._fractions(self.values, name)
-
-    def bound(self, name: str) -> list[Fraction]:
-        """A column's bounds: how far the exact values may be from the truth."""
-        return self._fractions(self.errors, name)
-
-    def _fractions(self, rows: Sequence[tuple[int, ...]], name: str) -> list[Fraction]:
-        i = self.columns.index(name)
-        return [Fraction(row[i], 1 << self.scale) for row in rows]
-
-    def largest(self) -> tuple[Fraction, ...]:
-        """Per column the largest size of its values."""
-        return self._maxima(self.values)
-
-    def largest_bounds(self) -> tuple[Fraction, ...]:
-        """Per column the largest of its bounds."""
-        return self._maxima(self.errors)
-
-    def _maxima(self, rows: Sequence[tuple[int, ...]]) -> tuple[Fraction, ...]:
-        return tuple(
-            Fraction(max((abs(row[i]) for row in rows), default=0), 1 << self.scale) for i in range(len(self.columns))
-        )
-
-    def array(self, name: str) -> Array:
-        """A column as the nearest doubles, shape (rows,)."""
-        i, unit = self.columns.index(name), 1 << self.scale
-        return np.array([row[i] / unit for row in self.values])
-
-
-def grid_decimals(largest: Sequence[Fraction], errors: Sequence[Fraction], digits: int) -> list[int]:
-    """Digits after the point of x, y, z, vx, vy, vz, from each column's largest number and error.
-
-    A column that is nothing but error takes the digits of the largest column of its kind: a coordinate
-    that vanishes by symmetry comes out of a run as rounding noise, and noise has no significant digits.
-    """
-    resolved = [size if size > NOISE * error else Fraction(0) for size, error in zip(largest, errors, strict=True)]
-    scales = [max(resolved[:3])] * 3 + [max(resolved[3:])] * 3
-    return [decimals_for(size or scale, digits) for size, scale in zip(resolved, scales, strict=True)]
-
-
-def transit_decimals(of_grid: Sequence[int], t: Fraction, ax: Fraction, digits: int) -> list[int]:
-    """Digits after the point of t, x, y, z, vy, ax: states as in the grid, t and ax by their own largest number."""
-    x, y, z, _, vy, _ = of_grid
-    return [decimals_for(t, digits), x, y, z, vy, decimals_for(ax, digits)]
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import Any
 
 from reference.engines.run import start_of
 from reference.model.constants import constants, release, scaled
-from reference.model.mechanics import FORMULATIONS
+from reference.model.formulations import FORMULATIONS
 from reference.precision import NumberType, context
 from reference.scene import Scene, parse_scene
 
@@ -26,7 +26,7 @@ def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
 
 def stepper_of(scene: Scene, number: NumberType, name: str = "momentum", **keywords: Any) -> Any:
     """heyoka's integrator of a scene at its release."""
-    from reference.engines.heyoka.taylor import Stepper
+    from reference.engines.heyoka.stepper import Stepper
 
     ctx, k, n, v = start_of(scene.exact, number)
     return Stepper(FORMULATIONS[name], k, n, v, ctx, number, **keywords)

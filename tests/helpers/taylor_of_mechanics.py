@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from reference.model import mechanics
+from reference.model import formulations as mechanics
 from reference.model.constants import constants, release, scaled
 from reference.precision import context
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.mechanics import acceleration
+from reference.model.force import acceleration
 
 from ..checks import Check, Identity, component
 from ..digits import MP, Vector, cos, derivative, dot, scale, sin
@@ -135,7 +135,7 @@ def checks() -> list[Check]:
             "… = f_cx dx/dq + f_cy dy/dq + f_cz dz/dq",
             lambda p: tuple(_generalised(p, i) for i in (0, 1)),
             lambda p: tuple(left_side(_true_path(p), i) for i in (0, 1)),
-            remark="along the accelerations of reference.model.mechanics",
+            remark="along the accelerations of reference.model.formulations",
         ),
         *(
             Identity(
@@ -155,7 +155,7 @@ def checks() -> list[Check]:
             "θ'' = -g_a/L0 sinθ + sinθ cosθ φ'² + 2 sinθ (cosθ sinλ_a - sinθ sinφ cosλ_a) Ω φ'",
             lambda p: printed_accelerations(p)[0],
             lambda p: angle_accelerations(p)[0],
-            remark="truth: reference.model.mechanics with gravity alone; φ from east to north",
+            remark="truth: reference.model.formulations with gravity alone; φ from east to north",
         ),
         Identity(
             "gastebois_7_2_phi2",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.mechanics import acceleration
+from reference.model.force import acceleration
 
 from ..checks import Check, Identity
 from ..digits import MP, Vector, add, cos, cross, dot, scale, sin, vector_derivative

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from reference.model.mechanics import tension
+from reference.model.force import tension
 
 from ..checks import Approximate, Check, Identity
 from ..digits import MP, Vector, add, cos, dot, scale
@@ -98,7 +98,7 @@ def checks() -> list[Check]:
             "x'' = -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, y'' = -T/m y/L0 - 2x'Ω sinλ_a",
             _with_tension,
             uniform_acceleration,
-            remark="truth: reference.model.mechanics with gravity alone",
+            remark="truth: reference.model.formulations with gravity alone",
         ),
         Identity(
             "gastebois_5_small",
@@ -106,6 +106,6 @@ def checks() -> list[Check]:
             "x'' = -ω0² x + 2y'Ω sinλ_a, y'' = -ω0² y - 2x'Ω sinλ_a",
             _small,
             linearised,
-            remark="truth: reference.model.mechanics with gravity alone, linear",
+            remark="truth: reference.model.formulations with gravity alone, linear",
         ),
     ]

@@ -203,7 +203,7 @@ def checks() -> list[Check]:
             "matrix · (x'', y'') = (-Σβ_x Ω^i, -Σβ_y Ω^i)",
             lambda p: matrix_times(p, horizontal_acceleration(p)),
             lambda p: (-in_powers(p, beta_x(p)), -in_powers(p, beta_y(p))),
-            remark="with the accelerations of reference.model.mechanics",
+            remark="with the accelerations of reference.model.formulations",
         ),
         Identity(
             "mathar_43_inverse",
@@ -218,7 +218,7 @@ def checks() -> list[Check]:
             "(x'', y'') = inverse · (-Σβ_x Ω^i, -Σβ_y Ω^i) / (z⁴ l²)",
             solved,
             horizontal_acceleration,
-            remark="truth: reference.model.mechanics",
+            remark="truth: reference.model.formulations",
         ),
     ]
     return [*moved, *remarks, *solving]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from reference.model.mechanics import tension
+from reference.model.force import tension
 
 from ..checks import Check, Finding, Identity, Statement
 from ..digits import MP, cos, degrees, derivative, scale, shown, sin, sqrt
@@ -175,7 +175,7 @@ def checks() -> list[Check]:
             "its root is the rest position",
             lambda p: _second_line_of_46(p, -1, rest_angle(p)),
             lambda p: MP.zero,
-            remark="root: reference.model.mechanics.rest_position",
+            remark="root: reference.model.force.rest_position",
         ),
         *(
             Identity(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.mechanics import acceleration
+from reference.model.force import acceleration
 
 from ..checks import Approximate, Check, Identity, Number
 from ..digits import MP, Vector, cos, scale, shown, sin, sqrt, vector_derivative
@@ -217,7 +217,7 @@ def checks() -> list[Check]:
             lambda p: linearised(p)[0],
             "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
             lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy / p.length),
-            "truth: reference.model.mechanics without centrifugal force, linear",
+            "truth: reference.model.formulations without centrifugal force, linear",
         ),
         Identity(
             "mathar_52",

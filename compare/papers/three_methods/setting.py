@@ -40,7 +40,7 @@ def checks() -> list[Check]:
                 scale(-2 * p.mass, cross(turning(p), p.velocity)),
             ),
             lambda p: scale(p.mass, acceleration_of(p)),
-            remark="truth: reference.model.mechanics with gravity alone; T along the cord",
+            remark="truth: reference.model.formulations with gravity alone; T along the cord",
         ),
         Identity(
             "methods_centrifugal",
@@ -101,7 +101,7 @@ def checks() -> list[Check]:
             "xddot + (g/L) x = 2ω sinα ydot, yddot + (g/L) y = -2ω sinα xdot",
             lambda p: coupled(p, (p.x, p.y), (p.vx, p.vy)),
             linearised,
-            remark="truth: reference.model.mechanics with gravity alone, linear",
+            remark="truth: reference.model.formulations with gravity alone, linear",
         ),
     ]
 

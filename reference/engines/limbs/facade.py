@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import InputError, IntegrationError
-from ...model import mechanics
+from ...model.force import tension
 from ...model.vanishing import xdot_vanishes, zero_at_release
 from ...precision import NumberType
 from ...scene import Inputs
@@ -190,7 +190,7 @@ def _result(going: March, plan: Plan, begun: float) -> Run:
     zeros, signs = _transits(going, plan, bits, scale) if going.seek else (None, [])
     return Run(
         plan=plan,
-        scale=scale,
+        bits=scale,
         grid=grid,
         zeros=zeros,
         directions=signs,
@@ -229,7 +229,7 @@ def _least_tension(made: Problem, grid: Sequence[tuple[int, ...]], scale: int) -
     k = made.k.converted(float)
     unit = float(made.k.length) * 2.0**scale
     x, y, z, vx, vy, vz = (np.array([row[i] / unit for row in grid]) for i in range(6))
-    return float(np.min(mechanics.tension((x, y, z), (vx, vy, vz), k)))
+    return float(np.min(tension((x, y, z), (vx, vy, vz), k)))
 
 
 def states(inputs: Inputs, times: npt.ArrayLike) -> tuple[Array, Array]:

@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from ...model.algebra import add, cross
 from ...model.constants import Constants, Vector, constants, release, scaled
-from ...model.mechanics import add, cross
 from ...precision import GUARD_BITS, context
 from ...scene import Inputs
 from .digits import MOST_LIMBS, Array, fraction_bits, rows_of

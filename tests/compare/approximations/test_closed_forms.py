@@ -19,7 +19,7 @@ from compare.approximations.mathar_items import derivatives, truncated
 from compare.approximations.planar import sn_cn
 from reference import integrate, load_scene, parse_scene, trajectory
 from reference.model.constants import constants
-from reference.model.mechanics import FORMULATIONS
+from reference.model.formulations import FORMULATIONS
 from reference.precision import context
 
 DAY = np.linspace(0.0, 86400.0, 2001)

@@ -107,11 +107,11 @@ def test_a_file_is_read_by_its_path(tmp_path):
 def test_digits_beyond_a_double_are_kept():
     found = read_stream(text("t,x,y", "0,0.30000000000000000000,0.4", "0.1,0.12345678901234567890123,0.4"), "run")
     assert found.extended
-    assert found.columns["x"][1] + found.rest["x"][1] == found.columns["x"][1]
-    assert found.rest["x"][1] == pytest.approx(0.12345678901234567890123 - 0.12345678901234568, abs=1e-17)
+    assert found.columns["x"][1] + found.low["x"][1] == found.columns["x"][1]
+    assert found.low["x"][1] == pytest.approx(0.12345678901234567890123 - 0.12345678901234568, abs=1e-17)
     exact = [0.0, 1.0 * (10**17 // 10) / 10**17]
     assert exact[1] == 0.1
-    assert found.rest["t"][1] == pytest.approx(-5.551115123125783e-18, rel=1e-12)  # 1/10 minus its double
+    assert found.low["t"][1] == pytest.approx(-5.551115123125783e-18, rel=1e-12)  # 1/10 minus its double
 
 
 def test_a_double_printed_with_many_digits_is_still_a_double():
@@ -125,7 +125,7 @@ def test_an_archive_of_long_doubles_keeps_their_digits():
     x = np.array([1, 2], dtype=np.longdouble) / 3
     found = read_stream(archive(t=np.array([0.0, 1.0]), x=x, y=np.zeros(2)), "run")
     assert found.extended
-    assert np.array_equal(found.columns["x"].astype(np.longdouble) + found.rest["x"].astype(np.longdouble), x)
+    assert np.array_equal(found.columns["x"].astype(np.longdouble) + found.low["x"].astype(np.longdouble), x)
 
 
 def test_an_exponent_beyond_reason_costs_nothing():
@@ -133,7 +133,7 @@ def test_an_exponent_beyond_reason_costs_nothing():
         text("t,x,y", "0,1.0000000000000000000001e-999999999,0.4", "1,0.30000000000000000001,0.4"), "run"
     )
     assert found.columns["x"][0] == 0
-    assert found.rest["x"][0] == 0
+    assert found.low["x"][0] == 0
     refused(text("t,x,y", "0,1.0000000000000000000001e999999999,0.4"), "run: x", "inf in row 1")
 
 

@@ -95,12 +95,12 @@ def test_exact_states_show_errors_far_below_a_doubles(name):
     problem, done = run(name, "paris", setting)
     grid = case("paris").solution.grid
     errors = [
-        abs(Fraction(row[0], 1 << done.exact.scale) - truth)
+        abs(Fraction(row[0], 1 << done.exact.bits) - truth)
         for row, truth in zip(done.exact.rows, grid.exact("x"), strict=False)
     ]
     assert len(done.exact.rows) == len(problem.times)
     assert float(max(errors)) < {"heyoka_long_double": 1e-17}.get(name, 1e-27)
-    nearest = [float(Fraction(row[0], 1 << done.exact.scale)) for row in done.exact.rows]
+    nearest = [float(Fraction(row[0], 1 << done.exact.bits)) for row in done.exact.rows]
     np.testing.assert_allclose(done.states[:, 0], nearest, rtol=3e-16, atol=1e-19)
 
 

@@ -17,7 +17,7 @@ from compare.rhs.problem import Problem, System
 from compare.rhs.tangent import differentiated
 from compare.rhs.tracing import TracingError, record
 from reference import InputError, load_scene
-from reference.model.mechanics import FORMULATIONS
+from reference.model.formulations import FORMULATIONS
 
 TRACED = ["momentum", "space", "spin", "plane", "angles"]
 

@@ -24,7 +24,7 @@ from compare.score.judge import Score, score
 from foucault import app
 from reference import Scene, trajectory
 from reference.dataset.dense import Dense
-from reference.engines.trajectory import Variants
+from reference.engines.variants import Variants
 from reference.precision import LONG_DOUBLE
 from reference.solver.sensitivity import sensitivity, with_value
 

@@ -97,7 +97,7 @@ def test_the_amplitude_does_not_hang_on_where_the_rows_fall(golden):
 
 
 def test_long_doubles_are_judged_with_all_their_digits(golden, truth):
-    wide = truth.states.astype(np.longdouble) + truth.rest.astype(np.longdouble)
+    wide = truth.states.astype(np.longdouble) + truth.low.astype(np.longdouble)
     arrays = {"t": TIMES, "x": wide[:, 0] + np.longdouble("1e-18"), "y": wide[:, 1]}
     made = errors_of(candidate_of("wide", arrays), truth, golden)
     assert made.max_m == pytest.approx(1e-18, rel=0.1)
@@ -110,7 +110,7 @@ def test_a_time_that_is_no_double_is_taken_as_it_is(golden):
     truth = dense(golden, near, 2.0**-80)
     late = (times - near).astype(float)
     moved = truth.states[:, :3] + 0.0
-    wide = moved.astype(np.longdouble) + truth.rest[:, :3] + truth.states[:, 3:] * late[:, None]
+    wide = moved.astype(np.longdouble) + truth.low[:, :3] + truth.states[:, 3:] * late[:, None]
     made = errors_of(candidate_of("wide", {"t": times, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
     assert np.abs(late).max() > 1e-12
     assert made.max_m < 1e-18

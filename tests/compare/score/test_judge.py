@@ -13,7 +13,7 @@ import pytest
 
 from foucault import main
 from reference import load, load_scene, trajectory
-from reference.engines.trajectory import Variants
+from reference.engines.variants import Variants
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 OWN = """id = "mine"

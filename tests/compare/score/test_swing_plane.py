@@ -7,7 +7,7 @@ import pytest
 from small_scenes import make_scene
 
 from compare.score.swing_plane import ellipse_errors
-from reference.engines.trajectory import Variants
+from reference.engines.variants import Variants
 
 TIMES = np.linspace(0.0, 3600.0, 1801)
 REST = (0.0, -0.115)

@@ -13,7 +13,7 @@ from compare.studies.approximation_limits import LIMITS, limits, sweep, sweep_va
 from compare.studies.approximation_limits import _below as below
 from compare.studies.variation import varied
 from reference import InputError, load, load_scene, trajectory
-from reference.model.mechanics import rest_position
+from reference.model.force import rest_position
 
 PARIS = load_scene("paris")
 FEW = ("linear_anharmonic", "gastebois_general", "conical")

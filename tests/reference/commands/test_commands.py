@@ -154,9 +154,9 @@ def test_an_unknown_level_or_command_is_wrong_usage(foucault):
 
 
 def test_what_cannot_be_reached_ends_with_exit_3_and_no_file(foucault, tmp_path, monkeypatch):
-    from reference.solver import pilot as growth
+    from reference.solver import pilot as pilot_runs
 
-    monkeypatch.setattr(growth, "MAX_PREC", 60)
+    monkeypatch.setattr(pilot_runs, "MAX_PREC", 60)
     status, out, err = foucault("generate", "paris", "--t-end", "60", "--out", str(tmp_path / "p"))
     assert (status, out) == (3, "")
     assert "keep no digit" in err

@@ -34,14 +34,14 @@ def nearly_inverted(tmp_path_factory):
 def on_another_grid(golden, step):
     """An independent solution of the same scene, on times that are doubles."""
     found = solve(golden.scene.with_values([f"run.grid_step={step}"]), digits=30, level="self_consistent")
-    rows = [[Fraction(value, 1 << found.grid.scale) for value in row] for row in found.grid.values]
+    rows = [[Fraction(value, 1 << found.grid.bits) for value in row] for row in found.grid.values]
     return np.array([float(t) for t in found.times]), rows
 
 
 def distance_m(evaluated, rows):
     """Largest distance of positions, all digits counted."""
     worst = 0.0
-    for near, rest, row in zip(evaluated.states, evaluated.rest, rows, strict=True):
+    for near, rest, row in zip(evaluated.states, evaluated.low, rows, strict=True):
         off = [Fraction(a) + Fraction(b) - c for a, b, c in zip(near[:3], rest[:3], row[:3], strict=True)]
         worst = max(worst, float(sum(part * part for part in off)) ** 0.5)
     return worst
@@ -68,7 +68,7 @@ def test_at_a_golden_time_it_is_the_golden_state(decimal_grid):
     found = dense(decimal_grid, [1.0], 2.0**-110)
     for i, name in enumerate(GRID_COLUMNS):
         printed = decimal_grid.exact(name)[k]
-        assert abs(Fraction(found.states[0, i]) + Fraction(found.rest[0, i]) - printed) < Fraction(found.bound_m)
+        assert abs(Fraction(found.states[0, i]) + Fraction(found.low[0, i]) - printed) < Fraction(found.bound_m)
     assert found.bound_m < float(decimal_grid.manifest.bounds.position_m) + 1e-29
 
 
@@ -80,14 +80,14 @@ def test_a_double_beside_a_grid_time_is_not_taken_for_it(decimal_grid):
         k = decimal_grid.decimals("t").index(text) if text in decimal_grid.decimals("t") else round(t * 10)
         late = Fraction(t) - Fraction(text)
         moved = decimal_grid.exact("x")[k] + late * decimal_grid.exact("vx")[k]
-        value = Fraction(found.states[0, 0]) + Fraction(found.rest[0, 0])
+        value = Fraction(found.states[0, 0]) + Fraction(found.low[0, 0])
         assert abs(value - moved) < Fraction(1, 10**26)
 
 
 def test_times_in_any_order_and_repeated_come_out_sorted_once(decimal_grid):
     found = dense(decimal_grid, [2.5, 0.0, 1.25, 2.5])
     assert found.t.tolist() == [0.0, 1.25, 2.5]
-    assert found.states.shape == found.rest.shape == (3, 6)
+    assert found.states.shape == found.low.shape == (3, 6)
     one_by_one = np.vstack([dense(decimal_grid, [t]).states for t in found.t])
     assert np.abs(one_by_one - found.states).max() < 1e-16
 
@@ -98,7 +98,7 @@ def test_many_rows_go_through_blocks_unharmed(decimal_grid, monkeypatch):
     monkeypatch.setattr("reference.dataset.dense.BLOCK", 64)
     blocks = dense(decimal_grid, times)
     assert np.array_equal(whole.states, blocks.states)
-    assert np.array_equal(whole.rest, blocks.rest)
+    assert np.array_equal(whole.low, blocks.low)
 
 
 def test_a_step_beyond_the_end_is_measured_and_more_is_refused(decimal_grid):

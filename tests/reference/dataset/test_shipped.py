@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 import reference
+from reference.dataset.recompute import recompute
 from reference.dataset.verify import problems_of
-from reference.dataset.write import recompute
 from reference.scene import data_root
 
 SHIPPED = sorted(path.name for path in (data_root() / "golden").glob("[a-z]*"))

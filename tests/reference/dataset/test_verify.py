@@ -13,9 +13,10 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset.read import MANIFEST
+from reference.dataset.recompute import recompute
 from reference.dataset.sheets import Sheet, binary64_sheet
 from reference.dataset.verify import problems_of
-from reference.dataset.write import recompute, write
+from reference.dataset.write import write
 
 
 @pytest.fixture(scope="module")

@@ -23,8 +23,9 @@ from reference.dataset import read as golden
 from reference.dataset import write as publish
 from reference.dataset.manifest import json_schema
 from reference.dataset.read import MANIFEST, load
+from reference.dataset.render import render
 from reference.dataset.verify import problems_of
-from reference.dataset.write import check_target, default_folder, render, write
+from reference.dataset.write import check_target, default_folder, write
 from reference.errors import DatasetError, InputError
 
 NAMES = {MANIFEST, "grid.csv", "transits.csv", "grid.binary64.csv", "transits.binary64.csv", "certified.txt"}

@@ -11,9 +11,10 @@ import pytest
 from small_scenes import make_scene, model_at, stepper_of
 
 from reference.engines.heyoka.log import watched_log
-from reference.engines.heyoka.taylor import System, cartesian, equations_text, least_tension
+from reference.engines.heyoka.stepper import cartesian, least_tension
+from reference.engines.heyoka.system import System, equations_text
 from reference.errors import IntegrationError
-from reference.model.mechanics import FORMULATIONS
+from reference.model.formulations import FORMULATIONS
 from reference.precision import DOUBLE, LONG_DOUBLE, real
 
 

@@ -10,7 +10,7 @@ import pytest
 from small_scenes import make_scene
 
 from reference import InputError, IntegrationError, integrate, trajectory
-from reference.engines.trajectory import Variants
+from reference.engines.variants import Variants
 from reference.precision import LONG_DOUBLE, real
 
 TIMES = np.linspace(0.0, 100.0, 57)

@@ -10,7 +10,9 @@ import pytest
 from small_scenes import make_scene, stepper_of
 
 from reference.engines.heyoka.log import watched_log
-from reference.engines.heyoka.taylor import Numbers, Stepper, System
+from reference.engines.heyoka.numbers import Numbers
+from reference.engines.heyoka.stepper import Stepper
+from reference.engines.heyoka.system import System
 from reference.engines.plan import Plan
 from reference.engines.run import run, start_of
 from reference.engines.transits import march, quiet_start
@@ -21,7 +23,7 @@ from reference.precision import DOUBLE, LONG_DOUBLE, real
 
 def bare_heyoka(scene, number, t_end, first_step=None):
     """What heyoka alone reports: times of xdot = 0 in (or at) 0 … t_end; its log is left on stdout."""
-    from reference.model.mechanics import FORMULATIONS
+    from reference.model.formulations import FORMULATIONS
 
     ctx, k, n, v = start_of(scene.exact, number)
     numbers, model = Numbers(number), FORMULATIONS["momentum"]
@@ -75,7 +77,7 @@ class EdgeOnTransit(Stepper):
 @pytest.mark.parametrize("offset", [0, 1, -1])
 def test_a_step_edge_on_a_transit_neither_loses_nor_doubles_it(paris, number, offset):
     ctx, k, n, v = start_of(paris.exact, number)
-    from reference.model.mechanics import FORMULATIONS
+    from reference.model.formulations import FORMULATIONS
 
     stepper = EdgeOnTransit(FORMULATIONS["momentum"], k, n, v, ctx, number, events=True)
     first = exact_first_transit(paris, number)
@@ -143,7 +145,7 @@ class LosesEvents(Stepper):
 
 
 def losing(scene, number, kind=LosesEvents):
-    from reference.model.mechanics import FORMULATIONS
+    from reference.model.formulations import FORMULATIONS
 
     ctx, k, n, v = start_of(scene.exact, number)
     return kind(FORMULATIONS["momentum"], k, n, v, ctx, number, events=True)
@@ -204,7 +206,7 @@ def test_the_transits_of_a_day_are_those_of_other_steps_and_another_form(paris):
     runs = [run(Plan(paris.exact, name, LONG_DOUBLE, times, transits=True)) for name in ("momentum", "space")]
     assert [len(one.zeros or ()) for one in runs] == [10514, 10514]
     assert runs[0].directions == runs[1].directions == [1, -1] * 5257
-    scale = runs[0].scale
+    scale = runs[0].bits
     moments = [[Fraction(row[0], 2**scale) for row in one.zeros] for one in runs]
     slopes = [abs(Fraction(row[7], 2**scale)) for row in runs[0].zeros]
     worst = max(abs(a - b) * slope for a, b, slope in zip(*moments, slopes, strict=True))
@@ -214,7 +216,7 @@ def test_the_transits_of_a_day_are_those_of_other_steps_and_another_form(paris):
 def test_the_time_of_a_transit_near_the_north_south_passage_is_worse_than_the_others(paris):
     times = (Fraction(0), Fraction(86400))
     done = run(Plan(paris.exact, "momentum", DOUBLE, times, transits=True))
-    slopes = sorted(abs(row[7]) / 2**done.scale for row in done.zeros)
+    slopes = sorted(abs(row[7]) / 2**done.bits for row in done.zeros)
     assert slopes[0] < slopes[len(slopes) // 2] / 1000
 
 
@@ -237,7 +239,7 @@ def test_a_release_at_rest_in_the_meridian_has_its_first_transit_where_the_proof
     """facts/enclosure.md H 6: y0 = 0.5 m, first transit 8.2266590196580988 s, no spurious one at 0."""
     scene = make_scene(release={"x": "0", "y": "0.5"})
     done = run(Plan(scene.exact, "momentum", number, (Fraction(0), Fraction(60)), transits=True))
-    first = Fraction(done.zeros[0][0], 2**done.scale)
+    first = Fraction(done.zeros[0][0], 2**done.bits)
     assert abs(first - Fraction("8.2266590196580988")) < (1e-9 if number is DOUBLE else 1e-15)
 
 
@@ -245,7 +247,7 @@ def test_a_moving_release_may_have_a_transit_in_its_first_step():
     """facts/enclosure.md H 6: xdot(0) = 0.067 m/s, first transit 1.38290078 s."""
     scene = make_scene(release={"x": "0.3", "y": "0.4", "vx": "0.067"})
     done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
-    assert abs(done.zeros[0][0] / 2**done.scale - 1.38290078) < 1e-8
+    assert abs(done.zeros[0][0] / 2**done.bits - 1.38290078) < 1e-8
 
 
 def test_a_run_shorter_than_the_quiet_start_has_no_transit(paris):

@@ -18,7 +18,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from reference import Scene, load_scene, parse_scene, solve
-from reference.solver.solution import Solution, Table
+from reference.solver.solution import Solution
+from reference.table import Table
 
 MP = mpmath.mp.clone()
 MP.dps = 100

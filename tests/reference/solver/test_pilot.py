@@ -16,8 +16,12 @@ from reference.engines.run import run
 from reference.errors import IntegrationError, UnreachableError
 from reference.precision import DOUBLE
 from reference.scene import load_scene
-from reference.solver import pilot as growth
-from reference.solver.pilot import Growth, check_pace, digits_lost, effort, measure_growth
+from reference.solver import pilot as pilot_runs
+from reference.solver import reach
+from reference.solver.digits_lost import digits_lost
+from reference.solver.pilot import Pilot, run_pilot
+from reference.solver.reach import check_pace, effort
+from reference.table import bits_in
 
 METRE = {"length": "1"}
 STILL = {"rotation_rate": "0"}
@@ -55,14 +59,14 @@ def test_strong_drag_forgets_the_release():
 def test_the_growth_may_be_handed_over():
     scene = load_scene("conical")
     times = tuple(scene.exact.grid)
-    assert digits_lost(scene.exact, times, measure_growth(scene.exact, times)) == digits_lost(scene.exact, times)
+    assert digits_lost(scene.exact, times, run_pilot(scene.exact, times)) == digits_lost(scene.exact, times)
 
 
 def test_twins_that_part_at_every_precision_are_refused(monkeypatch):
     scene = load_scene("separatrix")
     times = tuple(scene.exact.grid)
-    measured = measure_growth(scene.exact, times)
-    monkeypatch.setattr(growth, "MAX_PREC", 130)
+    measured = run_pilot(scene.exact, times)
+    monkeypatch.setattr("reference.solver.digits_lost.MAX_PREC", 130)
     with pytest.raises(UnreachableError, match="part company"):
         digits_lost(scene.exact, times, measured)
 
@@ -70,7 +74,7 @@ def test_twins_that_part_at_every_precision_are_refused(monkeypatch):
 def test_growth_faster_than_any_precision_is_refused_from_the_first_runs():
     scene = load_scene("separatrix", ["run.t_end=2400", "run.grid_step=1"])
     with pytest.raises(UnreachableError, match=r"to the end it takes about (\d+) bits") as caught:
-        measure_growth(scene.exact, tuple(scene.exact.grid))
+        run_pilot(scene.exact, tuple(scene.exact.grid))
     bits = int(re.findall(r"(\d+) bits", caught.value.reason)[0])
     needed = 2400 * 3 / math.log(2)
     assert needed * 0.9 < bits < needed * 1.1
@@ -84,7 +88,7 @@ def test_a_velocity_that_shrinks_with_the_precision_is_zero_and_not_lost():
         release={"angle": "120", "azimuth": "90"},
         run={"t_end": "60", "transits": False, "digits": 20},
     )
-    assert measure_growth(scene.exact, tuple(scene.exact.grid)).prec <= growth.ZERO_PREC
+    assert run_pilot(scene.exact, tuple(scene.exact.grid)).prec <= pilot_runs.ZERO_PREC
     assert max(map(abs, reference.solve(scene).vx)) < 1e-20
     with pytest.raises(IntegrationError, match=r"run\.transits = false"):
         reference.solve(scene, transits=True)
@@ -116,12 +120,12 @@ def test_a_stiff_scene_is_refused_with_its_rates_and_their_ratio():
 def test_without_any_force_drag_ends_all_motion_and_the_reason_says_so():
     scene = load_scene("force_free", ["pendulum.drag=1e9"])
     with pytest.raises(UnreachableError, match="nothing moves any more"):
-        measure_growth(scene.exact, tuple(scene.exact.grid))
+        run_pilot(scene.exact, tuple(scene.exact.grid))
 
 
 def test_a_long_run_is_refused_for_its_length_and_the_advice_is_good(monkeypatch, paris):
-    monkeypatch.setattr(growth, "MAX_STEPS", 20000)
-    monkeypatch.setattr(growth, "LOOK_STEPS", 1000)
+    monkeypatch.setattr(reach, "MAX_STEPS", 20000)
+    monkeypatch.setattr(reach, "LOOK_STEPS", 1000)
     with pytest.raises(UnreachableError, match="steps a second") as caught:
         pace_of(paris)
     assert "Stiff" not in caught.value.reason
@@ -131,8 +135,8 @@ def test_a_long_run_is_refused_for_its_length_and_the_advice_is_good(monkeypatch
 
 
 def test_a_fast_start_that_drag_brings_to_rest_is_waited_for(monkeypatch):
-    monkeypatch.setattr(growth, "MAX_STEPS", 8000)
-    monkeypatch.setattr(growth, "LOOK_STEPS", 64)
+    monkeypatch.setattr(reach, "MAX_STEPS", 8000)
+    monkeypatch.setattr(reach, "LOOK_STEPS", 64)
     fast = make_scene(
         pendulum={"length": "1", "drag": "1"},
         release={"x": "0.1", "y": "0", "vx": "100", "vy": "1"},
@@ -161,12 +165,12 @@ def test_effort_counts_steps_at_160_bits_and_grows_with_the_cube():
 
 
 def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(monkeypatch, paris):
-    honest = reference.solver.solve.measure_growth
+    honest = reference.solver.solve.run_pilot
 
     def longer(inputs, times):
-        return replace(honest(inputs, times), steps=growth.MAX_STEPS // 10)
+        return replace(honest(inputs, times), steps=reach.MAX_STEPS // 10)
 
-    monkeypatch.setattr(reference.solver.solve, "measure_growth", longer)
+    monkeypatch.setattr(reference.solver.solve, "run_pilot", longer)
     for level in ("computed", "confirmed"):
         with pytest.raises(UnreachableError, match=r"400 digits take \d+ bits over about \d+ steps"):
             reference.solve(paris, t_end="60", digits=400, level=level)
@@ -174,17 +178,17 @@ def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(monkeypatc
 
 def test_a_column_that_is_only_rounding_is_measured_by_its_kind():
     one, tiny = Fraction(1), Fraction(1, 10**20)
-    made = Growth(53, (tiny,) * 6, (one, tiny, 2 * one, tiny, tiny, tiny), (0.0), 0.0, 1)
+    made = Pilot(53, (tiny,) * 6, (one, tiny, 2 * one, tiny, tiny, tiny), (0.0), 0.0, 1)
     assert made.sizes == (1, 2, 2, 0, 0, 0)
 
 
 @pytest.mark.parametrize("power", [-2000, -3, 0, 1, 5, 3000])
 def test_bits_are_counted_exactly_however_large_or_small(power):
     exact = Fraction(2) ** power
-    assert growth.bits_in(exact) == power
-    assert growth.bits_in(exact * (1 + Fraction(1, 2**80))) == power + 1
-    assert growth.bits_in(exact * (1 - Fraction(1, 2**80))) == power
-    assert growth.bits_in(Fraction(0)) == 0
+    assert bits_in(exact) == power
+    assert bits_in(exact * (1 + Fraction(1, 2**80))) == power + 1
+    assert bits_in(exact * (1 - Fraction(1, 2**80))) == power
+    assert bits_in(Fraction(0)) == 0
 
 
 def test_digits_lost_in_one_burst_are_not_taken_for_a_steady_loss():
@@ -195,4 +199,4 @@ def test_digits_lost_in_one_burst_are_not_taken_for_a_steady_loss():
         release={"angle": "179.99999999999999999", "azimuth": "30"},
         run={"t_end": "300", "grid_step": "2", "digits": 10, "transits": False},
     )
-    assert DOUBLE.prec < measure_growth(scene.exact, tuple(scene.exact.grid)).prec <= 256
+    assert DOUBLE.prec < run_pilot(scene.exact, tuple(scene.exact.grid)).prec <= 256

@@ -13,19 +13,20 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset.sheets import grid_sheet, transits_sheet
-from reference.engines import run as runs
+from reference.engines import side_by_side
 from reference.engines.plan import Plan
-from reference.engines.run import run, run_both
+from reference.engines.run import run
+from reference.engines.side_by_side import run_both
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.precision import DOUBLE, real
-from reference.solver import pilot as growth
+from reference.solver import pilot as pilot_runs
 from reference.solver import solve as solver
 
 
 def by_higher_precision(scene, prec=256):
     """x, y, z, vx, vy, vz at the end from one run far finer than any under test, in yet another formulation."""
     done = run(Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), transits=False))
-    return [Fraction(value, 2**done.scale) for value in done.grid[-1][:6]]
+    return [Fraction(value, 2**done.bits) for value in done.grid[-1][:6]]
 
 
 HARD = {
@@ -63,7 +64,7 @@ def test_the_last_printed_digit_is_off_by_at_most_one_at_every_level(level, digi
 def test_the_bound_of_every_transit_holds_against_a_finer_run(paris):
     solution = reference.solve(paris, t_end="3600", digits=20, level="confirmed")
     finer = run(Plan(solution.scene.exact, "spin", real(160), solution.times, transits=True))
-    exact = [Fraction(row[0], 2**finer.scale) for row in finer.zeros]
+    exact = [Fraction(row[0], 2**finer.bits) for row in finer.zeros]
     sheet = transits_sheet(solution)
     assert len(exact) == len(sheet.rows) == 438
     for row, t in zip(sheet.rows, exact, strict=True):
@@ -127,13 +128,13 @@ def test_every_kind_of_scene_is_confirmed_to_thirty_digits(sections):
 
 
 def test_precision_is_raised_when_the_first_guess_is_too_low(monkeypatch, paris):
-    honest = solver.measure_growth
+    honest = solver.run_pilot
 
     def optimistic(inputs, times):
         measured = honest(inputs, times)
         return replace(measured, errors=tuple(error / 2**60 for error in measured.errors))
 
-    monkeypatch.setattr(solver, "measure_growth", optimistic)
+    monkeypatch.setattr(solver, "run_pilot", optimistic)
     solution = reference.solve(paris, t_end="60", digits=30)
     truth = by_higher_precision(solution.scene, 300)
     assert abs(solution.grid.exact("x")[-1] - truth[0]) <= solution.grid.bound("x")[-1]
@@ -145,7 +146,7 @@ def test_two_runs_that_never_agree_are_refused_and_give_no_numbers(monkeypatch, 
 
     def wrong(fine, coarse, *rest):
         one, other = honest(fine, coarse, *rest)
-        return one, replace(other, grid=[tuple(value + 2 ** (other.scale - 60) for value in row) for row in other.grid])
+        return one, replace(other, grid=[tuple(value + 2 ** (other.bits - 60) for value in row) for row in other.grid])
 
     monkeypatch.setattr(solver, "run_both", wrong)
     with pytest.raises(UnreachableError, match="do not agree to 30 digits") as caught:
@@ -173,16 +174,16 @@ def test_a_scene_that_loses_every_digit_of_double_is_measured_with_more(monkeypa
         release={"angle": "179.999999999999", "azimuth": "30"},
         run={"t_end": "60", "digits": 20},
     )
-    assert growth.measure_growth(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
+    assert pilot_runs.run_pilot(scene.exact, tuple(scene.exact.grid)).prec > DOUBLE.prec
     solution = reference.solve(scene)
     truth = by_higher_precision(scene, 400)
     assert abs(solution.grid.exact("x")[-1] - truth[0]) <= solution.grid.bound("x")[-1]
 
 
 def test_growth_beyond_every_precision_is_refused(monkeypatch, paris):
-    monkeypatch.setattr(growth, "MAX_PREC", 60)
+    monkeypatch.setattr(pilot_runs, "MAX_PREC", 60)
     with pytest.raises(UnreachableError, match="keep no digit"):
-        growth.measure_growth(paris.exact, (Fraction(0), Fraction(60)))
+        pilot_runs.run_pilot(paris.exact, (Fraction(0), Fraction(60)))
     monkeypatch.undo()
     monkeypatch.setattr(solver, "MAX_PREC", 100)
     with pytest.raises(UnreachableError, match=r"60 digits take \d+ bits"):
@@ -198,9 +199,9 @@ def test_two_processes_give_what_one_gives(monkeypatch, paris):
     fine = Plan(paris.exact, "momentum", real(120), (Fraction(0), Fraction(120)), transits=True)
     coarse = replace(fine, formulation="space", number=real(100))
     seen: list[float] = []
-    monkeypatch.setattr(runs.os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(side_by_side.os, "cpu_count", lambda: 1)
     alone = run_both(fine, coarse, 1e9, seen.append)
-    monkeypatch.setattr(runs.os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(side_by_side.os, "cpu_count", lambda: 2)
     together = run_both(fine, coarse, 1e9, seen.append)
     for one, other in zip(alone, together, strict=True):
         assert one.grid == other.grid

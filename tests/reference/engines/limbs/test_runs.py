@@ -20,7 +20,7 @@ from reference.engines.plan import Plan
 from reference.engines.run import run
 from reference.errors import InputError, IntegrationError
 from reference.precision import real
-from reference.solver.pilot import disagreement, largest_of
+from reference.table import disagreement, largest_of
 
 PARIS = {"release": {"x": "0.3", "y": "0.4"}}
 SCENES = {
@@ -66,9 +66,9 @@ def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
         run(Plan(scene.exact, "momentum", real(bits), times, transits=transits))
         for bits, transits in ((prec, False), (prec + 40, True))
     )
-    lost = disagreement(same.grid, same.scale, finer.grid, finer.scale)
-    gaps = disagreement(ours.grid, ours.scale, finer.grid, finer.scale)
-    sizes = largest_of(finer.grid, finer.scale)
+    lost = disagreement(same.grid, same.bits, finer.grid, finer.bits)
+    gaps = disagreement(ours.grid, ours.bits, finer.grid, finer.bits)
+    sizes = largest_of(finer.grid, finer.bits)
     allowed = [
         SPARE * max(lost[i : i + 3]) + max(sizes[i : i + 3]) * Fraction(2) ** (FLOOR_BITS - prec) for i in (0, 3)
     ]
@@ -80,7 +80,7 @@ def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
     assert ours.zeros is not None
     assert finer.zeros is not None
     for one, other in zip(ours.zeros, finer.zeros, strict=True):
-        late, ax = abs(Fraction(one[0], 2**ours.scale) - Fraction(other[0], 2**finer.scale)), one[7] / 2**ours.scale
+        late, ax = abs(Fraction(one[0], 2**ours.bits) - Fraction(other[0], 2**finer.bits)), one[7] / 2**ours.bits
         assert late <= 4 * allowed[1] / abs(Fraction(ax)) + times[-1] * Fraction(2) ** (FLOOR_BITS - prec)
 
 
@@ -90,7 +90,7 @@ def test_an_hour_of_paris_keeps_32_digits_and_all_transits():
     times = tuple(Fraction(60 * k) for k in range(61))
     ours = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), times, transits=True))
     theirs = run(Plan(scene.exact, "momentum", real(144), times, transits=True))
-    assert max(disagreement(ours.grid, ours.scale, theirs.grid, theirs.scale)[:3]) < Fraction(1, 10**34)
+    assert max(disagreement(ours.grid, ours.bits, theirs.grid, theirs.bits)[:3]) < Fraction(1, 10**34)
     assert ours.directions == theirs.directions
     assert len(ours.directions) == 438
 
@@ -106,7 +106,7 @@ def test_a_quarter_period_is_that_of_the_elliptic_integral():
     quarter = ctx.sqrt(ctx.mpf(2) / ctx.mpf("9.81")) * ctx.ellipk(ctx.sinpi(ctx.mpf(75) / 180) ** 2)
     time = Fraction(int(ctx.floor(quarter * 2**190)), 2**190)
     ran = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(160), (Fraction(0), time), transits=False))
-    x, y, z = (ctx.mpf(value) / 2**ran.scale for value in ran.grid[1][:3])
+    x, y, z = (ctx.mpf(value) / 2**ran.bits for value in ran.grid[1][:3])
     assert abs(x) < 1e-44
     assert y == 0
     assert abs(z + 2) < 1e-44
@@ -122,7 +122,7 @@ def test_xdot_identically_zero_gives_no_transits():
 def test_a_transit_after_the_last_time_is_not_reported():
     scene = make_scene(**PARIS)
     every = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), TIMES, transits=True))
-    third = Fraction(every.zeros[2][0], 2**every.scale)
+    third = Fraction(every.zeros[2][0], 2**every.bits)
     for end, count in ((third - Fraction(1, 10**9), 2), (third + Fraction(1, 10**9), 3)):
         cut = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), (Fraction(0), end), transits=True))
         assert len(cut.zeros) == count
@@ -162,7 +162,7 @@ def test_states_are_double_doubles_of_a_finer_run():
     for i in range(0, 1001, 10):
         for j in range(6):
             exact = Fraction(float(high[i, j])) + Fraction(float(low[i, j]))
-            assert abs(exact - Fraction(fine.grid[i][j], 2**fine.scale)) < Fraction(1, 10**28)
+            assert abs(exact - Fraction(fine.grid[i][j], 2**fine.bits)) < Fraction(1, 10**28)
 
 
 @pytest.mark.parametrize("times", [[], [1.0, 1.0], [-1.0, 2.0], [0.0, float("nan")], [[1.0]]])

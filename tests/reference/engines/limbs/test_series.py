@@ -15,7 +15,8 @@ from taylor_of_mechanics import Polynomial, taylor
 
 from reference.engines import limbs
 from reference.engines.plan import Plan
-from reference.model.mechanics import FORMULATIONS, tension
+from reference.model.force import tension
+from reference.model.formulations import FORMULATIONS
 
 BITS = 150
 ORDER = 30  # of the comparison; the series goes further

@@ -1,0 +1,152 @@
+"""A solution as the text of every file of its dataset; the same solution gives the same bytes."""
+
+from __future__ import annotations
+
+import hashlib
+from fractions import Fraction
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+from ..engines.equations import lines_and_left_out
+from ..engines.registry import engine_of
+from ..precision import outward, rounded_up
+from ..scene import Scene, load_scene, scene_ids
+from ..solver.solution import Solution
+from .certified import certified_page
+from .manifest import (
+    Bounds,
+    Counts,
+    CrossCheckRecord,
+    EnclosureRecord,
+    Equations,
+    FileRecord,
+    Invariant,
+    Manifest,
+    Possible,
+    RunRecord,
+)
+from .read import MANIFEST
+from .sheets import binary64_sheet, grid_sheet, largest_bound, scene_inputs, transits_sheet
+from .verify import invariant_drift
+
+FRAME = "topocentric, axes x east, y north, z up, origin at the suspension, z < 0 below it"
+UNITS = {"t": "s", "x, y, z": "m", "vx, vy, vz": "m/s", "ax": "m/s^2", "bound": "s", "angles": "degrees"}
+
+
+def render(solution: Solution) -> dict[str, str]:
+    """Every file of a dataset by name, as text; the same solution gives the same bytes."""
+    grid, transits = grid_sheet(solution), transits_sheet(solution)
+    scene, run = solution.scene, solution.run
+    bounds = Bounds(
+        position_m=rounded_up(largest_bound(solution.grid, ("x", "y", "z"), grid.decimals)),
+        velocity_m_s=rounded_up(largest_bound(solution.grid, ("vx", "vy", "vz"), grid.decimals)),
+        transit_s=max((row[-1] for row in transits.rows), key=Fraction, default=None),
+    )
+    verdict = _verdict(solution)
+    files = {
+        "grid.csv": grid.csv(),
+        "transits.csv": transits.csv(),
+        "grid.binary64.csv": binary64_sheet(grid).csv(),
+        "transits.binary64.csv": binary64_sheet(transits).csv(),
+        "certified.txt": certified_page(solution, grid, transits, bounds, verdict),
+    }
+    lines, left_out = lines_and_left_out(scene, run.formulation)
+    initial, drift = invariant_drift(scene, grid)
+    made = Manifest(
+        schema_version=1,
+        id=scene.id,
+        title=scene.title,
+        source=scene.source,
+        flags=list(scene.flags),
+        scene=scene_inputs(scene),
+        inputs=scene.inputs,
+        frame=FRAME,
+        units=UNITS,
+        level=scene.run.level,
+        digits=scene.run.digits,
+        decimals={"grid": grid.decimals, "transits": transits.decimals},
+        bounds=bounds,
+        counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
+        transits=verdict,
+        possible=[
+            Possible(from_s=outward(a, -1), to_s=outward(b, 1), parity=parity) for a, b, parity in solution.possible
+        ],
+        invariant=Invariant(h_m2_s2=initial, drift_m2_s2=drift),
+        equations=Equations(formulation=run.formulation, lines=lines, left_out=left_out),
+        run=RunRecord(formulation=run.formulation, number=run.number, order=run.order, steps=run.steps),
+        cross_checks=[
+            CrossCheckRecord(
+                formulation=check.formulation,
+                number=check.number,
+                order=check.order,
+                steps=check.steps,
+                position_m=rounded_up(check.position_m),
+                velocity_m_s=rounded_up(check.velocity_m_s),
+                transit_s=None if check.transit_s is None else rounded_up(check.transit_s),
+            )
+            for check in solution.checks
+        ],
+        enclosure=_enclosure_record(solution),
+        generator={name: _version(name) for name in ("foucault-reference", "heyoka", "mpmath")},
+        command=command(scene, run.number),
+        files={
+            name: FileRecord(bytes=len(text.encode()), sha256=hashlib.sha256(text.encode()).hexdigest())
+            for name, text in files.items()
+        },
+    )
+    return {MANIFEST: made.text(), **files}
+
+
+def _verdict(solution: Solution) -> Any:
+    if not solution.scene.run.transits:
+        return "not asked for"
+    if solution.transits is None:
+        return "xdot is identically zero"
+    return "undecided intervals" if solution.possible else "complete"
+
+
+def _enclosure_record(solution: Solution) -> EnclosureRecord | None:
+    proof = solution.proof
+    if proof is None:
+        return None
+    return EnclosureRecord(
+        method=proof.method,
+        prec=proof.prec,
+        order=proof.order,
+        steps=proof.steps,
+        position_radius_m=rounded_up(proof.position_radius),
+        velocity_radius_m_s=rounded_up(proof.velocity_radius),
+        transit_radius_s=None if proof.transit_radius is None else rounded_up(proof.transit_radius),
+        agreement_bits=proof.agreement_bits,
+    )
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def command(scene: Scene, number: str) -> str:
+    """The command that makes the dataset: of a scene that ships, with what was changed in it, or of its file."""
+    run, shipped = scene.run, scene.id in scene_ids()
+    parts = ["foucault", "generate", scene.id if shipped else f"{scene.id}.toml"]
+    parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
+    parts += ["--engine", engine_of(number)]
+    parts += [] if run.transits else ["--no-transits"]
+    if shipped:
+        parts += [word for change in _changes(scene, load_scene(scene.id)) for word in ("--set", change)]
+    return " ".join(parts)
+
+
+def _changes(scene: Scene, shipped: Scene) -> list[str]:
+    """What was set in a shipped scene, other than by options of their own."""
+    before, now = scene_inputs(shipped), scene_inputs(scene)
+    changed = [
+        f"{section}.{key}={value}"
+        for section, table in now.items()
+        for key, value in table.items()
+        if before[section].get(key) != value and (section != "run" or key == "grid_step")
+    ]
+    return changed if scene.inputs == shipped.inputs else [*changed, f"inputs={scene.inputs}"]

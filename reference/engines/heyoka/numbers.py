@@ -1,0 +1,67 @@
+"""heyoka's number types, and exact conversions to and from them.
+
+Every module of this folder that imports heyoka imports this one, so that its memory handler is installed: without it
+arrays of `real` leak.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import heyoka as hy
+import numpy as np
+
+from ...precision import NumberType
+
+hy.install_custom_numpy_mem_handler()
+
+_TYPES = {"double": float, "long_double": np.longdouble, "real": hy.real}
+
+
+class Numbers:
+    """Conversions between exact numbers and one of heyoka's number types."""
+
+    def __init__(self, number: NumberType) -> None:
+        self.number = number
+        self.type: Any = _TYPES[number.name]
+        self.dtype: Any = {"double": np.float64, "long_double": np.longdouble, "real": hy.real}[number.name]
+        self.keywords: dict[str, Any] = {"prec": number.prec} if number.name == "real" else {}
+        self._twos: dict[int, Any] = {}
+
+    def of(self, value: Any) -> Any:
+        """An mpf, int or Fraction as the nearest number of the type."""
+        if isinstance(value, int | Fraction):
+            top, bottom = value.numerator, value.denominator
+        else:
+            sign, mantissa, exponent, _ = value._mpf_
+            mantissa = -int(mantissa) if sign else int(mantissa)
+            top, bottom = (mantissa << exponent, 1) if exponent >= 0 else (mantissa, 1 << -exponent)
+        if self.number.name == "double":
+            return top / bottom
+        rounded, shift = _rounded(top, bottom, self.number.prec)
+        if self.number.name == "real":
+            return hy.real(rounded, self.number.prec) * hy.real(2, self.number.prec) ** shift
+        high = rounded >> 32 << 32
+        return np.ldexp(np.longdouble(high) + np.longdouble(rounded - high), shift)
+
+    def power_of_two(self, exponent: int) -> Any:
+        """2**exponent, exactly."""
+        if exponent not in self._twos:
+            self._twos[exponent] = self.of(Fraction(2) ** exponent)
+        return self._twos[exponent]
+
+    def fixed(self, values: Any, bits: int) -> list[int]:
+        """Each number of an array times 2**bits as an integer (cut off below one)."""
+        return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
+
+
+def _rounded(top: int, bottom: int, prec: int) -> tuple[int, int]:
+    """An integer m of at most `prec` bits and e with m 2**e nearest to top/bottom."""
+    if top == 0:
+        return 0, 0
+    shift = abs(top).bit_length() - bottom.bit_length() - prec
+    scaled = Fraction(top, bottom) / Fraction(2) ** shift
+    if abs(scaled) >= 1 << prec:
+        shift, scaled = shift + 1, scaled / 2
+    return round(scaled), shift

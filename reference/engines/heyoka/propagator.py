@@ -1,0 +1,84 @@
+"""heyoka's integrator of any autonomous system, without events, with parameters or variational equations."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+import heyoka as hy
+import numpy as np
+
+from ...errors import IntegrationError
+from ...precision import NumberType
+from .numbers import Numbers
+from .system import as_pairs
+
+
+class Propagator:
+    """Any autonomous system, given generically, in heyoka: what the model's own `Stepper` is not needed for.
+
+    Args:
+        variables: names of the state's variables.
+        derivatives: `derivatives(state, functions)` or, with parameters, `derivatives(state, functions, parameters)`;
+            `functions` offers sqrt, sin, cos.
+        number: type to compute in.
+        tolerance: relative error of a step; the type's epsilon if None.
+        parameters: how many parameters there are.
+        varied: whether the derivative of the state with respect to the first parameter is integrated as well, by
+            the first-order variational equations.
+    """
+
+    def __init__(
+        self,
+        variables: Sequence[str],
+        derivatives: Callable[..., Sequence[Any]],
+        number: NumberType,
+        *,
+        tolerance: float | None = None,
+        parameters: int = 0,
+        varied: bool = False,
+    ) -> None:
+        self.numbers = Numbers(number)
+        state = [hy.expression(name) for name in variables]
+        known = ([hy.par[i] for i in range(parameters)],) if parameters else ()
+        system: Any = as_pairs(state, derivatives(tuple(state), hy, *known))
+        if varied:
+            system = hy.var_ode_sys(system, [hy.par[0]], order=1)
+        keywords = dict(self.numbers.keywords)
+        if tolerance is not None:
+            keywords["tol"] = self.numbers.of(Fraction(tolerance))
+        hy.llvm_state.set_diskcache_enabled(number.name != "real")
+        begun = time.process_time()
+        idle = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)
+        self._ta: Any = hy.taylor_adaptive(system, idle, fp_type=self.numbers.type, **keywords)
+        self.compile_s = time.process_time() - begun
+        self.steps = 0
+
+    def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0) -> Any:
+        """States at increasing times (the first is 0), shape (times, variables).
+
+        Where varied, `start` holds the state and then its derivative with respect to the first parameter, and so
+        does each row.
+
+        Raises:
+            IntegrationError: heyoka says anything but success, a state is not finite, or `max_steps` (0: any number)
+                do not suffice.
+        """
+        ta = self._ta
+        ta.time = self.numbers.of(0)
+        ta.state[:] = start
+        if len(parameters):
+            ta.pars[:] = parameters
+        if len(times) == 1:
+            return ta.state.copy()[None, :]
+        outcome, _, _, steps, _, states = ta.propagate_grid(
+            np.array(times, dtype=self.numbers.dtype), max_steps=max_steps
+        )
+        self.steps += int(steps)
+        if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
+            raise IntegrationError(f"heyoka stopped at t = {float(ta.time)} s with outcome {outcome}.")
+        if not np.isfinite(states.astype(float)).all():
+            raise IntegrationError("the state became infinite or not a number.")
+        return states

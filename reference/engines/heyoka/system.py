@@ -1,0 +1,78 @@
+"""A formulation as heyoka's expressions: what is compiled, and the same as text."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import heyoka as hy
+
+from ...model.algebra import minus, product
+from ...model.constants import Constants
+from ...model.force import acceleration
+from ...model.formulations import Formulation, Lagrangian
+
+
+@dataclass(frozen=True)
+class System:
+    """Equations of motion as heyoka expressions, with the constants they were built from."""
+
+    formulation: Formulation
+    constants: Constants
+    equations: list[tuple[Any, Any]]
+    xdot: Any
+    xddot: Any
+
+    @classmethod
+    def build(cls, formulation: Formulation, constants: Constants) -> System:
+        """Expressions of a formulation; `constants` are numbers of the run's type, or variables."""
+        state = hy.make_vars(*formulation.variables)
+        n, v = formulation.cartesian(state, constants, hy)
+        equations = as_pairs(state, rates(formulation, constants)(state, hy))
+        return cls(formulation, constants, equations, v[0], acceleration(n, v, constants)[0])
+
+
+def rates(formulation: Formulation, constants: Constants) -> Callable[[Any, Any], Sequence[Any]]:
+    """A formulation's derivatives as a function of state and functions."""
+    if isinstance(formulation, Lagrangian):
+        return lambda state, _: _euler_lagrange(formulation, state, constants)
+    return lambda state, functions: formulation.derivatives(state, constants, functions)
+
+
+def as_pairs(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]]:
+    """Pairs as heyoka wants them, also where a rate is the int 0."""
+    return [(name, rate + hy.expression(0.0)) for name, rate in zip(state, rates, strict=True)]
+
+
+def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -> list[Any]:
+    """Heyoka's equations of L; linear drag, with Rayleigh function γ α0/2, adds -γ q' to each q'' whatever q is."""
+    derived = hy.lagrangian(formulation.lagrangian(state, constants, hy), list(state[:2]), list(state[2:]))
+    rates = {str(name): rate for name, rate in derived}
+    for velocity in state[2:]:
+        rates[str(velocity)] = minus(rates[str(velocity)], product(constants.drag, velocity))
+    return [rates[str(variable)] for variable in state]
+
+
+def equations_text(formulation: Formulation, constants: Constants) -> list[str]:
+    """The lines "name' = …" that are compiled, constants by name and exact zeros left out."""
+    names: dict[str, Any] = {
+        "turn": ("", "Omega_y", "Omega_z"),
+        "pull": ("", "c_y", "c_z"),
+        "centrifugal": ("Omega2", "Omega_z2", "minus_Omega_yz", "Omega_y2"),
+        "drag": "gamma",
+        "length": "l",
+        "gravity": "g_l",
+        "axis_distance": "R_l",
+        "rate": "Omega",
+        "sin": "sin_lat",
+        "cos": "cos_lat",
+    }
+
+    def symbol(value: Any, name: Any) -> Any:
+        if isinstance(name, tuple):
+            return tuple(map(symbol, value, name))
+        return value if isinstance(value, int) else hy.make_vars(name)
+
+    named = Constants(**{key: symbol(value, names[key]) for key, value in vars(constants).items()})
+    return [f"{name}' = {rate}" for name, rate in System.build(formulation, named).equations]

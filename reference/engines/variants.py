@@ -1,0 +1,64 @@
+"""Trajectories in double for other inputs or constants than a scene's: the model compiled once, every constant open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..errors import InputError
+from ..model.constants import Constants, constants, release, scaled
+from ..model.formulations import FORMULATIONS
+from ..precision import DOUBLE, GUARD_BITS, Array, context
+from ..scene import Inputs
+
+MAX_STEPS = 3_000_000  # of a variant: a guess that is stiffer than the scene is not followed for ever
+
+
+class Variants:
+    """The model compiled once with every constant open, in double: what other inputs or constants would give.
+
+    `spin` is used because it takes each term of the force by itself (a change to one leaves the others alone)
+    and stays on the sphere at every angle.
+    """
+
+    _MODEL = FORMULATIONS["spin"]
+
+    def __init__(self) -> None:
+        from .heyoka.propagator import Propagator
+
+        self._ctx = context(DOUBLE.prec + GUARD_BITS)
+        self._flow = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=9)
+
+    def states(self, inputs: Inputs, times: Array, alter: Callable[[Constants], Constants] | None = None) -> Array:
+        """One run.
+
+        Args:
+            inputs: the exact inputs of a scene, or changed ones.
+            times: increasing, from 0, in s.
+            alter: changes the constants that follow from them.
+
+        Returns:
+            x, y, z in m and vx, vy, vz in m/s, shape (times, 6).
+
+        Raises:
+            InputError: the release is beyond the cord's reach.
+            IntegrationError: no success; no numbers then.
+        """
+        if inputs.position is not None and inputs.position[0] ** 2 + inputs.position[1] ** 2 >= inputs.length**2:
+            raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
+        k = constants(inputs, self._ctx)
+        n, v = (scaled(vector, k.length) for vector in release(inputs, self._ctx))
+        k = (k if alter is None else alter(k)).converted(float)
+        start = [float(value) for value in self._MODEL.start(n, v, k, self._ctx)]
+        open_ = [float(value) for value in (*k.turn[1:], *k.pull[1:], *k.centrifugal, k.drag)]
+        rows = self._flow.from_zero(start, times, open_, MAX_STEPS)
+        n_rows, spin = rows[:, :3], rows[:, 3:]
+        return np.hstack([n_rows, np.cross(spin, n_rows)]) * float(k.length)
+
+    @classmethod
+    def _rates(cls, state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
+        turn_y, turn_z, pull_y, pull_z, xx, yy, yz, zz, drag = parameters
+        k = Constants(1, (0, turn_y, turn_z), (0, pull_y, pull_z), (xx, yy, yz, zz), drag, 0, 0, 0, 0, 0)
+        return cls._MODEL.derivatives(state, k, functions)

@@ -1,0 +1,80 @@
+"""Sums and products of numbers of any type (mpf, binary64, heyoka expression) that leave out what is exactly zero.
+
+An exact zero is the int 0; it drops out of every sum and product here, so the system of a scene holds only the
+terms that the scene has.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Protocol
+
+from .constants import Vector, is_zero
+
+State = Sequence[Any]
+
+
+class Functions(Protocol):
+    """Elementary functions of a number type: an mpmath context, or the module heyoka."""
+
+    def sqrt(self, x: Any, /) -> Any:
+        """Square root."""
+
+    def sin(self, x: Any, /) -> Any:
+        """Sine."""
+
+    def cos(self, x: Any, /) -> Any:
+        """Cosine."""
+
+
+def product(*factors: Any) -> Any:
+    """The product, or the int 0 if any factor is exactly zero."""
+    result, started = 0, False
+    for factor in factors:
+        if is_zero(factor):
+            return 0
+        result, started = (result * factor if started else factor), True
+    return result
+
+
+def plus(*terms: Any) -> Any:
+    """The sum of the terms that are not exactly zero."""
+    total: Any = 0
+    for term in terms:
+        if not is_zero(term):
+            total = term if is_zero(total) else total + term
+    return total
+
+
+def minus(a: Any, b: Any) -> Any:
+    """The difference, leaving out what is exactly zero."""
+    return a if is_zero(b) else (-b if is_zero(a) else a - b)
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """Vector product."""
+    return (
+        minus(product(a[1], b[2]), product(a[2], b[1])),
+        minus(product(a[2], b[0]), product(a[0], b[2])),
+        minus(product(a[0], b[1]), product(a[1], b[0])),
+    )
+
+
+def dot(a: Vector, b: Vector) -> Any:
+    """Scalar product."""
+    return plus(*(product(p, q) for p, q in zip(a, b, strict=True)))
+
+
+def scale(k: Any, a: Vector) -> Vector:
+    """The vector k a."""
+    return (product(k, a[0]), product(k, a[1]), product(k, a[2]))
+
+
+def add(a: Vector, b: Vector) -> Vector:
+    """The vector a + b."""
+    return (plus(a[0], b[0]), plus(a[1], b[1]), plus(a[2], b[2]))
+
+
+def subtract(a: Vector, b: Vector) -> Vector:
+    """The vector a - b."""
+    return (minus(a[0], b[0]), minus(a[1], b[1]), minus(a[2], b[2]))
