@@ -227,8 +227,8 @@ def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
 
 
 SCRIPT = """
-import reference, reference.engines.run
-reference.engines.run.WORTH_A_PROCESS = 0.0
+import reference, reference.engines.side_by_side
+reference.engines.side_by_side.WORTH_A_PROCESS = 0.0
 for level in ("confirmed", "enclosed"):
     solution = reference.solve(reference.load_scene("paris"), t_end="120", digits=20, level=level)
     print(level, len(solution.directions))
