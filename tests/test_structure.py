@@ -1,4 +1,4 @@
-"""The shape of the house: imports go one way, and heavy or dangerous libraries have one door each."""
+"""The shape of the house: floors, no circles, and one door for each heavy or dangerous library."""
 
 from __future__ import annotations
 
@@ -8,29 +8,87 @@ import sys
 from pathlib import Path
 
 import pytest
+import structure
+from places import ROOT
 
-ROOT = Path(__file__).resolve().parent.parent
-SOURCES = sorted([ROOT / "foucault.py", *(ROOT / "reference").rglob("*.py"), *(ROOT / "compare").rglob("*.py")])
+SOURCES = structure.sources(ROOT)
+
+# top first; a room imports from lower floors only
+FLOORS = {
+    "": [["foucault"], ["compare"], ["reference"]],
+    "reference": [
+        ["commands"],
+        ["dataset"],
+        ["solver"],
+        ["engines", "enclosure"],
+        ["model"],
+        ["scene", "table", "process", "packing"],
+        ["precision"],
+        ["errors"],
+    ],
+    "reference/engines": [
+        ["side_by_side"],
+        ["run", "registry"],
+        ["limbs"],
+        ["transits", "trajectory", "variants", "equations"],
+        ["heyoka"],
+        ["plan"],
+    ],
+    "compare": [
+        ["commands", "fixture"],
+        ["testing"],
+        ["papers", "score"],
+        ["report"],
+        ["studies", "foucpend"],
+        ["methods"],
+        ["approximations", "rhs"],
+        ["candidates", "truth"],
+        ["cache"],
+    ],
+}
+
+
+@pytest.mark.parametrize("place", FLOORS)
+def test_imports_lead_downwards(place):
+    rooms, arrows = structure.arrows(ROOT, place)
+    assert sorted(room for floor in FLOORS[place] for room in floor) == sorted(rooms)
+    assert structure.upwards(arrows, FLOORS[place]) == set()
+
+
+def test_no_files_import_each_other_in_a_circle():
+    assert structure.circles(*structure.modules(ROOT)) == []
+
+
+FOLDERS = sorted({path.parent.relative_to(ROOT).as_posix() for path in SOURCES[1:]})
+
+
+@pytest.mark.parametrize("place", FOLDERS)
+def test_no_folder_has_a_circle_among_its_rooms(place):
+    assert structure.circles(*structure.arrows(ROOT, place)) == []
+
+
+def test_the_measure_of_the_structure_sees_a_circle_and_an_arrow_upwards(tmp_path):
+    (tmp_path / "foucault.py").write_text("import reference.a\n")
+    for name, text in (("a", "from . import b\n"), ("b", "def late():\n    from .a import something\n"), ("c", "")):
+        (tmp_path / "reference").mkdir(exist_ok=True)
+        (tmp_path / f"reference/{name}.py").write_text(text)
+    (tmp_path / "reference/__init__.py").write_text("")
+    rooms, arrows = structure.arrows(tmp_path, "reference")
+    assert (rooms, arrows) == ({"a", "b", "c"}, {("a", "b"), ("b", "a")})
+    assert structure.circles(rooms, arrows) == [{"a", "b"}]
+    assert structure.upwards(arrows, [["a"], ["b"], ["c"]]) == {("b", "a")}
+    assert structure.floors({"a", "b", "c"}, {("a", "b"), ("b", "c")}) == [{"a"}, {"b"}, {"c"}]
 
 
 def imported(path: Path) -> set[str]:
     """Top-level packages that a file imports anywhere; relative imports count as their own package."""
-    found = set()
+    names = set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
-            found |= {alias.name.split(".")[0] for alias in node.names}
+            names |= {alias.name.split(".")[0] for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
-            found.add(node.module.split(".")[0])
-    return found
-
-
-def test_imports_go_one_way():
-    for path in SOURCES:
-        inside = path.relative_to(ROOT).parts[0]
-        if inside == "reference":
-            assert not imported(path) & {"compare", "foucault"}, path
-        elif inside == "compare":
-            assert "foucault" not in imported(path), path
+            names.add(node.module.split(".")[0])
+    return names
 
 
 @pytest.mark.parametrize(
@@ -52,6 +110,14 @@ def test_starting_loads_nothing_heavy(script):
     code = f"import sys\n{script}\nprint('loaded', [name for name in {HEAVY} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stdout.splitlines()[-1] == "loaded []"
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_every_file_begins_with_a_line_that_says_what_it_holds(path):
+    text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))
+    assert text, "no docstring"
+    first = text.splitlines()[0]
+    assert len(first) <= 118 and first.endswith((".", "?")) and not first.startswith("What "), first
 
 
 def test_every_scene_has_its_own_file_named_by_its_id():
