@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from compare.methods import METHODS, gauss_legendre, rk4, rkng56, rkng67
+from compare.methods.tableau import TableauError
 from compare.studies.character import character
 from compare.studies.long_runs import LongRun, laws
-from compare.studies.stability import Cell, cut, default_scenes, stability
+from compare.studies.stability import _ORDERS, Cell, _digits_asked, cut, default_scenes, stability
 from foucault import app
 from reference import load_scene, trajectory
 from reference.scene import data_root
@@ -52,6 +55,29 @@ def test_there_are_thirty_extreme_scenes_and_each_says_what_it_catches() -> None
         scene = load_scene(name)
         assert scene.title and scene.source
         assert float(cut(scene).exact.t_end) <= float(scene.exact.t_end)
+
+
+def test_the_orders_that_decide_what_is_asked_are_those_that_the_tableaux_prove() -> None:
+    tableaux = {"rk4": rk4.TABLEAU, "rkng56": rkng56.TABLEAU, "rkng67": rkng67.TABLEAU, "rkmk4": rk4.TABLEAU}
+    proved = {name: tableau.order for name, tableau in tableaux.items()}
+    for tableau in tableaux.values():  # it was checked up to its order when it was made, and has no higher one
+        with pytest.raises(TableauError) as caught:
+            replace(tableau, order=tableau.order + 1)
+        assert caught.value.order == tableau.order + 1
+    gauss_legendre.gauss(gauss_legendre.STAGES)  # raises unless its quadrature has order 2 stages
+    assert proved | {"gauss_legendre": 2 * gauss_legendre.STAGES} == _ORDERS
+
+
+def test_the_table_of_orders_holds_every_fixed_step_method_and_agrees_with_its_title() -> None:
+    assert _ORDERS.keys() == {name for name, method in METHODS.items() if method.setting == "step"}
+    for name, order in _ORDERS.items():
+        assert f"order {order}" in METHODS[name].title
+
+
+def test_a_fixed_step_is_asked_for_as_many_digits_as_its_order_gives() -> None:
+    assert _digits_asked("rkng67", 1 / 200) == pytest.approx(9.0, abs=0.02)  # (2 pi / 200)^6
+    assert _digits_asked("rkng56", 1 / 200) == pytest.approx(7.5, abs=0.02)
+    assert _digits_asked("rk4", 1 / 200) == pytest.approx(6.0, abs=0.02)
 
 
 @pytest.fixture(scope="module")
