@@ -34,17 +34,17 @@ def _derived_series(index: int) -> Vector:
 
 
 def _taylor(function: Callable[[Any], Any], order: int) -> Any:
-    """One-sided: the square of Ω is not negative. Differences at a precision that outweighs the step."""
+    """Return one Taylor coefficient at 0 from one-sided differences: the square of Ω is not negative.
+
+    The differences cancel, so they are taken at four times the working precision, in this block only.
+    """
     working = MP.prec
     step = MP.ldexp(1, -working // 2)
     terms = 4
-    try:
-        MP.prec = working * 4
+    with MP.workprec(4 * working):
         values = [function(step * k) for k in range(order + terms + 1)]
         nodes = list(range(len(values)))
         return _newton(nodes, values)[order] / step**order
-    finally:
-        MP.prec = working
 
 
 def _newton(nodes: list[int], values: list[Any]) -> list[Any]:
