@@ -42,8 +42,8 @@ def command(
     chosen = listed(scenes, "--scenes", scene_ids()) or default_scenes()
     wanted = listed(methods, "--methods", METHODS)
     with counting("stability") as report:
-        cells = measure(chosen, wanted, limit_s=limit, kept=inside(out, "cells.jsonl"), report=report)
-        runs = over_thirty_days(wanted, kept=inside(out, "long.jsonl"), report=report) if long else []
+        cells = measure(chosen, wanted, limit_s=limit, journal_path=inside(out, "cells.jsonl"), report=report)
+        runs = over_thirty_days(wanted, journal_path=inside(out, "long.jsonl"), report=report) if long else []
     made = stability_report.document(cells, runs, machine())
     if out is not None:
         stability_report.write(made, cells, runs, out)

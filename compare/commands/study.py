@@ -69,7 +69,7 @@ def command(
             problem,
             items=items,
             limit_s=limit,
-            kept=inside(out, "rows.jsonl"),
+            journal_path=inside(out, "rows.jsonl"),
             digits=digits,
             report=report,
             announce=announce,

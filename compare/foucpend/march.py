@@ -14,7 +14,7 @@ from reference.precision import Array
 
 from ..approximations.mathar_items import VARIABLES, derivatives, truncated
 from ..methods import METHODS, available
-from ..rhs.problem import Problem, System
+from ..rhs.problem import FirstOrderSystem, Problem
 from .options import Options
 
 BLOCK = 100_000  # steps
@@ -59,7 +59,7 @@ def _problem(options: Options, step: float) -> Problem:
     return replace(problem, system=_system(truncated(problem.constants, items), items))
 
 
-def _system(k: Constants, items: frozenset[Any]) -> System:
+def _system(k: Constants, items: frozenset[Any]) -> FirstOrderSystem:
     """(43) without what the bits of -a drop; the constants that are left are parameters, so that code is shared."""
     groups = {"turn": k.turn, "pull": k.pull, "centrifugal": k.centrifugal}
     named = {
@@ -72,4 +72,4 @@ def _system(k: Constants, items: frozenset[Any]) -> System:
         }
         return derivatives(state, replace(k, **here), functions, items)
 
-    return System(VARIABLES, rates, named)
+    return FirstOrderSystem(VARIABLES, rates, named)

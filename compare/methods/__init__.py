@@ -47,7 +47,7 @@ _HOMES = {
 _HOME_OF = {name: home for home, inside in _HOMES.items() for name in inside}
 
 
-class _Registry(Mapping[str, Method]):
+class _Methods(Mapping[str, Method]):
     """Methods by id, in the order of the documentation; a module is imported when one of its methods is asked for."""
 
     def __getitem__(self, name: str) -> Method:
@@ -71,4 +71,4 @@ class _Registry(Mapping[str, Method]):
         return len(_HOME_OF)
 
 
-METHODS: Mapping[str, Method] = _Registry()
+METHODS: Mapping[str, Method] = _Methods()

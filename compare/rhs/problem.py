@@ -29,7 +29,7 @@ CONSTANT_BITS = 200  # constants are folded in this precision and rounded once, 
 
 
 @dataclass(frozen=True)
-class System:
+class FirstOrderSystem:
     """An autonomous first-order system in the model's generic style.
 
     Attributes:
@@ -90,7 +90,7 @@ class Problem:
     start: Array
     times: Array = field(repr=False)
     sizes: Array
-    system: System = field(repr=False)
+    system: FirstOrderSystem = field(repr=False)
 
     @classmethod
     def of(cls, scene: Scene, formulation: str, times: npt.ArrayLike | None = None) -> Problem:
@@ -209,7 +209,7 @@ def _increasing(times: npt.ArrayLike) -> Array:
     return given
 
 
-def _model_system(formulation: str, k: Constants) -> System:
+def _model_system(formulation: str, k: Constants) -> FirstOrderSystem:
     """The model's equations with the constants that they use as parameters, by name."""
     model = FORMULATIONS[formulation]
     named: dict[str, float] = {}
@@ -230,7 +230,7 @@ def _model_system(formulation: str, k: Constants) -> System:
 
         return model.derivatives(state, Constants(**{key: number(name) for key, name in names.items()}), functions)
 
-    whole = System(model.variables, rates, named)
+    whole = FirstOrderSystem(model.variables, rates, named)
     used = {operand for line in whole.program.lines for operand in line.operands} | set(whole.program.outputs)
     inputs = dict(zip(whole.inputs[len(model.variables) :], named, strict=True))
     kept = {name: named[name] for given, name in inputs.items() if given in used}
@@ -238,4 +238,4 @@ def _model_system(formulation: str, k: Constants) -> System:
     def used_rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
         return rates(state, functions, dict.fromkeys(named, 0) | dict(parameters))
 
-    return System(model.variables, used_rates, kept)
+    return FirstOrderSystem(model.variables, used_rates, kept)

@@ -12,7 +12,7 @@ _SYMBOLS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 
 @dataclass(frozen=True)
-class Line:
+class CodeLine:
     """One operation: the name it defines, what is done, and the names or literals it is done to."""
 
     name: str
@@ -34,7 +34,7 @@ class Program:
     """Straight-line code: inputs, operations in order, and the names or literals that are its results."""
 
     inputs: tuple[str, ...]
-    lines: tuple[Line, ...] = field(repr=False)
+    lines: tuple[CodeLine, ...] = field(repr=False)
     outputs: tuple[str, ...]
 
     def source(self, name: str) -> str:

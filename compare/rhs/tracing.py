@@ -31,14 +31,14 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from .program import FUNCTIONS, Line, Program
+from .program import FUNCTIONS, CodeLine, Program
 
 
 class TracingError(TypeError):
     """The function did to a recording number what straight-line code cannot do."""
 
 
-class Number:
+class TracedNumber:
     """A number that records what is done to it; it has no value, so that nothing may branch on it."""
 
     __slots__ = ("_tape", "name")
@@ -91,29 +91,29 @@ class Tape:
     """What was recorded so far. Only rewritings that change no bit of the result are made."""
 
     def __init__(self) -> None:
-        self._known: dict[tuple[str, tuple[str, ...]], Number] = {}
-        self._negated: dict[str, Number] = {}
-        self.lines: list[Line] = []
+        self._known: dict[tuple[str, tuple[str, ...]], TracedNumber] = {}
+        self._negated: dict[str, TracedNumber] = {}
+        self.lines: list[CodeLine] = []
 
-    def input(self, name: str) -> Number:
+    def input(self, name: str) -> TracedNumber:
         """A number given from outside."""
-        return Number(self, name)
+        return TracedNumber(self, name)
 
     def operand(self, value: Any) -> str:
         """The name of a number, or the literal of a constant (the nearest double of a fraction)."""
-        if isinstance(value, Number):
+        if isinstance(value, TracedNumber):
             return value.name
         if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
             raise TracingError(f"got {value!r}, expected a recorded number, an int, a float or a Fraction")
         return repr(float(value))
 
-    def record(self, operation: str, *values: Any) -> Number:
+    def record(self, operation: str, *values: Any) -> TracedNumber:
         """The result of an operation, recorded the first time only."""
         operands = tuple(map(self.operand, values))
         key = (operation, tuple(sorted(operands)) if operation in ("add", "mul") else operands)
         if key not in self._known:
-            made = Number(self, f"t{len(self.lines)}")
-            self.lines.append(Line(made.name, operation, operands))
+            made = TracedNumber(self, f"t{len(self.lines)}")
+            self.lines.append(CodeLine(made.name, operation, operands))
             self._known[key] = made
         return self._known[key]
 
@@ -154,7 +154,7 @@ class Tape:
 
     def negate(self, a: Any) -> Any:
         """-a."""
-        if not isinstance(a, Number):
+        if not isinstance(a, TracedNumber):
             return -a
         found = self._positive(a)
         if found is None:
@@ -163,7 +163,7 @@ class Tape:
         return found
 
     def _positive(self, a: Any) -> Any:
-        return self._negated.get(a.name) if isinstance(a, Number) else None
+        return self._negated.get(a.name) if isinstance(a, TracedNumber) else None
 
     def program(self, inputs: Sequence[str], outputs: Sequence[Any]) -> Program:
         """The operations that the outputs need, renumbered."""
@@ -179,7 +179,7 @@ class Tape:
         def renamed(names: Sequence[str]) -> tuple[str, ...]:
             return tuple(short.get(name, name) for name in names)
 
-        lines = tuple(Line(short[line.name], line.operation, renamed(line.operands)) for line in kept)
+        lines = tuple(CodeLine(short[line.name], line.operation, renamed(line.operands)) for line in kept)
         return Program(tuple(inputs), lines, renamed(wanted))
 
 
@@ -194,7 +194,7 @@ class RecordingFunctions:
     def __init__(self, tape: Tape) -> None:
         self._tape = tape
 
-    def __getattr__(self, name: str) -> Callable[..., Number]:
+    def __getattr__(self, name: str) -> Callable[..., TracedNumber]:
         if name not in FUNCTIONS:
             raise TracingError(f"got the function {name}, expected one of {', '.join(FUNCTIONS)}")
         return lambda *values: self._tape.record(name, *values)

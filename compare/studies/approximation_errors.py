@@ -50,7 +50,7 @@ class QuantityRow:
 
 
 @dataclass(frozen=True)
-class Errors:
+class ApproximationErrors:
     """Errors of one approximation since the release, running maxima over a fine grid of times.
 
     Attributes:
@@ -70,7 +70,7 @@ class Errors:
         return float(self.position[i]), None if np.isnan(plane) else plane
 
 
-class Truth:
+class ApproximationTruth:
     """The reference's motion of a scene on a fine grid, to hold approximations against.
 
     Args:
@@ -89,7 +89,7 @@ class Truth:
         self.rows = trajectory(scene, self.times)
         self.plane = self._plane(self.gauge, self.rows)
 
-    def errors(self, motion: Motion) -> Errors:
+    def errors(self, motion: Motion) -> ApproximationErrors:
         """Errors of an approximation on the grid.
 
         Raises:
@@ -100,7 +100,7 @@ class Truth:
         apart = np.linalg.norm(rows[:, :3] - self.rows[:, :3], axis=1)
         turned = self._plane(gauge, rows) - self.plane
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
-        return Errors(self.times, np.maximum.accumulate(apart), np.fmax.accumulate(plane))
+        return ApproximationErrors(self.times, np.maximum.accumulate(apart), np.fmax.accumulate(plane))
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
@@ -138,7 +138,7 @@ def error_table(
         InputError: an unknown id, or one of a single number.
     """
     chosen, marks = chosen_motions(ids), [*(t for t in times if t < t_end), t_end]
-    truth, rows = Truth(scene, t_end, marks), []
+    truth, rows = ApproximationTruth(scene, t_end, marks), []
     for motion in chosen:
         try:
             errors = truth.errors(motion)

@@ -11,7 +11,7 @@ import numpy as np
 from reference import FoucaultError, InputError, Scene
 
 from ..approximations.approximation import Motion
-from .approximation_errors import TIMES, Truth, chosen_motions
+from .approximation_errors import TIMES, ApproximationTruth, chosen_motions
 from .variation import UNITS, varied
 
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
@@ -69,7 +69,7 @@ def sweep(
     chosen, rows = chosen_motions(ids), []
     for value in sweep_values(scene, over) if values is None else values:
         changed = varied(scene, over, value)
-        truth = Truth(changed, t)
+        truth = ApproximationTruth(changed, t)
         for motion in chosen:
             try:
                 found = truth.errors(motion).at(t)
@@ -107,7 +107,7 @@ def limits(
 
 
 def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[LimitRow]:
-    truth, rows = Truth(scene, t_end, np.geomspace(_SOON, t_end, _EARLY)), []
+    truth, rows = ApproximationTruth(scene, t_end, np.geomspace(_SOON, t_end, _EARLY)), []
     for motion in chosen:
         try:
             errors = truth.errors(motion)

@@ -15,7 +15,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 
-def lane(
+def isolated(
     function: Callable[..., None],
     arguments: tuple[Any, ...],
     items: Sequence[Item],

@@ -19,9 +19,9 @@ from reference.process import Emit
 
 from ..methods import METHODS, Problem, available
 from ..truth import golden_of
-from .isolated import lane
+from .isolated import isolated
 from .journal import Journal
-from .method_errors import Truth
+from .method_errors import GridTruth
 from .power_of_time import power_of_time
 
 SCENE = "paris_30d"
@@ -100,7 +100,7 @@ def long_run(
     golden: Golden,
     items: Sequence[Item] = ITEMS,
     *,
-    kept: Path | None = None,
+    journal_path: Path | None = None,
     report: Callable[[int, int, str], None] | None = None,
 ) -> list[LongRun]:
     """The errors of methods over a long run.
@@ -109,17 +109,17 @@ def long_run(
         scene: in the binary64 reading.
         golden: its truth.
         items: method, formulation and setting of each run.
-        kept: a file that results are appended to and taken from again.
+        journal_path: a file that results are appended to and taken from again.
         report: called with runs done, runs in all and what runs now.
     """
-    journal = Journal(kept, f"{scene.id} {scene.run.t_end} {golden.manifest.files['grid.csv'].sha256[:16]}")
+    journal = Journal(journal_path, f"{scene.id} {scene.run.t_end} {golden.manifest.files['grid.csv'].sha256[:16]}")
     done = {row.key: row for row in (LongRun(**result) for result in journal)}
     document = scene.model_dump(exclude_none=True)
     for item in items:
         if report is not None:
             report(len(done), len(items), item[0])
         if item not in done:
-            for row in lane(grown, (document, golden.path), [item], PATIENCE_S, _failed):
+            for row in isolated(grown, (document, golden.path), [item], PATIENCE_S, _failed):
                 done[row.key] = row
                 journal.add(asdict(row))
     return [done[item] for item in items]
@@ -132,7 +132,7 @@ def _failed(item: Item, late: bool, reason: str) -> LongRun:
 def grown(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item]) -> None:
     """In a process of its own: run a method over the whole span and measure its error at the grid times."""
     scene = parse_scene(document)
-    truth = Truth(load(folder), float(scene.exact.t_end))
+    truth = GridTruth(load(folder), float(scene.exact.t_end))
     bound_m = float(truth.golden.manifest.bounds.position_m)
     for name, formulation, setting in items:
         method = METHODS[name]
@@ -175,10 +175,16 @@ def laws(rows: Sequence[LongRun]) -> Iterator[str]:
 def over_thirty_days(
     methods: Sequence[str] | None = None,
     *,
-    kept: Path | None = None,
+    journal_path: Path | None = None,
     report: Callable[[int, int, str], None] | None = None,
 ) -> list[LongRun]:
     """`long_run` on Paris over 30 days, with its truth; see there."""
     scene = load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
     golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)
-    return long_run(scene, golden, [i for i in ITEMS if methods is None or i[0] in methods], kept=kept, report=report)
+    return long_run(
+        scene,
+        golden,
+        [i for i in ITEMS if methods is None or i[0] in methods],
+        journal_path=journal_path,
+        report=report,
+    )

@@ -22,7 +22,7 @@ from reference.precision import Array
 from reference.process import Emit
 
 from ..methods import METHODS, Method, Outcome, Problem, available
-from .method_errors import Truth, h_drift
+from .method_errors import GridTruth, h_drift
 from .row import EXTRAPOLATED, OK, Row
 
 PROBE = 64  # part of the span that is run first, to warm up and to estimate
@@ -47,7 +47,7 @@ class Bench:
     """
 
     scene: Scene
-    truth: Truth
+    truth: GridTruth
     limit_s: float
     repeats: int = REPEATS
     transits: bool = True
@@ -157,6 +157,6 @@ def _timed(work: Any) -> tuple[Outcome, float]:
 
 def ladder(emit: Emit, scene: dict[str, Any], golden: Path, t_end: float, limit_s: float, todo: list[Any]) -> None:
     """In a process of its own: measure (method, formulation, setting) one after the other and send each row."""
-    bench = Bench(parse_scene(scene), Truth(load(golden), t_end), limit_s)
+    bench = Bench(parse_scene(scene), GridTruth(load(golden), t_end), limit_s)
     for name, formulation, setting in todo:
         emit(bench.row(METHODS[name], formulation, setting))

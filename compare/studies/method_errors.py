@@ -22,7 +22,7 @@ H_ROWS = 64  # at which the drift of h is taken
 
 
 @dataclass(frozen=True)
-class Truth:
+class GridTruth:
     """The golden states that rows are measured against.
 
     Args:

@@ -24,10 +24,10 @@ from ..rhs.swing import suited
 from ..truth import golden_of
 from .character import Character, character
 from .grid import on_doubles
-from .isolated import lane
+from .isolated import isolated
 from .journal import Journal
 from .measure import Bench
-from .method_errors import Truth
+from .method_errors import GridTruth
 from .reasons import reason_of
 from .row import EXTRAPOLATED, OK, Row
 
@@ -107,7 +107,7 @@ def stability(
     methods: Sequence[str] | None = None,
     *,
     limit_s: float = LIMIT_S,
-    kept: Path | None = None,
+    journal_path: Path | None = None,
     report: Callable[[int, int, str], None] | None = None,
 ) -> list[Cell]:
     """Every method on every scene.
@@ -116,11 +116,11 @@ def stability(
         scenes: ids.
         methods: ids; all if None.
         limit_s: CPU seconds of a cell.
-        kept: a file that cells are appended to and taken from again.
+        journal_path: a file that cells are appended to and taken from again.
         report: called with cells done, cells in all, and what runs now.
     """
     cells = [cell for cell in CELLS if methods is None or cell[0] in methods]
-    journal = Journal(kept, repr((limit_s, SWINGS, _ORDERS)))  # orders decide what is asked
+    journal = Journal(journal_path, repr((limit_s, SWINGS, _ORDERS)))  # orders decide what is asked
     done = {cell.key: cell for cell in (Cell(**result) for result in journal)}
     total, found = len(cells) * len(scenes), []
     folders: dict[str, tuple[dict[str, Any], Path]] = {}
@@ -163,7 +163,7 @@ def _cells(
         return Cell(case[0], method, label, status, None, _digits_asked(method, setting), None, reason)
 
     arguments = (method, formulation, label, setting, limit_s)
-    return lane(cells_of, arguments, todo, PATIENCE * limit_s, failed)
+    return isolated(cells_of, arguments, todo, PATIENCE * limit_s, failed)
 
 
 def cells_of(
@@ -172,7 +172,7 @@ def cells_of(
     """In a process of its own: one method on one scene after the other."""
     for name, document, folder in todo:
         scene, golden = parse_scene(document), load(folder)
-        truth = Truth(golden, float(scene.exact.t_end))
+        truth = GridTruth(golden, float(scene.exact.t_end))
         states = np.column_stack([getattr(golden, column) for column in ("x", "y", "z", "vx", "vy", "vz")])
         marks = character(scene, truth.times, states[: len(truth.times)])
         used = setting * 2 * math.pi / marks.fastest if METHODS[method].setting == "step" and marks.fastest else setting

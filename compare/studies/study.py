@@ -22,7 +22,7 @@ from ..methods import METHODS
 from ..rhs.swing import suited
 from ..truth import golden_of
 from .grid import on_doubles
-from .isolated import lane
+from .isolated import isolated
 from .journal import Journal
 from .measure import ladder
 from .row import Row
@@ -103,7 +103,7 @@ def study(
     *,
     items: Sequence[Item] | None = None,
     limit_s: float = LIMIT_S,
-    kept: Path | None = None,
+    journal_path: Path | None = None,
     digits: int | None = None,
     report: Callable[[int, int, str], None] | None = None,
     announce: Callable[[str], None] | None = None,
@@ -114,7 +114,7 @@ def study(
         scene: its inputs are read as binary64, because methods in double solve that problem.
         items: what to measure; see `plan`.
         limit_s: CPU seconds for one run.
-        kept: a file that rows are appended to and taken from again, so that a study goes on where it stopped.
+        journal_path: a file that rows are appended to and taken from again, so that a study goes on where it stopped.
         digits: of the truth where it has to be solved; the scene's own if None.
         report: called with rows done, rows in all and what runs now.
         announce: told when the truth has to be solved.
@@ -122,7 +122,7 @@ def study(
     todo = list(items or plan(scene))
     problem = on_doubles(scene.with_values(["inputs=binary64"]))
     golden = golden_of(problem, digits or problem.run.digits, announce)
-    journal = Journal(kept, _recipe(problem, limit_s))
+    journal = Journal(journal_path, _recipe(problem, limit_s))
     rows = {row.key: row for row in map(Row.parsed, journal)}
     for name, formulation, settings in _grouped([item for item in todo if item not in rows]):
         for row in _measured(problem, golden, limit_s, [(name, formulation, setting) for setting in settings]):
@@ -152,7 +152,7 @@ def _measured(problem: Scene, golden: Golden, limit_s: float, todo: list[Item]) 
 
     scene = problem.model_dump(exclude_none=True)
     arguments = (scene, golden.path, float(problem.exact.t_end), limit_s)
-    return lane(ladder, arguments, todo, PATIENCE * limit_s, failed)
+    return isolated(ladder, arguments, todo, PATIENCE * limit_s, failed)
 
 
 def single_thread() -> None:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from small_scenes import make_scene
 
 import compare.rhs.tracing
-from compare.rhs.problem import Problem, System
+from compare.rhs.problem import FirstOrderSystem, Problem
 from compare.rhs.tangent import differentiated
 from compare.rhs.tracing import TracingError, record
 from reference import InputError, load_scene
@@ -142,7 +142,7 @@ def test_a_system_of_somebody_else_is_compiled_too():
     def rates(state, functions, parameters):
         return (state[1], -1 * parameters["k"] * functions.sin(state[0]))
 
-    program = System(("x", "v"), rates, {"k": 4.0}).program
+    program = FirstOrderSystem(("x", "v"), rates, {"k": 4.0}).program
     assert program.function()(1.0, 2.0, 4.0) == (2.0, -4.0 * math.sin(1.0))
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from compare.studies.isolated import lane
+from compare.studies.isolated import isolated
 from compare.studies.journal import Journal
 from reference import InputError
 from reference.process import Emit
@@ -29,7 +29,7 @@ def failed(item: str, late: bool, reason: str) -> str:
 
 def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("compare.studies.isolated.STARTING_S", 5.0)
-    found = list(lane(answers, (7,), ["a", "dies", "b", "hangs", "c"], 0.5, failed))
+    found = list(isolated(answers, (7,), ["a", "dies", "b", "hangs", "c"], 0.5, failed))
     assert found == ["a 7", "dies failed: ended", "b 7", "hangs failed: late", "c 7"]
 
 

@@ -16,13 +16,19 @@ ITEMS = (("rkmk4", "momentum", 0.1), ("heyoka_double", "plane", 2.0**-52), ("rk4
 
 def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path: Path) -> None:
     scene = load_scene("paris", ["inputs=binary64", "run.t_end=7200"])
-    golden, kept = golden_of(scene), tmp_path / "long.jsonl"
-    rows = long_run(scene, golden, ITEMS[:1], kept=kept)
+    golden, journal_path = golden_of(scene), tmp_path / "long.jsonl"
+    rows = long_run(scene, golden, ITEMS[:1], journal_path=journal_path)
     assert rows[0].status == "ok"
     assert rows[0].exponent == pytest.approx(1, abs=0.15)  # a constant error of the frequency
     assert rows[0].bound_m == float(golden.manifest.bounds.position_m)
     seen: list[str] = []
-    again = long_run(scene, golden, ITEMS, kept=kept, report=lambda done, total, now: seen.append(f"{done} of {total}"))
+    again = long_run(
+        scene,
+        golden,
+        ITEMS,
+        journal_path=journal_path,
+        report=lambda done, total, now: seen.append(f"{done} of {total}"),
+    )
     assert again[0] == rows[0]
     assert seen == ["1 of 3", "1 of 3", "2 of 3"]
     assert [row.key for row in again] == list(ITEMS)

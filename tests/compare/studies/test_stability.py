@@ -83,13 +83,13 @@ def test_a_fixed_step_is_asked_for_as_many_digits_as_its_order_gives() -> None:
 @pytest.fixture(scope="module")
 def cells(tmp_path_factory: pytest.TempPathFactory) -> list[Cell]:
     folder = tmp_path_factory.mktemp("stability")
-    kept, short = folder / "cells.jsonl", folder / "creeping.toml"
+    journal_path, short = folder / "cells.jsonl", folder / "creeping.toml"
     text = (data_root() / "scenes" / "creeping.toml").read_text()
     short.write_text(text.replace('t_end = "100"', 't_end = "10"').replace('grid_step = "0.2"', 'grid_step = "0.125"'))
     names = ["near_inverted", str(short), "hard"]
     methods = ["heyoka_double", "scipy_dop853", "scipy_radau", "rkmk4"]
-    made = stability(names, methods, kept=kept)
-    assert stability(names, methods, kept=kept) == made  # from the journal
+    made = stability(names, methods, journal_path=journal_path)
+    assert stability(names, methods, journal_path=journal_path) == made  # from the journal
     return made
 
 

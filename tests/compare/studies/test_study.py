@@ -13,7 +13,7 @@ import compare.studies.measure as measure
 from compare.methods import METHODS
 from compare.report.pareto import front
 from compare.studies.measure import Bench
-from compare.studies.method_errors import Truth
+from compare.studies.method_errors import GridTruth
 from compare.studies.precisions import bits_of, precision_items, precision_scene
 from compare.studies.row import Row
 from compare.studies.study import plan, study
@@ -32,7 +32,7 @@ def short() -> Scene:
 
 @pytest.fixture(scope="module")
 def bench(short: Scene) -> Bench:
-    return Bench(short, Truth(golden_of(short), float(T_END)), 8.0)
+    return Bench(short, GridTruth(golden_of(short), float(T_END)), 8.0)
 
 
 def test_the_error_of_rk4_falls_with_the_fourth_power_of_its_step(bench: Bench) -> None:
@@ -57,7 +57,7 @@ def test_a_transit_that_is_missed_makes_a_failed_row(bench: Bench) -> None:
 
 
 def test_a_run_beyond_the_limit_is_extrapolated_and_says_so(short: Scene) -> None:
-    slow = Bench(short, Truth(golden_of(short), float(T_END)), 1e-3)
+    slow = Bench(short, GridTruth(golden_of(short), float(T_END)), 1e-3)
     row = slow.row(METHODS["rk4"], "plane", 0.001)
     assert row.status == "extrapolated"
     assert row.reached_t is not None and row.reached_t < 600
@@ -66,7 +66,7 @@ def test_a_run_beyond_the_limit_is_extrapolated_and_says_so(short: Scene) -> Non
 
 def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     upright = load_scene("two_radians", ["inputs=binary64", "run.t_end=1"])
-    over = Bench(upright, Truth(golden_of(upright), 1.0), 8.0)
+    over = Bench(upright, GridTruth(golden_of(upright), 1.0), 8.0)
     assert over.row(METHODS["rk4"], "plane", 0.1).status == "refused"
     monkeypatch.setattr(measure, "available", lambda method: "not installed (x)")
     row = bench.row(METHODS["rk4"], "plane", 0.1)
@@ -76,9 +76,9 @@ def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pyt
 def test_a_study_goes_on_where_it_stopped_and_gives_the_same_front(short: Scene, tmp_path: Path) -> None:
     items = [item for item in plan(short, ["rk4", "heyoka_double", "gauss_legendre"], False) if item[2] != 0.002]
     seen: list[str] = []
-    kept = tmp_path / "rows.jsonl"
-    first = study(short, items=items[:4], kept=kept)
-    again = study(short, items=items, kept=kept, report=lambda done, total, now: seen.append(now))
+    journal_path = tmp_path / "rows.jsonl"
+    first = study(short, items=items[:4], journal_path=journal_path)
+    again = study(short, items=items, journal_path=journal_path, report=lambda done, total, now: seen.append(now))
     assert again.rows[:4] == first.rows
     assert len(seen) == len(items) - 4
     other = study(short, items=items)
