@@ -1,15 +1,15 @@
-"""foucPend, the program of Mathar's appendix A, switch for switch: a fixed step, snapshots, and transits.
+"""foucPend, the program of Mathar's appendix A, with the same switches: fixed steps, snapshots and transits as text.
 
 >>> from compare.foucpend import Options, lines
 >>> options = Options.parse({"x": "0.3", "y": "0.4", "T": "20", "s": "100"})
 >>> for line in lines(options):                                       # doctest: +SKIP
 ...     print(line)
 
-The output, which `compare.candidates.read` reads and anyone else may:
+The output, which `compare.candidates.read` and any other program can read:
 
 - lines of text, each ended by one newline, decimal point, no thousands separators;
-- a line that starts with `#` is a comment. The first ones say what is run and name the columns;
-- a **snapshot** is a line of ten numbers with one blank between them:
+- a line that starts with `#` is a comment. The first comments name the settings and the columns;
+- a **snapshot** is a line of ten numbers separated by single blanks:
 
       t  x  y  z  X  Y  Z  φ  λ  speed
 
@@ -21,11 +21,11 @@ The output, which `compare.candidates.read` reads and anyone else may:
   the frequency if two such transits occur in a period. It stands between the snapshots before and after it. The zero
   is that of the parabola through xdot at the two steps around the change of sign and at the step before them (after
   them, where there is none before): an error of order t³;
-- numbers are printed with 17 significant digits, so that reading them gives the very doubles of the run;
+- numbers are printed with 17 significant digits, so that reading them gives exactly the doubles of the run;
 - T need not be a multiple of t: the run ends with the last whole step.
 
-With `--exact` the same lines come from the reference: positions and velocities are the doubles next to the truth,
-transits are those that the reference finds and not a parabola's.
+With `--exact` the same lines come from the reference: positions and velocities are the doubles nearest to the
+truth, and transits are those that the reference finds, not the zeros of a parabola.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _LAZY = {"Options": "options", "lines": "output"}
 
 
 def __getattr__(name: str) -> Any:
-    """Import what is asked for: `foucault --help` needs none of it."""
+    """Import a name where it is first used: `foucault --help` needs none of them."""
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module

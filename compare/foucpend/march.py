@@ -1,4 +1,4 @@
-"""The program's integration: Mathar (43) at a fixed step, in blocks so that a long run needs little memory."""
+"""Integrate Mathar (43) at a fixed step for foucPend, in blocks of steps, so that a long run needs little memory."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ from ..methods import METHODS, available
 from ..rhs.problem import FirstOrderSystem, Problem
 from .options import Options
 
-BLOCK = 100_000  # steps
-ITEMS = {0: frozenset[Any](), 1: frozenset({2}), 2: frozenset({1}), 3: frozenset({1, 2})}  # of section VI, by -a
+BLOCK = 100_000  # steps whose states are in memory at a time
+# the items of section VI that each value of -a leaves out
+ITEMS = {0: frozenset[Any](), 1: frozenset({2}), 2: frozenset({1}), 3: frozenset({1, 2})}
 
 
 def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
-    """Times in s and states x, y, z, vx, vy, vz, shape (rows, 6); the first row of a block is the last one before it.
+    """Yield blocks of times in s and states x, y, z, vx, vy, vz, shape (rows, 6).
+
+    The first row of a block is the last one of the block before it.
 
     Raises:
         InputError: numba is not installed.
@@ -34,21 +37,21 @@ def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
         raise InputError("-R", options.method, "a method that is installed", f"It is {missing}.")
     step = float(options.step)
     problem = _problem(options, step)
-    begun = 0
-    while begun < options.steps:
-        count = min(BLOCK, options.steps - begun)
+    first = 0
+    while first < options.steps:
+        count = min(BLOCK, options.steps - first)
         times: Array = np.arange(count + 1, dtype=np.float64) * step
         problem = replace(problem, times=times)
         outcome = method.prepare(problem, step)()
         states = outcome.states
         if len(states) <= count:
             raise IntegrationError(
-                f"{method.title} at {step:g} s fails after t = {begun * step + outcome.reached_t:g} s.",
+                f"{method.title} at {step:g} s fails after t = {first * step + outcome.reached_t:g} s.",
                 "The equations in x and y hold below the suspension; a shorter step (-t) may help.",
             )
-        yield np.asarray((begun + np.arange(count + 1)) * step, dtype=np.float64), states
+        yield np.asarray((first + np.arange(count + 1)) * step, dtype=np.float64), states
         problem = replace(problem, start=states[-1, [0, 1, 3, 4]] / problem.constants.length)
-        begun += count
+        first += count
 
 
 def _problem(options: Options, step: float) -> Problem:
@@ -60,16 +63,16 @@ def _problem(options: Options, step: float) -> Problem:
 
 
 def _system(k: Constants, items: frozenset[Any]) -> FirstOrderSystem:
-    """(43) without what the bits of -a drop; the constants that are left are parameters, so that code is shared."""
+    """Return (43) without the terms that -a drops; constants left are parameters, so that compiled code is shared."""
     groups = {"turn": k.turn, "pull": k.pull, "centrifugal": k.centrifugal}
-    named = {
+    values = {
         f"{name}_{i}": value for name, group in groups.items() for i, value in enumerate(group) if not is_zero(value)
     }
 
     def rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
-        here = {
+        fields = {
             name: tuple(parameters.get(f"{name}_{i}", 0) for i in range(len(group))) for name, group in groups.items()
         }
-        return derivatives(state, replace(k, **here), functions, items)
+        return derivatives(state, replace(k, **fields), functions, items)
 
-    return FirstOrderSystem(VARIABLES, rates, named)
+    return FirstOrderSystem(VARIABLES, rates, values)

@@ -1,4 +1,4 @@
-"""The program's switches, their defaults, and the scene that they make."""
+"""The switches of foucPend: their defaults, the checks on them, and the scene that they describe."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from fractions import Fraction
 from pydantic import ValidationError
 
 from reference import InputError, Scene, parse_scene
-from reference.scene import Run
+from reference.scene import RunTable
 
 DEFAULTS = {
     "x": "0",
@@ -31,7 +31,7 @@ DEFAULTS = {
 METHOD_OF = {"4": "rk4", "5": "rkng56", "6": "rkng67"}
 MAX_STEPS = 1_000_000_000
 
-# where the value of a switch goes in a scene, which checks it
+# the field of a scene that a switch sets; the scene checks its value
 _FIELDS = {
     "x": "release.x",
     "y": "release.y",
@@ -51,16 +51,16 @@ _SWITCHES = {field: switch for switch, field in _FIELDS.items()}
 
 @dataclass(frozen=True)
 class Options:
-    """What is to be run.
+    """The settings of a run.
 
     Attributes:
-        scene: pendulum, site and release; its numbers are the doubles next to what was typed.
-        step: of the integration, s.
+        scene: pendulum, site and release; its numbers are the doubles nearest to the typed ones.
+        step: step size in s.
         steps: whole steps up to T.
         skip: steps from one snapshot to the next.
         method: id of the integrator.
-        bits: of -a.
-        exact: take the reference instead.
+        bits: value of -a, the terms that are left out.
+        exact: take the lines from the reference instead.
     """
 
     scene: Scene
@@ -73,11 +73,11 @@ class Options:
 
     @classmethod
     def parse(cls, given: Mapping[str, str], exact: bool = False) -> Options:
-        """Check the switches; those that are not given have the program's defaults.
+        """Check the switches; those left out have the program's defaults.
 
         Args:
             given: values by letter, as typed.
-            exact: what --exact says.
+            exact: whether --exact is set.
 
         Raises:
             InputError: naming the switch.
@@ -88,14 +88,17 @@ class Options:
         if exact:
             for switch, why in (("R", "uses no Runge-Kutta scheme"), ("a", "knows the full theory only")):
                 if given.get(switch, DEFAULTS[switch]) != DEFAULTS[switch]:
-                    raise InputError(f"-{switch}", given[switch], "nothing beside --exact", f"The reference {why}.")
+                    raise InputError(
+                        f"-{switch}", given[switch], "no such switch together with --exact", f"The reference {why}."
+                    )
         values = DEFAULTS | dict(given)
         skip, bits = _whole("s", values["s"], 1, None), _whole("a", values["a"], 0, 3)
         if values["R"] not in METHOD_OF:
             raise InputError("-R", values["R"], "4, 5 or 6", "4: Runge-Kutta; 5: RKN-G 5(6); 6: RKN-G 6(7).")
         scene = _scene(values)
         inputs = scene.exact
-        steps = int(inputs.t_end / inputs.grid_step * (1 + Fraction(1, 10**12)))  # 0.3 holds three doubles 0.1
+        # a little slack: the double 0.1 is above 1/10, and must still fit three times into 0.3
+        steps = int(inputs.t_end / inputs.grid_step * (1 + Fraction(1, 10**12)))
         if not 1 <= steps <= MAX_STEPS:
             raise InputError("-t", values["t"], f"1 to {MAX_STEPS} steps up to T = {values['T']} s", "Change -t or -T.")
         return cls(scene, inputs.grid_step, steps, skip, METHOD_OF[values["R"]], bits, exact)
@@ -120,19 +123,19 @@ def _scene(values: Mapping[str, str]) -> Scene:
     run = document.pop("run")
     for key in run:
         try:
-            Run(**{key: run[key]})
+            RunTable(**{key: run[key]})
         except ValidationError:
             raise InputError(f"-{_SWITCHES[f'run.{key}']}", run[key], "a number above 0, in s") from None
     try:
         scene = parse_scene({"id": "pend", "inputs": "binary64", **document})
     except InputError as error:
         raise _renamed(error, values) from None
-    # not parsed with the rest: a scene's limit on rows is none for a program that prints them one by one
-    return scene.model_copy(update={"run": Run(**run)})
+    # set after parsing: the limit on a scene's rows does not concern a program that prints them one by one
+    return scene.model_copy(update={"run": RunTable(**run)})
 
 
 def _renamed(error: InputError, values: Mapping[str, str]) -> InputError:
-    """The same complaint, naming the switch."""
+    """Return the same error with the switch in place of the scene's field."""
     if error.field in _SWITCHES:
         switch = _SWITCHES[error.field]
         return InputError(f"-{switch}", values[switch], error.expected, error.advice)

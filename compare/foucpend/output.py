@@ -1,4 +1,4 @@
-"""The program's lines: comments, snapshots and transits. Their format stands in the package's docstring."""
+"""foucPend's output as lines of text: comments, snapshots and transits, in the format that the package describes."""
 
 from __future__ import annotations
 
@@ -13,31 +13,31 @@ from reference.scene import MAX_ROWS
 
 from .options import DEFAULTS, METHOD_OF, Options
 
-DIGITS = 17  # a double's
-PREC = 128  # bits in which the site's constants are made
+DIGITS = 17  # decimal digits that identify a double
+PREC = 128  # bits in which the site's constants are computed before they become doubles
 COLUMNS = "t/s x/m y/m z/m X/m Y/m Z/m phi/deg lambda/deg speed/(m/s)"
 _SNAPSHOT = " ".join(["%.17g"] * 10)
 
 
 def lines(options: Options) -> Iterator[str]:
-    """The output, line by line, without newlines.
+    """Yield the output line by line, without newlines.
 
     Raises:
-        InputError: something that is needed is not installed.
+        InputError: a package that is needed is not installed, or --exact would print too many snapshots.
         IntegrationError, UnreachableError: the run failed.
     """
     yield from _comments(options)
     count = 0
-    site = Site(options.scene)
-    for times, states, zeros in _exact(options) if options.exact else _marched(options):
-        shown = site.snapshots(times, states)
-        row = 0
+    frame = SiteFrame(options.scene)
+    for times, states, zeros in _exact(options) if options.exact else _integrated(options):
+        snapshots = frame.snapshots(times, states)
+        begin = 0
         for zero in zeros:
             end = int(np.searchsorted(times, zero, side="left"))
-            yield from _texts(shown[row:end])
-            row, count = end, count + 1
+            yield from _texts(snapshots[begin:end])
+            begin, count = end, count + 1
             yield f"# P {count} {zero:.17g} {count / (2 * zero):.17g}"
-        yield from _texts(shown[row:])
+        yield from _texts(snapshots[begin:])
 
 
 def _texts(rows: Array) -> Iterator[str]:
@@ -62,33 +62,33 @@ def _comments(options: Options) -> Iterator[str]:
         "h": scene.site.altitude,
         "r": scene.site.equatorial_radius,
     }
-    ours = "--exact" if options.exact else f"-R {_digit(options.method)} -a {options.bits}"
+    mode = "--exact" if options.exact else f"-R {_order(options.method)} -a {options.bits}"
     yield "# foucault pend " + " ".join(f"-{switch} {values[switch]}" for switch in DEFAULTS if switch in values)
-    yield f"# {ours}"
+    yield f"# {mode}"
     yield f"# columns: {COLUMNS}"
     yield "# transits of xdot = 0: # P count t/s frequency/Hz"
 
 
-def _digit(method: str) -> str:
-    return next(digit for digit, word in METHOD_OF.items() if word == method)
+def _order(method: str) -> str:
+    return next(order for order, name in METHOD_OF.items() if name == method)
 
 
-def _marched(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
-    """Snapshots of a block, and the transits in it."""
+def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
+    """Yield the snapshots of each block and the transits in it."""
     from .march import blocks
     from .zeros import Transits
 
-    transits, begun = Transits(), 0
+    transits, first = Transits(), 0
     for times, states in blocks(options):
         zeros = transits.of(times, states[:, 3])
-        index = begun + np.arange(len(times))
-        kept = (index % options.skip == 0) & (index >= (begun + 1 if begun else 0))
-        yield times[kept], states[kept], zeros
-        begun += len(times) - 1
+        index = first + np.arange(len(times))
+        printed = (index % options.skip == 0) & (index >= (first + 1 if first else 0))
+        yield times[printed], states[printed], zeros
+        first += len(times) - 1
 
 
 def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
-    """The same from the reference, confirmed."""
+    """Yield all snapshots and transits at once, from the reference at the level `confirmed`."""
     rows, end = options.steps // options.skip, options.step * options.steps
     if rows > MAX_ROWS:
         raise InputError("-s", str(options.skip), f"at most {MAX_ROWS} snapshots with --exact", "Take a larger -s.")
@@ -104,8 +104,8 @@ def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
     yield solution.t[: rows + 1], states[: rows + 1], zeros
 
 
-class Site:
-    """The suspension and its axes in the frame that does not turn, Mathar (1)-(9)."""
+class SiteFrame:
+    """The suspension and its axes, seen from axes that do not turn, Mathar (1)-(9)."""
 
     def __init__(self, scene: Scene) -> None:
         ctx, exact = context(PREC), scene.exact
@@ -113,20 +113,20 @@ class Site:
         flattening = ctx.mpf(exact.flattening.numerator) / exact.flattening.denominator
         altitude = ctx.mpf(exact.altitude.numerator) / exact.altitude.denominator
         radius = ctx.mpf(exact.equatorial_radius.numerator) / exact.equatorial_radius.denominator
-        squared = flattening * (2 - flattening)
-        normal = radius / ctx.sqrt(1 - squared * k.sin * k.sin)
+        squared_eccentricity = flattening * (2 - flattening)
+        normal = radius / ctx.sqrt(1 - squared_eccentricity * k.sin * k.sin)
         self.sin, self.cos, self.rate = float(k.sin), float(k.cos), float(k.rate)
         self.axis_distance = float(k.axis_distance * k.length)
-        self.height = float((normal * (1 - squared) + altitude) * k.sin)
+        self.height = float((normal * (1 - squared_eccentricity) + altitude) * k.sin)
 
     def snapshots(self, times: Array, states: Array) -> Array:
-        """The ten columns of states x, y, z, vx, vy, vz of shape (rows, 6); shape (rows, 10)."""
+        """Return the ten columns, shape (rows, 10), of states x, y, z, vx, vy, vz, shape (rows, 6)."""
         x, y, z = states[:, :3].T
-        out = self.axis_distance - self.sin * y + self.cos * z
+        distance = self.axis_distance - self.sin * y + self.cos * z
         turn = self.rate * times
         inertial = (
-            out * np.cos(turn) - x * np.sin(turn),
-            out * np.sin(turn) + x * np.cos(turn),
+            distance * np.cos(turn) - x * np.sin(turn),
+            distance * np.sin(turn) + x * np.cos(turn),
             self.height + self.cos * y + self.sin * z,
         )
         angle = np.degrees(np.arctan2(np.hypot(x, y), -z))

@@ -1,4 +1,4 @@
-"""Transits of a run at a fixed step: quadratic interpolation of xdot, as the paper's program has it."""
+"""foucPend's transits at a fixed step: zeros of the parabola through three values of xdot, as the paper describes."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from reference.precision import Array
 
 
 def parabola_zero(t: Array, v: Array) -> float:
-    """The zero of the parabola through three values, between those two of them that differ in sign.
+    """Return the zero of the parabola through three values, between the two neighbours that differ in sign.
 
     Args:
-        t: times, shape (3,), equally far apart.
+        t: times, shape (3,), equally spaced.
         v: values, shape (3,).
     """
     middle, h = t[1], t[1] - t[0]
@@ -26,37 +26,37 @@ def parabola_zero(t: Array, v: Array) -> float:
 
 
 class Transits:
-    """Finds the zeros of xdot block by block; a release at rest is none."""
+    """Zeros of xdot, found block by block; a release at rest does not count."""
 
     def __init__(self) -> None:
         self._sign = 0.0  # of the last value that was not zero
         self._before: tuple[float, float] | None = None  # the row before the block
 
     def of(self, times: Array, v: Array) -> list[float]:
-        """Times of the zeros after the block's first row, up to its last.
+        """Return the times of the zeros after the block's first row, up to its last.
 
         Args:
-            times: shape (rows,), the first row being the last of the block before.
+            times: shape (rows,), the first row being the last one of the block before.
             v: xdot there.
         """
         signs = np.sign(v)
-        found = []
+        zeros = []
         if self._sign == 0:
             self._sign = float(signs[0])
-        # rows where something happens: a change of sign from the row before, or an exact zero at either of them
+        # rows worth a look: the sign differs from that of the row before, or xdot is exactly zero
         changes = np.nonzero((signs[1:] != signs[:-1]) | (signs[1:] == 0))[0] + 1
         for i in changes:
-            here = float(signs[i])
-            if here == 0 or here == self._sign:
+            sign = float(signs[i])
+            if sign == 0 or sign == self._sign:
                 continue
             if self._sign != 0:
-                found.append(self._zero(times, v, int(i)))
-            self._sign = here
+                zeros.append(self._zero(times, v, int(i)))
+            self._sign = sign
         self._before = (float(times[-2]), float(v[-2]))
-        return found
+        return zeros
 
     def _zero(self, times: Array, v: Array, i: int) -> float:
-        """The zero between rows i - 1 and i, v at i being the first value of the new sign."""
+        """Return the zero between rows i - 1 and i; v at i is the first value of the new sign."""
         if v[i - 1] == 0:
             return float(times[i - 1])
         if i >= 2:

@@ -1,12 +1,24 @@
-"""The three documents that this project builds on, line by line: every formula and number recomputed and judged.
+"""The three source papers, one folder each: every formula and printed number recomputed, judged, and shown on a page.
+
+The papers are Mathar's (`mathar/`), Gastebois's (`gastebois/`) and a third one, which solves the linear pendulum by
+three methods (`three_methods/`). Each section of a paper is one module; its function `checks` declares one row for
+every printed formula, number or sentence, with the computation to compare it with. Verdicts are computed from these.
+
+- `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a misprint);
+- `catalogue.py`: the list of all sections, in the order of print;
+- `points.py`: random points at which formulas are evaluated, and the numbers of the Paris pendulum;
+- `truth.py`: the truth about formulas, from the Lagrangian; `linear.py`: the same for the linear pendulum;
+- `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
+- `runs.py`: runs of the reference that numbers and sentences rest on; `figure_runs.py`: runs for the figures only;
+- `figures.py` and `captions.py`: the first paper's figures, drawn again, and their captions;
+- `page.py`: the rows and the figures as a page, and the rows as CSV and JSON.
 
 >>> from compare.papers import rows
 >>> judged = {row.id: row for row in rows()}                   # doctest: +SKIP
 >>> judged["mathar_45"].verdict, judged["mathar_45"].correction  # doctest: +SKIP
 ('misprint', 'the left side is y')
 
-`rows()` gives a `Row` for each line; `build(out)` also draws the first paper's figures again and writes one page.
-How a line is judged stands in `judge.py`; the lines stand in one module a section (`catalogue.SECTIONS`).
+`rows()` gives a `JudgedRow` for each declared row; `build(out)` also draws the figures and writes the page.
 """
 
 from __future__ import annotations
@@ -16,25 +28,25 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .checks import Row
+    from .checks import JudgedRow
 
 __all__ = ["build", "rows"]
 
 Report = Callable[[str, int, int], None]
 
 
-def rows(report: Report | None = None) -> list[Row]:
-    """Judge every line; `report` gets a line's place, how many are done, and how many there are."""
+def rows(report: Report | None = None) -> list[JudgedRow]:
+    """Judge every row; `report` is called with a row's place, the number of rows judged so far, and of all rows."""
     from .catalogue import rows as judged
 
     return judged(report)
 
 
-def build(out: Path, report: Report | None = None) -> list[Row]:
-    """Write `index.html`, `figure_N.svg`, `rows.csv` and `rows.json` into a folder, all or none.
+def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
+    """Write `index.html`, `figure_N.svg`, `rows.csv` and `rows.json` into a folder, all of them or none.
 
     Raises:
-        InputError: matplotlib or numba is not installed, the folder is somebody else's, or it cannot be written.
+        InputError: matplotlib or numba is not installed, or the folder holds another page or cannot be written.
     """
     from ..report.folder import PAGE, check_folder, write_files
     from ..report.plotting import pyplot
@@ -42,14 +54,14 @@ def build(out: Path, report: Report | None = None) -> list[Row]:
     from .figures import FIGURES, svg
     from .page import files_of
 
-    pyplot("--out")  # before the work, not after it
+    pyplot("--out")  # so that a missing package is reported before the work
     check_folder(out, [PAGE])
     check_methods()
     judged = rows(report)
     figures = {}
-    for done, number in enumerate(FIGURES, 1):
+    for count, number in enumerate(FIGURES, 1):
         figures[number] = svg(number)
         if report is not None:
-            report(f"figure {number}", done, len(FIGURES))
+            report(f"figure {number}", count, len(FIGURES))
     write_files(out, files_of(judged, figures))
     return judged

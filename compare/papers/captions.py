@@ -1,4 +1,4 @@
-"""What the paper prints under its figures, and what to look for in ours."""
+"""The captions that Mathar's paper prints under its figures, and a remark on each figure as drawn here."""
 
 from __future__ import annotations
 
@@ -26,31 +26,31 @@ CAPTIONS = (
         "Initial 20 seconds of the trajectory in x and y for the Paris pendulum released at x = 0.3 m and y = 0.4 m, "
         "another interval of 20 seconds after 7000 seconds have passed, and another 20 seconds when 12000 seconds have "
         "passed.",
-        "The swing plane turns clockwise: y loses and x gains.",
+        "The swing plane turns clockwise: the swing along y shrinks and that along x grows.",
     ),
     Caption(
         4,
         "Three trajectories each of 17 seconds of duration equivalent to snapshots of Figure 3 in a 3D view and in the "
         "projection on the x-y-plane, demonstrating the slow rotation of the main plane of the pendulum motion around "
         "the point equivalent to the rest position.",
-        "The cross is the rest position, 11.5 cm south of the point below the suspension. Heights are drawn larger.",
+        "The cross is the rest position, 11.5 cm south of the point below the pivot. The vertical axis is stretched.",
     ),
     Caption(
         5,
         "Snapshots of the z-coordinate of the Paris pendulum.",
-        "One snapshot every 30 s for 24 h. The text's -66.98 m for the release cannot be: it is -66.998 m.",
+        "One snapshot every 30 s for 24 h. The text's -66.98 m for the release is a misprint: it is -66.998 m.",
     ),
     Caption(
         6,
         "Snapshots of the λ-angle of the Paris pendulum.",
-        "One snapshot every 30 s. λ is counted about the point below the suspension, while the swing goes through the "
-        "rest position: so the dots crowd beside the line, which is the direction of the swing plane. It keeps its "
-        "rate to within 0.005° in a day.",
+        "One snapshot every 30 s. λ is measured about the point below the suspension, while the swing passes through "
+        "the rest position: so the dots crowd beside the line, which is the direction of the swing plane. That "
+        "direction stays within 0.005° of a uniform rotation for a day.",
     ),
     Caption(
         7,
         "The difference in positions between the full theory and different approximations introduced in Section VI.",
-        "Without rotation the pendulum is half a swing off by now; item 1 drops Ω², item 2 the outer diagonal.",
+        "Without rotation the pendulum is half a swing out of phase; item 1 drops Ω², item 2 the outer diagonal.",
     ),
     Caption(
         8,

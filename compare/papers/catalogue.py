@@ -1,11 +1,11 @@
-"""All rows of the three documents, in the order of print."""
+"""The list of all sections of the three source papers, in the order of print, and their rows."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from importlib import import_module
 
-from .checks import Check, Row
+from .checks import Check, JudgedRow
 
 Report = Callable[[str, int, int], None]
 
@@ -39,23 +39,23 @@ SECTIONS = (
 
 
 def checks() -> list[Check]:
-    """Every declared row."""
+    """Return every declared row."""
     return [check for section in SECTIONS for check in import_module(f".{section}", __package__).checks()]
 
 
-def rows(report: Report | None = None) -> list[Row]:
+def rows(report: Report | None = None) -> list[JudgedRow]:
     """Judge every declared row.
 
     Args:
-        report: called with a row's place, how many are done, and how many there are.
+        report: called with a row's place, the number of rows judged so far, and of all rows.
 
     Raises:
-        UnexplainedError: a print does not hold and nothing that is declared explains it.
+        UnexplainedError: a printed line does not hold, and no declared correction does.
     """
     declared = checks()
     judged = []
-    for done, check in enumerate(declared, 1):
+    for count, check in enumerate(declared, 1):
         judged.append(check.row())
         if report is not None:
-            report(judged[-1].place, done, len(declared))
+            report(judged[-1].place, count, len(declared))
     return judged

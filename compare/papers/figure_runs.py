@@ -1,4 +1,4 @@
-"""Runs that only the figures need."""
+"""Runs for the papers' figures only: intervals of a motion, frequency by latitude, foucPend's fixed-step methods."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ SPAN = "600"  # s of a run that measures a frequency
 
 
 def window(begin: float, span: float, scene: Scene | None = None, step: float = 0.05) -> tuple[Array, Array]:
-    """Times of an interval, and the states of a scene there (Paris if none is given), shape (times, 6)."""
+    """Return the times of an interval and the states of a scene there, shape (times, 6); the default is Paris."""
     times = np.asarray(begin + np.arange(round(span / step) + 1) * step, dtype=np.float64)
-    asked: Array = times if begin == 0 else np.concatenate(([0.0], times))
-    states = path_in(scene or load_scene("paris"), asked)
-    return times, states[len(asked) - len(times) :]
+    output_times: Array = times if begin == 0 else np.concatenate(([0.0], times))
+    states = path_in(scene or load_scene("paris"), output_times)
+    return times, states[len(output_times) - len(times) :]
 
 
 @cache
 def frequencies() -> dict[float, float]:
-    """Hz by latitude in degrees, from runs of the reference."""
-    words = [*map(str, LATITUDES), "48.846111"]
-    return {float(word): float(frequency(solved([f"site.latitude={word}"], SPAN, 12))) for word in words}
+    """Return the frequency in Hz by latitude in degrees, from runs of the reference."""
+    latitudes = [*map(str, LATITUDES), "48.846111"]
+    return {float(text): float(frequency(solved([f"site.latitude={text}"], SPAN, 12))) for text in latitudes}
 
 
 def estimate_at(latitude: float) -> float:
-    """Hz by the paper's last but one estimate: (51)-(52) with g' of (48), slowed down by 2K/π."""
+    """Return the paper's last but one estimate of the frequency in Hz: (51)-(52) with g' of (48), slowed by 2K/π."""
     p = paris().but(latitude=mpf(latitude))
     amplitude = acos(dot((p.x, p.y, p.z), rest(p)) / p.length**2)
     rate = sqrt(apparent_gravity(p) / p.length + (p.rate * sin(p.phi)) ** 2)
@@ -46,21 +46,21 @@ def estimate_at(latitude: float) -> float:
 
 
 def orders_at(begin: float, span: float, step: float) -> dict[str, Array]:
-    """States of the three fixed-step methods of the paper's program, every step of an interval.
+    """Return the states of the three fixed-step methods of the paper's program at every step of an interval.
 
     Raises:
-        InputError: they are not installed.
+        InputError: one of them is not installed.
     """
     check_methods()
     times = np.arange(round((begin + span) / step) + 1) * step
     problem = Problem.of(load_scene("paris", ["inputs=binary64"]), "plane", times)
     first = round(begin / step)
-    return {word: METHODS[word].prepare(problem, step)().states[first:] for word in FIXED_STEP}
+    return {name: METHODS[name].prepare(problem, step)().states[first:] for name in FIXED_STEP}
 
 
 def check_methods() -> None:
     """Raise InputError if the methods of figure 9 cannot run here."""
-    for word in FIXED_STEP:
-        missing = available(METHODS[word])
+    for name in FIXED_STEP:
+        missing = available(METHODS[name])
         if missing is not None:
-            raise InputError("--out", f"no {word}", "the extra methods, for figure 9", f"It is {missing}.")
+            raise InputError("--out", f"no {name}", "the methods of figure 9 (extra `methods`)", f"It is {missing}.")

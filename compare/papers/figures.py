@@ -1,4 +1,4 @@
-"""Figures 1 and 3-9 of the paper, drawn again from the reference (matplotlib, extra `plot`)."""
+"""Figures 1 and 3 to 9 of Mathar's paper, drawn again from runs of the reference (matplotlib, extra `plot`)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,6 @@ DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WINDOWS = (0, 7000, 12000)  # s
 WIDE, HIGH = 8.0, 4.2  # inches
 
-
 STYLE = SAME_BYTES | {
     "axes.spines.right": False,
     "axes.spines.top": False,
@@ -37,12 +36,12 @@ STYLE = SAME_BYTES | {
 
 
 def figure_1(plt: Any) -> Any:
-    """The rest position's angle against latitude, l = 1, 10, 100 m."""
+    """Draw the rest position's angle against latitude, l = 1, 10, 100 m."""
     figure, axes = plt.subplots(figsize=(WIDE, HIGH))
     latitudes = np.linspace(-90, 90, 73)
     for length, colour, dashes in zip((1, 10, 100), (BLUE, RED, GREEN), DASHES, strict=False):
-        here = paris().but(length=mpf(length))
-        angles = [abs(float(degrees(rest_angle(here.but(latitude=mpf(float(d))))))) for d in latitudes]
+        p = paris().but(length=mpf(length))
+        angles = [abs(float(degrees(rest_angle(p.but(latitude=mpf(float(d))))))) for d in latitudes]
         axes.plot(latitudes, angles, color=colour, linestyle=dashes, label=f"l = {length} m")
     axes.set(xlabel="geodetic latitude in °", ylabel="deviation from the vertical in °", xlim=(-90, 90), ylim=(0, None))
     axes.set_xticks(range(-90, 91, 30))
@@ -51,7 +50,7 @@ def figure_1(plt: Any) -> Any:
 
 
 def figure_3(plt: Any) -> Any:
-    """X and y over 20 s, three times."""
+    """Draw x and y over 20 s, three times."""
     figure, panels = plt.subplots(1, 3, figsize=(WIDE, HIGH), sharey=True)
     for begin, axes in zip(WINDOWS, panels, strict=True):
         times, states = window(begin, 20)
@@ -66,7 +65,7 @@ def figure_3(plt: Any) -> Any:
 
 
 def figure_4(plt: Any) -> Any:
-    """Three swings in space and from above."""
+    """Draw three swings in space and from above."""
     figure = plt.figure(figsize=(WIDE, HIGH))
     space, above = figure.add_subplot(1, 2, 1, projection="3d"), figure.add_subplot(1, 2, 2)
     rest = rest_in_metres(load_scene("paris"))
@@ -86,7 +85,7 @@ def figure_4(plt: Any) -> Any:
 
 
 def _snapshots() -> tuple[Array, Array]:
-    """Hours and states every 30 s."""
+    """Return hours and states every 30 s."""
     times, states = paris_path()
     return times[::120] / 3600, states[::120]
 
@@ -97,7 +96,7 @@ def _day(axes: Any) -> None:
 
 
 def figure_5(plt: Any) -> Any:
-    """Z of a day."""
+    """Draw z over a day."""
     figure, axes = plt.subplots(figsize=(WIDE, HIGH))
     hours, states = _snapshots()
     axes.plot(hours, states[:, 2], ".", color=BLUE, markersize=2)
@@ -117,7 +116,7 @@ def figure_5(plt: Any) -> Any:
 
 
 def figure_6(plt: Any) -> Any:
-    """The azimuth of a day."""
+    """Draw the azimuth over a day."""
     figure, axes = plt.subplots(figsize=(WIDE, HIGH))
     hours, states = _snapshots()
     axes.plot(hours, np.degrees(np.arctan2(states[:, 1], states[:, 0])), ".", color=BLUE, markersize=2)
@@ -132,15 +131,15 @@ def figure_6(plt: Any) -> Any:
 
 
 def figure_7(plt: Any) -> Any:
-    """X and y after 12000 s: full, without rotation, without the outer diagonal, without Ω²."""
+    """Draw x and y after 12000 s: full, without rotation, without the outer diagonal, without Ω²."""
     figure, panels = plt.subplots(2, 1, figsize=(WIDE, 1.35 * HIGH), sharex=True)
     times, full = window(12000, 20)
-    still = load_scene("paris", ["site.rotation_rate=0"])
-    asked = np.concatenate(([0.0], times))
+    no_rotation = load_scene("paris", ["site.rotation_rate=0"])
+    output_times = np.concatenate(([0.0], times))
     others = (
-        ("Ω = 0", GREEN, DASHES[3], window(12000, 20, still)[1]),
-        ("without -yx (item 2)", BLUE, DASHES[1], _path("mathar_item_2", asked)),
-        ("without Ω² (item 1)", RED, DASHES[2], _path("mathar_item_1", asked)),
+        ("Ω = 0", GREEN, DASHES[3], window(12000, 20, no_rotation)[1]),
+        ("without -yx (item 2)", BLUE, DASHES[1], _path("mathar_item_2", output_times)),
+        ("without Ω² (item 1)", RED, DASHES[2], _path("mathar_item_1", output_times)),
     )
     for i, axes in enumerate(panels):
         axes.plot(times, full[:, i], color=PINK, linewidth=2.2, label="full theory")
@@ -154,19 +153,19 @@ def figure_7(plt: Any) -> Any:
     return figure
 
 
-def _path(word: str, times: Array) -> Array:
-    made = approximation(word)
-    assert isinstance(made, Motion)
-    return made.trajectory(load_scene("paris"), times)[1:]
+def _path(name: str, times: Array) -> Array:
+    motion = approximation(name)
+    assert isinstance(motion, Motion)
+    return motion.trajectory(load_scene("paris"), times)[1:]
 
 
 def figure_8(plt: Any) -> Any:
-    """Frequency against latitude."""
+    """Draw the frequency against latitude."""
     figure, axes = plt.subplots(figsize=(WIDE, HIGH))
     latitudes = np.linspace(-90, 90, 91)
     axes.plot(latitudes, [estimate_at(float(d)) for d in latitudes], color=RED, linewidth=1)
-    found = frequencies()
-    axes.plot(list(found), list(found.values()), "o", color=BLUE, markersize=4, fillstyle="none")
+    measured = frequencies()
+    axes.plot(list(measured), list(measured.values()), "o", color=BLUE, markersize=4, fillstyle="none")
     axes.annotate(
         "Paris, 0.0608436 Hz",
         (48.846111, estimate_at(48.846111)),
@@ -180,18 +179,18 @@ def figure_8(plt: Any) -> Any:
 
 
 def figure_9(plt: Any) -> Any:
-    """Three fixed-step methods at 0.5 s after 12000 s."""
+    """Draw three fixed-step methods at steps of 0.5 s after 12000 s."""
     figure, panels = plt.subplots(2, 1, figsize=(WIDE, 1.35 * HIGH), sharex=True)
     times, truth = window(12000, 20, step=0.5)
     smooth, path = window(12000, 20)
     panels[0].plot(smooth, path[:, 0], color=GREY, linewidth=1, label="reference")
     labels = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
-    for (word, states), colour, mark in zip(orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osx", strict=True):
-        panels[0].plot(times, states[:, 0], mark, color=colour, fillstyle="none", markersize=5, label=labels[word])
+    for (name, states), colour, mark in zip(orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osx", strict=True):
+        panels[0].plot(times, states[:, 0], mark, color=colour, fillstyle="none", markersize=5, label=labels[name])
         gap = np.linalg.norm(states[:, :3] - truth[:, :3], axis=1)
         panels[1].plot(times, gap, color=colour, marker=mark, fillstyle="none", markersize=5, linewidth=0.7)
     panels[0].set(ylabel="x in m", xlim=(12000, 12020))
-    panels[1].set(ylabel="off by, in m", xlabel="t in s", yscale="log")
+    panels[1].set(ylabel="error in m", xlabel="t in s", yscale="log")
     panels[1].set_xticks(range(12000, 12021, 5))
     _legend_above(figure, panels[0])
     return figure
@@ -215,7 +214,7 @@ FIGURES: dict[int, Callable[[Any], Any]] = {
 
 
 def svg(number: int) -> str:
-    """A figure as SVG.
+    """Draw a figure as SVG.
 
     Raises:
         InputError: matplotlib is not installed.

@@ -1,4 +1,4 @@
-"""The linear Foucault pendulum: what the reference's model becomes near straight down, and its exact motion."""
+"""The linear Foucault pendulum: the reference's model linearised about straight down, and its exact motion."""
 
 from __future__ import annotations
 
@@ -10,42 +10,42 @@ from .points import Point
 
 
 def rate_up(p: Point) -> Any:
-    """Ω_z = Ω sinλ_a."""
+    """Return Ω_z = Ω sinλ_a."""
     return p.rate * sin(p.phi)
 
 
 def swing_rate(p: Point) -> Any:
-    """ω = sqrt(ω0² + Ω_z²)."""
+    """Return ω = sqrt(ω0² + Ω_z²)."""
     return sqrt(p.gravity / p.length + rate_up(p) ** 2)
 
 
 def matrix(p: Point) -> Any:
-    """Of the reference's model with gravity alone, linear about straight down: columns from unit states."""
+    """Return the matrix of the reference's model with gravity alone, linear about straight down, from unit states."""
     columns = []
     for name in ("x", "y", "vx", "vy"):
         state = dict.fromkeys(("x", "y", "vx", "vy"), MP.zero) | {name: MP.one / 10}
-        here = p.but(**state)
-        columns.append([10 * part for part in (here.vx, here.vy, *linearised(here))])
+        unit = p.but(**state)
+        columns.append([10 * part for part in (unit.vx, unit.vy, *linearised(unit))])
     return MP.matrix(columns).T
 
 
 def motion(p: Point, start: Vector, t: Any) -> Vector:
-    """X, y, vx, vy of the linear system after a time."""
+    """Return x, y, vx, vy of the linear system after a time."""
     return tuple(MP.expm(matrix(p) * t, method="taylor") * MP.matrix(start))
 
 
 def start_at_rest(p: Point) -> Vector:
-    """Let go at rest at x, in the east."""
+    """Return the start of a bob let go at rest at x, in the east."""
     return (p.x, MP.zero, MP.zero, MP.zero)
 
 
 def motion_at_rest(p: Point, t: Any) -> Vector:
-    """X, y of the linear system let go at rest at x."""
+    """Return x, y of the linear system let go at rest at x."""
     return motion(p, start_at_rest(p), t)[:2]
 
 
 def acceleration_of(p: Point) -> Vector:
-    """X'', y'', z'' of the reference's model with gravity alone."""
+    """Return x'', y'', z'' of the reference's model with gravity alone."""
     ax, ay = uniform_acceleration(p)
     z, vz = p.z, p.vz
     return ax, ay, -(p.vx**2 + p.vy**2 + vz**2 + p.x * ax + p.y * ay) / z

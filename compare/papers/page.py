@@ -1,4 +1,4 @@
-"""The page: figures beside the paper's captions, and every row with its verdict, in one HTML file; and as data."""
+"""The papers' page: every row with its verdict, figures beside their captions, in one HTML file; rows as CSV, JSON."""
 
 from __future__ import annotations
 
@@ -8,41 +8,41 @@ from dataclasses import asdict, fields
 from ..report.folder import PAGE, csv_text, json_text
 from ..report.page import Column, Html, TableRow, choices, faint, page, paragraph, plate, section, strong, table
 from .captions import CAPTIONS
-from .checks import VERDICTS, Row
+from .checks import VERDICTS, JudgedRow
 
 MEANING = {
-    "exact": "both sides agree to 45 digits and more at every random point, or the number is the very same",
-    "reproduced": "the recomputed value rounds, or is cut off, to what is printed; or a run shows what is said",
-    "approximation": "an approximation; its error is measured, and with which power of what it shrinks",
+    "exact": "both sides agree to 45 digits or more at every random point, or the number is exactly as printed",
+    "reproduced": "the recomputed value, rounded or cut off, is the printed one; or a run confirms the sentence",
+    "approximation": "an approximation; its error is measured, and the power with which it shrinks",
     "misprint": "does not hold as printed; the correction was put to the same test and holds",
 }
 
 
-def document(row: Row) -> dict[str, str]:
-    """A row for JSON and CSV."""
+def document(row: JudgedRow) -> dict[str, str]:
+    """Return a row for JSON and CSV."""
     return asdict(row)
 
 
-def files_of(rows: Sequence[Row], figures: dict[int, str]) -> dict[str, str]:
-    """Every file of the page by name; the page itself comes last, so that what it shows is there before it.
+def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, str]:
+    """Return every file of the page by name; the page itself comes last, after the figures that it shows.
 
     Args:
-        rows: of the table.
+        rows: rows of the table.
         figures: SVG text by the paper's figure number.
     """
     documents = [document(row) for row in rows]
     return {
         **{f"figure_{number}.svg": svg for number, svg in figures.items()},
-        "rows.csv": csv_text((one.name for one in fields(Row)), documents),
+        "rows.csv": csv_text((field.name for field in fields(JudgedRow)), documents),
         "rows.json": json_text({"rows": documents}),
         PAGE: page_text(rows, figures),
     }
 
 
-def page_text(rows: Sequence[Row], figures: dict[int, str]) -> str:
-    """The page."""
+def page_text(rows: Sequence[JudgedRow], figures: dict[int, str]) -> str:
+    """Return the page as HTML."""
     counts: dict[str, int] = {verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS}
-    plates = [plate(figures[one.number], one.number, one.printed, one.remark) for one in CAPTIONS]
+    plates = [plate(figures[caption.number], caption.number, caption.printed, caption.remark) for caption in CAPTIONS]
     return page(
         "The papers' formulas, numbers and figures, recomputed",
         [
@@ -60,9 +60,9 @@ def _lead(count: int) -> Html:
             "R. J. Mathar, <em>The Foucault Pendulum: Trajectories of the Full Lagrangian</em>; G. Gastebois, "
             "<em>Le pendule de Foucault</em>; and a third text that solves the linear system by three methods. "
             f"{count} lines of them were put to the test. Truth is the Lagrangian, differentiated; the reference "
-            "solver; or a closed form. None of the verdicts below was written by hand. What is shown as recomputed is "
-            "the true value to 18 digits: of a formula at the first of several random points whose numbers are all of "
-            "order one, of a number with the document's own inputs. In the first paper ϕ is the latitude, φ the angle "
+            "solver; or a closed form. None of the verdicts below was written by hand. The recomputed value is the "
+            "true one to 18 digits: of a formula at the first of several random points whose numbers are all of order "
+            "one, of a printed number with the paper's own inputs. In the first paper ϕ is the latitude, φ the angle "
             "of the cord and λ its azimuth; in the second these are λ, θ and φ."
         )
     )
@@ -73,7 +73,7 @@ def _counted(counts: dict[str, int]) -> Html:
     return table(columns, [TableRow([strong(word), str(count), MEANING[word]], word) for word, count in counts.items()])
 
 
-def _lines(rows: Sequence[Row]) -> Html:
+def _lines(rows: Sequence[JudgedRow]) -> Html:
     columns = [Column(title, "wrapped") for title in ("place", "printed", "recomputed", "verdict")]
     return table(
         columns,
@@ -81,6 +81,6 @@ def _lines(rows: Sequence[Row]) -> Html:
     )
 
 
-def _verdict(row: Row) -> Html:
+def _verdict(row: JudgedRow) -> Html:
     notes = [row.error, f"right: {row.correction}" if row.correction else "", row.remark]
     return Html("<br>".join([strong(row.verdict), *(faint(note) for note in notes if note)]))

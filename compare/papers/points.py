@@ -1,6 +1,6 @@
-"""Random points to evaluate a formula at: a pendulum, a planet and a state whose numbers are all of order one.
+"""Random points at which printed formulas are evaluated: pendulum, planet and state, all numbers of order one.
 
-At such a point no term hides behind another, as RΩ² hides behind g on the Earth: what differs shows at once.
+On the Earth a term such as RΩ² is hidden behind g; at these points no term is small, so a wrong one shows at once.
 """
 
 from __future__ import annotations
@@ -17,13 +17,13 @@ from reference.scene import Inputs
 
 from .digits import MP, Vector, cos, mpf, radians, sin, sqrt
 
-COUNT = 5
-SEED = 20231117
+COUNT = 5  # random points
+SEED = 20231117  # of the random numbers: the points are the same in every run
 
 
 @dataclass(frozen=True)
 class Point:
-    """Numbers of one random point, exact; lengths in m, times in s, angles in radians unless said.
+    """Numbers of one random point, exact; lengths in m, times in s, angles in radians unless stated.
 
     Attributes:
         radius, flattening, altitude, latitude: the planet's (latitude in degrees).
@@ -87,26 +87,26 @@ class Point:
 
     @cached_property
     def position(self) -> Vector:
-        """X, y, z."""
+        """Position x, y, z."""
         return (self.x, self.y, self.z)
 
     @cached_property
     def velocity(self) -> Vector:
-        """Vx, vy, vz."""
+        """Velocity vx, vy, vz."""
         return (self.vx, self.vy, self.vz)
 
     @cached_property
     def k(self) -> Constants:
-        """The model's constants at this point, for `reference.model.formulations`."""
+        """The model's constants at this point, for the functions of `reference.model`."""
         return constants(_inputs(self), MP)
 
     @cached_property
     def uniform(self) -> Constants:
-        """The same with gravity alone: no centrifugal force, as the other two documents have it."""
+        """The same with gravity alone: no centrifugal force, as in the other two papers."""
         return replace(self.k, pull=(0, 0, -self.gravity / self.length), centrifugal=(0, 0, 0, 0))
 
     def but(self, **changes: Any) -> Point:
-        """The point with other numbers."""
+        """Return the point with some of its numbers changed."""
         return replace(self, **changes)
 
 
@@ -138,15 +138,15 @@ _RANGES = {
 
 
 def points(count: int = COUNT) -> list[Point]:
-    """Points that are the same in every run."""
+    """Return random points, the same in every run."""
     draw = random.Random(SEED)
     return [Point(**{name: MP.mpf(draw.uniform(*ends)) for name, ends in _RANGES.items()}) for _ in range(count)]
 
 
 def paris() -> Point:
-    """The Paris pendulum as released, Mathar VII: decimals as printed."""
-    numbers = {"radius": "6378137", "altitude": "0", "latitude": "48.846111", "length": "67", "gravity": "9.80665",
-               "rate": "7.292115e-5", "x": "0.3", "y": "0.4"}  # fmt: skip
-    given = {name: mpf(text) for name, text in numbers.items()}
+    """Return the Paris pendulum at its release, Mathar VII: decimals as printed."""
+    texts = {"radius": "6378137", "altitude": "0", "latitude": "48.846111", "length": "67", "gravity": "9.80665",
+             "rate": "7.292115e-5", "x": "0.3", "y": "0.4"}  # fmt: skip
+    numbers = {name: mpf(text) for name, text in texts.items()}
     blank = dict.fromkeys(_RANGES, MP.zero) | {"mass": MP.one}
-    return Point(**(blank | given | {"flattening": 1 / mpf("298.257223564")}))
+    return Point(**(blank | numbers | {"flattening": 1 / mpf("298.257223564")}))

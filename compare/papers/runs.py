@@ -1,4 +1,4 @@
-"""Runs of the reference that the numbers and figures rest on; each made once."""
+"""Runs of the reference that judged numbers and sentences rest on, such as the day of the Paris pendulum; cached."""
 
 from __future__ import annotations
 
@@ -19,42 +19,42 @@ from .digits import mpf
 
 Array = npt.NDArray[np.float64]
 
-PREC = 128  # bits of the constants that double runs start from
+PREC = 128  # bits in which the rest position is computed before it becomes doubles
 
 
 @cache
 def paris_day() -> Golden:
-    """The golden dataset of the Paris pendulum: 24 h, 40 digits, every transit."""
+    """Return the golden dataset of the Paris pendulum: 24 h, 40 digits, every transit."""
     return load("paris")
 
 
 @cache
 def transit_times() -> list[Any]:
-    """Its transits' times in s."""
+    """Return the times of its transits in s."""
     return [mpf(text) for text in paris_day().transits_text["t"]]
 
 
 @cache
 def paris_path() -> tuple[Array, Array]:
-    """Times every 0.25 s for 24 h, and x, y, z, vx, vy, vz at them, shape (times, 6), from a run in long double."""
+    """Return times every 0.25 s for 24 h and x, y, z, vx, vy, vz there, shape (times, 6), by a long double run."""
     times = np.arange(4 * 86400 + 1) / 4
     return times, trajectory(load_scene("paris"), times, number=LONG_DOUBLE)
 
 
 def path_in(scene: Scene, times: Array) -> Array:
-    """X, y, z, vx, vy, vz of any scene, shape (times, 6), to about all the digits of a double."""
+    """Return x, y, z, vx, vy, vz of any scene, shape (times, 6), to about the last digit of a double."""
     return trajectory(scene, times, number=LONG_DOUBLE)
 
 
 def rotation(scene: Scene, t_end: float, swing_hz: float) -> float:
-    """Degrees an hour by which the swing plane turns, from a line through its directions every 10 s."""
+    """Return the rotation of the swing plane in degrees an hour, by a line fitted to its directions every 10 s."""
     times = np.arange(0.0, t_end + 5.0, 10.0)
     turned = swing_direction(path_in(scene, times), rest_in_metres(scene), 2 * np.pi * swing_hz)
     return float(np.polyfit(times / 3600, np.degrees(turned), 1)[0])
 
 
 def solved(assignments: Sequence[str], t_end: str, digits: int = 20) -> Solution:
-    """Paris with other numbers, with its transits."""
+    """Solve the scene `paris` with some values changed, up to t_end, with its transits."""
     return _solved(tuple(assignments), t_end, digits)
 
 
@@ -65,7 +65,7 @@ def _solved(assignments: tuple[str, ...], t_end: str, digits: int) -> Solution:
 
 
 def frequency(solution: Solution) -> Any:
-    """Swings a second, from the release to the last transit that ends a whole one."""
+    """Return the swings a second, from the release to the last transit that ends a whole swing."""
     assert solution.transits is not None
     times = solution.transits.exact("t")
     half = times[1] / 2
@@ -75,14 +75,14 @@ def frequency(solution: Solution) -> Any:
 
 
 def rest_in_metres(scene: Scene) -> Array:
-    """Where the bob hangs at rest."""
+    """Return the rest position in m, shape (3,)."""
     ctx = context(PREC)
     k = constants(scene.exact, ctx)
     return np.array([float(part * k.length) for part in rest_position(k, ctx)])
 
 
 def swing_direction(states: Array, rest: Array, rate: float) -> Array:
-    """Direction of the ellipse's major axis in rad, from east to north, continuous; `rate` is the swing's in rad/s.
+    """Return the direction of the ellipse's major axis in rad, east to north, continuous; `rate` is the swing's, rad/s.
 
     With Z = x + i y seen from the rest position, Z = p exp(i rate t) + q exp(-i rate t): p = (Z - i Z'/rate) / 2,
     q = (Z + i Z'/rate) / 2, and the axis lies at (arg p + arg q) / 2.
@@ -94,13 +94,13 @@ def swing_direction(states: Array, rest: Array, rate: float) -> Array:
 
 @cache
 def mean_direction() -> Array:
-    """Direction of the Paris pendulum's swing plane in rad, every 0.25 s for 24 h."""
+    """Return the direction of the Paris pendulum's swing plane in rad, every 0.25 s for 24 h."""
     times = transit_times()
     hertz = float(1 / times[1])
     return swing_direction(paris_path()[1], rest_in_metres(load_scene("paris")), 2 * np.pi * hertz)
 
 
 def lead(ahead: Array, behind: Array) -> float:
-    """By how many s a state is ahead of another, along the second's velocity; x, y, z, vx, vy, vz each."""
+    """Return the time in s by which a state x, y, z, vx, vy, vz is ahead of another, along the other's velocity."""
     gap, speed = ahead[:2] - behind[:2], behind[3:5]
     return float(gap @ speed / (speed @ speed))

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from compare.papers import build
-from compare.papers.checks import Row
+from compare.papers.checks import JudgedRow
 
 
 @pytest.fixture(scope="session")
-def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Row]]:
+def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[JudgedRow]]:
     pytest.importorskip("matplotlib")
     pytest.importorskip("numba")
     folder = tmp_path_factory.mktemp("paper") / "page"
@@ -19,5 +19,5 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Row]]:
 
 
 @pytest.fixture(scope="session")
-def judged(built: tuple[Path, list[Row]]) -> dict[str, Row]:
+def judged(built: tuple[Path, list[JudgedRow]]) -> dict[str, JudgedRow]:
     return {row.id: row for row in built[1]}

@@ -15,7 +15,7 @@ from .numbers import G
 
 
 def small_accelerations(p: Point) -> Vector:
-    """7.3."""
+    """Return θ'', φ'' for small angles by 7.3."""
     theta, up = p.cord, rate_up(p)
     second = -p.gravity / p.length * theta + theta * p.azimuth_rate**2 + 2 * theta * up * p.azimuth_rate
     return second, (-2 * p.cord_rate * p.azimuth_rate - 2 * up * p.cord_rate) / theta
@@ -27,14 +27,14 @@ def _narrow(s: Any) -> Point:
 
 
 def _flat(p: Point, s: Any = 0) -> Vector:
-    """X = L0 θ cosφ, y = L0 θ sinφ of small angles, along the point's path."""
+    """Return x = L0 θ cosφ, y = L0 θ sinφ of small angles, along the point's path."""
     theta = p.cord + p.cord_rate * s + p.cord_second * s * s / 2
     phi = p.azimuth + p.azimuth_rate * s + p.azimuth_second * s * s / 2
     return p.length * theta * cos(phi), p.length * theta * sin(phi)
 
 
 def _flat_printed(p: Point) -> Vector:
-    """X'' and y'' in θ, φ of 7.3, first lines."""
+    """Return x'' and y'' in θ, φ of 7.3, first lines."""
     _, _, sl, cl = angle_functions(p)
     length, theta, turn = p.length, p.cord, p.azimuth_rate
     x = length * p.cord_second * cl - 2 * length * p.cord_rate * sl * turn
@@ -46,14 +46,14 @@ def _flat_printed(p: Point) -> Vector:
 
 
 def _flat_solved(p: Point) -> Vector:
-    """The same with the small-angle accelerations put in: from the definition of x and y."""
+    """Return x'' and y'' with the small-angle accelerations put in, from the definition of x and y."""
     second, turned = small_accelerations(p)
-    here = p.but(cord_second=second, azimuth_second=turned)
-    return vector_derivative(lambda s: _flat(here, s), 0, 2)
+    solved = p.but(cord_second=second, azimuth_second=turned)
+    return vector_derivative(lambda s: _flat(solved, s), 0, 2)
 
 
 def _flat_middle(p: Point, sign: int) -> Vector:
-    """X'' and y'' of 7.3, middle lines; `sign` of the last group of y''."""
+    """Return x'' and y'' of 7.3, middle lines; `sign` is that of the last group of y''."""
     _, _, sl, cl = angle_functions(p)
     length, theta, turn, up = p.length, p.cord, p.azimuth_rate, rate_up(p)
     pull = -p.gravity / length * theta + theta * turn**2 + 2 * theta * turn * up
@@ -64,7 +64,7 @@ def _flat_middle(p: Point, sign: int) -> Vector:
 
 
 def _flat_end(p: Point) -> Vector:
-    """X'' and y'' of 7.3, last lines in θ, φ."""
+    """Return x'' and y'' of 7.3, last lines in θ, φ."""
     _, _, sl, cl = angle_functions(p)
     length, theta, up = p.length, p.cord, rate_up(p)
     along = length * p.cord_rate * cl - length * theta * sl * p.azimuth_rate
@@ -73,7 +73,7 @@ def _flat_end(p: Point) -> Vector:
 
 
 def _harmonic(p: Point) -> Vector:
-    """-ω0² x + 2 y'Ω sinλ_a and its partner at the flat x, y."""
+    """Return -ω0² x + 2 y'Ω sinλ_a and its partner at the small-angle x, y."""
     x, y = _flat(p)
     vx, vy = vector_derivative(lambda s: _flat(p, s))
     square, up = p.gravity / p.length, rate_up(p)
@@ -81,7 +81,7 @@ def _harmonic(p: Point) -> Vector:
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
     return [
         Approximate(
             "gastebois_7_3_theta",

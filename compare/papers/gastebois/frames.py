@@ -12,7 +12,7 @@ from .numbers import G
 
 
 def turning_acceleration(p: Point) -> Vector:
-    """Acceleration of a point with x'', y'' in axes that turn about z, from its place in axes at rest."""
+    """Return the acceleration of a point with x'', y'' in axes that turn about z, from its place in axes at rest."""
 
     def at_rest(s: Any) -> Vector:
         place = (p.x + p.vx * s + p.ax * s * s / 2, p.y + p.vy * s + p.ay * s * s / 2, p.t + p.cord * s)
@@ -22,17 +22,17 @@ def turning_acceleration(p: Point) -> Vector:
 
 
 def turning_velocity(p: Point) -> Vector:
-    """Velocity of the same point."""
+    """Return the velocity of the same point."""
     return vector_derivative(lambda s: rotated((p.x + p.vx * s, p.y + p.vy * s, p.t), AXIS, p.rate * s))
 
 
 def turning(p: Point) -> Vector:
-    """Ω on east, north, up at the latitude λ."""
+    """Return Ω on east, north, up at the latitude λ."""
     return (MP.zero, p.rate * cos(p.phi), p.rate * sin(p.phi))
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
     return [
         Identity(
             "gastebois_3_1_v",
@@ -102,6 +102,6 @@ def checks() -> list[Check]:
 
 
 def _tilted_frame(p: Point) -> Vector:
-    """Acceleration of a point that moves uniformly in axes turning about an inclined axis."""
+    """Return the acceleration of a point that moves uniformly in axes turning about an inclined axis."""
     axis = scale(1 / p.rate, turning(p))
     return vector_derivative(lambda s: rotated(add(p.position, scale(s, p.velocity)), axis, p.rate * s), 0, 2)

@@ -16,39 +16,39 @@ from .numbers import G
 
 
 def left_side(p: Point, i: int) -> Any:
-    """d(∂L/∂q')/dt - ∂L/∂q of the Lagrangian, along a path with the point's accelerations."""
+    """Return d(∂L/∂q')/dt - ∂L/∂q of the Lagrangian, along a path with the point's accelerations."""
     q, v, a = (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate), (p.cord_second, p.azimuth_second)
 
     def nudged(vector: Vector, by: Any) -> Vector:
         return tuple(part + (by if k == i else 0) for k, part in enumerate(vector))
 
     def momentum(s: Any) -> Any:
-        here = tuple(q[k] + v[k] * s + a[k] * s * s / 2 for k in (0, 1))
-        going = tuple(v[k] + a[k] * s for k in (0, 1))
-        return (lagrangian(p, here, nudged(going, 1)) - lagrangian(p, here, nudged(going, -1))) / 2
+        place = tuple(q[k] + v[k] * s + a[k] * s * s / 2 for k in (0, 1))
+        rates = tuple(v[k] + a[k] * s for k in (0, 1))
+        return (lagrangian(p, place, nudged(rates, 1)) - lagrangian(p, place, nudged(rates, -1))) / 2
 
     return derivative(momentum) - derivative(lambda s: lagrangian(p, nudged(q, s), v))
 
 
 def without_prime(p: Point, i: int) -> Any:
-    """d(dL/dq)/dt - dL/dq, as the general line is printed."""
+    """Return d(dL/dq)/dt - dL/dq, as the general line is printed."""
     q, v, a = (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate), (p.cord_second, p.azimuth_second)
 
     def slope(s: Any) -> Any:
-        here = tuple(q[k] + v[k] * s + a[k] * s * s / 2 for k in (0, 1))
-        going = tuple(v[k] + a[k] * s for k in (0, 1))
-        return derivative(lambda u: lagrangian(p, tuple(x + (u if k == i else 0) for k, x in enumerate(here)), going))
+        place = tuple(q[k] + v[k] * s + a[k] * s * s / 2 for k in (0, 1))
+        rates = tuple(v[k] + a[k] * s for k in (0, 1))
+        return derivative(lambda u: lagrangian(p, tuple(x + (u if k == i else 0) for k, x in enumerate(place)), rates))
 
     return derivative(slope) - slope(MP.zero)
 
 
 def _generalised(p: Point, i: int) -> Any:
-    """f_c · ∂r/∂q_i."""
+    """Return f_c · ∂r/∂q_i."""
     return dot(coriolis(p), along(i)(p))
 
 
 def angle_accelerations(p: Point) -> Vector:
-    """θ'', φ'' of the reference's model with gravity alone, from its cartesian acceleration."""
+    """Return θ'', φ'' of the reference's model with gravity alone, from its cartesian acceleration."""
     n, v = (scale(1 / p.length, vector) for vector in (by_angles(p, p.cord, p.azimuth), moving_velocity(p)))
     a = acceleration(n, v, p.uniform)
     sp, cp, *_ = angle_functions(p)
@@ -58,7 +58,7 @@ def angle_accelerations(p: Point) -> Vector:
 
 
 def printed_accelerations(p: Point) -> Vector:
-    """The end of 7.2."""
+    """Return θ'', φ'' as printed at the end of 7.2."""
     sp, cp, sl, _ = angle_functions(p)
     along = cp * sin(p.phi) - sp * sl * cos(p.phi)
     theta = -p.gravity / p.length * sp + sp * cp * p.azimuth_rate**2 + 2 * sp * along * p.rate * p.azimuth_rate
@@ -66,7 +66,7 @@ def printed_accelerations(p: Point) -> Vector:
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
 
     def theta_side(p: Point) -> Any:
         sp, cp, *_ = angle_functions(p)
@@ -79,7 +79,7 @@ def checks() -> list[Check]:
         return p.mass * p.length**2 * (sp**2 * p.azimuth_second + 2 * sp * cp * p.cord_rate * p.azimuth_rate)
 
     def force(i: int, right: bool) -> Callable[[Point], Any]:
-        """f_x, f_y, f_z as printed, or with φ where θ is printed."""
+        """Return f_x, f_y or f_z as printed, or with φ where θ is printed."""
 
         def printed(p: Point) -> Any:
             along, across = speeds(p)
@@ -135,7 +135,7 @@ def checks() -> list[Check]:
             "… = f_cx dx/dq + f_cy dy/dq + f_cz dz/dq",
             lambda p: tuple(_generalised(p, i) for i in (0, 1)),
             lambda p: tuple(left_side(_true_path(p), i) for i in (0, 1)),
-            remark="along the accelerations of reference.model.formulations",
+            remark="along the accelerations of reference.model.force",
         ),
         *(
             Identity(
@@ -155,7 +155,7 @@ def checks() -> list[Check]:
             "θ'' = -g_a/L0 sinθ + sinθ cosθ φ'² + 2 sinθ (cosθ sinλ_a - sinθ sinφ cosλ_a) Ω φ'",
             lambda p: printed_accelerations(p)[0],
             lambda p: angle_accelerations(p)[0],
-            remark="truth: reference.model.formulations with gravity alone; φ from east to north",
+            remark="truth: reference.model.force with gravity alone; φ from east to north",
         ),
         Identity(
             "gastebois_7_2_phi2",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..checks import Check, Identity, Number
+from ..checks import Check, Identity, PrintedNumber
 from ..digits import MP, Vector, add, atan2, cos, degrees, dot, norm, pi, sin, sqrt
 from ..points import Point, paris
 from .frames import turning
@@ -12,41 +12,41 @@ from .numbers import EARTH_RADIUS, GRAVITY, PANTHEON_LATITUDE, G
 
 
 def _sphere(p: Point) -> tuple[Vector, Vector]:
-    """G towards the centre and Ω² R away from the axis, on east, north, up of a sphere of radius R_p."""
+    """Return g towards the centre and Ω² R away from the axis, on east, north, up of a sphere of radius R_p."""
     out = p.rate**2 * p.radius * cos(p.phi)
     return (MP.zero, MP.zero, -p.gravity), (MP.zero, -out * sin(p.phi), out * cos(p.phi))
 
 
 def apparent(p: Point) -> Vector:
-    """g_a = g + a_e."""
+    """Return g_a = g + a_e."""
     return add(*_sphere(p))
 
 
 def outward(p: Point) -> Any:
-    """a_e = Ω² R_p cosλ."""
+    """Return a_e = Ω² R_p cosλ."""
     return p.rate**2 * p.radius * cos(p.phi)
 
 
 def tilt(p: Point) -> Any:
-    """α from the vectors."""
+    """Return α from the vectors."""
     _, north, up = apparent(p)
     return atan2(-north, -up)
 
 
 def _vertical_rate(p: Point) -> Any:
-    """Part of Ω along -g_a, over Ω."""
+    """Return the part of Ω along -g_a, over Ω."""
     pull = apparent(p)
     return -dot(turning(p), pull) / norm(pull) / p.rate
 
 
 def pantheon_on_sphere(s: Any) -> Point:
-    """The Pantheon on a sphere, Ω² s times the Earth's."""
-    here = paris()
-    return here.but(radius=EARTH_RADIUS, latitude=PANTHEON_LATITUDE, gravity=GRAVITY, rate=here.rate * sqrt(s))
+    """Return the Pantheon on a sphere, Ω² s times the Earth's."""
+    base = paris()
+    return base.but(radius=EARTH_RADIUS, latitude=PANTHEON_LATITUDE, gravity=GRAVITY, rate=base.rate * sqrt(s))
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
     return [
         Identity(
             "gastebois_4_2_cosines",
@@ -93,7 +93,7 @@ def checks() -> list[Check]:
             lambda p: 2 * pi / p.rate / sin(p.phi + tilt(p)),
             lambda p: 2 * pi / (p.rate * _vertical_rate(p)),
         ),
-        Number(
+        PrintedNumber(
             "gastebois_6_3_lambda",
             f"{G} 6.3",
             "λ_a = 48,97°",

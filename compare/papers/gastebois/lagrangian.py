@@ -17,39 +17,39 @@ from .numbers import G
 
 
 def angle_functions(p: Point) -> tuple[Any, ...]:
-    """Sine and cosine of θ, then of φ."""
+    """Return sine and cosine of θ, then of φ."""
     return sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth)
 
 
 def speeds(p: Point) -> Vector:
-    """v_θ = L0 θ', v_φ = L0 sinθ φ'."""
+    """Return v_θ = L0 θ', v_φ = L0 sinθ φ'."""
     return p.length * p.cord_rate, p.length * sin(p.cord) * p.azimuth_rate
 
 
 def moving_velocity(p: Point) -> Vector:
-    """Velocity from the motion of the angles."""
+    """Return the velocity from the motion of the angles."""
     return vector_derivative(lambda s: moving(p, s))
 
 
 def kinetic(p: Point, square: Any) -> Any:
-    """L = m v²/2 + m g_a L0 cosθ."""
+    """Return L = m v²/2 + m g_a L0 cosθ, v² being `square`."""
     return p.mass * square / 2 + p.mass * p.gravity * p.length * cos(p.cord)
 
 
 def lagrangian(p: Point, q: Vector, v: Vector) -> Any:
-    """M v²/2 - m g_a z of angles q that change at the rates v, from the motion itself."""
-    here = p.but(cord=q[0], azimuth=q[1], cord_rate=v[0], azimuth_rate=v[1])
-    square = dot(moving_velocity(here), moving_velocity(here))
+    """Return m v²/2 - m g_a z of angles q that change at the rates v, from the motion itself."""
+    state = p.but(cord=q[0], azimuth=q[1], cord_rate=v[0], azimuth_rate=v[1])
+    square = dot(moving_velocity(state), moving_velocity(state))
     return p.mass * square / 2 - p.mass * p.gravity * by_angles(p, *q)[2]
 
 
 def coriolis(p: Point) -> Vector:
-    """f_c = 2 m v × Ω from the motion of the angles."""
+    """Return f_c = 2 m v × Ω from the motion of the angles."""
     return scale(2 * p.mass, cross(moving_velocity(p), turning(p)))
 
 
 def along(i: int) -> Callable[[Point], Vector]:
-    """∂r/∂θ or ∂r/∂φ."""
+    """Return ∂r/∂θ or ∂r/∂φ."""
 
     def slope(p: Point) -> Vector:
         return vector_derivative(
@@ -60,7 +60,7 @@ def along(i: int) -> Callable[[Point], Vector]:
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
 
     def velocity(p: Point) -> Vector:
         along, across = speeds(p)
@@ -68,11 +68,11 @@ def checks() -> list[Check]:
         return along * cp * cl - across * sl, along * cp * sl + across * cl, along * sp
 
     def balance(p: Point, by: Any) -> Vector:
-        """M g_a + T + f_c, over `by`."""
+        """Return (m g_a + T + f_c) / `by` minus the acceleration."""
         n, v = (scale(1 / p.length, vector) for vector in (by_angles(p, p.cord, p.azimuth), moving_velocity(p)))
         a = acceleration(n, v, p.uniform)
         free = add(scale(p.mass, (MP.zero, MP.zero, -p.gravity)), coriolis(p))
-        tension = -p.mass * p.length * dot(v, v) - dot(free, n)  # what keeps the bob on the sphere
+        tension = -p.mass * p.length * dot(v, v) - dot(free, n)  # it keeps the bob on the sphere
         return add(scale(1 / by, add(free, scale(tension, n))), scale(-p.length, a))
 
     def half(p: Point) -> Any:

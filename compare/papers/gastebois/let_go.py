@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import Approximate, Check, Finding, Identity, Number, Statement
+from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement
 from ..digits import MP, Vector, cos, mpf, pi, radians, shown, sin, vector_derivative
 from ..linear import motion, motion_at_rest, rate_up, start_at_rest, swing_rate
 from ..points import Point, points
@@ -18,14 +18,14 @@ Motion = Callable[[Point, Any], Vector]
 
 
 def at_rest(p: Point, t: Any) -> Vector:
-    """6.3: x, y of a release at rest."""
+    """Return x, y of a release at rest by 6.3."""
     r0, w, up = p.x, swing_rate(p), rate_up(p)
     cu, su, cw, sw = cos(up * t), sin(up * t), cos(w * t), sin(w * t)
     return (r0 * cu * cw + r0 * up / w * su * sw, -r0 * su * cw + r0 * up / w * cu * sw)
 
 
 def _sense(motion_in_axes: Motion, p: Point, t: Any) -> Any:
-    """Twice the area swept per time: positive counter-clockwise from above."""
+    """Return twice the area swept per time: positive counter-clockwise from above."""
     x, y = motion_in_axes(p, t)
     vx, vy = vector_derivative(lambda s: motion_in_axes(p, s), t)
     return x * vy - y * vx
@@ -42,7 +42,7 @@ def _ellipse(p: Point, t: Any) -> Vector:
 
 
 def checks() -> list[Check]:
-    """The rows of section 6.3."""
+    """Return the rows of section 6.3."""
 
     def one_swing(s: Any) -> tuple[Any, Any]:
         p = pantheon(s)
@@ -93,7 +93,7 @@ def checks() -> list[Check]:
             "+r0 Ω_z",
             lambda p: p.x * rate_up(p),
         ),
-        Number(
+        PrintedNumber(
             "gastebois_6_3_350",
             f"{G} 6.3, remark",
             "at 5° the precession takes about 350 times as long as the rotation",

@@ -1,4 +1,4 @@
-"""The numbers that Gastebois puts in, and the day."""
+"""The input numbers of Gastebois's paper, in m, m/s² and degrees; the day and the rotation rate."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from ..digits import mpf, pi
 
 G = "Gastebois"
 SIDEREAL_DAY = 2 * pi / mpf("7.292115e-5") / 3600  # h, by the rotation rate of WGS84
-EARTH_RADIUS = mpf("6370e3")  # m, as the document has it
-GRAVITY = mpf("9.8")  # m/s², as the document has it in 4.1
+EARTH_RADIUS = mpf("6370e3")  # m, as in the paper
+GRAVITY = mpf("9.8")  # m/s², as in the paper's 4.1
 PANTHEON_LATITUDE = mpf("48.87")
 PANTHEON_RELEASE = mpf("6.5")
 PANTHEON_LENGTH = mpf("67")

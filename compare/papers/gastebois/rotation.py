@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from reference import load_scene
 
-from ..checks import Approximate, Check, Finding, Identity, Number, Statement
+from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement
 from ..digits import MP, atan2, cross, dot, mpf, norm, pi, radians, shown, sin
 from ..points import paris
 from ..runs import frequency, rotation, solved
@@ -15,7 +15,7 @@ from .turning_swing import narrow_swing, wide_swing
 
 
 def _slower_when_wide() -> Finding:
-    """A run of the reference at the pole with the Pantheon's amplitude: its transits are its points of rest."""
+    """Run the reference at the pole with the Pantheon's amplitude: its transits are its points of rest."""
     run = solved(["site.latitude=90", "site.gravity=9.8", "release.x=6.5", "release.y=0"], "20", 30)
     assert run.transits is not None
     t, x, y = (mpf(run.transits.exact(name)[1]) for name in ("t", "x", "y"))
@@ -49,14 +49,14 @@ def _south() -> Finding:
 
 def _number_rows() -> list[Check]:
     return [
-        Number(
+        PrintedNumber(
             "gastebois_1",
             f"{G} 1",
             "in one hour the pendulum had turned by 11,3°",
             "11.3",
             lambda: 360 / SIDEREAL_DAY * sin(radians("48.846111")),
         ),
-        Number(
+        PrintedNumber(
             "gastebois_2_radius",
             f"{G} 2",
             "R_p = 6370 km",
@@ -65,17 +65,19 @@ def _number_rows() -> list[Check]:
             about=lambda: MEAN_RADIUS,
             remark="m; mean radius of the ellipsoid",
         ),
-        Number("gastebois_2_day", f"{G} 2", "T_p = 23,92 h", "23.92", lambda: SIDEREAL_DAY, remark="2π/Ω of WGS84"),
-        Number(
+        PrintedNumber(
+            "gastebois_2_day", f"{G} 2", "T_p = 23,92 h", "23.92", lambda: SIDEREAL_DAY, remark="2π/Ω of WGS84"
+        ),
+        PrintedNumber(
             "gastebois_2_rate",
             f"{G} 2",
             "Ω = 2π/T_p = 7,297 · 10⁻⁵ rd/s",
             "7.297e-5",
             lambda: 2 * pi / (SIDEREAL_DAY * 3600),
-            as_given=lambda: 2 * pi / (mpf("23.92") * 3600),
-            given="T_p = 23,92 h",
+            from_inputs=lambda: 2 * pi / (mpf("23.92") * 3600),
+            inputs="T_p = 23,92 h",
         ),
-        Number(
+        PrintedNumber(
             "gastebois_4_1_bound",
             f"{G} 4.1",
             "a_e < 0,034 m/s²",
@@ -83,7 +85,7 @@ def _number_rows() -> list[Check]:
             lambda: paris().rate ** 2 * paris().radius,
             remark="at the equator",
         ),
-        Number(
+        PrintedNumber(
             "gastebois_4_1_paris",
             f"{G} 4.1",
             "24 / sin 49° = 31 h 48 min",
@@ -91,7 +93,9 @@ def _number_rows() -> list[Check]:
             lambda: 24 * 60 / sin(radians(49)),
             remark="minutes",
         ),
-        Number("gastebois_4_1_hour", f"{G} 4.1", "(11,3° in 1 hour)", "11.3", lambda: 360 * sin(radians(49)) / 24),
+        PrintedNumber(
+            "gastebois_4_1_hour", f"{G} 4.1", "(11,3° in 1 hour)", "11.3", lambda: 360 * sin(radians(49)) / 24
+        ),
     ]
 
 
@@ -158,5 +162,5 @@ def _plane_rows() -> list[Check]:
 
 
 def checks() -> list[Check]:
-    """The rows of sections 1, 2 and 4.1."""
+    """Return the rows of sections 1, 2 and 4.1."""
     return [*_number_rows(), *_plane_rows()]

@@ -15,23 +15,23 @@ from .numbers import G
 
 
 def _swung(s: Any) -> tuple[Any, Any]:
-    """v²/L0 of a pendulum let go at θm = 0.3 s, at θm/2; and g_a (θm² - θ²)."""
+    """Return g_a (θm² - θ²) and v²/L0 at θ = θm/2, for a pendulum let go at θm = 0.3 s."""
     p = points()[0]
-    top, here = MP.mpf("0.3") * s, MP.mpf("0.15") * s
-    return p.gravity * (top**2 - here**2), 2 * p.gravity * (cos(here) - cos(top))
+    top, angle = MP.mpf("0.3") * s, MP.mpf("0.15") * s
+    return p.gravity * (top**2 - angle**2), 2 * p.gravity * (cos(angle) - cos(top))
 
 
 def _tension(s: Any) -> tuple[Any, Any]:
-    """Pull of the cord per mass at an amplitude s times that of the point, without rotation; and g_a."""
+    """Return g_a and the tension of the cord per mass, without rotation, at s times the point's amplitude."""
     p = points()[0].but(rate=MP.zero)
     x, y = p.x * s, p.y * s
-    here = p.but(x=x, y=y, vx=p.vx * s, vy=p.vy * s)
-    n, v = (scale(1 / p.length, vector) for vector in (here.position, here.velocity))
-    return p.gravity, p.length * tension(n, v, here.uniform)
+    state = p.but(x=x, y=y, vx=p.vx * s, vy=p.vy * s)
+    n, v = (scale(1 / p.length, vector) for vector in (state.position, state.velocity))
+    return p.gravity, p.length * tension(n, v, state.uniform)
 
 
 def _with_tension(p: Point) -> Vector:
-    """-T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, and the line for y''."""
+    """Return -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, and the line for y''."""
     n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
     pull = p.length * tension(n, v, p.uniform)
     up, north = rate_up(p), p.rate * cos(p.phi)
@@ -47,7 +47,7 @@ def _small(p: Point) -> Vector:
 
 
 def _forces(p: Point) -> tuple[Vector, Vector]:
-    """M times the acceleration of the reference's model, and m g_a + T + 2 m v × Ω."""
+    """Return the acceleration of the reference's model, and m g_a + T + 2 m v × Ω."""
     n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
     pull = p.length * tension(n, v, p.uniform)
     weight = (MP.zero, MP.zero, -p.mass * p.gravity)
@@ -57,13 +57,13 @@ def _forces(p: Point) -> tuple[Vector, Vector]:
 
 
 def _energy(p: Point) -> tuple[Any, Any]:
-    """V² from cosθ by conservation, and the change of v²/2 per time against gravity's work: Coriolis does none."""
+    """Return the change of v²/2 per time, and the power of gravity per mass: the Coriolis force does no work."""
     accelerated = dot(p.velocity, acceleration_of(p))
     return accelerated, -p.gravity * p.vz
 
 
 def checks() -> list[Check]:
-    """The rows of section 5."""
+    """Return the rows of section 5."""
     return [
         Identity(
             "gastebois_5_newton",
@@ -98,7 +98,7 @@ def checks() -> list[Check]:
             "x'' = -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, y'' = -T/m y/L0 - 2x'Ω sinλ_a",
             _with_tension,
             uniform_acceleration,
-            remark="truth: reference.model.formulations with gravity alone",
+            remark="truth: reference.model.force with gravity alone",
         ),
         Identity(
             "gastebois_5_small",
@@ -106,6 +106,6 @@ def checks() -> list[Check]:
             "x'' = -ω0² x + 2y'Ω sinλ_a, y'' = -ω0² y - 2x'Ω sinλ_a",
             _small,
             linearised,
-            remark="truth: reference.model.formulations with gravity alone, linear",
+            remark="truth: reference.model.force with gravity alone, linear",
         ),
     ]

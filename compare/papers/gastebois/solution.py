@@ -13,7 +13,7 @@ from .numbers import G
 
 
 def constants_of(p: Point) -> Vector:
-    """c1, c1', c2, c2' of 6.1 for the point's x, y, vx, vy."""
+    """Return c1, c1', c2, c2' of 6.1 for the point's x, y, vx, vy."""
     w, up = swing_rate(p), rate_up(p)
     return (
         ((w - up) * p.x - p.vy) / (2 * w),
@@ -29,14 +29,14 @@ def _phases(p: Point, t: Any) -> Vector:
 
 
 def printed_xy(p: Point, t: Any) -> Vector:
-    """X and y of 6.1."""
+    """Return x and y of 6.1."""
     a, b, c, d = constants_of(p)
     cf, sf, cs, ss = _phases(p, t)
     return a * cf + b * sf + c * cs - d * ss, b * cf - a * sf + d * cs + c * ss
 
 
 def _velocity(p: Point, t: Any, last: int) -> Vector:
-    """v_x and v_y of 6.1, the last term of v_x with sin (3) or with cos (2) of the slow phase."""
+    """Return v_x and v_y of 6.1, the last term of v_x with sin (3) or with cos (2) of the slow phase."""
     a, b, c, d = constants_of(p)
     fast, slow = swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p)
     phases = _phases(p, t)
@@ -69,13 +69,13 @@ def _real_part() -> bool:
 
 
 def _eigenvalues(p: Point) -> list[Any]:
-    """Imaginary rates of the matrix whose motion turns as exp(jαt): those with y = -j x."""
+    """Return the imaginary rates of the matrix whose motion turns as exp(jαt): those with y = -j x."""
     values, vectors = MP.eig(matrix(p))
     return [value for i, value in enumerate(values) if abs(vectors[1, i] + j * vectors[0, i]) < mpf("1e-30")]
 
 
 def fitted_constants(p: Point) -> Vector:
-    """C1 + C2 = Z0 and -ω1 C1 + ω2 C2 = Z0'/j, solved."""
+    """Solve C1 + C2 = Z0 and -ω1 C1 + ω2 C2 = Z0'/j for c1, c1', c2, c2'."""
     fast, slow = swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p)
     place, speed = MP.mpc(p.x, p.y), MP.mpc(p.vx, p.vy) / j
     first, second = MP.lu_solve(MP.matrix([[1, 1], [-fast, slow]]), MP.matrix([place, speed]))
@@ -83,7 +83,7 @@ def fitted_constants(p: Point) -> Vector:
 
 
 def checks() -> list[Check]:
-    """The rows of section 6.1."""
+    """Return the rows of section 6.1."""
 
     def rates(p: Point) -> Any:
         return (-rate_up(p) + swing_rate(p), -rate_up(p) - swing_rate(p))

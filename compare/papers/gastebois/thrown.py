@@ -12,7 +12,7 @@ from .numbers import GRAVITY, PANTHEON_LATITUDE, PANTHEON_LENGTH, PANTHEON_RELEA
 
 
 def simple(p: Point, t: Any) -> Vector:
-    """6.2: x, y, v_x, v_y; r0 is the point's x."""
+    """Return x, y, v_x, v_y by 6.2; r0 is the point's x."""
     r0, w, up = p.x, swing_rate(p), rate_up(p)
     cu, su, cw, sw = cos(up * t), sin(up * t), cos(w * t), sin(w * t)
     return (
@@ -24,7 +24,7 @@ def simple(p: Point, t: Any) -> Vector:
 
 
 def in_turning_axes(p: Point, xy: Vector, t: Any) -> Vector:
-    """X = x cosΩ_z t - y sinΩ_z t, Y = y cosΩ_z t + x sinΩ_z t."""
+    """Return X = x cosΩ_z t - y sinΩ_z t, Y = y cosΩ_z t + x sinΩ_z t."""
     cu, su = cos(rate_up(p) * t), sin(rate_up(p) * t)
     return xy[0] * cu - xy[1] * su, xy[1] * cu + xy[0] * su
 
@@ -34,15 +34,15 @@ def _start_simple(p: Point) -> Vector:
 
 
 def pantheon(s: Any = 1) -> Point:
-    """The Pantheon's pendulum, rotation s times the Earth's."""
-    here = points()[0]
-    return here.but(
+    """Return the Pantheon's pendulum, rotation s times the Earth's."""
+    base = points()[0]
+    return base.but(
         length=PANTHEON_LENGTH, gravity=GRAVITY, latitude=PANTHEON_LATITUDE, rate=RATE * MP.mpf(s), x=PANTHEON_RELEASE
     )
 
 
 def _axes_turn(p: Point) -> Any:
-    """Angular velocity of the axis OX of the transformation: X is the part of (x, y) along (cos, -sin) Ω_z t."""
+    """Return the angular velocity of the axis OX: X is the part of (x, y) along (cos, -sin) Ω_z t."""
 
     def along(t: Any) -> Vector:
         return cos(rate_up(p) * t), -sin(rate_up(p) * t)
@@ -65,7 +65,7 @@ def _expanded_period(p: Point) -> Any:
 
 
 def checks() -> list[Check]:
-    """The rows of section 6.2."""
+    """Return the rows of section 6.2."""
     return [
         Identity(
             "gastebois_6_2_xy",

@@ -16,28 +16,28 @@ AXES = ((MP.one, MP.zero, MP.zero), (MP.zero, MP.one, MP.zero), (MP.zero, MP.zer
 
 
 def printed_suspension(p: Point, t: Any) -> Vector:
-    """(1)."""
+    """Return the place of the suspension by (1)."""
     turn, flat = p.rate * t, (p.N + p.altitude) * cos(p.phi)
     return (flat * cos(turn), flat * sin(turn), (p.N * (1 - p.e2) + p.altitude) * sin(p.phi))
 
 
 def east(p: Point, t: Any) -> Vector:
-    """(4)."""
+    """Return the unit vector e_E by (4)."""
     return (-sin(p.rate * t), cos(p.rate * t), MP.zero)
 
 
 def up(p: Point, t: Any) -> Vector:
-    """(5)."""
+    """Return the unit vector e_U by (5)."""
     return (cos(p.phi) * cos(p.rate * t), cos(p.phi) * sin(p.rate * t), sin(p.phi))
 
 
 def north(p: Point, t: Any) -> Vector:
-    """(6)."""
+    """Return the unit vector e_N by (6)."""
     return (-sin(p.phi) * cos(p.rate * t), -sin(p.phi) * sin(p.rate * t), cos(p.phi))
 
 
 def _along_meridian(p: Point) -> Vector:
-    """dX_s/dϕ from the ellipsoid's geometry."""
+    """Return dX_s/dϕ from the ellipsoid's geometry."""
     return vector_derivative(lambda phi: suspension(p, p.rate * p.t, phi=phi), p.phi)
 
 
@@ -80,7 +80,7 @@ def _east_from_longitude() -> bool:
 
 
 def checks() -> list[Check]:
-    """The rows of section II up to (6)."""
+    """Return the rows of section II up to (6)."""
 
     def site(i: int) -> Any:
         return lambda p: turned_to_site(p, AXES[i], p.rate * p.t)

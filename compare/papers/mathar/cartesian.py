@@ -14,13 +14,13 @@ IV = "Mathar IV"
 
 
 def _shared(p: Point) -> Any:
-    """What (33) and (39) have in common besides x and y."""
+    """Return the two factors that (33) and (39) share, beside x and y."""
     bent = p.length**2 * (p.vx**2 + p.vy**2) - (p.x * p.vy - p.y * p.vx) ** 2
     return bent, p.gravity * abs(p.z) ** 3
 
 
 def beta_x(p: Point) -> Vector:
-    """(33)-(35)."""
+    """Return β_x0, β_x1, β_x2 by (33)-(35)."""
     s, c, deep = sin(p.phi), cos(p.phi), abs(p.z) ** 3
     bent, pull = _shared(p)
     return (
@@ -31,7 +31,7 @@ def beta_x(p: Point) -> Vector:
 
 
 def beta_y(p: Point) -> Vector:
-    """(39)-(41)."""
+    """Return β_y0, β_y1, β_y2 by (39)-(41)."""
     s, c, deep = sin(p.phi), cos(p.phi), abs(p.z) ** 3
     bent, pull = _shared(p)
     return (
@@ -42,12 +42,12 @@ def beta_y(p: Point) -> Vector:
 
 
 def in_powers(p: Point, beta: Vector) -> Any:
-    """Sum of β_i Ω^i."""
+    """Return the sum of β_i Ω^i."""
     return sum(part * p.rate**i for i, part in enumerate(beta))
 
 
 def matrix_times(p: Point, a: Vector) -> Vector:
-    """Left side of (42)."""
+    """Return the left side of (42)."""
     x, y, z = p.position
     return (
         z**2 * (x**2 + z**2) * a[0] + z**2 * y * x * a[1],
@@ -56,27 +56,27 @@ def matrix_times(p: Point, a: Vector) -> Vector:
 
 
 def inverse_times(p: Point, b: Vector) -> Vector:
-    """Right side of (43)."""
+    """Return the right side of (43)."""
     x, y, z = p.position
     top = ((y**2 + z**2) * b[0] - y * x * b[1], -y * x * b[0] + (x**2 + z**2) * b[1])
     return tuple(part / (z**4 * p.length**2) for part in top)
 
 
 def solved(p: Point) -> Vector:
-    """(43)."""
+    """Return x'', y'' by (43)."""
     return inverse_times(p, (-in_powers(p, beta_x(p)), -in_powers(p, beta_y(p))))
 
 
 def _equation(i: int) -> Callable[[Point], Any]:
-    """Euler-Lagrange for x or y."""
+    """Return the Euler-Lagrange equation for x or y."""
     return lambda p: euler_lagrange(p, by_plane, (p.x, p.y), (p.vx, p.vy), (p.ax, p.ay), i)
 
 
 def _coefficient(i: int, power: int) -> Callable[[Point], Any]:
-    """Z⁴ times what Euler-Lagrange leaves without accelerations, at one power of Ω."""
-    rest = (MP.zero, MP.zero)
+    """Return z⁴ times the terms of Euler-Lagrange without accelerations, at one power of Ω."""
+    still = (MP.zero, MP.zero)
     return lambda p: (
-        p.z**4 * in_rate(lambda rate: euler_lagrange(p, by_plane, (p.x, p.y), (p.vx, p.vy), rest, i, rate), power)
+        p.z**4 * in_rate(lambda rate: euler_lagrange(p, by_plane, (p.x, p.y), (p.vx, p.vy), still, i, rate), power)
     )
 
 
@@ -97,7 +97,7 @@ def _east_unbiased() -> Finding:
 
 
 def checks() -> list[Check]:
-    """The rows of section IV."""
+    """Return the rows of section IV."""
     moved: list[Check] = [
         Identity(
             "mathar_32_text",
@@ -203,7 +203,7 @@ def checks() -> list[Check]:
             "matrix · (x'', y'') = (-Σβ_x Ω^i, -Σβ_y Ω^i)",
             lambda p: matrix_times(p, horizontal_acceleration(p)),
             lambda p: (-in_powers(p, beta_x(p)), -in_powers(p, beta_y(p))),
-            remark="with the accelerations of reference.model.formulations",
+            remark="with the accelerations of reference.model.force",
         ),
         Identity(
             "mathar_43_inverse",
@@ -218,7 +218,7 @@ def checks() -> list[Check]:
             "(x'', y'') = inverse · (-Σβ_x Ω^i, -Σβ_y Ω^i) / (z⁴ l²)",
             solved,
             horizontal_acceleration,
-            remark="truth: reference.model.formulations",
+            remark="truth: reference.model.force",
         ),
     ]
     return [*moved, *remarks, *solving]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..checks import Check, Finding, Number, Statement
+from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, Vector, acos, asin, dot, mpf, pi, shown, sin, sqrt
 from ..points import paris
 from ..runs import solved, transit_times
@@ -16,62 +16,62 @@ STILL = ["site.rotation_rate=0"]
 
 
 def released() -> Vector:
-    """The place of release, m."""
+    """Return the place of release in m."""
     p = paris()
     return (p.x, p.y, p.z)
 
 
 def planar_amplitude() -> Any:
-    """φ(0) of a swing of sqrt(0.3² + 0.4²) m, rad."""
+    """Return φ(0) of a swing of sqrt(0.3² + 0.4²) m, in rad."""
     return asin(sqrt(mpf("0.3") ** 2 + mpf("0.4") ** 2) / paris().length)
 
 
 def slow_down(amplitude: Any) -> Any:
-    """By how much the period is longer than that of a small swing: 2 K(sin(φ0/2)) / π."""
+    """Return the ratio of the period to that of a small swing: 2 K(sin(φ0/2)) / π."""
     return 2 * MP.ellipk(sin(amplitude / 2) ** 2) / pi
 
 
 def planar_period() -> Any:
-    """4 sqrt(l/g) K(sin(φ0/2)), s."""
+    """Return 4 sqrt(l/g) K(sin(φ0/2)) in s."""
     p = paris()
     return 2 * pi * sqrt(p.length / p.gravity) * slow_down(planar_amplitude())
 
 
 def harmonic_frequency(gravity: Any) -> Any:
-    """Of (51)-(52): sqrt(g/l + (Ω sinϕ)²) / 2π, Hz."""
+    """Return the frequency of (51)-(52): sqrt(g/l + (Ω sinϕ)²) / 2π, in Hz."""
     p = paris()
     return sqrt(gravity / p.length + (p.rate * sin(p.phi)) ** 2) / (2 * pi)
 
 
 def amplitude() -> Any:
-    """Angle between the release and the rest position, seen from the suspension, rad."""
+    """Return the angle between the release and the rest position, seen from the suspension, in rad."""
     return acos(dot(released(), rest(paris())) / paris().length ** 2)
 
 
 def estimate() -> Any:
-    """(51)-(52) with g' of (48), slowed down: 0.060843634 Hz."""
+    """Return the frequency of (51)-(52) with g' of (48), slowed down: 0.060843634 Hz."""
     return harmonic_frequency(apparent_gravity(paris())) / slow_down(amplitude())
 
 
 def first_period_frequency() -> Any:
-    """From the release to the second transit."""
+    """Return the frequency from the release to the second transit, in Hz."""
     return 1 / transit_times()[1]
 
 
 def day_frequency() -> Any:
-    """Swings counted, not transits: one transit of the day is one too many."""
+    """Return the frequency over the day in Hz, from swings, not transits: the day has one transit too many."""
     times = transit_times()
     return (len(times) - swings_surplus()) / (2 * times[-1])
 
 
 def swings_surplus() -> int:
-    """Transits of the day beyond two a swing."""
+    """Return the number of transits of the day beyond two a swing."""
     times = transit_times()
     return len(times) - round(float(times[-1] / (times[1] / 2)))
 
 
 def transit_frequency() -> Any:
-    """N/(2 t_n), the program's, at the end of the day."""
+    """Return N/(2 t_n) at the end of the day, as the paper's program prints it, in Hz."""
     times = transit_times()
     return len(times) / (2 * times[-1])
 
@@ -84,31 +84,33 @@ def _planar_run() -> Finding:
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
     p = paris()
     return [
-        Number(
+        PrintedNumber(
             "mathar_vii_harmonic",
             f"{VII}, item 1",
             "sqrt(g/l)/2π = 0.0608895 Hz",
             "0.0608895",
             lambda: sqrt(p.gravity / p.length) / (2 * pi),
         ),
-        Number("mathar_vii_phi0", f"{VII}, item 2", "φ(0) ≈ 0.00746276 rad", "0.00746276", planar_amplitude),
-        Number(
+        PrintedNumber("mathar_vii_phi0", f"{VII}, item 2", "φ(0) ≈ 0.00746276 rad", "0.00746276", planar_amplitude),
+        PrintedNumber(
             "mathar_vii_period", f"{VII}, item 2", "4 sqrt(l/g) K(sin(φ0/2)) ≈ 16.423225 s", "16.423225", planar_period
         ),
         Statement("mathar_vii_formula", f"{VII}, item 2", "period = 4 sqrt(l/g) K(sin(φ0/2))", _planar_run),
-        Number("mathar_vii_planar", f"{VII}, item 2", "0.06088938 Hz", "0.06088938", lambda: 1 / planar_period()),
-        Number(
+        PrintedNumber(
+            "mathar_vii_planar", f"{VII}, item 2", "0.06088938 Hz", "0.06088938", lambda: 1 / planar_period()
+        ),
+        PrintedNumber(
             "mathar_vii_51",
             f"{VII}, item 3",
             "sqrt(ĝ + (Ω sinϕ)²) ≈ 0.06088959 Hz",
             "0.06088959",
             lambda: harmonic_frequency(p.gravity),
         ),
-        Number("mathar_vii_g", f"{VII}, item 4", "g' = 9.79195 m/s²", "9.79195", lambda: apparent_gravity(p)),
-        Number(
+        PrintedNumber("mathar_vii_g", f"{VII}, item 4", "g' = 9.79195 m/s²", "9.79195", lambda: apparent_gravity(p)),
+        PrintedNumber(
             "mathar_vii_g_hz",
             f"{VII}, item 4",
             "≈ 0.060843935 Hz",
@@ -123,8 +125,8 @@ def checks() -> list[Check]:
             "the factor is 4K/2π = 2K/π",
             lambda: _slowed(MP.one).holds,
         ),
-        Number("mathar_vii_z", f"{VII}, item 5", "release at z = -66.9981 m", "-66.9981", lambda: released()[2]),
-        Number(
+        PrintedNumber("mathar_vii_z", f"{VII}, item 5", "release at z = -66.9981 m", "-66.9981", lambda: released()[2]),
+        PrintedNumber(
             "mathar_vii_rest_y",
             f"{VII}, item 5",
             "equilibrium y = -0.115202 m",
@@ -132,10 +134,12 @@ def checks() -> list[Check]:
             lambda: rest(p)[1],
             remark="the rest position of (46) with the paper's own inputs",
         ),
-        Number("mathar_vii_rest_z", f"{VII}, item 5", "equilibrium z = -66.999 m", "-66.999", lambda: rest(p)[2]),
-        Number("mathar_vii_amplitude", f"{VII}, item 5", "φ(0) = 0.008898355 rad", "0.008898355", amplitude),
-        Number("mathar_vii_estimate", f"{VII}, item 5", "0.060843634 Hz", "0.060843634", estimate),
-        Number(
+        PrintedNumber(
+            "mathar_vii_rest_z", f"{VII}, item 5", "equilibrium z = -66.999 m", "-66.999", lambda: rest(p)[2]
+        ),
+        PrintedNumber("mathar_vii_amplitude", f"{VII}, item 5", "φ(0) = 0.008898355 rad", "0.008898355", amplitude),
+        PrintedNumber("mathar_vii_estimate", f"{VII}, item 5", "0.060843634 Hz", "0.060843634", estimate),
+        PrintedNumber(
             "mathar_vii_frequency",
             f"{VII}, item 6",
             "the actual Foucault pendulum: 0.060843633 Hz",
@@ -148,9 +152,9 @@ def checks() -> list[Check]:
 
 
 def _slowed(by: Any) -> Finding:
-    """The factor, `by` times 2K/π, against the two frequencies between which the paper puts it."""
+    """Compare the factor, `by` times 2K/π, with the two frequencies between which the paper puts it."""
     factor = by * slow_down(amplitude())
-    made = harmonic_frequency(apparent_gravity(paris())) / factor
+    hertz = harmonic_frequency(apparent_gravity(paris())) / factor
     return Finding(
-        abs(made - mpf("0.060843634")) < mpf("5e-10"), f"0.060843935 Hz / {shown(factor)} = {shown(made)} Hz"
+        abs(hertz - mpf("0.060843634")) < mpf("5e-10"), f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz"
     )

@@ -14,7 +14,7 @@ III = "Mathar III"
 
 
 def angle_state(p: Point) -> tuple[Vector, Vector, Vector]:
-    """Angles, their rates and their accelerations."""
+    """Return the angles, their rates and their accelerations."""
     return (
         (p.cord, p.azimuth),
         (p.cord_rate, p.azimuth_rate),
@@ -27,7 +27,7 @@ def _symbols(p: Point) -> tuple[Any, ...]:
 
 
 def _slope_in_azimuth(p: Point) -> Any:
-    """(22), for m = 1."""
+    """Return ∂L/∂λ by (22), for m = 1."""
     s, c, sp, cp, sl, cl, _ = _symbols(p)
     length, arm = p.length, p.R - p.length * (c * cp + s * sp * sl)
     once = 2 * p.R * length * (-p.cord_rate * cp * sl - p.azimuth_rate * sp * cl)
@@ -37,7 +37,7 @@ def _slope_in_azimuth(p: Point) -> Any:
 
 
 def cord_equation(p: Point) -> Any:
-    """(24)."""
+    """Return the left side of (24)."""
     s, c, sp, cp, sl, _, far = _symbols(p)
     turn, along = p.rate, c * sp * sl - s * cp
     return (
@@ -51,7 +51,7 @@ def cord_equation(p: Point) -> Any:
 
 
 def azimuth_equation(p: Point) -> Any:
-    """(26)."""
+    """Return the left side of (26)."""
     s, c, sp, cp, sl, cl, far = _symbols(p)
     first = sp * p.azimuth_second + 2 * cp * p.cord_rate * p.azimuth_rate
     second = far * p.rate**2 * s * cl
@@ -59,13 +59,13 @@ def azimuth_equation(p: Point) -> Any:
 
 
 def plane_alpha_0(p: Point) -> Any:
-    """(28)."""
+    """Return α0 in x and y by (28)."""
     x, y, vx, vy, square = p.x, p.y, p.vx, p.vy, p.length**2
     return (2 * x * y * vx * vy + (square - y**2) * vx**2 + (square - x**2) * vy**2) / (square - x**2 - y**2)
 
 
 def plane_alpha_1(p: Point) -> Any:
-    """(29)."""
+    """Return α1 in x and y by (29)."""
     x, y, vx, vy, l2, s, c, far = p.x, p.y, p.vx, p.vy, p.length**2, sin(p.phi), cos(p.phi), p.N + p.altitude
     below = l2 - x**2 - y**2
     top = -2 * vx * s * y * l2 - 2 * vx * c * below ** MP.mpf("1.5") + 2 * vx * s * y**3 - 2 * vy * s * x**3
@@ -76,7 +76,7 @@ def plane_alpha_1(p: Point) -> Any:
 
 
 def plane_alpha_2(p: Point) -> Any:
-    """(30)."""
+    """Return α2 in x and y by (30)."""
     x, y, l2, s, c, far = p.x, p.y, p.length**2, sin(p.phi), cos(p.phi), p.N + p.altitude
     below = l2 - x**2 - y**2
     half = below ** MP.mpf("1.5")
@@ -112,14 +112,14 @@ def _no_time_in_the_lagrangian() -> Finding:
 
 
 def _spherical(p: Point) -> Vector:
-    """The equations of the spherical pendulum from the Lagrangian without rotation."""
+    """Return the equations of the spherical pendulum, from the Lagrangian without rotation."""
     q, v, a = angle_state(p)
     first, second = (euler_lagrange(p, by_angles, q, v, a, i, MP.zero) / p.length**2 for i in (0, 1))
     return first, second / sin(p.cord)
 
 
 def checks() -> list[Check]:
-    """The rows of section III."""
+    """Return the rows of section III."""
 
     def equation(i: int) -> Any:
         return lambda p: euler_lagrange(p, by_angles, *angle_state(p), i) / p.length**2

@@ -1,4 +1,4 @@
-"""Mathar, section VII: what is said of the Paris pendulum's motion and of figures 5-7, tried on runs."""
+"""Mathar, section VII: statements about the Paris pendulum's motion and about figures 5 to 7, tested on runs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from reference import load_scene
 
 from ...approximations import Motion, approximation
-from ..checks import Check, Finding, Number, Statement
+from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, Vector, add, degrees, mpf, norm, shown
 from ..points import paris
 from ..runs import frequency, lead, mean_direction, paris_day, paris_path, path_in, solved
@@ -22,7 +22,7 @@ def _transit(column: str) -> list[Any]:
 
 
 def _frame_5() -> Any:
-    """The range of z on a day, which Fig. 5 shows, m."""
+    """Return the range of z over the day, which Fig. 5 shows, in m."""
     z = paris_path()[1][:, 2]
     return mpf(float(z.max() - z.min()))
 
@@ -33,7 +33,7 @@ def _higher_after_half_a_swing() -> Finding:
 
 
 def _work_of_the_centrifugal_force() -> Finding:
-    """G Δz + Δv²/2 against Ω² Δ(x² + q²)/2 over the first half swing."""
+    """Compare g Δz + Δv²/2 with Ω² Δ(x² + q²)/2 over the first half swing."""
     p = paris()
     x, y, z, vy = (_transit(name)[0] for name in ("x", "y", "z", "vy"))
     vz = -y * vy / z
@@ -43,8 +43,8 @@ def _work_of_the_centrifugal_force() -> Finding:
         return place[0] ** 2 + q**2
 
     gained = p.gravity * (z - p.z) + (vy**2 + vz**2) / 2
-    given = p.rate**2 * (square((x, y, z)) - square(released())) / 2
-    return Finding(abs(gained - given) < MP.mpf("1e-25"), f"gained {shown(gained)} J/kg, given {shown(given)} J/kg")
+    work = p.rate**2 * (square((x, y, z)) - square(released())) / 2
+    return Finding(abs(gained - work) < MP.mpf("1e-25"), f"gained {shown(gained)} J/kg, work done {shown(work)} J/kg")
 
 
 def _middle_of_the_first_swing() -> Finding:
@@ -55,7 +55,7 @@ def _middle_of_the_first_swing() -> Finding:
 
 
 def _never_vertical() -> Finding:
-    """The nearest approach of the path, straight between samples 0.25 s apart, to the vertical below the pivot."""
+    """Find how near the path, straight between samples 0.25 s apart, comes to the vertical below the pivot."""
     states = paris_path()[1]
     near = states[np.hypot(states[:, 0], states[:, 1]) < 0.06]
     miss = np.abs(near[:, 0] * near[:, 4] - near[:, 1] * near[:, 3]) / np.hypot(near[:, 3], near[:, 4])
@@ -71,7 +71,7 @@ def _clouds_move() -> Finding:
 
 
 def mean_rotation() -> tuple[float, float]:
-    """Degrees an hour of the swing plane over the day (fitted line), and the largest distance from the line."""
+    """Return the swing plane's degrees an hour, by a line fitted to the day, and the largest distance from the line."""
     hours, turned = paris_path()[0] / 3600, np.degrees(mean_direction())
     slope, start = np.polyfit(hours, turned, 1)
     return float(slope), float(np.abs(turned - slope * hours - start).max())
@@ -100,9 +100,11 @@ def _coupling_is_ahead() -> Finding:
 
 def _release() -> list[Check]:
     return [
-        Number("mathar_vii_l", VII, "l = 67 m", "67", lambda: mpf(load_scene("paris").exact.length)),
-        Number("mathar_vii_lat", VII, "ϕ = 48.846111°", "48.846111", lambda: mpf(load_scene("paris").exact.latitude)),
-        Number(
+        PrintedNumber("mathar_vii_l", VII, "l = 67 m", "67", lambda: mpf(load_scene("paris").exact.length)),
+        PrintedNumber(
+            "mathar_vii_lat", VII, "ϕ = 48.846111°", "48.846111", lambda: mpf(load_scene("paris").exact.latitude)
+        ),
+        PrintedNumber(
             "mathar_vii_above",
             VII,
             "roughly 2 mm above the lowest point",
@@ -144,7 +146,7 @@ def _release() -> list[Check]:
 
 def _figures() -> list[Check]:
     return [
-        Number(
+        PrintedNumber(
             "mathar_fig5_start",
             f"{VII}, Fig. 5",
             "point of release near -66.98",
@@ -154,7 +156,7 @@ def _figures() -> list[Check]:
             decimals=3,
             remark="m; judged against the height of the figure, 4 mm",
         ),
-        Number(
+        PrintedNumber(
             "mathar_fig5_opposite",
             f"{VII}, Fig. 5",
             "opposite points near -66.9965",
@@ -181,11 +183,11 @@ def _figures() -> list[Check]:
             _coupling_is_ahead,
             by_run=True,
         ),
-        Number("mathar_fig7_foucault", f"{VII}, Fig. 7", "≈ 0.06084 Hz", "0.06084", day_frequency),
-        Number(
+        PrintedNumber("mathar_fig7_foucault", f"{VII}, Fig. 7", "≈ 0.06084 Hz", "0.06084", day_frequency),
+        PrintedNumber(
             "mathar_fig7_planar", f"{VII}, Fig. 7", "≈ 0.06089 Hz", "0.06089", lambda: frequency(solved(STILL, "600"))
         ),
-        Number(
+        PrintedNumber(
             "mathar_fig7_half",
             f"{VII}, Fig. 7",
             "after 12 thousand seconds detuned by approximately half a cycle",
@@ -197,5 +199,5 @@ def _figures() -> list[Check]:
 
 
 def checks() -> list[Check]:
-    """What is said of the release, and of the figures."""
+    """Return the rows about the release and the figures."""
     return [*_release(), *_figures()]

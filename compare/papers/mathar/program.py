@@ -1,4 +1,4 @@
-"""Mathar, appendix A: the program's defaults and what is said of its output."""
+"""Mathar, appendix A: the program's defaults, its Runge-Kutta schemes, and statements about its output."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from reference import load_scene
 from ...foucpend.zeros import Transits
 from ...methods import rk4, rkng56, rkng67
 from ...methods.tableau import NystromTableau, Tableau, TableauError
-from ..checks import Check, Finding, Number, Statement
+from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, mpf, pi, shown
 from ..points import paris
 from ..runs import path_in, transit_times
@@ -35,9 +35,9 @@ def _prolate() -> Finding:
 
 
 def checks() -> list[Check]:
-    """The rows of the appendix."""
+    """Return the rows of the appendix."""
     return [
-        Number(
+        PrintedNumber(
             "mathar_a_day",
             f"{A}, -T",
             "24 × 3600 s is approximately 4 minutes longer than a sidereal day",
@@ -45,8 +45,8 @@ def checks() -> list[Check]:
             lambda: (86400 - 2 * pi / paris().rate) / 60,
             remark="minutes",
         ),
-        Number("mathar_a_g", f"{A}, -g", "9.80665 m/s²", "9.80665", lambda: mpf(STANDARD_GRAVITY)),
-        Number("mathar_a_omega", f"{A}, -O", "7.292115 × 10⁻⁵ rad/s", "7.292115e-5", lambda: mpf(WGS84_RATE)),
+        PrintedNumber("mathar_a_g", f"{A}, -g", "9.80665 m/s²", "9.80665", lambda: mpf(STANDARD_GRAVITY)),
+        PrintedNumber("mathar_a_omega", f"{A}, -O", "7.292115 × 10⁻⁵ rad/s", "7.292115e-5", lambda: mpf(WGS84_RATE)),
         Statement(
             "mathar_a_prolate",
             f"{A}, -f",
@@ -55,7 +55,7 @@ def checks() -> list[Check]:
             "oblate: the polar axis is the shorter one",
             lambda: _polar_radius() < paris().radius,
         ),
-        Number(
+        PrintedNumber(
             "mathar_a_flattening",
             f"{A}, -f",
             "inverse flattening 298.257223564",
@@ -64,7 +64,7 @@ def checks() -> list[Check]:
             remark="against WGS84, the paper's reference [3]; the paper's scene keeps …564 "
             f"(R changes by {shown(_effect_of_the_digit(), 2)} m)",
         ),
-        Number("mathar_a_radius", f"{A}, -r", "6.378137 × 10⁶ m", "6.378137e6", lambda: mpf(WGS84_RADIUS)),
+        PrintedNumber("mathar_a_radius", f"{A}, -r", "6.378137 × 10⁶ m", "6.378137e6", lambda: mpf(WGS84_RADIUS)),
         *_schemes(),
         Statement(
             "mathar_a_parabola",
@@ -84,7 +84,7 @@ def checks() -> list[Check]:
 
 
 def order_of(tableau: Tableau | NystromTableau) -> int:
-    """The highest order whose conditions a table of coefficients meets."""
+    """Return the highest order whose conditions a table of coefficients meets."""
     claim = tableau.order
     while True:
         try:
@@ -95,25 +95,27 @@ def order_of(tableau: Tableau | NystromTableau) -> int:
 
 
 def _schemes() -> list[Check]:
-    """What is said of -R."""
+    """Return the rows about the schemes of -R."""
     tables = (("4", rk4.TABLEAU, "4", "4"), ("5", rkng56.TABLEAU, "6", "8"), ("6", rkng67.TABLEAU, "7", "10"))
-    made: list[Check] = []
-    for digit, table, order, stages in tables:
-        made.append(_stages(digit, stages, len(table.a if isinstance(table, Tableau) else table.c)))
-        if digit != "4":
-            made.append(_order(digit, order, table))
-    return made
+    rows: list[Check] = []
+    for value, table, order, stages in tables:
+        rows.append(_stages(value, stages, len(table.a if isinstance(table, Tableau) else table.c)))
+        if value != "4":
+            rows.append(_order(value, order, table))
+    return rows
 
 
-def _stages(digit: str, stages: str, found: int) -> Check:
-    return Number(f"mathar_a_stages_{digit}", f"{A}, -R", f"-R {digit}: {stages} stages", stages, lambda: MP.mpf(found))
+def _stages(value: str, stages: str, count: int) -> Check:
+    return PrintedNumber(
+        f"mathar_a_stages_{value}", f"{A}, -R", f"-R {value}: {stages} stages", stages, lambda: MP.mpf(count)
+    )
 
 
-def _order(digit: str, order: str, table: Tableau | NystromTableau) -> Check:
-    return Number(
-        f"mathar_a_order_{digit}",
+def _order(value: str, order: str, table: Tableau | NystromTableau) -> Check:
+    return PrintedNumber(
+        f"mathar_a_order_{value}",
         f"{A}, -R",
-        f"-R {digit}: order {order}",
+        f"-R {value}: order {order}",
         order,
         lambda: MP.mpf(order_of(table)),
         remark=f"by the order conditions of the {table.name} table; those of order {order} fail by so little that at "
@@ -125,10 +127,10 @@ def _by_parabola() -> Finding:
     times = np.arange(1001) / 100
     xdot = path_in(load_scene("paris"), times)[:, 3]
     xdot[0] = 0.0  # released at rest, exactly
-    found, true = Transits().of(times, xdot)[0], float(transit_times()[0])
+    zero, true = Transits().of(times, xdot)[0], float(transit_times()[0])
     # of sin(wt) a parabola through three points h apart misses the zero by at most h³ w² max|s(s² - 1)|/6
     bound = 0.065 * 0.01**3 * 9.80665 / 67
-    return Finding(abs(found - true) < bound, f"{found:.12f} s, {found - true:.2e} s from the truth")
+    return Finding(abs(zero - true) < bound, f"{zero:.12f} s, {zero - true:.2e} s from the truth")
 
 
 def _two_transits() -> Finding:
@@ -137,10 +139,10 @@ def _two_transits() -> Finding:
     return Finding(
         share < mpf("1e-3"),
         f"{count} transits in {count - surplus} half swings of a day",
-        f"{surplus} too many, {shown(share, 3)} of it" if surplus else "",
+        f"{surplus} too many, {shown(share, 3)} (relative)" if surplus else "",
     )
 
 
 def _effect_of_the_digit() -> Any:
-    here = paris()
-    return abs(here.R - here.but(flattening=1 / MP.mpf(WGS84_INVERSE_FLATTENING)).R)
+    p = paris()
+    return abs(p.R - p.but(flattening=1 / MP.mpf(WGS84_INVERSE_FLATTENING)).R)

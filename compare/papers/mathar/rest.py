@@ -1,4 +1,4 @@
-"""Mathar, section V: where the bob hangs at rest, (44)-(47)."""
+"""Mathar, section V: the rest position of the bob, (44)-(47)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SERIES = (
     (4, "⁴", "[(N+h) (1+cos2ϕ)/2 - l cos2ϕ] / 2g²"),
     (6, "⁶", "{(N+h)² [cos4ϕ + 3cos2ϕ + 2] - (N+h) l [37/8 cos4ϕ + 11/8 + 6cos2ϕ] + l² [35/8 cos4ϕ + 13/8]} / 12g³"),
 )
-NOTHING = MP.mpf("1e-45")
+ZERO_BELOW = MP.mpf("1e-45")  # in absolute value; the numbers have 60 digits
 
 
 def _at_rest(p: Point, **changes: Any) -> Point:
@@ -44,14 +44,14 @@ def _degree_of_45() -> Finding:
     s, c, share = sin(p.phi), cos(p.phi), p.rate**2 / p.gravity
 
     def cleared(y: Any) -> Any:
-        """(45), its root isolated and squared."""
+        """Return (45) with its root isolated and squared."""
         isolated = y - c * (p.R * y + (p.length**2 - 2 * y**2) * s) * share
         return isolated**2 - (p.length**2 - y**2) * ((y - p.R * s - 2 * y * c**2) * share) ** 2
 
     def difference(order: int) -> Any:
         return sum((-1) ** k * MP.binomial(order, k) * cleared(MP.mpf(k)) for k in range(order + 1))
 
-    holds = abs(difference(5)) < NOTHING < abs(difference(4))
+    holds = abs(difference(5)) < ZERO_BELOW < abs(difference(4))
     return Finding(holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}")
 
 
@@ -70,23 +70,23 @@ def _second_line_of_46(p: Point, sign: int, cord: Any) -> Any:
 
 
 def _restoring(p: Point, sign: int, cord: Any) -> Any:
-    """-ϕ'' of a bob let go at rest in the meridian at the angle `cord`, to the north (+1) or the south (-1)."""
+    """Return -φ'' of a bob let go at rest in the meridian at the angle `cord`, to the north (+1) or the south (-1)."""
     local = _at_rest(p, x=MP.zero, y=sign * p.length * sin(cord))
     return -sign * horizontal_acceleration(local)[1] / (p.length * cos(cord))
 
 
 def pull_at_rest(p: Point) -> Any:
-    """What the cord carries per mass where the bob hangs at rest."""
+    """Return the tension of the cord per mass in the rest position."""
     n = scale(1 / p.length, rest(p))
     return p.length * tension(n, (0, 0, 0), p.k)
 
 
 @cache
 def steepest() -> tuple[Any, Any]:
-    """Latitude in degrees and angle in degrees where the bob of l = 1 m hangs furthest from straight down."""
-    here = paris().but(length=MP.one)
-    best = MP.findroot(lambda latitude: derivative(lambda d: rest_angle(here.but(latitude=d)), latitude), 45, tol=1e-40)
-    return best, degrees(rest_angle(here.but(latitude=best)))
+    """Return latitude and angle, in degrees, where a bob of l = 1 m hangs furthest from straight down."""
+    p = paris().but(length=MP.one)
+    best = MP.findroot(lambda latitude: derivative(lambda d: rest_angle(p.but(latitude=d)), latitude), 45, tol=1e-40)
+    return best, degrees(rest_angle(p.but(latitude=best)))
 
 
 def _below_a_tenth() -> Finding:
@@ -102,16 +102,16 @@ def _one_curve() -> Finding:
 
 
 def _south_in_the_north() -> Finding:
-    found = [rest(paris().but(latitude=MP.mpf(d)))[1] for d in (-60, -20, 20, 60)]
-    holds = all((y < 0) == (d > 0) for y, d in zip(found, (-60, -20, 20, 60), strict=True))
-    return Finding(holds, f"y at rest at 60° south {shown(found[0])} m, at 60° north {shown(found[-1])} m")
+    y_at_rest = [rest(paris().but(latitude=MP.mpf(d)))[1] for d in (-60, -20, 20, 60)]
+    holds = all((y < 0) == (d > 0) for y, d in zip(y_at_rest, (-60, -20, 20, 60), strict=True))
+    return Finding(holds, f"y at rest at 60° south {shown(y_at_rest[0])} m, at 60° north {shown(y_at_rest[-1])} m")
 
 
 def _on_the_meridian() -> Finding:
     x, y, _ = rest(paris())
-    here = _at_rest(paris(), x=MP.mpf(x), y=y)
+    p = _at_rest(paris(), x=MP.mpf(x), y=y)
     return Finding(
-        all(abs(a) < NOTHING for a in horizontal_acceleration(here)), f"x = {shown(MP.mpf(x))}, y = {shown(y)} m"
+        all(abs(a) < ZERO_BELOW for a in horizontal_acceleration(p)), f"x = {shown(MP.mpf(x))}, y = {shown(y)} m"
     )
 
 
@@ -121,7 +121,7 @@ def _forty_four(p: Point) -> Any:
 
 
 def checks() -> list[Check]:
-    """The rows of section V up to (47)."""
+    """Return the rows of section V up to (47)."""
     position: list[Check] = [
         Statement("mathar_44_x", f"{V}, before (44)", "at rest x = 0: on the meridian", _on_the_meridian),
         Identity(

@@ -1,4 +1,4 @@
-"""Mathar (47): the rest position as a series in Ω², as printed and derived."""
+"""Mathar (47): the rest position as a series in Ω², as printed and as derived."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ..truth import rest_angle
 
 
 def series(p: Point) -> Vector:
-    """The coefficients of Ω², Ω⁴, Ω⁶ in (47), for λ = -90°."""
+    """Return the coefficients of Ω², Ω⁴, Ω⁶ in (47), for λ = -90°."""
     far, length, g, double = p.N + p.altitude, p.length, p.gravity, 2 * p.phi
     c2, c4 = cos(double), cos(2 * double)
     bracket = far**2 * (c4 + 3 * c2 + 2)
@@ -24,7 +24,7 @@ def series(p: Point) -> Vector:
 
 @cache
 def _derived_series(index: int) -> Vector:
-    """The same coefficients from the rest position of the reference: its Taylor series in Ω²."""
+    """Return the same coefficients from the reference's rest position: its Taylor series in Ω²."""
     p = points()[index]
 
     def angle(square: Any) -> Any:
@@ -48,7 +48,7 @@ def _taylor(function: Callable[[Any], Any], order: int) -> Any:
 
 
 def _newton(nodes: list[int], values: list[Any]) -> list[Any]:
-    """Coefficients of the interpolating polynomial in powers of the node variable."""
+    """Return the coefficients of the interpolating polynomial, in powers of the node variable."""
     table = list(values)
     for depth in range(1, len(nodes)):
         for i in range(len(nodes) - 1, depth - 1, -1):
@@ -62,6 +62,6 @@ def _newton(nodes: list[int], values: list[Any]) -> list[Any]:
 
 
 def series_term(i: int) -> tuple[Callable[[Point], Any], Callable[[Point], Any]]:
-    """A coefficient as printed, and as derived."""
+    """Return a coefficient as printed, and as derived."""
     places = {p: index for index, p in enumerate(points())}
     return lambda p: series(p)[i], lambda p: _derived_series(places[p])[i]

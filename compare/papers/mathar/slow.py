@@ -1,4 +1,4 @@
-"""Mathar, section VI: what each step towards the harmonic equations (51)-(52) leaves out, measured."""
+"""Mathar, section VI: the terms dropped on the way to the harmonic equations (51)-(52), and the errors that causes."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from reference.model.force import acceleration
 
-from ..checks import Approximate, Check, Identity, Number
+from ..checks import Approximate, Check, Identity, PrintedNumber
 from ..digits import MP, Vector, cos, scale, shown, sin, sqrt, vector_derivative
 from ..points import Point, paris
 from ..truth import in_rate
@@ -19,12 +19,12 @@ VI = "Mathar VI"
 
 
 def _swinging(s: Any, rate: Any = None) -> Point:
-    """Paris half way through its swing, amplitude and speed s times its own, without rotation unless given."""
-    here = paris()
+    """Return Paris half way through its swing, amplitude and speed s times its own, by default without rotation."""
+    base = paris()
     x, y = MP.mpf("0.21") * s, MP.mpf("0.28") * s
-    w = sqrt(here.gravity / here.length)
+    w = sqrt(base.gravity / base.length)
     turning = MP.zero if rate is None else rate
-    return here.but(x=x, y=y, vx=w * y / 2, vy=w * x, rate=turning)
+    return base.but(x=x, y=y, vx=w * y / 2, vy=w * x, rate=turning)
 
 
 def _negated(vector: Vector) -> Vector:
@@ -37,44 +37,44 @@ def _diagonal(p: Point, b: Vector) -> Vector:
 
 
 def without_square_rate(p: Point) -> Vector:
-    """Item 1: (35) and (41) replaced by zero."""
+    """Return x'', y'' of item 1: (35) and (41) replaced by zero."""
     return inverse_times(p, _negated(tuple(in_powers(p, beta(p)[:2]) for beta in (beta_x, beta_y))))
 
 
 def without_coupling(p: Point) -> Vector:
-    """Item 2: -yx in (43) set to zero."""
+    """Return x'', y'' of item 2: -yx in (43) set to zero."""
     return _diagonal(p, _negated(tuple(in_powers(p, beta(p)) for beta in (beta_x, beta_y))))
 
 
 def gravity_alone(p: Point) -> Vector:
-    """Item 3: of (33) and (39) only the term with g."""
+    """Return x'', y'' of item 3: of (33) and (39) only the term with g."""
     pull = p.gravity * abs(p.z) ** 3
-    kept = tuple(in_powers(p, (place * pull, *beta(p)[1:])) for place, beta in ((p.x, beta_x), (p.y, beta_y)))
-    return inverse_times(p, _negated(kept))
+    sums = tuple(in_powers(p, (place * pull, *beta(p)[1:])) for place, beta in ((p.x, beta_x), (p.y, beta_y)))
+    return inverse_times(p, _negated(sums))
 
 
 def without_cosine(p: Point) -> Vector:
-    """Item 4: of (34) and (40) only the term with sin ϕ."""
+    """Return x'', y'' of item 4: of (34) and (40) only the term with sinϕ."""
     bent = 2 * p.z**4 * sin(p.phi)
     once = (-bent * p.vy, bent * p.vx)
-    kept = (in_powers(p, (beta(p)[0], linear, beta(p)[2])) for linear, beta in zip(once, (beta_x, beta_y), strict=True))
-    return inverse_times(p, _negated(tuple(kept)))
+    sums = (in_powers(p, (beta(p)[0], linear, beta(p)[2])) for linear, beta in zip(once, (beta_x, beta_y), strict=True))
+    return inverse_times(p, _negated(tuple(sums)))
 
 
 def _depth_is_length(p: Point) -> Vector:
-    """Item 5 in the term with g: z replaced by l."""
+    """Return x'', y'' of item 5, in the term with g: z replaced by l."""
     g = p.gravity / p.length
     return (-g * p.x, -g * p.y)
 
 
 def harmonic(p: Point) -> Vector:
-    """(51), (52), with hats and dots where they belong."""
+    """Return x'', y'' by (51), (52), with hats and dots where they belong."""
     pull, turn = p.gravity / p.length, 2 * p.rate * sin(p.phi)
     return (-pull * p.x + turn * p.vy, -pull * p.y - turn * p.vx)
 
 
 def linearised(p: Point) -> Vector:
-    """The reference's model without centrifugal force, linear about straight down."""
+    """Return x'', y'' of the reference's model without centrifugal force, linear about straight down."""
 
     def scaled(s: Any) -> Vector:
         moved = p.but(x=p.x * s, y=p.y * s, vx=p.vx * s, vy=p.vy * s)
@@ -84,17 +84,17 @@ def linearised(p: Point) -> Vector:
 
 
 def uniform_acceleration(p: Point) -> Vector:
-    """X'', y'' of the reference's model with gravity alone."""
+    """Return x'', y'' of the reference's model with gravity alone."""
     n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
     return tuple(p.length * part for part in acceleration(n, v, p.uniform)[:2])
 
 
-def _dropped(made: Callable[[Point], Vector], turning: bool = False) -> Callable[[Any], tuple[Vector, Vector]]:
-    """Print and truth at an amplitude s times that of Paris; with rotation only where it matters."""
+def _dropped(simplified: Callable[[Point], Vector], turning: bool = False) -> Callable[[Any], tuple[Vector, Vector]]:
+    """Return print and truth at an amplitude s times that of Paris, with rotation only where it matters."""
 
     def pair(s: Any) -> tuple[Vector, Vector]:
         p = _swinging(s, paris().rate if turning else None)
-        return made(p), solved(p)
+        return simplified(p), solved(p)
 
     return pair
 
@@ -105,14 +105,14 @@ def _sizes_at_rate(s: Any) -> tuple[Vector, Vector]:
 
 
 def _printed_gravity(s: Any) -> tuple[Any, Any]:
-    here = paris()
-    p = here.but(rate=here.rate * sqrt(s))
+    base = paris()
+    p = base.but(rate=base.rate * sqrt(s))
     return p.gravity - p.R * p.rate**2 * cos(p.phi), apparent_gravity(p)
 
 
 def _no_centrifugal_force(s: Any) -> tuple[Any, Any]:
-    here = paris()
-    p = here.but(rate=here.rate * sqrt(s))
+    base = paris()
+    p = base.but(rate=base.rate * sqrt(s))
     return p.gravity, pull_at_rest(p)
 
 
@@ -122,13 +122,13 @@ def _share() -> Any:
 
 
 def _cosine(s: Any) -> tuple[Vector, Vector]:
-    """What is linear in Ω, the Coriolis part, alone."""
+    """Return print and truth of the Coriolis part alone, which is linear in Ω."""
     p = _swinging(s)
 
-    def linear(made: Callable[[Point], Vector], i: int) -> Any:
-        return in_rate(lambda rate: made(p.but(rate=rate))[i], 1)
+    def linear(function: Callable[[Point], Vector], i: int) -> Any:
+        return in_rate(lambda rate: function(p.but(rate=rate))[i], 1)
 
-    printed, true = (tuple(linear(made, i) for i in (0, 1)) for made in (without_cosine, solved))
+    printed, true = (tuple(linear(function, i) for i in (0, 1)) for function in (without_cosine, solved))
     return printed, true
 
 
@@ -138,10 +138,12 @@ def _whole(s: Any) -> tuple[Vector, Vector]:
 
 
 def checks() -> list[Check]:
-    """The rows of section VI."""
+    """Return the rows of section VI."""
     place = "s × the amplitude of Paris, half way through a swing"
     steps: list[Check] = [
-        Number("mathar_vi_1_size", f"{VI} item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2),
+        PrintedNumber(
+            "mathar_vi_1_size", f"{VI} item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2
+        ),
         Approximate(
             "mathar_vi_1",
             f"{VI} item 1",
@@ -150,7 +152,7 @@ def checks() -> list[Check]:
             1,
             "Ω²",
             "m/s²",
-            f"pull on the resting bob; what is dropped is RΩ²/g = {shown(_share(), 3)} of g, not Ω²",
+            f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(_share(), 3)} of g, not Ω²",
         ),
         Approximate(
             "mathar_vi_1_order",
@@ -217,7 +219,7 @@ def checks() -> list[Check]:
             lambda p: linearised(p)[0],
             "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
             lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy / p.length),
-            "truth: reference.model.formulations without centrifugal force, linear",
+            "truth: reference.model.force without centrifugal force, linear",
         ),
         Identity(
             "mathar_52",
@@ -225,7 +227,7 @@ def checks() -> list[Check]:
             "ŷ'' = -ŷ ĝ - 2Ω sinϕ x̂'",
             lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
             lambda p: linearised(p)[1] / p.length,
-            remark="the text in hand has every hat and dot of this line",
+            remark="the text at hand has every hat and dot of this line",
         ),
         Approximate(
             "mathar_51_52",
@@ -241,7 +243,7 @@ def checks() -> list[Check]:
 
 
 def _pulled(p: Point) -> Vector:
-    """What item 5 starts from: diagonal of (43), g alone."""
+    """Return x'', y'' from which item 5 starts: the diagonal of (43), with g alone."""
     pull = p.gravity * abs(p.z) ** 3
     b = (-p.x * pull, -p.y * pull)
     return tuple(part * p.z**2 / (p.z**4 * p.length**2) for part in b)

@@ -12,26 +12,26 @@ from .rest import V, pull_at_rest
 
 
 def apparent_gravity(p: Point) -> Any:
-    """(48)."""
+    """Return g' by (48)."""
     out = p.R * p.rate**2
     return sqrt(p.gravity**2 + out**2 - 2 * p.gravity * out * cos(p.phi))
 
 
 def triangle_angle(p: Point) -> Any:
-    """(50)."""
+    """Return φ by (50)."""
     return asin(p.R * p.rate**2 * sin(p.phi) / apparent_gravity(p))
 
 
 def _shorter(s: Any) -> Point:
-    """Paris with a cord s times as long."""
-    here = paris()
-    return here.but(length=here.length * s)
+    """Return Paris with a cord s times as long."""
+    base = paris()
+    return base.but(length=base.length * s)
 
 
 def _slower(s: Any) -> Point:
-    """Paris with RΩ² s times as large, and a cord of no length to speak of."""
-    here = paris()
-    return here.but(rate=here.rate * sqrt(s), length=MP.mpf("1e-50"))
+    """Return Paris with RΩ² s times as large, and a cord of negligible length."""
+    base = paris()
+    return base.but(rate=base.rate * sqrt(s), length=MP.mpf("1e-50"))
 
 
 def _two_terms(p: Point) -> Any:
@@ -44,13 +44,13 @@ def _one_term(p: Point) -> Any:
 
 
 def _tilt(p: Point) -> Any:
-    """Angle at the bob of the triangle: between g and the sum of g and the centrifugal acceleration."""
+    """Return the triangle's angle at the bob, between g and the sum of g and the centrifugal acceleration."""
     out = p.R * p.rate**2
     return pi / 2 - MP.atan2(p.gravity - out * cos(p.phi), out * sin(p.phi))
 
 
 def checks() -> list[Check]:
-    """The rows of section V from (48) on."""
+    """Return the rows of section V from (48) on."""
     return [
         Approximate(
             "mathar_48",

@@ -13,7 +13,7 @@ from .axes import AXES, II, east, north, printed_suspension, up
 
 
 def printed_position(p: Point, cord: Any, azimuth: Any) -> Vector:
-    """(7)."""
+    """Return x, y, z by (7)."""
     return (
         p.length * sin(cord) * cos(azimuth),
         p.length * sin(cord) * sin(azimuth),
@@ -22,7 +22,7 @@ def printed_position(p: Point, cord: Any, azimuth: Any) -> Vector:
 
 
 def printed_velocity(p: Point) -> Vector:
-    """(10)."""
+    """Return the velocity by (10)."""
     sp, cp, sl, cl = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth)
     return (
         p.length * (p.cord_rate * cl * cp - p.azimuth_rate * sp * sl),
@@ -32,7 +32,7 @@ def printed_velocity(p: Point) -> Vector:
 
 
 def moving(p: Point, s: Any) -> Vector:
-    """The bob in local axes, its angles changing at their rates."""
+    """Return the bob in local axes, its angles changing at their rates."""
     return by_angles(p, p.cord + p.cord_rate * s, p.azimuth + p.azimuth_rate * s)
 
 
@@ -67,19 +67,19 @@ def _angles_alpha(power: int) -> Any:
 
 
 def alpha_0(p: Point) -> Any:
-    """(17)."""
+    """Return α0 by (17)."""
     return p.length**2 * (p.cord_rate**2 + sin(p.cord) ** 2 * p.azimuth_rate**2)
 
 
 def alpha_1(p: Point) -> Any:
-    """(18)."""
+    """Return α1 by (18)."""
     sp, cp, sl, cl, s, c = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth), sin(p.phi), cos(p.phi)
     first = 2 * (p.N + p.altitude) * c * p.length * (p.cord_rate * cp * cl - p.azimuth_rate * sp * sl)
     return first + 2 * p.length**2 * (sp * p.azimuth_rate * (s * sp + c * cp * sl) - c * p.cord_rate * cl)
 
 
 def alpha_2(p: Point) -> Any:
-    """(19)."""
+    """Return α2 by (19)."""
     sp, cp, sl, cl, s, c = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth), sin(p.phi), cos(p.phi)
     arm = (p.N + p.altitude) * c - p.length * (c * cp + s * sp * sl)
     return arm**2 + p.length**2 * sp**2 * cl**2
@@ -90,7 +90,7 @@ def _rates_of(axis: Callable[[Point, Any], Vector]) -> Callable[[Point], Vector]
 
 
 def checks() -> list[Check]:
-    """The rows of section II from (7) on."""
+    """Return the rows of section II from (7) on."""
     return [
         Identity(
             "mathar_7",

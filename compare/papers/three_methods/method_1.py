@@ -1,4 +1,4 @@
-"""The third document, method 1: axes that turn, written out."""
+"""The third source paper, method 1: axes that turn, written out."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from .axes import D, axes_rate, generic_path, measured_rate, primed, printed_rat
 
 
 def _own_rate(p: Point) -> Any:
-    """Some ω_p, not the special one."""
+    """Return some ω_p, not the special one."""
     return p.cord_rate
 
 
 def _first(p: Point) -> Vector:
-    """x', y' dot as printed, second form."""
+    """Return x', y' dot as printed, second form."""
     w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
     along, across = p.vx - p.y * w, p.x * w + p.vy
     return along * c - across * s, along * s + across * c
 
 
 def _second(p: Point) -> Vector:
-    """x', y' double dot as printed, second form."""
+    """Return x', y' double dot as printed, second form."""
     w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
     along, across = p.ax - 2 * p.vy * w - p.x * w**2, p.ay + 2 * p.vx * w - p.y * w**2
     return along * c - across * s, along * s + across * c
 
 
 def _second_long(p: Point) -> Vector:
-    """x', y' double dot as printed, first form."""
+    """Return x', y' double dot as printed, first form."""
     w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
     return (
         (p.ax - p.vy * w) * c - (p.vx - p.y * w) * w * s - (p.vx * w + p.ay) * s - (p.x * w + p.vy) * w * c,
@@ -45,7 +45,7 @@ def _derived(order: int) -> Callable[[Point], Vector]:
 
 
 def _printed_unprimed(p: Point, rate: Any) -> Vector:
-    """x'', y'' from the pair printed before "which decouples"."""
+    """Return x'', y'' from the pair printed before "which decouples"."""
     up = rate_up(p)
     k = p.gravity / p.length - 2 * up * rate - rate**2
     return -k * p.x + 2 * (up + rate) * p.vy, -k * p.y - 2 * (up + rate) * p.vx
@@ -58,7 +58,7 @@ def _far_below_gravity() -> Finding:
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
     m = f"{D}, method 1"
     return [
         Identity(
@@ -126,5 +126,5 @@ def checks() -> list[Check]:
 
 
 def _turned(s: Any) -> Point:
-    here = paris()
-    return here.but(rate=here.rate * s)
+    base = paris()
+    return base.but(rate=base.rate * s)

@@ -1,4 +1,4 @@
-"""The third document, method 2: the Coriolis theorem used twice, where two errors cancel."""
+"""The third source paper, method 2: the Coriolis theorem used twice, with two errors that cancel."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from .axes import D, axes_rate, coupled, measured_rate, stiffness
 
 
 def _centrifugal(p: Point) -> Vector:
-    """-m ω_p × (ω_p × x')."""
+    """Return -m ω_p × (ω_p × x')."""
     axis = (MP.zero, MP.zero, axes_rate(p))
     return scale(-p.mass, cross(axis, cross(axis, (p.x, p.y, MP.zero))))[:2]
 
 
 def _turned_drive(p: Point) -> Vector:
-    """F_eff/m of the lines before, its velocity the one at rest: x' + ω_p × x'."""
+    """Return F_eff/m of the lines before, with the velocity in axes at rest, x' + ω_p × x'."""
     speed = add((p.vx, p.vy), scale(axes_rate(p), (-p.y, p.x)))
     return coupled(p, (p.x, p.y), speed)
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
     m = f"{D}, method 2"
     return [
         Identity(
@@ -80,13 +80,13 @@ def checks() -> list[Check]:
 
 
 def _moved_acceleration(p: Point) -> Vector:
-    """Acceleration seen from axes that turn at ω_p and coincide at t = 0: the linear motion, turned."""
+    """Return the acceleration of the linear motion, seen from axes that turn at ω_p and coincide at t = 0."""
     rate = axes_rate(p)
     start = (p.x, p.y, p.vx - rate * p.y, p.vy + rate * p.x)
 
-    def seen(t: Any) -> Vector:
+    def in_turning_axes(t: Any) -> Vector:
         x, y = motion(p, start, t)[:2]
         c, s = cos(rate * t), sin(rate * t)
         return x * c + y * s, y * c - x * s
 
-    return vector_derivative(seen, MP.zero, 2)
+    return vector_derivative(in_turning_axes, MP.zero, 2)

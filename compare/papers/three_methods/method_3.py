@@ -1,4 +1,4 @@
-"""The third document, method 3: complex variables; and its conclusion."""
+"""The third source paper, method 3: complex variables; and the paper's conclusion."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from .axes import D, axes_rate, coupled, measured_rate, stiffness
 
 
 def _in_turning_frame(p: Point, rate: Any, drive: Callable[[Vector, Vector], Vector]) -> Vector:
-    """Acceleration in axes that turn at `rate` of a bob whose acceleration is `drive(place, velocity)` at rest axes.
+    """Return the acceleration in axes that turn at `rate`; in axes at rest it is `drive(place, velocity)`.
 
-    The point's x, y, vx, vy are those in the turning axes, which coincide with the others at this moment.
+    The point's x, y, vx, vy are those in the turning axes, which coincide with the axes at rest at this moment.
     """
     place, speed = (p.x, p.y), (p.vx, p.vy)
     at_rest = add(speed, scale(rate, (-p.y, p.x)))
@@ -26,15 +26,15 @@ def _in_turning_frame(p: Point, rate: Any, drive: Callable[[Vector, Vector], Vec
 
 def _simple_in_frame() -> Finding:
     def excess(p: Point) -> Any:
-        seen = _in_turning_frame(p, axes_rate(p), lambda place, speed: coupled(p, place, speed))
-        return norm(add(seen, scale(stiffness(p), (p.x, p.y))))
+        turned = _in_turning_frame(p, axes_rate(p), lambda place, speed: coupled(p, place, speed))
+        return norm(add(turned, scale(stiffness(p), (p.x, p.y))))
 
     gap = max(map(excess, points()))
     return Finding(gap < mpf("1e-45"), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
 
 
 def _decoupling_rate(p: Point) -> Any:
-    """The ω_P for which z = w exp(-iω_P t) has no w' left: from the equation's complex coefficients."""
+    """Return the ω_P for which z = w exp(-iω_P t) has no w' left, from the equation's complex coefficients."""
 
     def left(rate: Any) -> Any:
         def w(t: Any) -> Any:
@@ -51,7 +51,7 @@ def _decoupling_rate(p: Point) -> Any:
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
     m = f"{D}, method 3"
 
     def equation(p: Point) -> Any:
@@ -59,7 +59,7 @@ def checks() -> list[Check]:
         return -2 * j * rate_up(p) * v - p.gravity / p.length * z
 
     def spun(p: Point) -> tuple[Any, Any, Any]:
-        """w, w', w'' of z = w exp(-iω_P t) at t = 0, for the linear motion from the point."""
+        """Return w, w', w'' of z = w exp(-iω_P t) at t = 0, for the linear motion from the point."""
 
         def w(t: Any) -> Any:
             x, y = motion(p, (p.x, p.y, p.vx, p.vy), t)[:2]

@@ -1,4 +1,4 @@
-"""The third document, its equations: Newton, small angles, components."""
+"""The third source paper, its equations: Newton, small angles, components."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _away_from_axis() -> Finding:
 
 
 def checks() -> list[Check]:
-    """The rows, in the order of print."""
+    """Return the rows, in the order of print."""
 
     def horizontal(s: Any) -> Point:
         p = points()[0].but(rate=MP.zero)
@@ -40,7 +40,7 @@ def checks() -> list[Check]:
                 scale(-2 * p.mass, cross(turning(p), p.velocity)),
             ),
             lambda p: scale(p.mass, acceleration_of(p)),
-            remark="truth: reference.model.formulations with gravity alone; T along the cord",
+            remark="truth: reference.model.force with gravity alone; T along the cord",
         ),
         Identity(
             "methods_centrifugal",
@@ -101,19 +101,19 @@ def checks() -> list[Check]:
             "xddot + (g/L) x = 2ω sinα ydot, yddot + (g/L) y = -2ω sinα xdot",
             lambda p: coupled(p, (p.x, p.y), (p.vx, p.vy)),
             linearised,
-            remark="truth: reference.model.formulations with gravity alone, linear",
+            remark="truth: reference.model.force with gravity alone, linear",
         ),
     ]
 
 
 def rising(s: Any) -> Point:
-    """The first random point, its amplitude times s."""
+    """Return the first random point, its amplitude times s."""
     p = points()[0]
     return p.but(x=p.x * s, y=p.y * s, vx=p.vx * s, vy=p.vy * s)
 
 
 def _cord(p: Point) -> Vector:
-    """T along the cord, as large as r·r'' = -v² asks."""
+    """Return T along the cord, of the size that r·r'' = -v² requires."""
     free = add((MP.zero, MP.zero, -p.gravity), scale(-2, cross(turning(p), p.velocity)))
     pull = (dot(p.velocity, p.velocity) + dot(free, p.position)) / p.length**2
     return scale(-p.mass * pull, p.position)

@@ -11,11 +11,11 @@ from typer.testing import CliRunner
 
 from compare import papers as paper
 from compare.commands.paper import command
-from compare.papers.checks import Row
+from compare.papers.checks import JudgedRow
 
 
 @pytest.fixture
-def app(monkeypatch: pytest.MonkeyPatch, built: tuple[Path, list[Row]]) -> typer.Typer:
+def app(monkeypatch: pytest.MonkeyPatch, built: tuple[Path, list[JudgedRow]]) -> typer.Typer:
     monkeypatch.setattr(paper, "rows", lambda report=None: built[1])
     made = typer.Typer()
     made.command("paper")(command)
@@ -23,7 +23,7 @@ def app(monkeypatch: pytest.MonkeyPatch, built: tuple[Path, list[Row]]) -> typer
     return made
 
 
-def test_json_is_one_document_with_every_row(app: typer.Typer, built: tuple[Path, list[Row]]) -> None:
+def test_json_is_one_document_with_every_row(app: typer.Typer, built: tuple[Path, list[JudgedRow]]) -> None:
     outcome = CliRunner().invoke(app, ["paper", "--json"])
     assert outcome.exit_code == 0
     rows = json.loads(outcome.stdout)["rows"]
@@ -31,7 +31,7 @@ def test_json_is_one_document_with_every_row(app: typer.Typer, built: tuple[Path
     assert {row["verdict"] for row in rows} == {"exact", "reproduced", "approximation", "misprint"}
 
 
-def test_text_names_every_place_and_counts_the_verdicts(app: typer.Typer, built: tuple[Path, list[Row]]) -> None:
+def test_text_names_every_place_and_counts_the_verdicts(app: typer.Typer, built: tuple[Path, list[JudgedRow]]) -> None:
     outcome = CliRunner().invoke(app, ["paper"])
     assert outcome.exit_code == 0
     assert all(row.place in outcome.stdout for row in built[1])

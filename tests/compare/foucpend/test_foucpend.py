@@ -1,4 +1,4 @@
-"""foucault pend: the switches, the lines, and what they say against the reference."""
+"""`foucault pend`: its switches, its lines, and its numbers against the reference."""
 
 from __future__ import annotations
 
@@ -14,12 +14,11 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from compare.approximations import Motion, approximation
-from compare.approximations.mathar_items import PROGRAM_BITS
 from compare.candidates.read import read_stream
 from compare.commands.pend import command
 from compare.foucpend import Options, lines
 from compare.foucpend.options import DEFAULTS
-from compare.foucpend.output import Site
+from compare.foucpend.output import SiteFrame
 from compare.foucpend.zeros import Transits, parabola_zero
 from compare.papers.digits import degrees, norm
 from compare.papers.points import paris
@@ -35,13 +34,13 @@ def output(exact: bool = False, **switches: str) -> list[str]:
     return list(lines(Options.parse(switches, exact)))
 
 
-def snapshots(made: list[str]) -> np.ndarray:
-    return np.array([[float(word) for word in line.split()] for line in made if line[0] != "#"])
+def snapshots(printed: list[str]) -> np.ndarray:
+    return np.array([[float(word) for word in line.split()] for line in printed if line[0] != "#"])
 
 
-def transits(made: list[str]) -> list[tuple[int, float, float]]:
-    found = [line.split()[2:] for line in made if line.startswith("# P")]
-    return [(int(count), float(t), float(hertz)) for count, t, hertz in found]
+def transits(printed: list[str]) -> list[tuple[int, float, float]]:
+    words = [line.split()[2:] for line in printed if line.startswith("# P")]
+    return [(int(count), float(t), float(hertz)) for count, t, hertz in words]
 
 
 # switches ---------------------------------------------------------------------------------------------------------
@@ -113,7 +112,7 @@ def test_the_columns_are_what_their_definitions_say() -> None:
     p = paris()
     state = np.array([[0.3, 0.4, float(p.z), 0.01, -0.02, 0.03]])
     t = 5000.0
-    (row,) = Site(load_scene("paris")).snapshots(np.array([t]), state)
+    (row,) = SiteFrame(load_scene("paris")).snapshots(np.array([t]), state)
     assert row[4:7] == pytest.approx([float(part) for part in place(p, p.position, t)], rel=1e-15)
     assert row[7] == pytest.approx(float(degrees(np.arcsin(0.5 / 67))), rel=1e-12)
     assert row[8] == pytest.approx(float(np.degrees(np.arctan2(0.4, 0.3))))
@@ -121,23 +120,23 @@ def test_the_columns_are_what_their_definitions_say() -> None:
 
 
 def test_printed_numbers_are_the_doubles_of_the_run_and_read_by_the_candidate_s_reader() -> None:
-    made = output(**PARIS, T="60", t="0.05", s="20")
-    candidate = read_stream(io.BytesIO("\n".join([*made, ""]).encode()), "pend")
-    table = snapshots(made)
+    printed = output(**PARIS, T="60", t="0.05", s="20")
+    candidate = read_stream(io.BytesIO("\n".join([*printed, ""]).encode()), "pend")
+    table = snapshots(printed)
     assert np.array_equal(candidate.t, table[:, 0])
     for i, name in enumerate("xyz"):
         assert np.array_equal(candidate.columns[name], table[:, i + 1])
     assert candidate.transits is not None
-    assert candidate.transits.tolist() == [t for _, t, _ in transits(made)]
+    assert candidate.transits.tolist() == [t for _, t, _ in transits(printed)]
 
 
 def test_a_transit_stands_between_the_snapshots_around_it_and_gives_n_over_two_t() -> None:
-    made = output(**PARIS, T="60", t="0.1")
-    assert [count for count, _, _ in transits(made)] == list(range(1, 8))
-    for i, line in enumerate(made):
+    printed = output(**PARIS, T="60", t="0.1")
+    assert [count for count, _, _ in transits(printed)] == list(range(1, 8))
+    for i, line in enumerate(printed):
         if line.startswith("# P"):
             count, t, hertz = line.split()[2:]
-            assert float(made[i - 1].split()[0]) < float(t) <= float(made[i + 1].split()[0])
+            assert float(printed[i - 1].split()[0]) < float(t) <= float(printed[i + 1].split()[0])
             assert float(hertz) == pytest.approx(int(count) / (2 * float(t)), rel=1e-15)
 
 
@@ -172,24 +171,24 @@ def test_at_ordinary_steps_the_three_schemes_converge_as_the_paper_says(
     digit: str, power: int, steps: list[float]
 ) -> None:
     # The tables of -R 5 and 6 are of order 5 and 6, but miss the conditions of the next order by no more than 6e-5 and
-    # 9e-5 (tests/methods); those of the order after it by 5e-3 and 8e-4, and that is what shows.
+    # 9e-5 (tests/compare/methods); those of the order after it by 5e-3 and 8e-4, and that is what shows.
     slope, _ = np.polyfit(np.log(steps), np.log(errors(steps, R=digit)), 1)
     assert slope == pytest.approx(power, abs=0.2)
 
 
 def test_transits_of_the_paper_s_step_are_right_to_ten_nanoseconds() -> None:
     golden = load("paris").transits["t"]
-    made = transits(output(**PARIS, T="600", t="0.01", s="1000", R="6"))
-    times = np.array([t for _, t, _ in made])
+    zeros = transits(output(**PARIS, T="600", t="0.01", s="1000", R="6"))
+    times = np.array([t for _, t, _ in zeros])
     assert len(times) == 73
     assert np.abs(times - golden[:73]).max() < 1e-8
-    assert round(made[1][2], 9) == 0.060843633  # the paper's
+    assert round(zeros[1][2], 9) == 0.060843633  # the paper's
 
 
-@pytest.mark.parametrize("bits", [1, 2, 3])
-def test_the_bits_drop_what_the_approximations_of_section_vi_drop(bits: int) -> None:
+@pytest.mark.parametrize(("bits", "word"), [(1, "mathar_item_2"), (2, "mathar_item_1"), (3, "mathar_items_1_2")])
+def test_the_bits_drop_what_the_approximations_of_section_vi_drop(bits: int, word: str) -> None:
     table = snapshots(output(**PARIS, T="600", t="0.05", s="1200", R="6", a=str(bits)))
-    simpler = approximation(PROGRAM_BITS[bits])
+    simpler = approximation(word)
     assert isinstance(simpler, Motion)
     expected = simpler.trajectory(load_scene("paris"), table[:, 0])
     assert table[:, 1:4] == pytest.approx(expected[:, :3], abs=1e-9)
@@ -199,13 +198,13 @@ def test_the_bits_drop_what_the_approximations_of_section_vi_drop(bits: int) -> 
 
 def test_exact_is_the_golden_dataset_to_the_last_digit_or_so() -> None:
     golden = load("paris")
-    made = output(exact=True, **PARIS, T="600", t="0.1", s="600")
-    table = snapshots(made)
+    printed = output(exact=True, **PARIS, T="600", t="0.1", s="600")
+    table = snapshots(printed)
     assert table[:, 0].tolist() == golden.t[:11].tolist()
     # the doubles of this run's inputs differ from the golden ones' decimals by 1e-17 m and a relative 1e-16
     for i, name in enumerate("xyz"):
         assert table[:, i + 1] == pytest.approx(getattr(golden, name)[:11], abs=3e-13)
-    times = [t for _, t, _ in transits(made)]
+    times = [t for _, t, _ in transits(printed)]
     assert times == pytest.approx(golden.transits["t"][:73].tolist(), abs=3e-12)
 
 
@@ -261,19 +260,19 @@ def test_cutting_a_run_into_blocks_loses_and_doubles_no_transit(block: int, shif
     t = np.arange(200) * 0.1
     v = np.sin(t + 0.05 * shift)
     whole = Transits().of(t, v)
-    found, parts = Transits(), []
+    by_blocks, parts = Transits(), []
     for begin in range(0, len(t) - 1, block):
-        parts += found.of(t[begin : begin + block + 1], v[begin : begin + block + 1])
+        parts += by_blocks.of(t[begin : begin + block + 1], v[begin : begin + block + 1])
     assert parts == pytest.approx(whole, abs=1e-12)
 
 
 # the command --------------------------------------------------------------------------------------------------------
 @pytest.fixture
 def app() -> typer.Typer:
-    made = typer.Typer()
-    made.command("pend")(command)
-    made.command("other")(lambda: None)
-    return made
+    cli = typer.Typer()
+    cli.command("pend")(command)
+    cli.command("other")(lambda: None)
+    return cli
 
 
 def test_the_command_prints_what_lines_gives(app: typer.Typer) -> None:

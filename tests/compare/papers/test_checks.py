@@ -1,4 +1,4 @@
-"""The judge itself: a wrong print must be found, and a wrong correction must not pass."""
+"""The judging itself: a wrong print must be found, and a wrong correction must not pass."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from compare.papers.checks import Approximate, Check, Finding, Identity, Number, Statement, UnexplainedError
+from compare.papers.checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement, UnexplainedError
 from compare.papers.digits import MP, mpf, sin
 from compare.papers.gastebois import small as gastebois_small
 from compare.papers.gastebois import solution as gastebois_solution
@@ -37,13 +37,13 @@ def test_two_ways_to_write_the_same_are_exact() -> None:
 
 
 def test_a_print_that_is_off_in_the_thirtieth_digit_is_no_identity() -> None:
-    with pytest.raises(UnexplainedError, match="no correction"):
+    with pytest.raises(UnexplainedError, match="no declared correction"):
         Identity("a", "here", "", wrong, truth).row()
 
 
 def test_a_misprint_needs_a_correction_that_holds() -> None:
     assert Identity("a", "here", "", wrong, truth, "right", double_angle).row().verdict == "misprint"
-    with pytest.raises(UnexplainedError, match="no correction mends it"):
+    with pytest.raises(UnexplainedError, match="no declared correction holds"):
         Identity("a", "here", "", wrong, truth, "also wrong", wrong).row()
 
 
@@ -60,13 +60,13 @@ def test_an_approximation_has_the_order_it_declares_or_none() -> None:
 
     row = Approximate("a", "here", "sin s = s", pair, 2, "s").row()
     assert row.verdict == "approximation"
-    assert row.error == "0.188 of it; order 2 in s"
+    assert row.error == "0.188 (relative); order 2 in s"
     with pytest.raises(UnexplainedError, match="order 2, not 3"):
         Approximate("a", "here", "sin s = s", pair, 3, "s").row()
 
 
 @pytest.mark.parametrize(
-    ("numeral", "value", "verdict", "said"),
+    ("numeral", "value", "verdict", "note"),
     [
         ("67", "67", "exact", ""),
         ("3.142", "3.14159265", "reproduced", ""),
@@ -79,25 +79,30 @@ def test_an_approximation_has_the_order_it_declares_or_none() -> None:
     ],
 )
 def test_a_numeral_is_the_value_rounded_or_cut_off_or_a_misprint(
-    numeral: str, value: str, verdict: str, said: str
+    numeral: str, value: str, verdict: str, note: str
 ) -> None:
-    row = Number("a", "here", numeral, numeral, lambda: mpf(value)).row()
+    row = PrintedNumber("a", "here", numeral, numeral, lambda: mpf(value)).row()
     assert row.verdict == verdict
-    assert (row.correction if verdict == "misprint" else row.remark).replace("0.00007292", "7.292e-5") == said
+    assert (row.correction if verdict == "misprint" else row.remark).replace("0.00007292", "7.292e-5") == note
 
 
 def test_about_means_within_a_tenth_of_what_is_spoken_of() -> None:
     def row(scale: str) -> str:
-        return Number("a", "", "", "0.5", lambda: mpf("0.549"), about=lambda: mpf(scale)).row().verdict
+        return PrintedNumber("a", "", "", "0.5", lambda: mpf("0.549"), about=lambda: mpf(scale)).row().verdict
 
     assert row("1") == "reproduced"  # 0.549 rounds to 0.5
-    near = Number("a", "", "", "-66.98", lambda: mpf("-66.998"), about=lambda: mpf("0.004"), decimals=3).row()
+    near = PrintedNumber("a", "", "", "-66.98", lambda: mpf("-66.998"), about=lambda: mpf("0.004"), decimals=3).row()
     assert (near.verdict, near.correction) == ("misprint", "-66.998")
-    assert Number("a", "", "", "6370", lambda: mpf("6371"), about=lambda: mpf(6371)).row().verdict == "approximation"
+    assert (
+        PrintedNumber("a", "", "", "6370", lambda: mpf("6371"), about=lambda: mpf(6371)).row().verdict
+        == "approximation"
+    )
 
 
-def test_a_numeral_may_follow_from_the_document_s_own_rounded_inputs() -> None:
-    row = Number("a", "", "", "5.88", lambda: mpf("5.865"), as_given=lambda: mpf("5.876"), given="its inputs").row()
+def test_a_numeral_may_follow_from_the_paper_s_own_rounded_inputs() -> None:
+    row = PrintedNumber(
+        "a", "", "", "5.88", lambda: mpf("5.865"), from_inputs=lambda: mpf("5.876"), inputs="its inputs"
+    ).row()
     assert (row.verdict, row.remark) == ("reproduced", "from its inputs: 5.876")
 
 
@@ -115,7 +120,7 @@ def test_a_sentence_that_fails_needs_one_that_holds() -> None:
 )
 def test_no_identity_survives_a_change_in_its_thirtieth_digit(modules: tuple[Any, ...]) -> None:
     declared: list[Check] = [check for module in modules for check in module.checks()]
-    looked_at = 0
+    count = 0
     for check in declared:
         if not isinstance(check, Identity) or check.row().recomputed.strip("(0., )") == "":
             continue  # a zero times anything is the zero
@@ -127,5 +132,5 @@ def test_no_identity_survives_a_change_in_its_thirtieth_digit(modules: tuple[Any
 
         with pytest.raises(UnexplainedError):
             replace(check, formula=changed, corrected=None).row()
-        looked_at += 1
-    assert looked_at >= 8
+        count += 1
+    assert count >= 8

@@ -14,11 +14,11 @@ import pytest
 
 from compare.papers import figures, page
 from compare.papers.captions import CAPTIONS
-from compare.papers.checks import VERDICTS, Row
+from compare.papers.checks import VERDICTS, JudgedRow
 from reference import InputError
 
-Built = tuple[Path, list[Row]]
-ROW = Row("a_b", "Mathar II (1)", "x < y & z", "1.5", "misprint", correction="x > y", remark="both")
+Built = tuple[Path, list[JudgedRow]]
+ROW = JudgedRow("a_b", "Mathar II (1)", "x < y & z", "1.5", "misprint", correction="x > y", remark="both")
 
 
 def test_the_folder_holds_the_page_the_figures_and_the_rows(built: Built) -> None:
@@ -83,10 +83,10 @@ def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch, 
 
     imported = builtins.__import__
 
-    def refusing(name: str, *rest: object, **more: object) -> object:
+    def refusing(name: str, *arguments: object, **more: object) -> object:
         if name == "matplotlib":
             raise ImportError(name)
-        return imported(name, *rest, **more)  # type: ignore[arg-type]
+        return imported(name, *arguments, **more)  # type: ignore[arg-type]
 
     monkeypatch.setattr(builtins, "__import__", refusing)
     with pytest.raises(InputError, match=r"foucault-reference\[plot\]"):

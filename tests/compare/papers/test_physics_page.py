@@ -111,13 +111,13 @@ def test_a_number_on_the_page_is_the_recomputed_one(name: str) -> None:
 
 
 def test_the_page_s_remedy_hangs_the_bob_along_the_geodetic_vertical() -> None:
-    taken = P.but(latitude=mpf("48.7479"), gravity=mpf("9.8214"))
-    tilt = degrees(rest_angle(taken))
+    remedied = P.but(latitude=mpf("48.7479"), gravity=mpf("9.8214"))
+    tilt = degrees(rest_angle(remedied))
     # R follows the scene's latitude, so that it is larger by the ratio of the cosines; and the latitude is rounded
-    nearer = tilt * (MP.cos(taken.phi) / MP.cos(P.phi) - 1) + mpf("5e-5")
-    assert abs(taken.latitude + tilt - P.latitude) < nearer < mpf("3e-4")
-    assert f"{fixed(degrees(rest_angle(taken)), 4)}° from the scene's own *z* axis" in PAGE
-    assert f"apparent gravity is {fixed(pull_at_rest(taken), 4)}" in PAGE
+    nearer = tilt * (MP.cos(remedied.phi) / MP.cos(P.phi) - 1) + mpf("5e-5")
+    assert abs(remedied.latitude + tilt - P.latitude) < nearer < mpf("3e-4")
+    assert f"{fixed(degrees(rest_angle(remedied)), 4)}° from the scene's own *z* axis" in PAGE
+    assert f"apparent gravity is {fixed(pull_at_rest(remedied), 4)}" in PAGE
 
 
 def test_the_page_is_at_most_two_pages_long() -> None:

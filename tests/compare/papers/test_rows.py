@@ -1,4 +1,4 @@
-"""The verdicts on the three documents, against what was known of them before and independently."""
+"""The verdicts on the three source papers, against the misprints that were known before, independently."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from compare.papers.checks import VERDICTS, Row
+from compare.papers.checks import VERDICTS, JudgedRow
 
 # found by deriving the equations symbolically from the kinetic energy, before this code was written
 KNOWN_MISPRINTS = {
@@ -55,45 +55,45 @@ ENDS_BEFORE = {
     *("mathar_vii_l", "mathar_vii_lat", "mathar_a_g", "mathar_a_omega", "mathar_a_flattening", "mathar_a_radius"),
     *("mathar_a_stages_4", "mathar_a_stages_5", "mathar_a_stages_6", "mathar_a_order_5", "mathar_a_order_6"),
     *("mathar_a_two", "mathar_vi_1_size", "gastebois_2_radius", "gastebois_2_rate"),  # exact decimals
-    *("mathar_fig7_ahead", "mathar_a_parabola", "gastebois_4_1_equator"),  # what a double run knows
+    *("mathar_fig7_ahead", "mathar_a_parabola", "gastebois_4_1_equator"),  # known from a double run only
 }
 EXACT_IN_MATHAR = [1, 2, 3, *range(7, 15), 16, 17, 18, 19, 20, 21, 22, 24, 26, 27, 28, 29, 30]
 EXACT_IN_MATHAR += [32, 33, 34, 35, 36, 38, 39, 40, 41, 42, 43, 44, 49, 52]
 
 
-def test_there_is_a_row_for_more_than_a_hundred_lines_of_all_three_documents(judged: dict[str, Row]) -> None:
+def test_there_is_a_row_for_more_than_a_hundred_lines_of_all_three_papers(judged: dict[str, JudgedRow]) -> None:
     assert len(judged) >= 250
-    for document in ("mathar_", "gastebois_", "methods_"):
-        assert sum(word.startswith(document) for word in judged) >= 30
+    for paper in ("mathar_", "gastebois_", "methods_"):
+        assert sum(word.startswith(paper) for word in judged) >= 30
 
 
-def test_ids_are_unique_words(judged: dict[str, Row], built: tuple[object, list[Row]]) -> None:
+def test_ids_are_unique_words(judged: dict[str, JudgedRow], built: tuple[object, list[JudgedRow]]) -> None:
     assert len(judged) == len(built[1])
     assert all(re.fullmatch(r"[a-z][a-z0-9_]*", word) for word in judged)
 
 
 @pytest.mark.parametrize(("word", "part"), [*KNOWN_MISPRINTS.items(), *FURTHER_MISPRINTS.items()])
-def test_a_misprint_is_found_and_corrected(judged: dict[str, Row], word: str, part: str) -> None:
+def test_a_misprint_is_found_and_corrected(judged: dict[str, JudgedRow], word: str, part: str) -> None:
     assert judged[word].verdict == "misprint"
     assert part in judged[word].correction
 
 
-def test_nothing_else_is_called_a_misprint(judged: dict[str, Row]) -> None:
-    found = {word for word, row in judged.items() if row.verdict == "misprint"}
-    assert found == set(KNOWN_MISPRINTS) | set(FURTHER_MISPRINTS)
+def test_nothing_else_is_called_a_misprint(judged: dict[str, JudgedRow]) -> None:
+    misprints = {word for word, row in judged.items() if row.verdict == "misprint"}
+    assert misprints == set(KNOWN_MISPRINTS) | set(FURTHER_MISPRINTS)
 
 
 @pytest.mark.parametrize("number", EXACT_IN_MATHAR)
-def test_the_paper_s_numbered_equations_are_exact_as_printed(judged: dict[str, Row], number: int) -> None:
+def test_the_paper_s_numbered_equations_are_exact_as_printed(judged: dict[str, JudgedRow], number: int) -> None:
     assert judged[f"mathar_{number}"].verdict == "exact"
 
 
 @pytest.mark.parametrize("power", [2, 4, 6])
-def test_the_series_47_is_exact_at_each_power(judged: dict[str, Row], power: int) -> None:
+def test_the_series_47_is_exact_at_each_power(judged: dict[str, JudgedRow], power: int) -> None:
     assert judged[f"mathar_47_{power}"].verdict == "exact"
 
 
-def test_every_row_says_what_its_verdict_asks_for(judged: dict[str, Row]) -> None:
+def test_every_row_says_what_its_verdict_asks_for(judged: dict[str, JudgedRow]) -> None:
     for row in judged.values():
         assert row.verdict in VERDICTS
         assert row.place
@@ -103,18 +103,18 @@ def test_every_row_says_what_its_verdict_asks_for(judged: dict[str, Row]) -> Non
         assert bool(row.correction) == (row.verdict == "misprint"), row.id
 
 
-def digits_of(row: Row) -> int:
+def digits_of(row: JudgedRow) -> int:
     """Significant digits of the longest number."""
     numbers = re.findall(r"\d+\.?\d*", row.recomputed)
     return max(len(number.replace(".", "").strip("0")) for number in numbers)
 
 
-def test_recomputed_numbers_have_fifteen_digits_unless_they_end_before(judged: dict[str, Row]) -> None:
+def test_recomputed_numbers_have_fifteen_digits_unless_they_end_before(judged: dict[str, JudgedRow]) -> None:
     short = {word for word, row in judged.items() if digits_of(row) < 15}
     assert short == ENDS_BEFORE
 
 
-def test_the_paper_s_two_last_frequencies_are_both_explained(judged: dict[str, Row]) -> None:
+def test_the_paper_s_two_last_frequencies_are_both_explained(judged: dict[str, JudgedRow]) -> None:
     estimate, run = judged["mathar_vii_estimate"], judged["mathar_vii_frequency"]
     assert (estimate.verdict, run.verdict) == ("reproduced", "reproduced")
     assert estimate.recomputed.startswith("0.06084363411")
@@ -123,7 +123,7 @@ def test_the_paper_s_two_last_frequencies_are_both_explained(judged: dict[str, R
     assert "0.060849421166" in run.remark
 
 
-def test_the_orders_of_the_approximations_are_those_of_theory(judged: dict[str, Row]) -> None:
+def test_the_orders_of_the_approximations_are_those_of_theory(judged: dict[str, JudgedRow]) -> None:
     orders = {
         word: float(match[1]) for word, row in judged.items() if (match := re.search(r"order (\d[.\d]*) in", row.error))
     }

@@ -1,4 +1,4 @@
-"""What the rows are measured against, measured against something else."""
+"""The truth that printed lines are compared with, compared with other closed forms and textbook equations."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_the_place_of_the_bob_is_a_cord_away_from_the_suspension() -> None:
 
 
 def test_the_plumb_line_of_paris_is_that_of_the_closed_forms_elsewhere() -> None:
-    # tests/test_closed_forms.py solves Mathar (46) by itself: 11.5 cm south
+    # tests/reference/solver/test_closed_forms.py solves Mathar (46) by itself: 11.5 cm south
     assert shown(rest(paris())[1], 12) == "-0.115205163345"
 
 
