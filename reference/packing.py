@@ -1,4 +1,4 @@
-"""Rows of large integers in words of 60 bits: made by numbers in digits, taken by FLINT, and cheap to send."""
+"""Large integers as words of 60 bits, to send through a pipe and to hand to FLINT: cheaper than Python's integers."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-WORD_BITS = 60  # fits an int64, and is below what FLINT has to allocate for
+WORD_BITS = 60  # of a word: it fits an int64, and FLINT holds it without allocating memory
 
 
 class Words(Sequence[list[int]]):
-    """Rows of integers; a word is in [0, 2**60), but the highest has the sign.
+    """Rows of integers; every word is in [0, 2**60), but the highest carries the sign.
 
     Attributes:
         table: shape (rows, words, length of a row), lowest word first.
@@ -22,11 +22,11 @@ class Words(Sequence[list[int]]):
         self.table = table
 
     def __len__(self) -> int:
-        """The number of rows."""
+        """Return the number of rows."""
         return len(self.table)
 
     def __getitem__(self, row: Any) -> Any:
-        """The integers of a row."""
+        """Return the integers of a row."""
         *low, high = self.table[row].astype(object)
         for word in reversed(low):
             high = (high << WORD_BITS) + word

@@ -1,12 +1,13 @@
-"""A proof of the run: balls that contain the true state and every transit (THEOREM.md); needs python-flint.
+"""A proof of a run: intervals that contain the true state and every transit (THEOREM.md); needs python-flint.
 
-Trusted, and in no need of anything else: `balls`, `bound`, `columns`, `transits`. Untrusted: `candidate`, `recurrence`
-and `frames`, which propose, `plan`, which chooses precision, `run` and `helpers`, which hand steps on. Ends of
-intervals are fractions: no flint leaves here.
+Trusted, and enough to believe a proof: `balls`, `bound`, `columns`, `transits`. Untrusted, because the bound measures
+whatever they get wrong: `approximant` and `frames`, which propose polynomials, `plan`, which chooses the precision, and
+`run` and `defect_process`, which pass steps on. `shapes` only declares. Endpoints of intervals are Fractions; no flint
+object leaves this package.
 """
 
-from .candidate import Expansion, pair, turned
-from .run import Cost, Enclosure, enclose
+from .approximant import TaylorStep, pair, turned
+from .run import Enclosure, ProofCost, enclose
 from .shapes import EnclosedTransit, Interval, Step
 
-__all__ = ["Cost", "EnclosedTransit", "Enclosure", "Expansion", "Interval", "Step", "enclose", "pair", "turned"]
+__all__ = ["EnclosedTransit", "Enclosure", "Interval", "ProofCost", "Step", "TaylorStep", "enclose", "pair", "turned"]

@@ -1,4 +1,4 @@
-"""TRUSTED. Sections 1 to 7 of THEOREM.md: scene in balls, defect of a step, one radius carried along (Theorem C).
+"""TRUSTED. The error bound: the scene in balls, defect of a step, Theorem C from step to step (THEOREM.md, 1 to 7).
 
 Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H. A name of a size is an upper bound.
 """
@@ -14,7 +14,7 @@ from .shapes import Interval, Sizes, Step, Tube
 
 
 class World:
-    """The scene at `prec` bits, from its exact inputs alone; what is exactly 0 stays so.
+    """The scene's constants and release as balls at `prec` bits, from its exact inputs alone; exact zeros stay exact.
 
     Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z.
     """
@@ -48,7 +48,7 @@ class World:
             self.below, self.above = upper(self.w0**2 + w**2 / 2 + energy), upper(c - self.w0**2)  # -+ (c·r - w0²)
 
     def turned(self, a: Vector, way: int) -> Vector:
-        """East, north, up as x, m, w; with `way` -1 back."""
+        """Turn east, north, up to the axes x, m, w; with `way` -1 back."""
         sin, cos = self.tilt
         return [a[0], a[1] * sin - way * a[2] * cos, a[2] * sin + way * a[1] * cos]
 
@@ -64,7 +64,7 @@ class World:
 
 
 class Scaled:
-    """Constants in the time of a step: balls; integers over 2^bits and how far they are off; sizes."""
+    """Constants in the time of a step: balls, integers over 2^bits that are off by at most `off` in all, and sizes."""
 
     def __init__(self, world: World, h: Fraction, bits: int) -> None:
         with ctx.workprec(world.prec):
@@ -75,7 +75,7 @@ class Scaled:
             self.speed, self.below, self.above = world.speed * self.h, world.below * self.h**2, world.above * self.h**2
 
     def force(self, r: Vector, v: Vector) -> Vector:
-        """The acceleration of a free bob, in balls."""
+        """Return the acceleration of a free bob, in balls."""
         turn = add(cross(self.omega, r), times(2, v))
         return add(self.c, times(-1, cross(self.omega, turn)), times(-self.drag, v))
 
@@ -84,7 +84,7 @@ scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each o
 
 
 class Piece:
-    """A step with its polynomials p, p' and λ."""
+    """A step with its polynomials p, p' and λ, used from `begin` to `end` (in s)."""
 
     def __init__(self, world: World, step: Step) -> None:
         if not -1 <= step.low < step.high <= 1 or step.h <= 0:
@@ -95,11 +95,11 @@ class Piece:
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
     def values(self, s: arb) -> tuple[Vector, Vector]:
-        """Balls of p(s) and p'(s)."""
+        """Return balls of p(s) and p'(s)."""
         return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v]
 
     def sizes(self) -> Sizes:
-        """The defects, from integers but for the radii of the constants (section 6)."""
+        """Return the defects and norms, from integers but for the radii of the constants (section 6)."""
         k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits
         (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], self.pull - k.whole[1]
         d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, self.pull), p, strict=True)]
@@ -114,13 +114,13 @@ class Piece:
             return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
 
 
-def growth(k: Scaled, size_p: arb) -> arb:
-    """The rate ν of Theorem N."""
+def error_rate(k: Scaled, size_p: arb) -> arb:
+    """Return the rate ν of Theorem N."""
     return (k.c_size + k.w**2 + k.drag_size * k.omega_size * (1 + size_p)) / (2 * k.w)
 
 
 def tube(k: Scaled, d: Sizes, eta: arb, gamma: arb) -> Tube:
-    """From |e| <= eta and |g| <= gamma to velocity and acceleration (section 7)."""
+    """Return the bounds of position, velocity and acceleration from |e| <= eta and |g| <= gamma (section 7)."""
     turn, gw = d.k + k.omega_size, k.drag_size * k.omega_size
     u = gamma + turn * eta + d.d1
     torque = k.c_size * eta + k.omega_size * gamma + k.drag_size * gamma + gw * (1 + d.p) * eta + d.d2
@@ -130,48 +130,48 @@ def tube(k: Scaled, d: Sizes, eta: arb, gamma: arb) -> Tube:
 
 
 class Carried:
-    """What goes from step to step: the time reached and the candidate's end, H in 1/s."""
+    """State carried from step to step: the time reached, and p and K there (K in 1/s); at t = 0 balls of r and H."""
 
     def __init__(self, world: World) -> None:
         self.world, self.time, self.last = world, Fraction(0), [*world.r, *world.H]
 
     def join(self, piece: Piece) -> Vector:
-        """How far p and K at the start of `piece` are from the end of the step before."""
+        """Return bounds of the jumps in p and K from the end of the step before to the start of `piece`."""
         if piece.begin != self.time:
             raise ArithmeticError("steps must join")
         ends = (piece.values(ball(s)) for s in (piece.step.low, piece.step.high))
-        here, end = ([*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))] for p, v in ends)
+        start, end = ([*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))] for p, v in ends)
         self.time, self.last, before = piece.end, end, self.last
-        return [(a - b).abs_upper() for a, b in zip(here, before, strict=True)]
+        return [(a - b).abs_upper() for a, b in zip(start, before, strict=True)]
 
 
 class Radius(Carried):
-    """Theorem C: one number, |e|² + |g⊥|²/w² <= eta²."""
+    """Theorem C: one radius, |e|² + |g⊥|²/w² <= eta²."""
 
     eta = arb(0)
 
     def advance(self, piece: Piece, d: Sizes) -> Tube:
-        """Carry the bound over `piece`, whose sizes are `d`."""
+        """Carry the radius over `piece`, whose sizes are `d`."""
         with ctx.workprec(self.world.prec):
             k, jump = piece.k, self.join(piece)
         with ctx.workprec(SHORT):
             span, gw, ck = ball(piece.step.high - piece.step.low), k.drag_size * k.omega_size, k.c_size + d.k**2
             start, source = upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.world.w0), d.d2 / k.w + d.d1
             # Theorem N: |e| <= far
-            far = upper(((1 + d.k / k.w) * start + span * source) * (span * growth(k, d.p)).exp())
+            far = upper(((1 + d.k / k.w) * start + span * source) * (span * error_rate(k, d.p)).exp())
             rate = (k.below.max(k.above + (k.speed + k.w * far) ** 2) + ck * far + gw * d.p) / (2 * k.w)
             self.eta = upper((start + span * (ck * d.tau / (2 * k.w) + source)) * (span * rate).exp())
             return tube(k, d, self.eta, (k.w + d.k) * self.eta)
 
 
 def state(piece: Piece, t: Tube, s: arb) -> tuple[Vector, Vector]:
-    """Balls that contain the true r and r' at `s`."""
+    """Return balls that contain the true r and r' at `s`."""
     p, v = piece.values(s)
     return [x + arb(0, t.eta) for x in p], [x + arb(0, t.u) for x in v]
 
 
 def output(world: World, piece: Piece, t: Tube, time: Fraction) -> list[Interval]:
-    """Position and velocity at an output time in m and m/s; at 0 those of the release itself."""
+    """Return position and velocity at an output time, in m and m/s; at 0 those of the release itself."""
     with ctx.workprec(world.prec):
         if not piece.begin <= time <= piece.end:
             raise ArithmeticError("the tube holds on its own step only")

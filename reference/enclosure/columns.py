@@ -1,27 +1,27 @@
-"""TRUSTED. Theorem E of THEOREM.md: six columns carry the error along, Theorem N bounds what they leave out.
+"""TRUSTED. The error bound for large angles: six columns carry the error, Theorem N bounds the remainder (Theorem E).
 
-The columns are proposals: integers over 2^FINE, so exact whatever floats they came from.
+The columns are proposals: integers over 2^FINE, so they are exact whatever floats they were rounded from.
 """
 
 from flint import arb, arb_mat, arb_poly, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, dot, size, times, upper
-from .bound import Carried, Piece, World, growth, tube
+from .bound import Carried, Piece, World, error_rate, tube
 from .shapes import Sizes, Tube
 
-FINE = 50  # bits of a column's coefficients
-CUT = 48  # terms of p and K in the residual, where they only meet the box
+FINE = 50  # a column's coefficients are integers over 2^FINE
+CUT = 48  # terms of p and K in the residuals, which are multiplied by the small z_j
 
 
 class Columns(Carried):
-    """(r, H) = (p + Wp ζ, K + WK ζ) + (e, g) with |ζ_j| <= z_j."""
+    """Theorem E: (r, H) = (p + Wp ζ, K + WK ζ) + (e, g) with |ζ_j| <= z_j; `rest` bounds e and g (g in 1/s)."""
 
     def __init__(self, world: World) -> None:
         super().__init__(world)
         self.rest, self.z, self.carried = [arb(0)] * 6, [arb(0)] * 6, arb_mat(6, 6)
 
     def advance(self, piece: Piece, d: Sizes, proposal: list[list[list[int]]]) -> Tube:
-        """Carry the box over `piece`; `proposal[j]` holds the six polynomials of column j."""
+        """Carry the box of the z_j over `piece`; `proposal[j]` holds the six polynomials of column j."""
         k, step, columns = piece.k, piece.step, [[fmpz_poly(f) for f in c] for c in proposal]
         with ctx.workprec(self.world.prec):
             slack = add(self.join(piece), self.rest)
@@ -34,7 +34,7 @@ class Columns(Carried):
             rows = [times(z, sizes) for z, sizes in zip(self.z, residuals(piece, columns), strict=True)]
             zp, zk, d1, d2 = add([arb(0), arb(0), d.d1, d.d2], *rows)
             d1, d2, span = d1 + zp * zk, d2 + k.drag_size * k.omega_size * zp**2, ball(step.high - step.low)
-            left = upper(span * (d2 / k.w + d1) * (span * growth(k, d.p + zp)).exp())
+            left = upper(span * (d2 / k.w + d1) * (span * error_rate(k, d.p + zp)).exp())
             self.rest = [left] * 3 + [upper(left * self.world.w0)] * 3
             return tube(k, d, zp + left, zk + left * k.w)
 
@@ -43,18 +43,18 @@ GRID = [(i, j) for i in range(6) for j in range(6)]
 
 
 def matrix(columns: list[Vector], s: arb, h: arb) -> arb_mat:
-    """The columns at `s`, H in 1/s."""
+    """Return the columns at `s`, H in 1/s."""
     values = [arb_poly(columns[j][i])(s) / (fmpz(1) << FINE) for i, j in GRID]
     return arb_mat(6, 6, [*values[:18], *times(1 / h, values[18:])])
 
 
 def cut(f: arb_poly) -> arb_poly:
-    """A short polynomial that contains f at every |s| <= 1."""
+    """Return a short polynomial that contains f at every |s| <= 1."""
     return f.truncate(CUT) + arb(0, f.right_shift(CUT)(UNIT).abs_upper())
 
 
 def residuals(piece: Piece, columns: list[Vector]) -> list[list[arb]]:
-    """For each column |Wp|, |WK|, |R1|, |R2|."""
+    """Return |Wp|, |WK|, |R1|, |R2| for each column."""
     k, out = piece.k, []
     p, v = ([cut(arb_poly(f) * (1 / arb(piece.unit))) for f in part] for part in (piece.p, piece.v))
     K = [cut(f) for f in cross(p, add(v, cross(k.omega, p)))]

@@ -1,4 +1,4 @@
-"""Columns for Theorem E, in floats: the linearised flow of a step from a good frame at its start. Untrusted."""
+"""Proposals of the six columns for Theorem E: the linearised flow of a step, in double precision. Untrusted."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from .bound import World
 from .columns import FINE
 from .shapes import Step
 
-ORDER = 27
-ILL = 10  # condition number above which columns are made orthogonal
+ORDER = 27  # of the columns' polynomials
+ILL = 10  # condition number above which the frame is made orthogonal
 
 
 class ColumnSource:
-    """Six float columns for each step: the linearised flow about (p, K), from a good frame at the step's start."""
+    """Six columns a step: the linearised flow about (p, K), from a well-conditioned frame at the step's start."""
 
     def __init__(self, world: World) -> None:
         """Read the constants as floats."""
@@ -27,7 +27,7 @@ class ColumnSource:
         self.end: Any = np.eye(6)
 
     def propose(self, step: Step, widths: Iterable[float]) -> list[list[list[int]]]:
-        """Integer polynomials over 2^FINE, column by column."""
+        """Return integer polynomials over 2^FINE, column by column; `widths` are the logarithms of the z_j."""
         h, M = float(step.h), ORDER
         w, c, g = self.w * h, self.c * h * h, self.g * h
         one = 1 << step.bits
@@ -46,7 +46,7 @@ class ColumnSource:
             along = n @ w
             field[3:, :, :3] -= g * (n.T[:, :, None] * w + np.eye(3)[:, None, :] * along[:, None])
             field[3:, 0, 3:] -= g * np.eye(3)
-        back = np.zeros((M + 1, 6, 6))  # coefficient k at M - k
+        back = np.zeros((M + 1, 6, 6))  # coefficient k stands at M - k
         back[M] = np.eye(6)
         for k in range(M):
             back[M - k - 1] = field[:, : k + 1].reshape(6, -1) @ back[M - k :].reshape(-1, 6) / (k + 1)
@@ -58,8 +58,8 @@ class ColumnSource:
         combine = np.linalg.solve(start, unit[:, None] * self._frame(np.fromiter(widths, float)))
         columns = flow @ combine
         self.end = (end @ combine) / unit[:, None]
-        whole = np.rint(np.ldexp(columns, FINE))
-        return [[[int(x) for x in whole[:, i, j]] for i in range(6)] for j in range(6)]
+        integers = np.rint(np.ldexp(columns, FINE))
+        return [[[int(x) for x in integers[:, i, j]] for i in range(6)] for j in range(6)]
 
     def _frame(self, widths: Any) -> Any:
         lengths = np.linalg.norm(self.end, axis=0)
@@ -71,7 +71,7 @@ class ColumnSource:
 
 
 def hats(rows: Any) -> Any:
-    """The matrices a× of the rows a."""
+    """Return the matrices a× of the rows a."""
     x, y, z = rows.T
     zero = np.zeros_like(x)
     return np.stack([np.stack(r, -1) for r in ((zero, -z, y), (z, zero, -x), (-y, x, zero))], 1)

@@ -1,7 +1,7 @@
-"""The run: from steps to states and transits, defects on all cores, more bits when needed.
+"""Run a proof: from an approximant's steps to enclosed states and transits, on all cores, with more bits if needed.
 
-Nothing here makes a bound: it hands every step, with the defect that belongs to it, to the trusted functions, which
-check that steps join.
+Untrusted: no bound is computed here. Every step goes, with its defect, to the trusted functions, which check that the
+steps join.
 """
 
 from __future__ import annotations
@@ -19,33 +19,31 @@ from typing import Any, cast
 from flint import arb
 
 from ..errors import UnreachableError
+from .approximant import polynomials
 from .bound import Piece, Radius, World, output
-from .candidate import Expansion, pair, polynomials
 from .columns import Columns
+from .defect_process import DefectProcess
 from .frames import ColumnSource
-from .helpers import Helper
-from .plan import MAX_BITS, Plan, order_for, plan_for, short
-from .recurrence import Recurrence
+from .plan import MAX_BITS, ProofPlan, plan_for, short
 from .shapes import EnclosedTransit, Interval, Sizes, Step
 from .transits import Scan
 
-GUARD_BITS = 64  # the scene's balls beyond the steps' coefficients
-ATTEMPTS = 4
-LEAST_RAISE = 8  # bits
-CHUNK = 32  # steps sent at once
-AHEAD = 2  # chunks a helper holds
-WORTH = 500  # oscillation times below which a helper costs more than it saves
-TINY = -1e9  # logarithm of a width that is 0
-PARTS = ("candidate", "defect", "bound", "transits")
+SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
+ATTEMPTS = 4  # at rising precision
+LEAST_RAISE = 8  # bits from one attempt to the next
+CHUNK = 32  # steps sent to a process at once
+AHEAD = 2  # chunks that a process may hold
+WORTH = 500  # duration times angular frequency below which a second process costs more than it saves
+TINY = -1e9  # stands for the logarithm of a width that is 0
+PARTS = ("candidate", "defect", "bound", "transits")  # as datasets name them: the first is the approximant
 
-Chain = Iterable[Expansion] | Iterable[Step]
-Source = Chain | Callable[[int], Chain]
+Approximant = Callable[[int], Iterable[Step]]
 State = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
 
 @dataclass(frozen=True)
-class Cost:
-    """CPU seconds by part, helpers included."""
+class ProofCost:
+    """CPU seconds by part, of all processes; `candidate` is the approximant's share, by the name that datasets use."""
 
     candidate: float
     defect: float
@@ -54,32 +52,32 @@ class Cost:
 
     @property
     def proof(self) -> float:
-        """All but the candidate."""
+        """All but the approximant."""
         return self.defect + self.bound + self.transits
 
 
 @dataclass(frozen=True)
 class Enclosure:
-    """What was proved: the true state at `times` lies in `states`; all zeros of xdot in (0, T] in `transits`."""
+    """A proof's result: the true state at `times` lies in `states`, all zeros of xdot in (0, T] in `transits`."""
 
     times: list[Fraction]
     states: list[State]  # x, y, z in m, vx, vy, vz in m/s
-    transits: list[EnclosedTransit] | None  # None: not asked, or xdot is identically zero (see `still`)
+    transits: list[EnclosedTransit] | None  # None: not requested, or xdot is identically zero (`still`)
     still: bool
     bits: int
     order: int
     steps: int
-    method: str  # "radius" or "columns"
-    position_radius: Fraction  # the largest of all, m
-    velocity_radius: Fraction  # m/s
-    cpu_s: Cost
+    method: str  # "radius" (Theorem C) or "columns" (Theorem E)
+    position_radius: Fraction  # the largest of all, in m
+    velocity_radius: Fraction  # in m/s
+    cpu_s: ProofCost
 
 
-class _Narrow(Exception):
-    """Bounds came out too wide; carries how many bits to take."""
+class _TooWide(Exception):
+    """The bounds are wider than requested; `bits` is the precision to try next."""
 
-    def __init__(self, said: str, bits: int) -> None:
-        super().__init__(said)
+    def __init__(self, reason: str, bits: int) -> None:
+        super().__init__(reason)
         self.bits = bits
 
 
@@ -88,8 +86,8 @@ def enclose(
     times: Sequence[Fraction],
     *,
     radius: Fraction,
+    approximant: Approximant,
     transits: bool = True,
-    candidate: Source | None = None,
     workers: int | None = None,
     progress: Callable[[float], None] | None = None,
     method: str | None = None,
@@ -99,39 +97,38 @@ def enclose(
     Args:
         inputs: the exact numbers of a scene (`Scene.exact`).
         times: output times in s, from 0 on, increasing.
-        radius: wanted half-width, m for positions and m/s for velocities.
+        radius: largest half-width to accept, in m for positions and m/s for velocities.
+        approximant: function of a precision in bits that gives steps from t = 0 to the last time, as `pair` yields
+            them; it is called again, with more bits, where the bounds are too wide.
         transits: also enclose all zeros of xdot.
-        candidate: expansions in a chain from t = 0, or what `pair` made of them, or a function of the precision in
-            bits that gives either (only then can a second attempt be made); None for the package's own recurrence.
         workers: processes that may be used, this one included; None for one a core.
-        progress: called with the part of the time span done.
-        method: "radius" or "columns"; None for what is likely to be cheaper.
+        progress: called with the part of the time span that is proved.
+        method: "radius" or "columns"; None for the one that is likely to be cheaper.
 
     Raises:
-        UnreachableError: no bound of this width could be had; says how wide it came out.
+        UnreachableError: no bound of this width was reached; says how wide it is.
     """
     if not times or times[0] < 0 or any(b <= a for a, b in pairwise(times)):
         raise ValueError("times: got a sequence that is empty, negative or not increasing")
     try:
-        plan, said = plan_for(inputs, times[-1], radius, method), "nothing tried"
+        plan, reason = plan_for(inputs, times[-1], radius, method), "nothing tried"
     except (ArithmeticError, ValueError) as error:
         advice = "Its numbers are too far apart: check lengths, rates and angles."
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
-    attempts = ATTEMPTS if candidate is None or callable(candidate) else 1
-    for _ in range(attempts):
+    for _ in range(ATTEMPTS):
         try:
             run = _Run(inputs, plan, list(times), transits, workers, progress)
-            return run.prove(candidate, radius)
-        except _Narrow as error:
-            said, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
+            return run.prove(approximant, radius)
+        except _TooWide as error:
+            reason, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
         except (ArithmeticError, ValueError) as error:
             # a bound that is not finite, a matrix without inverse, a step that does not join
-            said, bits = f"at {plan.bits} bits: {error}", plan.bits * 4 // 3
-        plan = plan._replace(bits=bits, order=order_for(bits))
+            reason, bits = f"at {plan.bits} bits: {error}", plan.bits * 4 // 3
+        plan = plan._replace(bits=bits)
         if plan.bits > MAX_BITS:
             break
     raise UnreachableError(
-        f"enclosure: no bound of {short(radius)} m at {float(times[-1]):g} s; {said}.",
+        f"enclosure: no bound of {short(radius)} m at {float(times[-1]):g} s; {reason}.",
         "Ask for fewer digits or a shorter time.",
     )
 
@@ -155,7 +152,7 @@ class _Run:
     def __init__(
         self,
         inputs: Any,
-        plan: Plan,
+        plan: ProofPlan,
         times: list[Fraction],
         transits: bool,
         workers: int | None,
@@ -167,26 +164,19 @@ class _Run:
         self.end = times[-1]
         self.clock = _Clock()
 
-    def prove(self, candidate: Source | None, radius: Fraction) -> Enclosure:
-        """Run all steps; refuse a result that is wider than `radius`."""
-        bits, order = self.plan.bits, self.plan.order
-        steps: Iterator[Step] = iter(())
-        if candidate is not None:
-            given: Iterator[Any] = iter(candidate(bits) if callable(candidate) else candidate)
-            first = next(given, None)
-            if first is None:
-                raise UnreachableError("enclosure: the candidate is empty.")
-            bits, order = first.bits, len(first.coefficients[0]) - 1
-            self.clock.lap("candidate")
-            whole = chain([first], given)
-            steps = whole if isinstance(first, Step) else pair(whole)
-        self.world = world = World(self.inputs, bits + GUARD_BITS)
-        if candidate is None:
-            steps = pair(Recurrence(world, bits, order).chain(self.plan.first))
+    def prove(self, approximant: Approximant, radius: Fraction) -> Enclosure:
+        """Prove all steps; raise _TooWide if a state is known less closely than to `radius`."""
+        steps = iter(approximant(self.plan.bits))
+        first = next(steps, None)
+        if first is None:
+            raise UnreachableError("enclosure: the approximant is empty.")
+        bits, order = first.bits, len(first.coefficients[0]) - 1
+        self.clock.lap("candidate")
+        self.world = world = World(self.inputs, bits + SCENE_GUARD_BITS)
         self.clock.lap("bound")
         scan = Scan(world) if self.transits and not world.still else None
-        states, count = self._steps(self._until(steps), scan, bits)
-        found = (scan.finish() if self.end else []) if scan else None
+        states, count = self._steps(self._until(chain([first], steps)), scan)
+        transits = (scan.finish() if self.end else []) if scan else None
         self.clock.lap("transits")
         widths = [[(i.high - i.low) / 2 for i in row] for row in states]
         position = max(max(row[:3]) for row in widths)
@@ -194,32 +184,33 @@ class _Run:
         if max(position, velocity) > radius:
             ratio = max(position, velocity) / radius
             more = 8 * ceil((ratio.numerator.bit_length() - ratio.denominator.bit_length() + 6) / 8)
-            said = f"{bits} bits gave {short(position)} m and {short(velocity)} m/s ({self.plan.method})"
-            raise _Narrow(said, bits + more)
+            reason = f"{bits} bits gave {short(position)} m and {short(velocity)} m/s ({self.plan.method})"
+            raise _TooWide(reason, bits + more)
         rows = cast("list[State]", [tuple(row) for row in states])
-        cost = Cost(**self.clock.parts)
+        cost = ProofCost(**self.clock.parts)
         return Enclosure(
-            self.times, rows, found, world.still, bits, order, count, self.plan.method, position, velocity, cost
+            self.times, rows, transits, world.still, bits, order, count, self.plan.method, position, velocity, cost
         )
 
     def _until(self, steps: Iterator[Step]) -> Iterator[Step]:
-        """The steps up to the end of the run, the last one cut there."""
+        """Yield the steps up to the end of the run, the last one cut there."""
         for step in steps:
             if step.centre + step.h * step.high >= self.end:
                 high = (self.end - step.centre) / step.h
-                # a run of no time ends where it starts, and a step must have a length
+                # a run of no duration ends where it starts, but a step must have a length
                 yield step._replace(high=high if high > step.low else step.low + Fraction(1, 1 << 20))
                 return
             yield step
-        raise UnreachableError(f"enclosure: the candidate ends before {float(self.end):g} s.")
+        raise UnreachableError(f"enclosure: the approximant ends before {float(self.end):g} s.")
 
-    def _steps(self, steps: Iterator[Step], scan: Scan | None, bits: int) -> tuple[list[list[Interval]], int]:
+    def _steps(self, steps: Iterator[Step], scan: Scan | None) -> tuple[list[list[Interval]], int]:
+        """Prove the steps one by one; return the states at the output times and the number of steps."""
         world, states, count, waiting = self.world, [], 0, deque(self.times)
         bound: Radius | Columns = Radius(world)
         columns = None
         if self.plan.method == "columns":
             bound, columns = Columns(world), ColumnSource(world)
-        for piece, sizes in self._with_sizes(steps, bits):
+        for piece, sizes in self._with_sizes(steps):
             if columns is None:
                 tube = cast(Radius, bound).advance(piece, sizes)
             else:
@@ -238,8 +229,8 @@ class _Run:
                 self.progress(float(piece.end / self.end) if self.end else 1.0)
         return states, count
 
-    def _with_sizes(self, steps: Iterator[Step], bits: int) -> Iterator[tuple[Piece, Sizes]]:
-        """Each step with its defect, computed here or by helpers."""
+    def _with_sizes(self, steps: Iterator[Step]) -> Iterator[tuple[Piece, Sizes]]:
+        """Yield each step with its defect, computed here or in other processes."""
         world = self.world
         if self.workers < 2 or float(self.end) * float(world.w0) < WORTH:
             for step in steps:
@@ -249,33 +240,34 @@ class _Run:
                 self.clock.lap("defect")
                 yield piece, sizes
             return
-        helpers = [Helper(self.inputs, world.prec) for _ in range(self.workers - 1)]
+        processes = [DefectProcess(self.inputs, world.prec) for _ in range(self.workers - 1)]
         try:
-            yield from self._shared(steps, helpers)
+            yield from self._shared(steps, processes)
         finally:
-            for helper in helpers:
-                helper.stop()
+            for process in processes:
+                process.stop()
 
-    def _shared(self, steps: Iterator[Step], helpers: list[Helper]) -> Iterator[tuple[Piece, Sizes]]:
-        sent: deque[tuple[Helper, list[Step]]] = deque()
+    def _shared(self, steps: Iterator[Step], processes: list[DefectProcess]) -> Iterator[tuple[Piece, Sizes]]:
+        """Send the steps to the processes in turn, and yield them with their defects in order."""
+        sent: deque[tuple[DefectProcess, list[Step]]] = deque()
         turn = 0
         while True:
             chunk = list(islice(steps, CHUNK))
             self.clock.lap("candidate")
             if chunk:
-                helper = helpers[turn % len(helpers)]
-                helper.send(chunk)
-                sent.append((helper, chunk))
+                process = processes[turn % len(processes)]
+                process.send(chunk)
+                sent.append((process, chunk))
                 turn += 1
                 self.clock.lap("defect")
             if not sent:
                 return
-            if chunk and len(sent) < AHEAD * len(helpers) + 1:
+            if chunk and len(sent) < AHEAD * len(processes) + 1:
                 continue
-            helper, done = sent.popleft()
-            sizes, cpu = helper.receive()
+            process, chunk = sent.popleft()
+            sizes, cpu = process.receive()
             self.clock.parts["defect"] += cpu
-            for step, row in zip(done, sizes, strict=True):
+            for step, row in zip(chunk, sizes, strict=True):
                 piece = Piece(self.world, polynomials(step))
                 self.clock.lap("defect")
                 yield piece, row

@@ -1,4 +1,4 @@
-"""Declarations only: what goes in and out of the enclosure. No arithmetic here."""
+"""Data types of the proof: intervals and transits that it gives, steps and bounds inside it. No arithmetic here."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from flint import arb
 
 @dataclass(frozen=True)
 class Interval:
-    """A closed interval with exact ends."""
+    """A closed interval with exact endpoints."""
 
     low: Fraction
     high: Fraction
@@ -20,9 +20,9 @@ class Interval:
 
 @dataclass(frozen=True)
 class EnclosedTransit:
-    """A zero of xdot ("one"), or an interval that may hold some ("possible"); SI units."""
+    """A single zero of xdot ("one"), or an interval that may hold zeros ("possible"); SI units."""
 
-    parity: str  # "one"; of a possible one "odd" (so at least one), "even" or "unknown"
+    parity: str  # "one"; of possible zeros "odd" (so at least one), "even" or "unknown"
     direction: int  # +1 where xdot goes from - to +, 0 if not known
     t: Interval
     x: Interval
@@ -33,14 +33,14 @@ class EnclosedTransit:
 
     @property
     def kind(self) -> str:
-        """Whether it is proved to be a single zero: "one", or "possible"."""
+        """Kind of transit: "one" where it is proved to be a single zero, else "possible"."""
         return "one" if self.parity == "one" else "possible"
 
 
 class Step(NamedTuple):
-    """A proposal: n in the axes of `World` and h² λ, on [centre + h low, centre + h high].
+    """Polynomials to prove: n in the axes of `World` and h² λ, on [centre + h low, centre + h high].
 
-    Four rows of coefficients of s, integers over 2^bits.
+    Four rows of coefficients in s = (time - centre)/h, integers over 2^bits.
     """
 
     centre: Fraction
@@ -63,7 +63,7 @@ class Sizes(NamedTuple):
 
 
 class Tube(NamedTuple):
-    """Bounds of |r - p|, |r' - p'|, |r'' - p''|."""
+    """Bounds of |r - p|, |r' - p'|, |r'' - p''| on a step."""
 
     eta: arb
     u: arb

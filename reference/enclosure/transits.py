@@ -1,4 +1,4 @@
-"""TRUSTED. Section 8 of THEOREM.md: every zero of xdot in (0, T], which of them are single, and where they are."""
+"""TRUSTED. Transits enclosed: every zero of xdot in (0, T], which are single, and where (THEOREM.md, section 8)."""
 
 from functools import reduce
 
@@ -10,7 +10,7 @@ from .shapes import EnclosedTransit, Interval, Leaf, Tube
 
 
 def sign(x: arb) -> int:
-    """The sign of every point of a ball; 0 if there is none."""
+    """Return the sign that all points of a ball have, or 0."""
     return 1 if x > 0 else -1 if x < 0 else 0
 
 
@@ -22,16 +22,16 @@ class Slope:
         self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
     def at(self, n: int, s: arb) -> arb:
-        """Contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
+        """Return a ball that contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
         return self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
 
     def rate(self, s: arb) -> arb:
-        """Contains xddot on `s`, by a series about its middle where one about 0 is too wide to have a sign."""
+        """Return a ball that contains xddot on `s`; about the middle of `s` where the series about 0 shows no sign."""
         (f, off), plain = self.forms[1], self.at(1, s)
         return plain if sign(plain) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.piece.unit + off
 
     def bend(self, s: arb) -> arb:
-        """Contains the third derivative of x on the ball `s`, by the equations of motion (section 7)."""
+        """Return a ball that contains x''' on the ball `s`, by the equations of motion (section 7)."""
         k, (r, v) = self.piece.k, state(self.piece, self.tube, s)
         a = [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
         F, F1 = k.force(r, v), add(k.force(v, a), times(-1, k.c))
@@ -40,7 +40,7 @@ class Slope:
 
 
 class Scan:
-    """Sorts leaves step by step and closes clusters of those that are not E, also across steps."""
+    """Bisects the steps into leaves and closes clusters of those that are not E, also across steps (section 8)."""
 
     def __init__(self, world: World) -> None:
         self.world, self.begun, self.left = world, False, 0
@@ -48,7 +48,7 @@ class Scan:
         self.found, self.cluster = list[EnclosedTransit](), list[Leaf]()
 
     def advance(self, piece: Piece, tube: Tube) -> None:
-        """Take the next step."""
+        """Sort the leaves of the next step."""
         with ctx.workprec(self.world.prec):
             slope, low, high = Slope(piece, tube), ball(piece.step.low), ball(piece.step.high)
             self.end = slope, high
@@ -56,7 +56,7 @@ class Scan:
             self._sort(slope, low, high, 0)
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
-        # most leaves are plain to see, and few need the digits
+        # most leaves are decided at low precision, and only a few need all bits
         with ctx.workprec(SHORT if depth < 4 else self.world.prec):
             whole, middle = low.union(high), ((low + high) / 2).mid()
             if not low < middle < high:
@@ -79,7 +79,7 @@ class Scan:
         self.begun = True
 
     def finish(self) -> list[EnclosedTransit]:
-        """Close at T what is open; all of them in order."""
+        """Close the cluster that is open at T; return all transits in order."""
         with ctx.workprec(self.world.prec):
             self._close(sign(self.end[0].at(0, self.end[1])) if self.end else 0)
         return self.found
@@ -108,18 +108,18 @@ class Scan:
 
 
 def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
-    """The parts of the time ball `t` in the leaves that it may touch, as s."""
+    """Return the leaves that the time ball `t` may touch, each with the part of `t` in it as s."""
     parts = [(x.slope, (t - x.slope.centre) / x.slope.piece.k.h, x.low.union(x.high)) for x in leaves]
     return [(slope, s.intersection(whole)) for slope, s, whole in parts if s.overlaps(whole)]
 
 
 def contract(leaves: list[Leaf], begin: arb, end: arb) -> arb | None:
-    """Interval Newton where xddot keeps its sign; None if it proves that there is no zero."""
+    """Narrow a zero by interval Newton where xddot keeps its sign; None if it proves that there is no zero."""
     t, full = begin.union(end), ctx.prec
     for prec in (SHORT, full):
         with ctx.workprec(prec):
             shrinks = True
-            while shrinks and begin < (middle := t.mid()) < end:  # outside of the leaves nothing is known
+            while shrinks and begin < (middle := t.mid()) < end:  # outside the leaves nothing is known
                 speed = reduce(arb.union, (f.at(0, s) / f.piece.k.h for f, s in touched(leaves, middle)))
                 rate = reduce(arb.union, (f.rate(s) / f.piece.k.h**2 for f, s in touched(leaves, t)))
                 new = middle - speed / rate if sign(rate) else t

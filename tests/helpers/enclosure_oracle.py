@@ -1,4 +1,4 @@
-"""What the enclosure is checked against: the equations of motion, run by somebody else's integrators."""
+"""Truth to check the enclosure against: the equations of motion, integrated by heyoka and by scipy."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from functools import cache
 import heyoka as hy
 import mpmath as mp
 import numpy as np
+from enclosure_recurrence import Recurrence
 from flint import ctx
 
+from reference.enclosure.approximant import pair
 from reference.enclosure.bound import Piece, Radius, World, output
-from reference.enclosure.candidate import pair
 from reference.enclosure.columns import Columns
 from reference.enclosure.frames import ColumnSource
-from reference.enclosure.recurrence import Recurrence
 from reference.scene import Inputs
 
 PARIS = Inputs(
@@ -156,7 +156,7 @@ def contains(interval, x: Fraction) -> bool:
 
 
 def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first: Fraction = Fraction(1, 4)):
-    """The package's own steps, the last one cut at `end`."""
+    """Steps of the recurrence, the last one cut at `end`."""
     for step in pair(Recurrence(World(inputs, bits + 64), bits, order).chain(first)):
         last = step.centre + step.h * step.high >= end
         yield step._replace(high=(end - step.centre) / step.h) if last else step

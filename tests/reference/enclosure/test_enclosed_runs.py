@@ -2,19 +2,19 @@
 
 import os
 from fractions import Fraction
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import mpmath as mp
 import numpy as np
 import pytest
 from enclosure_oracle import PARIS, contains, scene, steep_truth, steps, truth
+from enclosure_recurrence import Recurrence, prove, recurrence
 from flint import ctx, fmpz_poly
 
 from reference.enclosure import enclose, turned
+from reference.enclosure.approximant import TaylorStep, pair, polynomials
 from reference.enclosure.balls import integer
 from reference.enclosure.bound import World
-from reference.enclosure.candidate import Expansion, pair, polynomials
-from reference.enclosure.recurrence import Recurrence
 from reference.enclosure.shapes import Step
 from reference.errors import UnreachableError
 from reference.packing import Words
@@ -40,7 +40,7 @@ HARD = {
 ])  # fmt: skip
 def test_forty_digits_hold_the_truth(inputs, end):
     times = [Fraction(0), Fraction(1, 3), Fraction(end, 2), Fraction(end)]
-    proof = enclose(inputs, times, radius=WANTED, workers=1)
+    proof = prove(inputs, times, WANTED)
     assert proof.times == times
     assert max(proof.position_radius, proof.velocity_radius) <= WANTED
     for row, exact in zip(proof.states[1:], truth(inputs, times[1:]), strict=True):
@@ -50,7 +50,7 @@ def test_forty_digits_hold_the_truth(inputs, end):
 @pytest.mark.parametrize("name", HARD)
 def test_sixty_seconds_of_the_hard_scenes(name):
     inputs = HARD[name]
-    proof = enclose(inputs, [Fraction(60)], radius=WANTED)
+    proof = enclose(inputs, [Fraction(60)], radius=WANTED, approximant=recurrence(inputs))
     assert proof.method == "columns"
     assert len(proof.transits) == {"steep": 134, "near inverted": 53}[name]
     assert {t.kind for t in proof.transits} == {"one"}
@@ -60,16 +60,21 @@ def test_sixty_seconds_of_the_hard_scenes(name):
 
 def test_both_methods_agree_on_a_steep_scene():
     inputs = HARD["steep"]
-    one, six = (enclose(inputs, [Fraction(8)], radius=WANTED, method=m).states[0] for m in ("radius", "columns"))
+    one, six = (
+        enclose(inputs, [Fraction(8)], radius=WANTED, approximant=recurrence(inputs), method=m).states[0]
+        for m in ("radius", "columns")
+    )
     assert all(a.low <= b.high and b.low <= a.high for a, b in zip(one, six, strict=True))
 
 
-def test_helpers_change_nothing_and_leave_nobody_behind(monkeypatch):
+def test_more_processes_change_nothing_and_leave_none_behind(monkeypatch):
     monkeypatch.setattr("reference.enclosure.run.WORTH", 0)
     started = []
     popen = __import__("subprocess").Popen
     monkeypatch.setattr("subprocess.Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[-1])
-    alone, shared = (enclose(PARIS, [Fraction(300)], radius=WANTED, workers=n) for n in (1, 3))
+    alone, shared = (
+        enclose(PARIS, [Fraction(300)], radius=WANTED, approximant=recurrence(PARIS), workers=n) for n in (1, 3)
+    )
     assert alone.states == shared.states
     assert alone.transits == shared.transits
     assert len(started) == 2
@@ -78,47 +83,47 @@ def test_helpers_change_nothing_and_leave_nobody_behind(monkeypatch):
 
 def test_one_core_is_enough(monkeypatch):
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
-    assert enclose(PARIS, [Fraction(30)], radius=WANTED).steps > 1
+    assert enclose(PARIS, [Fraction(30)], radius=WANTED, approximant=recurrence(PARIS)).steps > 1
 
 
 def test_precision_rises_until_the_width_is_reached(monkeypatch):
-    monkeypatch.setattr("reference.enclosure.plan.MARGIN", -40)
-    proof = enclose(PARIS, [Fraction(60)], radius=WANTED)
+    monkeypatch.setattr("reference.enclosure.plan.MARGIN_BITS", -40)
+    proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=recurrence(PARIS))
     assert proof.position_radius <= WANTED
     assert 140 < proof.bits < 260
 
 
 def test_what_cannot_be_had_is_refused_with_the_width_reached():
     with pytest.raises(UnreachableError, match="bits"):
-        enclose(PARIS, [Fraction(60)], radius=Fraction(1, 10**900))
-    chain = Recurrence(World(PARIS, 160), 96, 48).chain(Fraction(1, 2))
+        enclose(PARIS, [Fraction(60)], radius=Fraction(1, 10**900), approximant=recurrence(PARIS))
+    too_coarse = lambda _bits: pair(Recurrence(World(PARIS, 160), 96, 48).chain(Fraction(1, 2)))  # noqa: E731
     with pytest.raises(UnreachableError, match=r"96 bits gave .*e-\d+ m"):
-        enclose(PARIS, [Fraction(60)], radius=WANTED, candidate=chain)
+        enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=too_coarse)
 
 
-def test_a_candidate_that_ends_too_early_is_refused():
+def test_an_approximant_that_ends_too_early_is_refused():
     chain = Recurrence(World(PARIS, 256), 192, 96).chain(Fraction(1, 2))
     with pytest.raises(UnreachableError, match="ends before"):
-        enclose(PARIS, [Fraction(600)], radius=WANTED, candidate=[next(chain) for _ in range(6)])
+        enclose(PARIS, [Fraction(600)], radius=WANTED, approximant=lambda _bits: pair(islice(chain, 6)))
     with pytest.raises(UnreachableError, match="empty"):
-        enclose(PARIS, [Fraction(600)], radius=WANTED, candidate=[])
+        enclose(PARIS, [Fraction(600)], radius=WANTED, approximant=lambda _bits: [])
 
 
-def test_a_candidate_by_precision_is_asked_again():
-    asked = []
+def test_an_approximant_too_coarse_is_requested_again_with_more_bits():
+    requested = []
 
     def source(bits):
-        asked.append(bits)
-        given = max(bits - 60 if len(asked) == 1 else bits, 96)
-        return Recurrence(World(PARIS, given + 64), given, given // 2).chain(Fraction(1, 2))
+        requested.append(bits)
+        delivered = max(bits - 60 if len(requested) == 1 else bits, 96)
+        return pair(Recurrence(World(PARIS, delivered + 64), delivered, delivered // 2).chain(Fraction(1, 2)))
 
-    proof = enclose(PARIS, [Fraction(60)], radius=WANTED, candidate=source)
-    assert len(asked) == 2
-    assert asked[0] < asked[1] < asked[0] + 96
+    proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=source)
+    assert len(requested) == 2
+    assert requested[0] < requested[1] < requested[0] + 96
     assert proof.position_radius <= WANTED
 
 
-def test_coefficients_of_an_integrator_are_a_candidate():
+def test_coefficients_of_an_integrator_are_an_approximant():
     bits, rows = 192, []
     with ctx.workprec(256):
         sin, cos = (int(integer(x, bits)) for x in World(PARIS, 256).tilt)
@@ -126,10 +131,10 @@ def test_coefficients_of_an_integrator_are_a_candidate():
         x, m, w, _ = e.coefficients
         y = [(a * sin + b * cos) >> bits for a, b in zip(m, w, strict=True)]
         z = [(b * sin - a * cos) >> bits for a, b in zip(m, w, strict=True)]
-        rows.append(Expansion(e.t, e.h, bits, (x, y, z)))
+        rows.append(TaylorStep(e.t, e.h, bits, (x, y, z)))
         if e.t > 60:
             break
-    proof = enclose(PARIS, [Fraction(60)], radius=WANTED, candidate=turned(PARIS, rows))
+    proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=lambda _bits: pair(turned(PARIS, rows)))
     (exact,) = truth(PARIS, [Fraction(60)])
     assert all(contains(i, x) for i, x in zip(proof.states[0], exact, strict=True))
 
@@ -138,7 +143,7 @@ def test_uneven_chains_are_covered_without_gap():
     lengths = [Fraction(n, 32) for n in (32, 33, 40, 39, 20, 21, 60, 1, 2, 30)]
     t, chain = Fraction(0), []
     for h in lengths:
-        chain.append(Expansion(t, h, 64, tuple([1, 2, 3] for _ in range(4))))
+        chain.append(TaylorStep(t, h, 64, tuple([1, 2, 3] for _ in range(4))))
         t += h
     got = list(pair(chain))
     ends = [(s.centre + s.h * s.low, s.centre + s.h * s.high) for s in got]
@@ -149,7 +154,7 @@ def test_uneven_chains_are_covered_without_gap():
 
 
 def test_time_zero_alone_gives_the_release():
-    proof = enclose(PARIS, [Fraction(0)], radius=WANTED)
+    proof = enclose(PARIS, [Fraction(0)], radius=WANTED, approximant=recurrence(PARIS))
     assert proof.transits == []
     assert contains(proof.states[0][0], Fraction("0.3"))
     assert proof.position_radius < WANTED
@@ -158,32 +163,34 @@ def test_time_zero_alone_gives_the_release():
 @pytest.mark.parametrize("times", [[], [Fraction(-1)], [Fraction(2), Fraction(1)]])
 def test_times_must_increase_from_zero(times):
     with pytest.raises(ValueError, match="times"):
-        enclose(PARIS, times, radius=WANTED)
+        enclose(PARIS, times, radius=WANTED, approximant=recurrence(PARIS))
 
 
 def test_progress_ends_at_one():
-    seen = []
-    enclose(PARIS, [Fraction(100)], radius=WANTED, progress=seen.append)
-    assert seen == sorted(seen)
-    assert seen[-1] == 1
+    parts = []
+    enclose(PARIS, [Fraction(100)], radius=WANTED, approximant=recurrence(PARIS), progress=parts.append)
+    assert parts == sorted(parts)
+    assert parts[-1] == 1
 
 
 def test_drag_takes_energy_away():
     with mp.workprec(64):
         inputs = scene(drag="0.05", vx="0.3")
-        rows = enclose(inputs, [Fraction(n) for n in (1, 20, 40)], radius=Fraction(1, 10**15)).states
+        times = [Fraction(n) for n in (1, 20, 40)]
+        rows = enclose(inputs, times, radius=Fraction(1, 10**15), approximant=recurrence(inputs)).states
         energy = [sum(v.high**2 for v in r[3:]) / 2 + inputs.gravity * r[2].high for r in rows]
         assert energy[0] > energy[1] > energy[2]
 
 
-def test_own_steps_serve_both_sides():
+def test_steps_serve_both_sides_of_their_centre():
     rows = list(steps(PARIS, Fraction(200)))
     assert sum(s.low < -Fraction(9, 10) for s in rows) > len(rows) / 2
 
 
 def test_numbers_too_far_apart_for_any_precision_are_refused():
+    inputs = scene(length="1e-300", x="1e-301", y="0")
     with pytest.raises(UnreachableError, match="no precision can be chosen"):
-        enclose(scene(length="1e-300", x="1e-301", y="0"), [Fraction(60)], radius=Fraction(1, 10**340))
+        enclose(inputs, [Fraction(60)], radius=Fraction(1, 10**340), approximant=recurrence(inputs))
 
 
 def test_words_are_the_integers_that_they_stand_for():

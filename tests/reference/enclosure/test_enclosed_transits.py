@@ -7,10 +7,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 from enclosure_oracle import PARIS, carry, doubles, scene, steps
+from enclosure_recurrence import prove
 from flint import arb, ctx
 from scipy.integrate import solve_ivp
 
-from reference.enclosure import enclose
 from reference.enclosure.bound import Piece, World
 from reference.enclosure.shapes import Leaf, Step, Tube
 from reference.enclosure.transits import Scan, Slope, contract
@@ -53,7 +53,7 @@ CASES = {
 def test_transits_are_those_of_an_event_finder(name):
     inputs = CASES[name]
     end = {"steep": Fraction(10), "near inverted": Fraction(4)}.get(name, Fraction(100))
-    proof = enclose(inputs, [end], radius=Fraction(1, 10**20), workers=1)
+    proof = prove(inputs, [end], Fraction(1, 10**20))
     expected = events(inputs, end)
     assert [t.kind for t in proof.transits] == ["one"] * len(expected)
     assert np.allclose([float(middle(t.t)) for t in proof.transits], expected, rtol=0, atol=1e-6)
@@ -63,9 +63,9 @@ def test_transits_are_those_of_an_event_finder(name):
 
 
 def test_values_at_a_transit_are_those_of_the_state_there():
-    proof = enclose(PARIS, [Fraction(60)], radius=Fraction(1, 10**30), workers=1)
+    proof = prove(PARIS, [Fraction(60)], Fraction(1, 10**30))
     hit = proof.transits[2]
-    (state,) = enclose(PARIS, [middle(hit.t)], radius=Fraction(1, 10**30), workers=1).states
+    (state,) = prove(PARIS, [middle(hit.t)], Fraction(1, 10**30)).states
     for mine, other in zip((hit.x, hit.y, hit.z, hit.vy), (state[0], state[1], state[2], state[4]), strict=True):
         assert mine.low <= other.high
         assert other.low <= mine.high
@@ -99,7 +99,7 @@ def test_a_moving_release_may_have_its_transit_in_the_first_leaf():
 
 def test_a_release_at_rest_in_the_meridian_has_no_transit_at_its_start():
     inputs = scene(x="0", y="0.5")
-    proof = enclose(inputs, [Fraction(60)], radius=Fraction(1, 10**30), workers=1)
+    proof = prove(inputs, [Fraction(60)], Fraction(1, 10**30))
     assert all(t.kind == "one" for t in proof.transits)
     assert abs(middle(proof.transits[0].t) - Fraction("8.2266590196580988")) < Fraction(1, 10**15)
 
@@ -115,13 +115,13 @@ def test_a_release_perpendicular_to_the_earths_axis_takes_few_leaves(monkeypatch
 
     monkeypatch.setattr(Scan, "_sort", counted)
     inputs = scene(latitude="30", length="1", angles=("30", "90", "0", "0"))
-    found = enclose(inputs, [Fraction(5)], radius=Fraction(1, 10**40), workers=1).transits
+    found = prove(inputs, [Fraction(5)], Fraction(1, 10**40)).transits
     assert [t.kind for t in found] == ["possible", "one", "one", "one", "one"]
 
 
 def test_release_at_rest_in_the_meridian_with_drag():
     inputs = scene(x="0", y="0.5", drag="0.01", rotation_rate="0.001")
-    proof = enclose(inputs, [Fraction(60)], radius=Fraction(1, 10**20), workers=1)
+    proof = prove(inputs, [Fraction(60)], Fraction(1, 10**20))
     assert [t.kind for t in proof.transits] == ["one"] * len(events(inputs, 60))
 
 
@@ -132,7 +132,7 @@ def test_release_at_rest_in_the_meridian_with_drag():
     scene(latitude="0", angles=("180", "13", "0", "0")),
 ])  # fmt: skip
 def test_no_transits_where_xdot_is_zero_for_ever(inputs):
-    proof = enclose(inputs, [Fraction(20)], radius=Fraction(1, 10**15), workers=1)
+    proof = prove(inputs, [Fraction(20)], Fraction(1, 10**15))
     assert proof.still
     assert proof.transits is None
 
@@ -199,13 +199,13 @@ def test_a_parabola_that_stays_clear_has_no_zero():
 
 
 def test_an_end_on_a_transit_is_undecided_and_a_little_later_is_not():
-    (hit, *_) = enclose(PARIS, [Fraction(12)], radius=Fraction(1, 10**30), workers=1).transits
+    (hit, *_) = prove(PARIS, [Fraction(12)], Fraction(1, 10**30)).transits
     at = middle(hit.t)
-    (last,) = enclose(PARIS, [at], radius=Fraction(1, 10**20), workers=1).transits
+    (last,) = prove(PARIS, [at], Fraction(1, 10**20)).transits
     assert (last.kind, last.parity) == ("possible", "unknown")
-    (later,) = enclose(PARIS, [at + Fraction(1, 10**6)], radius=Fraction(1, 10**20), workers=1).transits
+    (later,) = prove(PARIS, [at + Fraction(1, 10**6)], Fraction(1, 10**20)).transits
     assert later.kind == "one"
-    assert enclose(PARIS, [at - Fraction(1, 10**6)], radius=Fraction(1, 10**20), workers=1).transits == []
+    assert prove(PARIS, [at - Fraction(1, 10**6)], Fraction(1, 10**20)).transits == []
 
 
 def test_counts_do_not_depend_on_mpmath_precision():

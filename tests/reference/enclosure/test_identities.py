@@ -48,7 +48,7 @@ def rates(at, r, H):
 
 
 def errors(at):
-    """e, g and their rates for a candidate with arbitrary defects."""
+    """e, g and their rates for an approximant with arbitrary defects."""
     v, H1 = rates(at, at["r"], at["H"])
     p1, K1 = rates(at, at["p"], at["K"])
     p1, K1 = lin((1, p1), (1, at["d1"])), lin((1, K1), (1, at["d2"]))

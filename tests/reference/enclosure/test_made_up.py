@@ -7,9 +7,9 @@ from random import Random
 import mpmath as mp
 import pytest
 from enclosure_oracle import acceleration, constants, scene, truth
+from enclosure_recurrence import prove
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from reference.enclosure import enclose
 from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, World
 from reference.enclosure.shapes import Leaf, Step, Tube
@@ -24,7 +24,7 @@ def rational(q):
 
 
 def made_up(edges, xdot, u, rng):
-    """What Scan says of steps between `edges` whose polynomials are off by all that their tubes allow."""
+    """The transits that Scan finds in steps between `edges` whose polynomials are off by all that their tubes allow."""
     world = World(MOVING, BITS + 64)
     scan = Scan(world)
     for a, b in pairwise(edges):
@@ -125,7 +125,7 @@ def test_a_release_a_hair_off_the_meridian_keeps_its_early_transit():
         inputs = scene(x=x, y="0.5")
         state = [float(s) for s in truth(inputs, [Fraction(1, 1000)], 300)[0]]
         early = (state[3] > 0) == (float(x) > 0)  # ẍ(0) has the sign of -x
-        (hit, *_) = enclose(inputs, [Fraction(12)], radius=Fraction(1, 10**15), workers=1).transits
+        (hit, *_) = prove(inputs, [Fraction(12)], Fraction(1, 10**15)).transits
         assert not early or hit.t.low < Fraction(1, 1000)
         first.append(early)
     assert sorted(first) == [False, True]
@@ -195,7 +195,7 @@ def test_sides_that_contradict_a_cluster_are_refused():
 
 def test_the_acceleration_at_a_transit_is_that_of_the_equations():
     inputs = scene(length="2", rotation_rate="0.3", equatorial_radius="5")
-    (hit, *_) = enclose(inputs, [Fraction(4)], radius=Fraction(1, 10**30), workers=1).transits
+    (hit, *_) = prove(inputs, [Fraction(4)], Fraction(1, 10**30)).transits
     with mp.workprec(300):
         (state,) = truth(inputs, [(hit.t.low + hit.t.high) / 2], 300)
         ax = acceleration(constants(inputs), [mp.mpf(q.numerator) / q.denominator for q in state])[0]

@@ -1,4 +1,4 @@
-"""What every proof rests on, one at a time: outward rounding, joins, and the exact zeros of a scene."""
+"""The foundations of every proof, one at a time: outward rounding, joins, and the exact zeros of a scene."""
 
 from fractions import Fraction
 

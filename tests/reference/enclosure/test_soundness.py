@@ -1,4 +1,4 @@
-"""Errors of every size, sabotaged candidates, exaggerated rotation, random scenes: the ball must contain the truth."""
+"""Errors of every size, sabotaged approximants, fast rotation, random scenes: the ball must contain the truth."""
 
 from dataclasses import replace
 from fractions import Fraction
@@ -7,18 +7,17 @@ from random import Random
 import numpy as np
 import pytest
 from enclosure_oracle import PARIS, carry, constants, contains, doubles, last_state, scene, steps, truth
+from enclosure_recurrence import Recurrence, prove
 from flint import arb, ctx, fmpz
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from reference.enclosure import enclose
+from reference.enclosure.approximant import pair
 from reference.enclosure.balls import add, ball, cross
 from reference.enclosure.bound import Piece, Radius, World
-from reference.enclosure.candidate import pair
 from reference.enclosure.columns import Columns
 from reference.enclosure.frames import ColumnSource
-from reference.enclosure.recurrence import Recurrence
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth
@@ -56,7 +55,7 @@ def wide_pair(rng):
 
 
 def first_piece(true, other, method):
-    """The first step of a candidate that starts at `other`, bounded from its true distance to `true` alone."""
+    """The first step of an approximant that starts at `other`, bounded from its true distance to `true` alone."""
     world, beside = World(true, 192), World(other, 192)
     step = next(pair(Recurrence(beside, 128, 40).chain(Fraction(1, 32))))
     piece = Piece(world, step)
@@ -140,7 +139,7 @@ def start_moved(inputs, size):
     return replace(inputs, angles=(inputs.angles[0] + size, *inputs.angles[1:]))
 
 
-def test_two_hundred_sabotaged_candidates_are_all_covered_or_refused():
+def test_two_hundred_sabotaged_approximants_are_all_covered_or_refused():
     rng, accepted, refused, harmed = Random(11), 0, 0, 0
     references = {name: truth(inputs, [end], 300)[0] for name, (inputs, end, _) in SABOTAGED.items()}
     while accepted < 220:
@@ -183,7 +182,7 @@ def test_random_scenes_lie_inside(length, angle, azimuth, rate, turn, rotation, 
         rotation_rate=Fraction(rotation), latitude=latitude, equatorial_radius=radius,
     )  # fmt: skip
     times = [Fraction(0), Fraction(1), Fraction(10, 3)]
-    proof = enclose(inputs, times, radius=Fraction(1, 10**20), workers=1)
+    proof = prove(inputs, times, Fraction(1, 10**20))
     for row, exact in zip(proof.states, truth(inputs, times, 300), strict=True):
         for i, x in zip(row, exact, strict=True):
             assert contains(widened(i), x)

@@ -1,4 +1,4 @@
-"""What has to be read to believe a proof: how much it is, and that nothing in it rounds on its own."""
+"""The code that has to be read to believe a proof: it is short, and nothing in it rounds on its own."""
 
 import ast
 import io

@@ -125,7 +125,7 @@ def test_helpers_prove_the_same_of_any_engine(monkeypatch, engine):
     for workers in (1, 2):
         feed = Feed(scene.exact, times, engine)
         proofs.append(
-            enclosure.enclose(scene.exact, times, radius=Fraction(1, 10**40), candidate=feed, workers=workers)
+            enclosure.enclose(scene.exact, times, radius=Fraction(1, 10**40), approximant=feed, workers=workers)
         )
         feed.stop()
     alone, shared = proofs

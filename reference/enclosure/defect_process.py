@@ -1,4 +1,7 @@
-"""Defects computed by other processes: those of different steps have nothing to do with each other. Untrusted."""
+"""Defects computed in another process, as those of different steps do not depend on each other. Untrusted.
+
+Not the `Worker` of `reference.process`, which is sent its arguments once: this one is sent steps while it works.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +15,8 @@ from typing import IO, Any, cast
 
 from flint import arb, fmpz
 
+from .approximant import polynomials
 from .bound import Piece, World
-from .candidate import polynomials
 from .shapes import Sizes, Step
 
 
@@ -25,7 +28,7 @@ def _unpack(row: list[tuple[int, int]]) -> Sizes:
     return Sizes(*(arb((fmpz(m), fmpz(e))) for m, e in row))
 
 
-class Helper:
+class DefectProcess:
     """A process that computes defects; it ends when its input does, so it cannot outlive this one."""
 
     def __init__(self, inputs: Any, prec: int) -> None:
@@ -42,11 +45,11 @@ class Helper:
         pipe.flush()
 
     def send(self, steps: list[Step]) -> None:
-        """Steps to work on; waits while the pipe is full."""
+        """Send steps to work on; waits while the pipe is full."""
         self._put([tuple(step) for step in steps])
 
     def receive(self) -> tuple[list[Sizes], float]:
-        """The sizes of the steps sent first, and the CPU seconds that they took."""
+        """Return the sizes of the steps sent first, and the CPU seconds spent on them."""
         rows, cpu = pickle.load(cast("IO[bytes]", self.process.stdout))
         return [_unpack(row) for row in rows], cpu
 
@@ -61,7 +64,7 @@ class Helper:
 
 
 def serve() -> None:
-    """The helper's loop: steps in, sizes out, until the input ends."""
+    """Run the second process: read steps and write their sizes until the input ends."""
     source, target = sys.stdin.buffer, sys.stdout.buffer
     inputs, prec = pickle.load(source)
     world = World(inputs, prec)

@@ -1,7 +1,7 @@
-"""Proposals for the enclosure, from somebody's Taylor coefficients.
+"""The approximant, the polynomials that a proof encloses: an integrator's Taylor coefficients as steps to prove.
 
-Untrusted: whatever this module gets wrong, the bound measures. An expansion serves both sides of its centre, so only
-every second one of a chain has to be proved: `pair` joins them.
+Untrusted: the bound measures whatever this module gets wrong. A Taylor expansion serves both sides of its centre, so
+only every second one of a chain has to be proved: `pair` joins two time steps into one.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from .balls import dot, integer
 from .bound import World, scaled
 from .shapes import Step
 
-GUARD = 16  # bits below those of the steps
-GRAIN = 64  # step lengths change by multiples of 1/GRAIN
-LOPSIDED = Fraction(33, 32)  # an expansion is stretched to its left by so much and not more
+AXES_GUARD_BITS = 16  # precision of the scene's constants beyond the coefficients that they turn
+GRAIN = 64  # step sizes are rescaled by multiples of 1/GRAIN
+LOPSIDED = Fraction(33, 32)  # largest ratio of the time step before to its own that an expansion is stretched to cover
 
 
-class Expansion(NamedTuple):
-    """Taylor coefficients of n and h² λ at `t`, of s = time/h, as integers over 2^bits; to be used up to t + h."""
+class TaylorStep(NamedTuple):
+    """Taylor coefficients of n and h² λ about `t`, integers over 2^bits; of s = (time - t)/h, used from t to t + h."""
 
     t: Fraction
     h: Fraction
@@ -32,16 +32,16 @@ class Expansion(NamedTuple):
     coefficients: tuple[list[int], ...]
 
 
-class Series(Protocol):
-    """What is needed of an expansion; its coefficients are asked for only where they serve."""
+class TaylorCoefficients(Protocol):
+    """Any engine's Taylor step; its coefficients are computed only when they are read."""
 
     @property
     def t(self) -> Fraction:
-        """Centre."""
+        """Centre, in s."""
 
     @property
     def h(self) -> Fraction:
-        """Step."""
+        """Step size, in s."""
 
     @property
     def bits(self) -> int:
@@ -53,45 +53,45 @@ class Series(Protocol):
 
 
 def polynomials(step: Step) -> Step:
-    """The step with FLINT's polynomials, which are sooner made of words than of large integers."""
-    given, unit = step.coefficients, fmpz(1) << WORD_BITS
-    if not isinstance(given, Words):
+    """Return the step with FLINT's polynomials, which are built faster from words than from large integers."""
+    packed, unit = step.coefficients, fmpz(1) << WORD_BITS
+    if not isinstance(packed, Words):
         return step
     rows = []
-    for words in given.table.tolist():
-        made = fmpz_poly(words.pop())
+    for words in packed.table.tolist():
+        polynomial = fmpz_poly(words.pop())
         while words:
-            made = made * unit + fmpz_poly(words.pop())
-        rows.append(made)
+            polynomial = polynomial * unit + fmpz_poly(words.pop())
+        rows.append(polynomial)
     return step._replace(coefficients=rows)
 
 
 @dataclass(frozen=True)
 class Turned:
-    """Somebody's polynomials of n, east, north, up, in the axes of the proof, with the λ that goes with them."""
+    """A Taylor step whose rows are n east, north and up, turned to the axes of the proof, with the λ that fits it."""
 
-    given: Series
+    step: TaylorCoefficients
     world: World
 
     @property
     def t(self) -> Fraction:
-        """Centre."""
-        return self.given.t
+        """Centre, in s."""
+        return self.step.t
 
     @property
     def h(self) -> Fraction:
-        """Step."""
-        return self.given.h
+        """Step size, in s."""
+        return self.step.h
 
     @property
     def bits(self) -> int:
         """Coefficients are integers over 2^bits."""
-        return self.given.bits
+        return self.step.bits
 
     @property
     def coefficients(self) -> tuple[list[int], ...]:
-        """Four rows, made when asked for."""
-        bits, (east, north, up) = self.bits, self.given.coefficients[:3]
+        """Four rows, x, m, w and h² λ, computed when they are read."""
+        bits, (east, north, up) = self.bits, self.step.coefficients[:3]
         with ctx.workprec(self.world.prec):
             sin, cos = (int(integer(x, bits)) for x in self.world.tilt)
         m = [(y * sin - z * cos) >> bits for y, z in zip(north, up, strict=True)]
@@ -103,21 +103,21 @@ class Turned:
         return east, m, w, [int(c) for c in pull.coeffs()]
 
 
-def turned(inputs: Any, chain: Iterable[Series]) -> Iterator[Turned]:
-    """A run's polynomials as a candidate."""
+def turned(inputs: Any, chain: Iterable[TaylorCoefficients]) -> Iterator[Turned]:
+    """Turn a run's Taylor steps (rows east, north, up) to the axes of the proof."""
     world: World | None = None
     for e in chain:
-        world = world or World(inputs, e.bits + GUARD)
+        world = world or World(inputs, e.bits + AXES_GUARD_BITS)
         yield Turned(e, world)
 
 
-def rescaled(e: Series, ratio: Fraction) -> Expansion:
-    """The same expansion in s / ratio; the ratio is a multiple of 1/GRAIN."""
-    return Expansion(e.t, ratio * e.h, e.bits, stretched(e.coefficients, (0, 0, 0, 2), ratio))
+def rescaled(e: TaylorCoefficients, ratio: Fraction) -> TaylorStep:
+    """Return the same expansion as polynomials of s / ratio; the ratio is a multiple of 1/GRAIN."""
+    return TaylorStep(e.t, ratio * e.h, e.bits, stretched(e.coefficients, (0, 0, 0, 2), ratio))
 
 
 def stretched(rows: Sequence[list[int]], powers: Iterable[int], ratio: Fraction) -> tuple[list[int], ...]:
-    """Coefficients of s / ratio, each row times a power of the ratio besides; the ratio is a multiple of 1/GRAIN."""
+    """Return coefficients of s / ratio, each row also times a power of the ratio, which is a multiple of 1/GRAIN."""
     factor, shift = int(ratio * GRAIN), GRAIN.bit_length() - 1
     most = [factor**k for k in range(max(map(len, rows)) + 2)]
     return tuple(
@@ -126,9 +126,9 @@ def stretched(rows: Sequence[list[int]], powers: Iterable[int], ratio: Fraction)
     )
 
 
-def pair(chain: Iterable[Series]) -> Iterator[Step]:
-    """Steps that cover the chain, each from one expansion used on both sides where neighbours allow it."""
-    before: Series | None = None
+def pair(chain: Iterable[TaylorCoefficients]) -> Iterator[Step]:
+    """Yield steps that cover the chain, each from one expansion, used on both sides where its neighbours allow it."""
+    before: TaylorCoefficients | None = None
     for e in chain:
         if before is None:
             before = e
@@ -149,12 +149,5 @@ def pair(chain: Iterable[Series]) -> Iterator[Step]:
         yield _one_sided(before)
 
 
-def _one_sided(e: Series) -> Step:
+def _one_sided(e: TaylorCoefficients) -> Step:
     return Step(e.t, e.h, Fraction(0), Fraction(1), e.bits, e.coefficients)
-
-
-def coarse(h: Fraction) -> Fraction:
-    """About h, with a short binary denominator so that times stay short."""
-    shift = 10 - (h.numerator.bit_length() - h.denominator.bit_length())
-    scale = Fraction(2) ** shift
-    return Fraction(int(h * scale)) / scale

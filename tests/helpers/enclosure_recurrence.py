@@ -1,32 +1,54 @@
-"""The package's own Taylor series in integers: a candidate where nobody else's is given. Untrusted."""
+"""An approximant for tests: the pendulum's Taylor series in integers, written apart from heyoka's and from limbs."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from operator import mul
 
 from flint import ctx, fmpz_poly
 
-from .balls import cross, integer
-from .bound import World
-from .candidate import GRAIN, GUARD, Expansion, coarse, stretched
+from reference.enclosure import Enclosure, enclose
+from reference.enclosure.approximant import GRAIN, TaylorStep, pair, stretched
+from reference.enclosure.balls import cross, integer
+from reference.enclosure.bound import World
+from reference.enclosure.run import SCENE_GUARD_BITS
+from reference.enclosure.shapes import Step
+from reference.scene import Inputs
 
-SLACK = 12  # rounding of coefficient k enters the defect k times: the last terms need not be smaller than that
+GUARD_BITS = 16  # carried below the last bit of the coefficients, for the rounding of the recurrence
+SLACK_BITS = 12  # rounding of coefficient k enters the defect k times: the last terms need not be smaller than that
+ORDER_PER_BIT, LEAST_ORDER = 0.5, 24  # about the cheapest order, which depends little on it
 POWERS = (0, 0, 0, 1, 1, 1, 2, 1)  # of h in x, m, w, V, λ, j
 BLOCK = 18  # orders summed term by term before the products are taken as polynomials
 
 
+def recurrence(inputs: Inputs) -> Callable[[int], Iterator[Step]]:
+    """Return a scene's approximant: a function of the bits of the coefficients that gives steps without end."""
+
+    def steps(bits: int) -> Iterator[Step]:
+        order = max(LEAST_ORDER, round(ORDER_PER_BIT * bits))
+        first = coarse(Fraction(1 / (4 * float(World(inputs, 128).w0))))
+        return pair(Recurrence(World(inputs, bits + SCENE_GUARD_BITS), bits, order).chain(first))
+
+    return steps
+
+
+def prove(inputs: Inputs, times: Sequence[Fraction], radius: Fraction) -> Enclosure:
+    """Enclose a run of the recurrence, in this process alone."""
+    return enclose(inputs, times, radius=radius, approximant=recurrence(inputs), workers=1)
+
+
 class Recurrence:
-    """Own Taylor series in fixed point: V = n' + Ω × n and λ = V·V + n·c leave three convolutions, λ n.
+    """Taylor series in fixed point: V = n' + Ω × n and λ = V·V + n·c leave three convolutions, λ n.
 
     With drag one more, w²; for λ' = 3 c·V - c·(Ω × n) - 2 γ (λ - c·n - ω j) has j = (n × V)_w.
     """
 
     def __init__(self, world: World, bits: int, order: int) -> None:
-        """Take the constants as integers over 2^(bits + GUARD)."""
+        """Take the constants as integers over 2^(bits + GUARD_BITS)."""
         self.world, self.bits, self.order = world, bits, order
-        self.f = bits + GUARD
+        self.f = bits + GUARD_BITS
         self.one = 1 << self.f
         with ctx.workprec(world.prec + self.f):
             self.c = [int(integer(x, self.f)) for x in world.c]
@@ -38,25 +60,27 @@ class Recurrence:
     def _dot(self, a: Iterable[int], b: Iterable[int]) -> int:
         return int(sum(map(mul, a, b))) >> self.f
 
-    def chain(self, first: Fraction) -> Iterator[Expansion]:
-        """Expansions without end, each to where its last terms reach 2^-bits; `first` guesses the step in s."""
+    def chain(self, first: Fraction) -> Iterator[TaylorStep]:
+        """Yield Taylor steps without end, each to where its last terms reach 2^-bits; `first` guesses the step in s."""
         t, h, before = Fraction(0), first, first
         while True:
             rows = self._expand(h)
             ratio = self._reach(rows)
             reach = h * ratio
-            # where reaches shrink the next one must still reach back to here
-            wanted, length = reach * min(reach / before, Fraction(1)), h
-            if wanted < h:
-                part = Fraction(max(int(wanted / h * GRAIN), 1), GRAIN)
+            # where reaches shrink, the next expansion must still reach back to t
+            target, length = reach * min(reach / before, Fraction(1)), h
+            if target < h:
+                part = Fraction(max(int(target / h * GRAIN), 1), GRAIN)
                 rows, length = stretched(rows, POWERS, part), h * part
-            yield Expansion(t, length, self.bits, tuple([c >> GUARD for c in row] for row in (*rows[:3], rows[6])))
+            yield TaylorStep(
+                t, length, self.bits, tuple([c >> GUARD_BITS for c in row] for row in (*rows[:3], rows[6]))
+            )
             self._move(rows, length)
             t, before = t + length, reach
-            h = h if h <= wanted < h * Fraction(17, 16) else coarse(min(wanted, 2 * h))
+            h = h if h <= target < h * Fraction(17, 16) else coarse(min(target, 2 * h))
 
     def _move(self, rows: Sequence[list[int]], h: Fraction) -> None:
-        """To s = 1, and back on the sphere."""
+        """Evaluate at s = 1 and project onto the sphere."""
         n, V = ([sum(row) for row in part] for part in (rows[:3], rows[3:6]))
         lift = 3 * self.one - self._dot(n, n)
         self.n = n = [x * lift >> (self.f + 1) for x in n]
@@ -65,7 +89,7 @@ class Recurrence:
         self.V = [v - (radial * x >> self.f) for v, x in zip(V, n, strict=True)]
 
     def _expand(self, h: Fraction) -> tuple[list[int], ...]:
-        """Rows x, m, w, Vx, Vm, Vw, λ, j in the time of a step."""
+        """Return the coefficients of x, m, w, Vx, Vm, Vw, λ, j in the time of a step."""
         f, a, b = self.f, h.numerator, h.denominator
         _, cm, cw = (x * a * a // (b * b) for x in self.c)
         turn, g = self.w * a // b, self.g * a // b
@@ -97,7 +121,7 @@ class Recurrence:
         return rows
 
     def _products(self, lam: list[int], n: tuple[list[int], ...], k: int) -> list[list[int]]:
-        """Coefficients k … k + BLOCK - 1 of λ n from the terms known so far."""
+        """Return coefficients k … k + BLOCK - 1 of λ n from the terms known so far."""
         left = fmpz_poly(lam[:k])
         out = []
         for row in n:
@@ -119,8 +143,17 @@ class Recurrence:
         )
 
     def _reach(self, rows: Sequence[list[int]]) -> Fraction:
-        """How much longer the step may be until its last two terms are 2^-bits."""
+        """Return the factor by which the step may grow until its last two terms are 2^-bits."""
         reach = min(
-            (GUARD + SLACK - abs(row[k]).bit_length()) / k for row in rows[:6] for k in (self.order - 1, self.order)
+            (GUARD_BITS + SLACK_BITS - abs(row[k]).bit_length()) / k
+            for row in rows[:6]
+            for k in (self.order - 1, self.order)
         )
         return Fraction(max(int(2 ** min(reach, 1.0) * GRAIN), 1), GRAIN)
+
+
+def coarse(h: Fraction) -> Fraction:
+    """Return about h, with a short binary denominator so that times stay short."""
+    shift = 10 - (h.numerator.bit_length() - h.denominator.bit_length())
+    scale = Fraction(2) ** shift
+    return Fraction(int(h * scale)) / scale
