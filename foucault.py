@@ -1,4 +1,4 @@
-"""The front door: one command `foucault`."""
+"""The command `foucault`: the commands of `reference` (compute datasets) and `compare` (judge results) in one."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import sys
 
 import typer
 
-from compare.commands import app as judges
-from reference.commands import app as makers
+from compare.commands import app as comparing
+from reference.commands import app as computing
 from reference.errors import FoucaultError
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None)
-app.add_typer(makers)
-app.add_typer(judges)
+app.add_typer(computing)
+app.add_typer(comparing)
 
 
 def main() -> None:

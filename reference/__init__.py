@@ -1,4 +1,4 @@
-"""The truth: golden datasets of the full Foucault pendulum, and the solver that makes them.
+"""Reference solver of the Foucault pendulum: golden datasets of the full Lagrangian, with a bound on every number.
 
 >>> import reference
 >>> paris = reference.load_scene("paris")
@@ -49,7 +49,7 @@ _LAZY = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import the solver and the reader where they are first used: `foucault --help` needs neither."""
+    """Import the solver and the reader at their first use: `foucault --help` needs neither."""
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module

@@ -1,4 +1,4 @@
-"""One small tree of errors; each carries its payload and the exit status of the command line."""
+"""The exceptions of this project: one small tree; each carries its payload and the exit status of the command line."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ class FoucaultError(Exception):
 
 
 class InputError(FoucaultError):
-    """A user's mistake: the field, what came, what was expected and what to do."""
+    """A user's mistake: the field, the value it got, what was expected, and advice."""
 
     exit_status = 2
 
     def __init__(self, field: str, got: object, expected: str, advice: str = "") -> None:
         self.field, self.got, self.expected, self.advice = field, got, expected, advice
-        shown = got if isinstance(got, str) else repr(got)
-        shown = shown if len(shown) <= 120 else shown[:117] + "..."
-        text = f"{field}: got {shown!r}, expected {expected}."
+        value = got if isinstance(got, str) else repr(got)
+        value = value if len(value) <= 120 else value[:117] + "..."
+        text = f"{field}: got {value!r}, expected {expected}."
         super().__init__(f"{text} {advice}".rstrip())
 
 
 class UnreachableError(FoucaultError):
-    """The level or the digits asked for cannot be reached; says how far it came."""
+    """The requested level or digits cannot be reached; the reason says how far the solver came."""
 
     exit_status = 3
 
@@ -33,7 +33,7 @@ class UnreachableError(FoucaultError):
 
 
 class IntegrationError(UnreachableError):
-    """The integrator stopped, warned, or contradicted itself: a failed run gives no numbers."""
+    """The integrator stopped, warned, or contradicted itself; a failed run returns no numbers."""
 
 
 class DatasetError(FoucaultError):

@@ -1,6 +1,6 @@
-"""Number types, and conversions between them that lose nothing or say what they lose.
+"""Number types and precision: bits, decimal digits, exact conversions and rounding, mpmath contexts.
 
-Precision is always an argument: every mpmath context made here is its own, the global one is untouched.
+Precision is always an argument: every mpmath context made here is a new one, and the global one is never touched.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ import numpy.typing as npt
 
 Array = npt.NDArray[np.float64]
 
-GUARD_BITS = 64  # constants and conversions carry this much more than the run that uses them
+GUARD_BITS = 64  # more than a run's own: its constants and conversions are computed with them, then rounded once
 DOUBLE_BITS = 53
 LONG_DOUBLE_BITS = 64
 
 
 @dataclass(frozen=True)
 class NumberType:
-    """A type that a run computes in: its name, and its precision in bits."""
+    """A number type: its name, and its precision in bits."""
 
     name: str
     prec: int
@@ -37,36 +37,36 @@ LONG_DOUBLE = NumberType("long_double", LONG_DOUBLE_BITS)
 
 
 def real(prec: int) -> NumberType:
-    """Binary floating point (MPFR) of `prec` bits."""
+    """Return the type of binary floating-point numbers (MPFR) with `prec` bits."""
     return NumberType("real", prec)
 
 
 def limbs(prec: int) -> NumberType:
-    """Digits of radix 2**22 that keep `prec` bits of a number as large as the swing (`reference.engines.limbs`)."""
+    """Return the type of radix-2**22 limbs that keep `prec` bits of a number as large as the swing: engines/limbs."""
     return NumberType("limbs", prec)
 
 
 def cheapest_type(prec: int) -> NumberType:
-    """The fastest type with at least `prec` bits."""
+    """Return the fastest type with at least `prec` bits."""
     if prec <= DOUBLE_BITS:
         return DOUBLE
     return LONG_DOUBLE if prec <= LONG_DOUBLE_BITS else real(prec)
 
 
 def context(prec: int) -> Any:
-    """A new mpmath context of `prec` bits."""
-    made = mpmath.mp.clone()
-    made.prec = prec
-    return made
+    """Return a new mpmath context of `prec` bits."""
+    ctx = mpmath.mp.clone()
+    ctx.prec = prec
+    return ctx
 
 
 def to_mpf(value: Fraction, ctx: Any) -> Any:
-    """`value` rounded once to the context's precision."""
+    """Return `value`, rounded once to the context's precision."""
     return ctx.mpf(value.numerator) / value.denominator
 
 
 def to_fraction(value: Any) -> Fraction:
-    """An mpf, float or int as the exact fraction."""
+    """Return an mpf, float or int as the exact fraction."""
     if isinstance(value, float | int):
         return Fraction(value)
     sign, mantissa, exponent, _ = value._mpf_
@@ -77,40 +77,40 @@ def to_fraction(value: Any) -> Fraction:
 
 
 def bits_of(digits: float) -> int:
-    """Bits that hold `digits` decimal digits."""
+    """Return the number of bits that hold `digits` decimal digits."""
     return math.ceil(digits * math.log2(10))
 
 
 def fixed_decimal(value: Fraction, decimals: int) -> str:
-    """`value` rounded to nearest (ties to even) with `decimals` digits after the point, never "-0"."""
+    """Return `value`, rounded to nearest (ties to even), with `decimals` digits after the point; never "-0"."""
     return with_decimal_point(round(value * 10**decimals), decimals)
 
 
 def with_decimal_point(whole: int, decimals: int) -> str:
-    """An integer with the decimal point `decimals` digits from its right, never "-0"."""
+    """Return an integer as text with the decimal point `decimals` digits from its right; never "-0"."""
     sign, digits = ("-" if whole < 0 else ""), str(abs(whole)).rjust(decimals + 1, "0")
     return sign + (f"{digits[:-decimals]}.{digits[-decimals:]}" if decimals else digits)
 
 
 def outward(value: Fraction, side: int, decimals: int = 20) -> str:
-    """The end of an interval, rounded down (side -1) or up (side 1)."""
+    """Return the end of an interval as text, rounded down (side -1) or up (side 1)."""
     whole = value * 10**decimals
     return with_decimal_point(math.floor(whole) if side < 0 else math.ceil(whole), decimals)
 
 
 def decimals_for(largest: Fraction, digits: int) -> int:
-    """Digits after the point so that a column whose largest size is `largest` has `digits` significant ones."""
+    """Return the digits after the point that give the largest number of a column `digits` significant ones."""
     return max(0, digits - 1 - magnitude(largest)) if largest else digits
 
 
 def magnitude(value: Fraction) -> int:
-    """The power of ten of the leading digit of a positive number: floor(log10(value)), exactly."""
+    """Return floor(log10(value)) exactly: the power of ten of the leading digit of a positive number."""
     guess = len(str(value.numerator)) - len(str(value.denominator))
     return guess if value >= Fraction(10) ** guess else guess - 1
 
 
 def rounded_up(value: Fraction, significant: int = 2) -> str:
-    """A bound as text with two significant digits, never below `value`: "1.3e-45"."""
+    """Return a bound as text with two significant digits, never below `value`, such as "1.3e-45"."""
     if value <= 0:
         return "0"
     power = magnitude(value)

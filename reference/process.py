@@ -1,7 +1,7 @@
-"""A function of this package in a process of its own, its results streamed back.
+"""Run a function of this package in a child process and stream its results back.
 
-Not `multiprocessing`: its children import the caller's main script again, which then has to be written for
-that. Here a script that just calls `reference.solve` works as it stands.
+Not `multiprocessing`: its children import the caller's main script again, which then needs a guard against running
+twice. Here a script that just calls `reference.solve` works as it stands.
 """
 
 from __future__ import annotations
@@ -24,41 +24,41 @@ Emit = Callable[[Any], None]
 
 
 class Worker:
-    """Runs `function(emit, *arguments)`; iterating gives what it emits, in order.
+    """A child process that runs `function(emit, *arguments)`; iterating yields the emitted objects in order.
 
     Args:
-        function: at the top level of a module; its first parameter sends an object here.
-        arguments: whatever pickles.
+        function: stands at the top level of a module; its first argument, `emit`, sends an object to the parent.
+        arguments: any objects that can be pickled.
     """
 
     def __init__(self, function: Callable[..., None], *arguments: Any) -> None:
         self._process = subprocess.Popen([sys.executable, "-c", _START], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         assert self._process.stdin is not None
-        with contextlib.suppress(BrokenPipeError):  # a child that died at once is noticed when it is read
+        with contextlib.suppress(BrokenPipeError):  # the death of a child is noticed when its results are read
             pickle.dump(sys.path, self._process.stdin)
             pickle.dump((function.__module__, function.__qualname__, arguments), self._process.stdin)
             self._process.stdin.flush()
 
     def __iter__(self) -> Iterator[Any]:
-        """What the function emits.
+        """Yield the objects that the function emits.
 
         Raises:
-            IntegrationError: the function failed, or the process ended before it was done.
+            IntegrationError: the function failed, or the process ended before it returned.
         """
         assert self._process.stdout is not None
         while True:
             try:
-                done, item = pickle.load(self._process.stdout)
+                last, item = pickle.load(self._process.stdout)
             except (EOFError, pickle.UnpicklingError):
-                raise IntegrationError("a process of the solver ended without an answer.") from None
+                raise IntegrationError("a child process of the solver ended without a result.") from None
             if isinstance(item, BaseException):
                 raise item
-            if done:
+            if last:
                 return
             yield item
 
     def stop(self) -> None:
-        """End the process: at once if it is still at work."""
+        """Close the pipes, which ends a process that is still at work, and wait for its end."""
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 with contextlib.suppress(OSError):
@@ -66,19 +66,19 @@ class Worker:
         self._process.wait()
 
     def kill(self) -> None:
-        """End the process as a stranger would."""
+        """Kill the process (SIGKILL)."""
         self._process.kill()
 
 
 def serve() -> None:
-    """The child: reads what to do, does it, and ends when its parent does."""
+    """Run in the child: read the function and its arguments, call it, and end when the parent ends."""
     results = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what heyoka or anybody prints must not mix with the results
+    os.dup2(2, 1)  # nothing that heyoka or others print may mix with the results
     module, name, arguments = pickle.load(sys.stdin.buffer)
     threading.Thread(target=_leave_with_parent, daemon=True).start()
 
-    def send(done: bool, item: Any) -> None:
-        pickle.dump((done, item), results, protocol=pickle.HIGHEST_PROTOCOL)
+    def send(last: bool, item: Any) -> None:
+        pickle.dump((last, item), results, protocol=pickle.HIGHEST_PROTOCOL)
         results.flush()
 
     try:
@@ -91,6 +91,6 @@ def serve() -> None:
 
 
 def _leave_with_parent() -> None:
-    while os.read(0, 1):  # not through sys.stdin: its lock would stand in the way of a normal end
+    while os.read(0, 1):  # not through sys.stdin, whose lock would block a normal exit
         pass
     os._exit(0)

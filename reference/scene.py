@@ -1,6 +1,6 @@
-"""A scene: exact decimal inputs, units, validation, TOML.
+"""Scenes: the inputs of a run, read from TOML files, checked, and kept as exact decimals.
 
-Numbers stay strings until they are needed and become exact fractions then: "48.846111" is the
+Numbers stay strings until they are needed, and then become exact fractions: "48.846111" is the
 decimal 48.846111 and not the double next to it, unless the scene says `inputs = "binary64"`.
 """
 
@@ -21,8 +21,8 @@ from .errors import InputError
 
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
-SAME_TIME = Fraction(1, 1 << 30)  # of a grid step: times nearer than this differ by the rounding of the inputs only
-MAX_EXPONENT = 400  # keeps a typing slip such as 1e999999999 from filling the memory
+SAME_TIME = Fraction(1, 1 << 30)  # of a grid step: times nearer than this differ only by the rounding of the inputs
+MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
 LEVELS: tuple[Level, ...] = get_args(Level)
@@ -33,12 +33,12 @@ _DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
 def is_scene_id(word: str) -> bool:
-    """True for a word that may be a scene's id, a folder and a command-line argument."""
+    """Return whether a word can be a scene's id, and so a folder and a command-line argument."""
     return _ID.fullmatch(word) is not None and len(word) <= 64
 
 
 class _Refused(ValueError):
-    """What a validator expected, and its advice; turned into an `InputError` with the field's name."""
+    """Raised by a validator with its expectation and advice; becomes an `InputError` with the field's name."""
 
     def __init__(self, expected: str, advice: str = "") -> None:
         super().__init__(expected)
@@ -129,8 +129,8 @@ def _digits(value: int) -> int:
     return value
 
 
-class Run(_Table):
-    """Time span and grid (s), digits asked for, level of trust, transits or not."""
+class RunTable(_Table):
+    """Time span and grid (s), digits, level of trust, transits or not."""
 
     t_end: Annotated[Number, _within("0", "1e15", open_low=True)] = "86400"
     grid_step: Positive = "60"
@@ -146,9 +146,9 @@ def _identifier(text: str) -> str:
 
 
 class Scene(_Table):
-    """A pendulum, its site, its release and what is asked of the run; frozen.
+    """A pendulum, its site, its release and its run; frozen.
 
-    `exact` gives the numbers as fractions in the reading that `inputs` names.
+    `exact` gives the numbers as fractions, in the reading that `inputs` names.
     """
 
     id: Annotated[str, AfterValidator(_identifier)]
@@ -159,7 +159,7 @@ class Scene(_Table):
     pendulum: Pendulum = Pendulum()
     site: Site = Site()
     release: Release
-    run: Run = Run()
+    run: RunTable = RunTable()
 
     @property
     def exact(self) -> Inputs:
@@ -167,7 +167,7 @@ class Scene(_Table):
         return Inputs.of(self)
 
     def with_values(self, assignments: Iterable[str]) -> Scene:
-        """The scene with fields replaced, each assignment written `section.key=value`."""
+        """Return the scene with fields replaced, each assignment written `section.key=value`."""
         document = self.model_dump(exclude_none=True)
         for assignment in assignments:
             _assign(document, assignment)
@@ -179,7 +179,7 @@ class Inputs:
     """The exact numbers of a scene: SI units, angles in degrees; `flattening` is 0 for a sphere.
 
     Exactly one of `position` (x, y, vx, vy) and `angles` (angle, azimuth, angle_rate, azimuth_rate)
-    is set, as it was given.
+    is set, the one that the scene contains.
     """
 
     length: Fraction
@@ -197,7 +197,7 @@ class Inputs:
 
     @classmethod
     def of(cls, scene: Scene) -> Inputs:
-        """Read every number of `scene`, rounding each to binary64 first if the scene says so."""
+        """Read every number of `scene`, each rounded to binary64 first if the scene says so."""
 
         def read(text: str | None) -> Fraction:
             value = Fraction(text or "0")
@@ -237,7 +237,7 @@ class Inputs:
 
     @property
     def at_rest(self) -> bool:
-        """True if the bob is let go without any velocity."""
+        """True if the bob is released without any velocity."""
         moving = self.position[2:] if self.position else (self.angles or ())[2:]
         return not any(moving)
 
@@ -263,7 +263,7 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
     """Check a scene given as nested mappings.
 
     Raises:
-        InputError: naming the first wrong field, what it got and what was expected.
+        InputError: names the first wrong field, what it got and what was expected.
     """
     try:
         scene = Scene.model_validate(dict(document))
@@ -300,17 +300,17 @@ def _explain(error: ValidationError) -> InputError:
 
 def _check_release(scene: Scene) -> None:
     release = scene.release
-    given = release.model_fields_set & {n for n in type(release).model_fields if getattr(release, n) is not None}
-    cartesian, angular = given & {"x", "y", "vx", "vy"}, given & {"angle", "azimuth", "angle_rate", "azimuth_rate"}
+    fields = release.model_fields_set & {n for n in type(release).model_fields if getattr(release, n) is not None}
+    cartesian, angular = fields & {"x", "y", "vx", "vy"}, fields & {"angle", "azimuth", "angle_rate", "azimuth_rate"}
     if cartesian and angular:
         raise InputError(
-            "release", ", ".join(sorted(given)), "either x, y (vx, vy) or angle, azimuth (and rates)", "Keep one kind."
+            "release", ", ".join(sorted(fields)), "either x, y (vx, vy) or angle, azimuth (and rates)", "Keep one kind."
         )
     for kind, needed in ((cartesian, ("x", "y")), (angular, ("angle", "azimuth"))):
         for name in needed:
             if kind and name not in kind:
                 raise InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
-    if not given:
+    if not fields:
         raise InputError("release", "nothing", "x and y, or angle and azimuth")
     position, length = scene.exact.position, scene.exact.length
     if position and position[0] ** 2 + position[1] ** 2 >= length**2:
@@ -331,18 +331,18 @@ def _check_grid(scene: Scene) -> None:
 
 
 def data_root() -> Path:
-    """The folder that holds `scenes` and `golden`: in the installed package, or beside it in a checkout."""
-    here = Path(__file__).resolve().parent
-    return here / "data" if (here / "data").is_dir() else here.parent / "data"
+    """Return the folder that holds `scenes` and `golden`: in the installed package, or beside it in a checkout."""
+    package = Path(__file__).resolve().parent
+    return package / "data" if (package / "data").is_dir() else package.parent / "data"
 
 
 def in_checkout() -> bool:
-    """True where scenes and golden datasets are those of a source checkout, which `generate` may renew."""
+    """Return whether scenes and golden datasets are those of a source checkout, which `generate` may replace."""
     return data_root().parent != Path(__file__).resolve().parent
 
 
 def scene_ids() -> list[str]:
-    """Ids of the scenes that come with the project, sorted."""
+    """Return the ids of the scenes that come with the project, sorted."""
     return sorted(path.stem for path in (data_root() / "scenes").glob("*.toml"))
 
 

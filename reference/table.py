@@ -13,7 +13,14 @@ from .precision import Array
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of numbers, as integers over 2**bits, with a bound of the same shape on every one."""
+    """Named columns of numbers, as integers over 2**bits, with an error bound on each of them in the same form.
+
+    Attributes:
+        columns: names of the columns.
+        bits: the unit of `values` and `errors` is 2**-bits.
+        values: rows of integers.
+        errors: bounds on the errors of the values, of the same shape.
+    """
 
     columns: tuple[str, ...]
     bits: int
@@ -21,11 +28,11 @@ class Table:
     errors: list[tuple[int, ...]] = field(repr=False)
 
     def exact(self, name: str) -> list[Fraction]:
-        """A column's values, exactly as computed."""
+        """Return the values of a column, exactly as computed."""
         return self._fractions(self.values, name)
 
     def bound(self, name: str) -> list[Fraction]:
-        """A column's bounds: how far the exact values may be from the truth."""
+        """Return the bounds on the errors of a column's values."""
         return self._fractions(self.errors, name)
 
     def _fractions(self, rows: Sequence[tuple[int, ...]], name: str) -> list[Fraction]:
@@ -33,11 +40,11 @@ class Table:
         return [Fraction(row[i], 1 << self.bits) for row in rows]
 
     def largest(self) -> tuple[Fraction, ...]:
-        """Per column the largest size of its values."""
+        """Return the largest absolute value of each column."""
         return self._maxima(self.values)
 
     def largest_bounds(self) -> tuple[Fraction, ...]:
-        """Per column the largest of its bounds."""
+        """Return the largest bound of each column."""
         return self._maxima(self.errors)
 
     def _maxima(self, rows: Sequence[tuple[int, ...]]) -> tuple[Fraction, ...]:
@@ -46,31 +53,34 @@ class Table:
         )
 
     def array(self, name: str) -> Array:
-        """A column as the nearest doubles, shape (rows,)."""
+        """Return a column as the nearest doubles, shape (rows,)."""
         i, unit = self.columns.index(name), 1 << self.bits
         return np.array([row[i] / unit for row in self.values])
 
 
 def largest_of(rows: Sequence[tuple[int, ...]], bits: int) -> tuple[Fraction, ...]:
-    """Largest size of each column of a table of integers over 2**bits."""
+    """Return the largest absolute value of each column, for rows of integers over 2**bits."""
     return tuple(Fraction(max(map(abs, column)), 2**bits) for column in zip(*rows, strict=True))
 
 
 def disagreement(
     a: Sequence[tuple[int, ...]], a_bits: int, b: Sequence[tuple[int, ...]], b_bits: int
 ) -> tuple[Fraction, ...]:
-    """Largest difference of two tables, per column."""
-    up_a, up_b = max(0, b_bits - a_bits), max(0, a_bits - b_bits)
+    """Return the largest absolute difference of two tables in each column.
+
+    The rows of `a` are integers over 2**a_bits, those of `b` over 2**b_bits; shapes are equal.
+    """
+    shift_a, shift_b = max(0, b_bits - a_bits), max(0, a_bits - b_bits)
     columns = zip(zip(*a, strict=True), zip(*b, strict=True), strict=True)
     common = 2 ** max(a_bits, b_bits)
     return tuple(
-        Fraction(max(abs((p << up_a) - (q << up_b)) for p, q in zip(one, other, strict=True)), common)
-        for one, other in columns
+        Fraction(max(abs((p << shift_a) - (q << shift_b)) for p, q in zip(column_a, column_b, strict=True)), common)
+        for column_a, column_b in columns
     )
 
 
 def bits_in(ratio: Fraction) -> int:
-    """The power of two at or above a ratio; 0 for nothing."""
+    """Return the smallest integer n with ratio <= 2**n; 0 if the ratio is 0."""
     if ratio <= 0:
         return 0
     power = ratio.numerator.bit_length() - ratio.denominator.bit_length()

@@ -1,4 +1,4 @@
-"""The commands that compute datasets: scenes, show, generate, verify. Results on stdout, progress on stderr."""
+"""Commands that compute datasets: scenes, show, generate, verify. Results go to stdout, progress to stderr."""
 
 from __future__ import annotations
 

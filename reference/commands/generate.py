@@ -15,7 +15,7 @@ Level = StrEnum("Level", list(LEVELS))  # type: ignore[misc]  # the functional f
 
 
 class Engine(StrEnum):
-    """What integrates; auto is limbs where numba is installed."""
+    """The integrator; auto chooses limbs where it is faster and numba is installed, else heyoka."""
 
     auto = "auto"
     heyoka = "heyoka"
@@ -24,12 +24,17 @@ class Engine(StrEnum):
 
 def command(
     scene_word: SceneWord,
-    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="The dataset's folder.")] = None,
-    t_end: Annotated[str | None, typer.Option("--t-end", metavar="S", help="End of the run in s.")] = None,
-    digits: Annotated[str | None, typer.Option("--digits", metavar="D", help="Digits of each column.")] = None,
+    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Write the dataset to this folder.")] = None,
+    t_end: Annotated[str | None, typer.Option("--t-end", metavar="S", help="End the run at this time, in s.")] = None,
+    digits: Annotated[
+        str | None,
+        typer.Option("--digits", metavar="D", help="Significant digits of the largest number in each column."),
+    ] = None,
     level: Annotated[Level | None, typer.Option("--level", metavar="L", help=", ".join(LEVELS))] = None,
-    engine: Annotated[Engine, typer.Option("--engine", help="What integrates.")] = Engine.auto,
-    no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for xdot = 0.")] = False,
+    engine: Annotated[
+        Engine, typer.Option("--engine", help="Choose the integrator; auto takes the faster one.")
+    ] = Engine.auto,
+    no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for transits, xdot = 0.")] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
@@ -38,8 +43,8 @@ def command(
     from ..dataset.write import check_target, default_folder, write
     from ..engines.registry import engine_of
 
-    asked = {"t_end": t_end, "digits": digits, "level": level, "transits": "false" if no_transits else None}
-    changes = [*(set_ or ()), *(f"run.{key}={value}" for key, value in asked.items() if value is not None)]
+    options = {"t_end": t_end, "digits": digits, "level": level, "transits": "false" if no_transits else None}
+    changes = [*(set_ or ()), *(f"run.{key}={value}" for key, value in options.items() if value is not None)]
     scene = load_scene(scene_word, changes)
     as_shipped = scene_word in scene_ids() and not set_ and t_end is None and not no_transits
     folder = out or default_folder(scene, as_shipped or set_ == ["inputs=binary64"])

@@ -1,4 +1,4 @@
-"""`foucault scenes`: list the scenes that come with the project."""
+"""`foucault scenes`: list the scenes that come with the project, with title and flags."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from .terminal import AsJson, emit
 
 def command(as_json: AsJson = False) -> None:
     """List the scenes that come with the project."""
-    found = [load_scene(name) for name in scene_ids()]
+    scenes = [load_scene(name) for name in scene_ids()]
     if as_json:
-        emit({"scenes": [scene.model_dump(exclude_none=True) for scene in found]})
+        emit({"scenes": [scene.model_dump(exclude_none=True) for scene in scenes]})
         return
-    width = max((len(scene.id) for scene in found), default=0)
-    for scene in found:
+    width = max((len(scene.id) for scene in scenes), default=0)
+    for scene in scenes:
         flags = f"  [{', '.join(scene.flags)}]" if scene.flags else ""
         typer.echo(f"{scene.id:{width}}  {scene.title}{flags}")

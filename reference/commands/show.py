@@ -1,4 +1,4 @@
-"""`foucault show`: a scene, what follows from it, and the equations that are compiled for it."""
+"""`foucault show`: a scene, the quantities that follow from it, and the equations compiled for it."""
 
 from __future__ import annotations
 
@@ -12,14 +12,16 @@ from .terminal import AsJson, Assignments, SceneWord, emit
 
 def command(
     scene_word: SceneWord,
-    equations: Annotated[bool, typer.Option("--equations", help="The compiled lines, and what was left out.")] = False,
+    equations: Annotated[
+        bool, typer.Option("--equations", help="Also show the compiled equations, and the terms left out.")
+    ] = False,
     sensitivity: Annotated[
-        bool, typer.Option("--sensitivity", help="How many digits the flow costs between release and end.")
+        bool, typer.Option("--sensitivity", help="Also show how many digits the flow costs between release and end.")
     ] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show a scene: its inputs, what follows from them, and with --equations what is compiled for it."""
+    """Show the inputs of a scene and the derived quantities."""
     scene = load_scene(scene_word, set_ or ())
     document: dict[str, Any] = {**scene.model_dump(exclude_none=True), "derived": _derived(scene)}
     if equations:
@@ -56,7 +58,7 @@ def command(
 
 
 def _derived(scene: Scene) -> dict[str, str]:
-    """Distance from the axis, apparent gravity at the pivot, rest position, small-swing period; 15 digits."""
+    """Return distance from the axis, apparent gravity at the pivot, small-swing period, rest position; 15 digits."""
     from ..model.constants import constants
     from ..model.force import rest_position
     from ..precision import context

@@ -1,4 +1,4 @@
-"""The terminal: shared options, JSON documents on stdout, progress bars on stderr."""
+"""Parts shared by all commands: arguments and options, JSON documents on stdout, progress bars on stderr."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SceneWord = Annotated[str, typer.Argument(metavar="SCENE", help="A scene's id, o
 Assignments = Annotated[
     list[str] | None, typer.Option("--set", metavar="section.key=value", help="Replace one field of the scene.")
 ]
-AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout, nothing else.")]
+AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
 
 
 def emit(document: dict[str, Any]) -> None:
@@ -23,7 +23,7 @@ def emit(document: dict[str, Any]) -> None:
 
 @contextmanager
 def progress(label: str, total: float) -> Iterator[Callable[[float], None] | None]:
-    """A bar with the simulated time on stderr, or None where stderr is no terminal."""
+    """Show a bar with the simulated time on stderr; yield the function that moves it, or None without a terminal."""
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 

@@ -12,11 +12,18 @@ from .terminal import AsJson, emit, progress
 
 
 def command(
-    paths: Annotated[list[str] | None, typer.Argument(metavar="[PATH]...", help="Datasets; all by default.")] = None,
-    recompute: Annotated[bool, typer.Option("--recompute", help="Solve again and compare every byte.")] = False,
+    paths: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[PATH]...", help="Ids or folders of datasets; if none, all that come with the project."
+        ),
+    ] = None,
+    recompute: Annotated[
+        bool, typer.Option("--recompute", help="Also solve each scene again and compare every byte.")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Check datasets: schema, hashes, physics; with --recompute the same bytes again."""
+    """Check golden datasets: schema, hashes and physics."""
     from ..dataset.read import golden_folder, read_manifest, scene_of
     from ..dataset.recompute import recompute as recomputed
     from ..dataset.verify import problems_of

@@ -1,4 +1,4 @@
-"""`certified.txt`: a page for people, in the manner of NIST StRD."""
+"""`certified.txt`: inputs, certified values and how to score, on a page for people in the manner of NIST StRD."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ _MEANING = dict(
 )
 
 
-def certified_page(solution: Solution, grid: Sheet, transits: Sheet, bounds: Bounds, verdict: str) -> str:
-    """Inputs, certified values, difficulty and how to score."""
-    accuracy = [*_accuracy(bounds, transits, verdict), *_undecided(solution)]
+def certified_page(solution: Solution, grid: Sheet, transits: Sheet, bounds: Bounds, completeness: str) -> str:
+    """Return the page: inputs, first and last state, bounds, number of transits, how to score."""
+    accuracy = [*_accuracy(bounds, transits, completeness), *_undecided(solution)]
     return "\n".join([*_inputs(solution), *_states(grid), *accuracy, *_how_to(solution)])
 
 
@@ -63,11 +63,11 @@ def _states(grid: Sheet) -> list[str]:
     return lines
 
 
-def _accuracy(bounds: Bounds, transits: Sheet, verdict: str) -> list[str]:
+def _accuracy(bounds: Bounds, transits: Sheet, completeness: str) -> list[str]:
     lines = [
         f"Bound on every position {bounds.position_m} m, on every velocity {bounds.velocity_m_s} m/s",
         "",
-        f"Transits (xdot = 0, t > 0): {len(transits.rows)} ({verdict})",
+        f"Transits (xdot = 0, t > 0): {len(transits.rows)} ({completeness})",
     ]
     if transits.rows:
         ends = (("first", transits.rows[0]), ("last", transits.rows[-1]))

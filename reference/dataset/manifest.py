@@ -1,4 +1,4 @@
-"""What `manifest.json` holds: the schema of a golden dataset, without room for extra keys."""
+"""`manifest.json` of a golden dataset: its fields and their types, as pydantic models that refuse extra keys."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from ..scene import Level, Reading
 
-SCHEMA_VERSION = 1
 Decimal = Annotated[str, Field(pattern=r"^-?[0-9]+(\.[0-9]+)?(e[+-][0-9]+)?$")]
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 
@@ -123,11 +122,11 @@ class Manifest(_Part):
     files: dict[str, FileRecord]
 
     def text(self) -> str:
-        """The bytes of `manifest.json`."""
+        """Return the text of `manifest.json`."""
         return json.dumps(self.model_dump(), indent=1, ensure_ascii=False) + "\n"
 
 
 def json_schema() -> dict[str, Any]:
-    """The JSON Schema of a manifest, as it stands in `schema/manifest.schema.json`."""
+    """Return the JSON Schema of a manifest, as published in `schema/manifest.schema.json`."""
     schema = Manifest.model_json_schema()
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -1,4 +1,4 @@
-"""A golden dataset as it stands on disk: read, after its hashes and its schema were checked."""
+"""Read a golden dataset: hashes and schema are checked, columns given as doubles, decimal strings or fractions."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ MANIFEST = "manifest.json"
 
 @dataclass(frozen=True)
 class Golden:
-    """A golden dataset as it stands on disk.
+    """A golden dataset, as read from disk.
 
     `golden.t`, `.x`, … are the grid as binary64 arrays; `golden.transits["t"]` the transits;
     `golden.decimals("x")` the printed strings, `golden.exact("x")` the same as fractions;
-    `golden.manifest.bounds` says how far any of them may be from the truth.
+    `golden.manifest.bounds` bounds the error of each of them.
     """
 
     path: Path
@@ -47,37 +47,37 @@ class Golden:
         return {name: np.array([float(text) for text in column]) for name, column in self.transits_text.items()}
 
     def decimals(self, column: str) -> list[str]:
-        """A grid column as printed."""
+        """Return a grid column as printed."""
         return self.grid_text[column]
 
     def exact(self, column: str) -> list[Fraction]:
-        """A grid column as the exact value of what is printed."""
+        """Return the exact values of the printed decimals of a grid column."""
         return [Fraction(text) for text in self.grid_text[column]]
 
     def __getattr__(self, name: str) -> Any:
-        """A grid column as the nearest doubles, shape (rows,)."""
+        """Return a grid column as the nearest doubles, shape (rows,)."""
         if name.startswith("_") or name not in self.grid_text:
             raise AttributeError(name)
         return np.array([float(text) for text in self.grid_text[name]])
 
 
 def scene_of(manifest: Manifest) -> Scene:
-    """The scene that a manifest describes."""
+    """Return the scene that a manifest describes."""
     top = {key: getattr(manifest, key) for key in ("id", "title", "source", "flags", "inputs")}
     return parse_scene({**top, **manifest.scene})
 
 
 def golden_folder(name: str | Path) -> Path:
-    """The folder of a dataset given by id, or by path."""
+    """Return the folder of a dataset given by id or by path."""
     word = str(name)
     return data_root() / "golden" / word if is_scene_id(word.removesuffix(".binary64")) else Path(word)
 
 
 def read_manifest(folder: Path) -> Manifest:
-    """The manifest of a dataset.
+    """Read the manifest of a dataset and check it against the schema.
 
     Raises:
-        InputError: there is no dataset.
+        InputError: there is no dataset, or it cannot be read.
         DatasetError: the manifest does not follow the schema.
     """
     try:
@@ -98,7 +98,7 @@ def read_manifest(folder: Path) -> Manifest:
 
 
 def read_table(path: Path) -> dict[str, list[str]]:
-    """A CSV table as columns of text, by header."""
+    """Read a CSV table as columns of text, by header."""
     with path.open(encoding="utf-8", newline="") as handle:
         rows = list(csv.reader(handle))
     return {name: [row[i] for row in rows[1:]] for i, name in enumerate(rows[0])}
@@ -108,8 +108,8 @@ def load(name: str | Path) -> Golden:
     """Read a golden dataset by id or path, after checking its hashes and its schema.
 
     Raises:
-        InputError: there is none.
-        DatasetError: a file was changed.
+        InputError: there is no such dataset.
+        DatasetError: a file is missing, unlisted or changed, or the manifest does not follow the schema.
     """
     folder = golden_folder(name)
     manifest = read_manifest(folder)
@@ -120,17 +120,17 @@ def load(name: str | Path) -> Golden:
 
 
 def changed_files(folder: Path, manifest: Manifest) -> list[str]:
-    """Files that are missing, strange, or not the bytes that the manifest names."""
-    found = []
+    """Return a sentence for every file that is missing, changed, or not listed in the manifest."""
+    problems = []
     for name, record in manifest.files.items():
         try:
             data = (folder / name).read_bytes()
         except OSError as error:
-            found.append(f"{name}: {error.strerror}")
+            problems.append(f"{name}: {error.strerror}")
             continue
         if len(data) != record.bytes:
-            found.append(f"{name}: {len(data)} bytes, the manifest says {record.bytes}")
+            problems.append(f"{name}: {len(data)} bytes, the manifest says {record.bytes}")
         elif hashlib.sha256(data).hexdigest() != record.sha256:
-            found.append(f"{name}: a byte was changed (sha256 differs)")
-    strangers = {path.name for path in folder.iterdir()} - {MANIFEST, *manifest.files}
-    return found + [f"{name}: not in the manifest" for name in sorted(strangers)]
+            problems.append(f"{name}: a byte was changed (sha256 differs)")
+    unlisted = {path.name for path in folder.iterdir()} - {MANIFEST, *manifest.files}
+    return problems + [f"{name}: not in the manifest" for name in sorted(unlisted)]

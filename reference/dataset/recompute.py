@@ -1,4 +1,4 @@
-"""Solve the scene of a dataset again and compare every byte."""
+"""Recompute a dataset: solve its scene again with the same engine, and compare every byte."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from .render import render
 
 
 def recompute(folder: Path, report: Report | None = None) -> list[str]:
-    """Solve the scene of a dataset again and compare every byte.
+    """Solve the scene of a dataset again; return a sentence for every file whose bytes differ.
 
     Raises:
-        UnreachableError: it cannot be solved again.
+        UnreachableError: the scene cannot be solved here.
     """
     manifest = read_manifest(folder)
-    made = render(solve(scene_of(manifest), engine=engine_of(manifest.run.number), report=report))
+    files = render(solve(scene_of(manifest), engine=engine_of(manifest.run.number), report=report))
     return [
         f"{name}: recomputing gives other bytes"
-        for name, text in made.items()
+        for name, text in files.items()
         if (folder / name).read_bytes() != text.encode()
     ]

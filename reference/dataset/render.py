@@ -1,4 +1,4 @@
-"""A solution as the text of every file of its dataset; the same solution gives the same bytes."""
+"""Every file of a dataset as text: manifest, CSV tables and page; the same solution gives the same bytes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ UNITS = {"t": "s", "x, y, z": "m", "vx, vy, vz": "m/s", "ax": "m/s^2", "bound": 
 
 
 def render(solution: Solution) -> dict[str, str]:
-    """Every file of a dataset by name, as text; the same solution gives the same bytes."""
+    """Return the text of every file of a dataset, by file name."""
     grid, transits = grid_sheet(solution), transits_sheet(solution)
     scene, run = solution.scene, solution.run
     bounds = Bounds(
@@ -42,17 +42,17 @@ def render(solution: Solution) -> dict[str, str]:
         velocity_m_s=rounded_up(largest_bound(solution.grid, ("vx", "vy", "vz"), grid.decimals)),
         transit_s=max((row[-1] for row in transits.rows), key=Fraction, default=None),
     )
-    verdict = _verdict(solution)
+    completeness = _completeness(solution)
     files = {
         "grid.csv": grid.csv(),
         "transits.csv": transits.csv(),
         "grid.binary64.csv": binary64_sheet(grid).csv(),
         "transits.binary64.csv": binary64_sheet(transits).csv(),
-        "certified.txt": certified_page(solution, grid, transits, bounds, verdict),
+        "certified.txt": certified_page(solution, grid, transits, bounds, completeness),
     }
     lines, left_out = lines_and_left_out(scene, run.formulation)
     initial, drift = invariant_drift(scene, grid)
-    made = Manifest(
+    manifest = Manifest(
         schema_version=1,
         id=scene.id,
         title=scene.title,
@@ -67,7 +67,7 @@ def render(solution: Solution) -> dict[str, str]:
         decimals={"grid": grid.decimals, "transits": transits.decimals},
         bounds=bounds,
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
-        transits=verdict,
+        transits=completeness,
         possible=[
             Possible(from_s=outward(a, -1), to_s=outward(b, 1), parity=parity) for a, b, parity in solution.possible
         ],
@@ -94,10 +94,11 @@ def render(solution: Solution) -> dict[str, str]:
             for name, text in files.items()
         },
     )
-    return {MANIFEST: made.text(), **files}
+    return {MANIFEST: manifest.text(), **files}
 
 
-def _verdict(solution: Solution) -> Any:
+def _completeness(solution: Solution) -> Any:
+    """Return the manifest's word on its transits: whether all are there, and otherwise why not."""
     if not solution.scene.run.transits:
         return "not asked for"
     if solution.transits is None:
@@ -129,7 +130,7 @@ def _version(package: str) -> str:
 
 
 def command(scene: Scene, number: str) -> str:
-    """The command that makes the dataset: of a scene that ships, with what was changed in it, or of its file."""
+    """Return the command that makes the dataset: of a shipped scene with its changed fields, or of the scene's file."""
     run, shipped = scene.run, scene.id in scene_ids()
     parts = ["foucault", "generate", scene.id if shipped else f"{scene.id}.toml"]
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
@@ -141,11 +142,11 @@ def command(scene: Scene, number: str) -> str:
 
 
 def _changes(scene: Scene, shipped: Scene) -> list[str]:
-    """What was set in a shipped scene, other than by options of their own."""
-    before, now = scene_inputs(shipped), scene_inputs(scene)
+    """Return the changed fields of a shipped scene as section.key=value, without those that have their own option."""
+    before, after = scene_inputs(shipped), scene_inputs(scene)
     changed = [
         f"{section}.{key}={value}"
-        for section, table in now.items()
+        for section, table in after.items()
         for key, value in table.items()
         if before[section].get(key) != value and (section != "run" or key == "grid_step")
     ]

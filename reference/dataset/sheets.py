@@ -1,4 +1,4 @@
-"""A solution as text: tables with a fixed number of digits per column, and their nearest doubles."""
+"""CSV tables of a dataset: decimals with a fixed number of digits per column, and their nearest doubles."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ..table import Table
 
 GRID_HEADER = ("t", "x", "y", "z", "vx", "vy", "vz")
 TRANSITS_HEADER = ("k", "t", "direction", "x", "y", "z", "vy", "ax", "bound")
-WORDS = frozenset({"k", "direction", "bound"})  # columns that are not decimals of fixed length
+WORDS = frozenset({"k", "direction", "bound"})  # columns that are not decimals with a fixed number of digits
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,12 @@ class Sheet:
     decimals: dict[str, int]
 
     def csv(self) -> str:
-        """The file as it is written: one header line, commas, LF."""
+        """Return the text of the file: one header line, commas, LF."""
         return "".join(",".join(row) + "\n" for row in (self.header, *self.rows))
 
 
 def grid_sheet(solution: Solution) -> Sheet:
-    """`grid.csv`: exact times, and the state at each."""
+    """Return `grid.csv`: exact times, and the state at each."""
     decimals = {"t": exact_decimals(solution.times), **decimals_of(solution)[0]}
     rounded = printed_grid(solution)
     times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
@@ -38,7 +38,7 @@ def grid_sheet(solution: Solution) -> Sheet:
 
 
 def transits_sheet(solution: Solution) -> Sheet:
-    """`transits.csv`: every zero of xdot; the bound on t includes the rounding of t to its digits."""
+    """Return `transits.csv`: every zero of xdot; the bound on t includes the rounding of t to its digits."""
     table = solution.transits
     if table is None:
         return Sheet(TRANSITS_HEADER, [], {})
@@ -53,19 +53,19 @@ def transits_sheet(solution: Solution) -> Sheet:
 
 
 def binary64_sheet(sheet: Sheet) -> Sheet:
-    """Each number of a sheet as the nearest double: 17 significant digits, then all again as hexfloats."""
+    """Return a sheet with every number as the nearest double: 17 significant digits, then all again as hexfloats."""
     names = [name for name in sheet.header if name not in WORDS]
     rows = []
     for row in sheet.rows:
         doubles = [float(text) for name, text in zip(sheet.header, row, strict=True) if name in names]
-        again = iter(doubles)
-        plain = (f"{next(again):.16e}" if name in names else text for name, text in zip(sheet.header, row, strict=True))
+        queue = iter(doubles)
+        plain = (f"{next(queue):.16e}" if name in names else text for name, text in zip(sheet.header, row, strict=True))
         rows.append((*plain, *(value.hex() for value in doubles)))
     return Sheet((*sheet.header, *(f"{name}_hex" for name in names)), rows, {})
 
 
 def largest_bound(table: Table, columns: tuple[str, ...], decimals: dict[str, int]) -> Fraction:
-    """The largest bound of some columns, rounding to the printed digits included."""
+    """Return the largest bound of some columns, rounding to the printed digits included."""
     return max(
         (max(table.bound(name), default=Fraction(0)) + Fraction(1, 2 * 10 ** decimals[name]) for name in columns),
         default=Fraction(0),
@@ -73,7 +73,7 @@ def largest_bound(table: Table, columns: tuple[str, ...], decimals: dict[str, in
 
 
 def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
-    """All inputs of a scene as strings, section by section."""
+    """Return all inputs of a scene as strings, section by section."""
     document = scene.model_dump(exclude_none=True, include={"pendulum", "site", "release", "run"})
     return {
         section: {key: str(value).lower() if isinstance(value, bool) else str(value) for key, value in table.items()}

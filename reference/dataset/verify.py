@@ -1,4 +1,4 @@
-"""Is a golden dataset whole, and is it physics? Nothing here integrates."""
+"""Verify a golden dataset without integrating: files and hashes, tables, sphere, invariant h and transits."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from .manifest import Manifest
 from .read import changed_files, read_manifest, read_table, scene_of
 from .sheets import GRID_HEADER, TRANSITS_HEADER, WORDS, Sheet, binary64_sheet
 
-MAX_PROBLEMS = 20
+MAX_PROBLEMS = 20  # sentences returned at most
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
 def problems_of(folder: Path) -> list[str]:
-    """What is wrong with a dataset, in sentences; empty if nothing is.
+    """Return a sentence for each problem of a dataset; empty if it passes every check.
 
     Raises:
         InputError: there is no dataset at `folder`.
@@ -31,17 +31,17 @@ def problems_of(folder: Path) -> list[str]:
         manifest = read_manifest(folder)
     except DatasetError as error:
         return error.problems
-    found = changed_files(folder, manifest)
-    if found:
-        return found
+    problems = changed_files(folder, manifest)
+    if problems:
+        return problems
     try:
         scene = scene_of(manifest)
     except FoucaultError as error:
         return [f"the manifest's scene is refused: {error}"]
     tables = {name: _sheet(folder / name) for name in manifest.files if name.endswith(".csv")}
-    found = [problem for check in (_shape, _doubles) for problem in check(manifest, tables)]
-    if found:
-        return found[:MAX_PROBLEMS]
+    problems = [problem for check in (_shape, _doubles) for problem in check(manifest, tables)]
+    if problems:
+        return problems[:MAX_PROBLEMS]
     physics: tuple[Callable[[Scene, Manifest, Sheet, Sheet], Iterator[str]], ...] = (_grid, _sphere, _invariant, _zeros)
     grid, transits = tables["grid.csv"], tables["transits.csv"]
     return [p for check in physics for p in check(scene, manifest, grid, transits)][:MAX_PROBLEMS]
@@ -53,7 +53,7 @@ def _sheet(path: Path) -> Sheet:
 
 
 def _shape(manifest: Manifest, tables: dict[str, Sheet]) -> Iterator[str]:
-    """Headers, counts, and the number of digits after the point."""
+    """Check headers, counts, and the number of digits after the point."""
     for name, header, count, decimals in (
         ("grid.csv", GRID_HEADER, manifest.counts.grid, manifest.decimals.get("grid", {})),
         ("transits.csv", TRANSITS_HEADER, manifest.counts.transits, manifest.decimals.get("transits", {})),
@@ -73,24 +73,27 @@ def _shape(manifest: Manifest, tables: dict[str, Sheet]) -> Iterator[str]:
 
 
 def _doubles(manifest: Manifest, tables: dict[str, Sheet]) -> Iterator[str]:
+    """Check that the binary64 tables hold the nearest doubles."""
     for name in ("grid", "transits"):
         if f"{name}.csv" in tables and binary64_sheet(tables[f"{name}.csv"]) != tables.get(f"{name}.binary64.csv"):
             yield f"{name}.binary64.csv: does not hold the nearest doubles of {name}.csv"
 
 
 def _grid(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
+    """Check that the grid times are those of the scene."""
     if [Fraction(row[0]) for row in grid.rows] != scene.exact.grid:
         yield "grid.csv: the times are not those of the scene"
 
 
-def _slack(manifest: Manifest) -> tuple[Fraction, Fraction]:
+def _bounds(manifest: Manifest) -> tuple[Fraction, Fraction]:
+    """Return the bounds on position (m) and velocity (m/s)."""
     return Fraction(manifest.bounds.position_m), Fraction(manifest.bounds.velocity_m_s)
 
 
 def _sphere(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
-    """|r| = l and r·v = 0 as far as the bounds say."""
+    """Check |r| = l and r·v = 0 to within the bounds."""
     length = scene.exact.length
-    dr, dv = _slack(manifest)
+    dr, dv = _bounds(manifest)
     for row in grid.rows:
         x, y, z, vx, vy, vz = map(Fraction, row[1:])
         if abs(x * x + y * y + z * z - length**2) > 4 * length * dr + 3 * dr**2:
@@ -101,17 +104,18 @@ def _sphere(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> I
 
 
 def _invariant(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
-    """Without drag h stays put as far as the bounds say; the manifest says how far it moved."""
+    """Check that h and its drift are those of the manifest and, without drag, that h is constant within the bounds."""
     initial, drift = invariant_drift(scene, grid)
     if (initial, drift) != (manifest.invariant.h_m2_s2, manifest.invariant.drift_m2_s2):
-        yield f"manifest.json: the invariant is {initial}, drift {drift}, and not what the manifest says"
+        yield f"manifest.json: the invariant of grid.csv is {initial}, drift {drift}; the manifest says otherwise"
     if Fraction(drift) > invariant_tolerance(scene, manifest, grid) and scene.exact.drag == 0:
         yield f"grid.csv: the invariant h drifts by {drift} m²/s², more than the bounds allow"
 
 
 def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
-    """H of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
-    ctx = context(bits_of(scene.run.digits) + 96)  # (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
+    """Return h of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
+    # 96 guard bits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
+    ctx = context(bits_of(scene.run.digits) + 96)
     k = constants(scene.exact, ctx)
 
     def h_of(row: tuple[str, ...]) -> Fraction:
@@ -124,11 +128,11 @@ def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
 
 
 def invariant_tolerance(scene: Scene, manifest: Manifest, grid: Sheet) -> Fraction:
-    """How much h may change between two rows by the bounds on position and velocity alone, in m²/s²."""
+    """Return the largest change of h between two rows that the bounds on position and velocity allow, in m²/s²."""
     ctx = context(64)
     k = constants(scene.exact, ctx)
     length = scene.exact.length
-    dr, dv = _slack(manifest)
+    dr, dv = _bounds(manifest)
     fastest = max(abs(Fraction(text)) for row in grid.rows for text in row[4:])
     reach = length * (to_fraction(k.axis_distance + ctx.mpf(0)) + 3) + 3 * dr
     slope = scene.exact.gravity + 4 * scene.exact.rotation_rate**2 * reach
@@ -136,14 +140,14 @@ def invariant_tolerance(scene: Scene, manifest: Manifest, grid: Sheet) -> Fracti
 
 
 def _zeros(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
-    """In order, alternating, with ax of the crossing's sign, and as many as the sign of vx on the grid demands."""
-    moments = [Fraction(row[1]) for row in transits.rows]
+    """Check that transits are in order and alternate, and that ax and the sign of vx on the grid agree with them."""
+    times = [Fraction(row[1]) for row in transits.rows]
     directions = [int(row[2]) for row in transits.rows]
-    if [row[0] for row in transits.rows] != [str(k + 1) for k in range(len(moments))]:
+    if [row[0] for row in transits.rows] != [str(k + 1) for k in range(len(times))]:
         yield "transits.csv: k does not count from 1"
-    if moments and not (moments[0] > 0 and moments[-1] <= scene.exact.t_end):
+    if times and not (times[0] > 0 and times[-1] <= scene.exact.t_end):
         yield "transits.csv: a transit lies outside (0, t_end]"
-    for k, (a, b) in enumerate(pairwise(moments), 1):
+    for k, (a, b) in enumerate(pairwise(times), 1):
         if not a < b:
             yield f"transits.csv: transits {k} and {k + 1} are not in order"
     for k, (p, q) in enumerate(pairwise(directions), 1):
@@ -153,15 +157,15 @@ def _zeros(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> It
         if abs(direction) != 1 or Fraction(row[7]) * direction < 0:
             yield f"transits.csv: transit {row[0]}: direction {row[2]} contradicts ax = {row[7]}"
     if manifest.transits == "complete":
-        yield from _signs_on_grid(grid, moments, directions, _slack(manifest)[1])
+        yield from _signs_on_grid(grid, times, directions, _bounds(manifest)[1])
 
 
-def _signs_on_grid(grid: Sheet, moments: list[Fraction], directions: list[int], dv: Fraction) -> Iterator[str]:
-    """After a crossing upwards vx is positive until the next: every surely signed grid row must agree."""
+def _signs_on_grid(grid: Sheet, times: list[Fraction], directions: list[int], dv: Fraction) -> Iterator[str]:
+    """Check the sign of vx between transits, in every grid row where the bound leaves it certain."""
     passed = 0
     for row in grid.rows[1:]:
         t, vx = Fraction(row[0]), Fraction(row[4])
-        while passed < len(moments) and moments[passed] <= t:
+        while passed < len(times) and times[passed] <= t:
             passed += 1
         expected = directions[passed - 1] if passed else -directions[0] if directions else 0
         if expected and abs(vx) > dv and vx * expected < 0:

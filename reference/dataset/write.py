@@ -1,4 +1,4 @@
-"""Publish a solution: its files as text, written whole or not at all, and made again to compare every byte."""
+"""Write a dataset: its files are checked in a temporary folder and put in place at once, whole or not at all."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AT_FDCWD, _RENAME_EXCHANGE = -100, 2
 
 
 def default_folder(scene: Scene, as_shipped: bool) -> Path:
-    """Where a dataset goes: the project's data/golden for a scene as it stands there, else golden/ here."""
+    """Return the folder to write to: the checkout's data/golden for a shipped scene as it stands, else ./golden."""
     name = scene.id if scene.inputs == "decimal" else f"{scene.id}.{scene.inputs}"
     return (data_root() if as_shipped and in_checkout() else Path()) / "golden" / name
 
@@ -29,7 +29,7 @@ def check_target(folder: Path) -> None:
     """Refuse a target that cannot be written, or that holds something other than a dataset.
 
     Raises:
-        InputError: naming what is in the way.
+        InputError: the target cannot be written, or something else is in its place.
     """
     if folder.exists() and not folder.is_dir():
         raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
@@ -46,7 +46,7 @@ def check_target(folder: Path) -> None:
 
 @contextmanager
 def _workspace(folder: Path) -> Iterator[Path]:
-    """A new folder beside the target; removed afterwards, as are those that killed processes left."""
+    """Provide a new folder beside the target; remove it afterwards, and any that killed processes left behind."""
     target = folder.absolute()
     for stale in target.parent.glob(f".{target.name}.partial-*"):
         with suppress(ValueError, PermissionError, ProcessLookupError):
@@ -66,8 +66,8 @@ def write(solution: Solution, folder: Path) -> Path:
     """Write a dataset beside `folder`, check it there, and put it in place at once.
 
     Raises:
-        InputError: the place cannot be written.
-        DatasetError: what was about to be published does not pass its own checks.
+        InputError: the folder cannot be written.
+        DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as it is.
     """
     check_target(folder)
     with _workspace(folder) as work:
@@ -84,6 +84,7 @@ def write(solution: Solution, folder: Path) -> Path:
 
 
 def _put_in_place(work: Path, target: Path) -> None:
+    """Replace `target` by `work`, in one step where the system can."""
     if not target.exists():
         work.rename(target)
     elif not _exchange(work, target):
@@ -94,10 +95,10 @@ def _put_in_place(work: Path, target: Path) -> None:
 
 
 def _exchange(a: Path, b: Path) -> bool:
-    """Swap two folders in one step (Linux); False where the system cannot."""
+    """Swap two folders in one step (Linux); return False where the system cannot."""
     try:
         renameat2 = ctypes.CDLL(None, use_errno=True).renameat2
     except (OSError, AttributeError):
         return False
-    done: int = renameat2(_AT_FDCWD, os.fsencode(a), _AT_FDCWD, os.fsencode(b), _RENAME_EXCHANGE)
-    return done == 0
+    status: int = renameat2(_AT_FDCWD, os.fsencode(a), _AT_FDCWD, os.fsencode(b), _RENAME_EXCHANGE)
+    return status == 0

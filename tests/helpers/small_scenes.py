@@ -1,4 +1,4 @@
-"""What several tests need: small scenes, and the model's constants at a precision."""
+"""Small scenes for tests, the model's constants at a precision, and heyoka's integrator at the release."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from reference.scene import Scene, parse_scene
 
 
 def make_scene(scene_id: str = "test", **sections: Any) -> Scene:
-    """A scene from sections given as dicts; Paris where nothing is said."""
+    """Return a scene from sections given as dicts; Paris where they say nothing."""
     return parse_scene({"id": scene_id, "release": {"x": "0.3", "y": "0.4"}, **sections})
 
 
 def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
-    """Context, constants, n and v of a scene at a precision."""
+    """Return context, constants, n and v of a scene at a precision in bits."""
     ctx = context(prec)
     k = constants(scene.exact, ctx)
     position, velocity = release(scene.exact, ctx)
@@ -25,7 +25,7 @@ def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
 
 
 def stepper_of(scene: Scene, number: NumberType, name: str = "momentum", **keywords: Any) -> Any:
-    """heyoka's integrator of a scene at its release."""
+    """Return heyoka's integrator of a scene at its release."""
     from reference.engines.heyoka.stepper import Stepper
 
     ctx, k, n, v = start_of(scene.exact, number)

@@ -1,4 +1,4 @@
-"""Conversions lose nothing, or what they say."""
+"""Number types and conversions: they lose nothing, or no more than they say."""
 
 from __future__ import annotations
 
@@ -88,14 +88,14 @@ def test_the_cheapest_type_that_serves_is_taken(prec, name):
 @given(value=fractions)
 def test_constants_enter_every_type_rounded_once(number, value):
     numbers = Numbers(number)
-    made = np.array([numbers.of(value)], dtype=numbers.dtype)
-    exact = Fraction(numbers.fixed(made, 600)[0], 2**600) if value else 0
+    array = np.array([numbers.of(value)], dtype=numbers.dtype)
+    exact = Fraction(numbers.fixed(array, 600)[0], 2**600) if value else 0
     assert abs(exact - value) <= abs(value) * Fraction(1, 2**number.prec)
 
 
 def test_a_decimal_reaches_real_as_itself_and_not_through_a_double():
     numbers = Numbers(real(200))
     tenth = np.array([numbers.of(Fraction(1, 10))], dtype=numbers.dtype)
-    off = Fraction(numbers.fixed(tenth, 400)[0], 2**400) - Fraction(1, 10)
-    assert abs(off) < Fraction(1, 2**203)
+    error = Fraction(numbers.fixed(tenth, 400)[0], 2**400) - Fraction(1, 10)
+    assert abs(error) < Fraction(1, 2**203)
     assert abs(Fraction(0.1) - Fraction(1, 10)) > Fraction(1, 2**60)

@@ -1,4 +1,4 @@
-"""Scenes: exact numbers, both readings, and refusals that name the field."""
+"""Scenes: exact numbers, inputs read as decimal or binary64, and refusals that name the field."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The JSON Schema of a manifest, for those who read datasets without Python."""
+"""The JSON Schema of `manifest.json`, for those who read datasets without Python."""

@@ -1,4 +1,4 @@
-"""Write `manifest.schema.json` anew from `reference.dataset.manifest`: python -m reference.dataset.schema."""
+"""Write `manifest.schema.json` anew from `reference/dataset/manifest.py`: python -m reference.dataset.schema."""
 
 from __future__ import annotations
 

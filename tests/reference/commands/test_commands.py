@@ -1,4 +1,4 @@
-"""The command line as a user meets it: exit codes, messages, JSON, nothing half written."""
+"""The commands that compute datasets: exit statuses, messages, JSON, nothing half written."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from foucault import main
 
 @pytest.fixture
 def foucault(monkeypatch, capfd):
-    """Run a command in this process; gives exit status, stdout, stderr."""
+    """Run a command in this process; return exit status, stdout, stderr."""
 
     def call(*words: str) -> tuple[int, str, str]:
         monkeypatch.setattr(sys, "argv", ["foucault", *words])
@@ -27,8 +27,8 @@ def foucault(monkeypatch, capfd):
             main()
         except SystemExit as stop:
             status = int(stop.code or 0)
-        seen = capfd.readouterr()
-        return status, seen.out, seen.err
+        output = capfd.readouterr()
+        return status, output.out, output.err
 
     return call
 
@@ -62,9 +62,9 @@ def test_show_equations_says_what_was_left_out_and_why(foucault):
     assert "gravity: it is 0" in out
     document = json.loads(foucault("show", "paris", "--equations", "--json")[1])
     assert len(document["equations"]) == 6
-    shown = foucault("show", "paris", "--equations", "--set", "run.transits=false", "--set", "run.level=enclosed")[1]
-    assert "transits are off" in shown
-    assert "the enclosure" not in shown
+    text = foucault("show", "paris", "--equations", "--set", "run.transits=false", "--set", "run.level=enclosed")[1]
+    assert "transits are off" in text
+    assert "the enclosure" not in text
     planar = foucault("show", "spherical", "--equations", "--set", "release.x=0", "--set", "release.vx=0")[1]
     assert "xdot is identically zero" in planar
 
@@ -179,8 +179,8 @@ def test_help_loads_neither_heyoka_nor_flint_nor_numpy():
         "try: runpy.run_module('foucault', run_name='__main__')\n"
         f"except SystemExit: print([name for name in {heavy} if name in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert done.stdout.strip().endswith("[]")
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert process.stdout.strip().endswith("[]")
 
 
 def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
@@ -190,7 +190,7 @@ def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
         [*words, "--out", str(tmp_path / "p")], stdout=subprocess.DEVNULL, stderr=slave, cwd=ROOT
     ) as process:
         os.close(slave)
-        seen = b""
+        output = b""
         while True:
             try:
                 piece = os.read(master, 4096)
@@ -198,10 +198,10 @@ def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
                 break
             if not piece:
                 break
-            seen += piece
+            output += piece
     os.close(master)
     assert process.returncode == 0
-    assert b"of 7,200 s simulated" in seen
+    assert b"of 7,200 s simulated" in output
 
 
 def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
@@ -234,9 +234,9 @@ def gone_within(group: int, seconds: float) -> bool:
 
 
 def test_show_says_how_many_digits_the_flow_costs(foucault):
-    said = json.loads(foucault("show", "two_radians", "--sensitivity", "--json")[1])
-    assert 2 < said["digits_lost"] < 4
-    assert f"the flow costs {said['digits_lost']:.1f} digits" in foucault("show", "two_radians", "--sensitivity")[1]
+    document = json.loads(foucault("show", "two_radians", "--sensitivity", "--json")[1])
+    assert 2 < document["digits_lost"] < 4
+    assert f"the flow costs {document['digits_lost']:.1f} digits" in foucault("show", "two_radians", "--sensitivity")[1]
 
 
 def test_an_end_beyond_all_numbers_is_refused(foucault):

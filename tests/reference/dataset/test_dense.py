@@ -1,4 +1,4 @@
-"""The truth between golden states, against runs on other grids; bounds that are measured, and hold."""
+"""Dense output between golden states, against runs on other grids; the measured bounds hold."""
 
 from __future__ import annotations
 
@@ -33,63 +33,65 @@ def nearly_inverted(tmp_path_factory):
 
 def on_another_grid(golden, step):
     """An independent solution of the same scene, on times that are doubles."""
-    found = solve(golden.scene.with_values([f"run.grid_step={step}"]), digits=30, level="self_consistent")
-    rows = [[Fraction(value, 1 << found.grid.bits) for value in row] for row in found.grid.values]
-    return np.array([float(t) for t in found.times]), rows
+    solution = solve(golden.scene.with_values([f"run.grid_step={step}"]), digits=30, level="self_consistent")
+    rows = [[Fraction(value, 1 << solution.grid.bits) for value in row] for row in solution.grid.values]
+    return np.array([float(t) for t in solution.times]), rows
 
 
 def distance_m(evaluated, rows):
     """Largest distance of positions, all digits counted."""
     worst = 0.0
-    for near, rest, row in zip(evaluated.states, evaluated.low, rows, strict=True):
-        off = [Fraction(a) + Fraction(b) - c for a, b, c in zip(near[:3], rest[:3], row[:3], strict=True)]
-        worst = max(worst, float(sum(part * part for part in off)) ** 0.5)
+    for near, low, row in zip(evaluated.states, evaluated.low, rows, strict=True):
+        error = [Fraction(a) + Fraction(b) - c for a, b, c in zip(near[:3], low[:3], row[:3], strict=True)]
+        worst = max(worst, float(sum(part * part for part in error)) ** 0.5)
     return worst
 
 
 def test_it_agrees_with_a_run_on_another_grid_within_its_bound(decimal_grid):
     times, rows = on_another_grid(decimal_grid, "0.71875")
     for within, number in ((2.0**-58, "long_double"), (2.0**-90, "real(128)")):
-        found = dense(decimal_grid, times, within)
-        assert found.number == number
-        assert distance_m(found, rows) <= found.bound_m <= within * 67
-        assert np.array_equal(found.t, times)
+        evaluated = dense(decimal_grid, times, within)
+        assert evaluated.number == number
+        assert distance_m(evaluated, rows) <= evaluated.bound_m <= within * 67
+        assert np.array_equal(evaluated.t, times)
 
 
 def test_velocities_agree_as_well(decimal_grid):
     times, rows = on_another_grid(decimal_grid, "0.71875")
-    found = dense(decimal_grid, times)
+    evaluated = dense(decimal_grid, times)
     expected = np.array([[float(value) for value in row[3:6]] for row in rows])
-    assert np.abs(found.states[:, 3:] - expected).max() < 1e-16
+    assert np.abs(evaluated.states[:, 3:] - expected).max() < 1e-16
 
 
 def test_at_a_golden_time_it_is_the_golden_state(decimal_grid):
     k = 10  # 0.1 * 10 is a double
-    found = dense(decimal_grid, [1.0], 2.0**-110)
+    evaluated = dense(decimal_grid, [1.0], 2.0**-110)
     for i, name in enumerate(GRID_COLUMNS):
         printed = decimal_grid.exact(name)[k]
-        assert abs(Fraction(found.states[0, i]) + Fraction(found.low[0, i]) - printed) < Fraction(found.bound_m)
-    assert found.bound_m < float(decimal_grid.manifest.bounds.position_m) + 1e-29
+        assert abs(Fraction(evaluated.states[0, i]) + Fraction(evaluated.low[0, i]) - printed) < Fraction(
+            evaluated.bound_m
+        )
+    assert evaluated.bound_m < float(decimal_grid.manifest.bounds.position_m) + 1e-29
 
 
 def test_a_double_beside_a_grid_time_is_not_taken_for_it(decimal_grid):
     """The double 8.3 lies below the decimal and 0.3's above: the bob moves by 1e-17 m between the two."""
     for text in ("8.3", "0.3", "29.9", "29.3"):
         t = float(text)
-        found = dense(decimal_grid, [t], 2.0**-90)
+        evaluated = dense(decimal_grid, [t], 2.0**-90)
         k = decimal_grid.decimals("t").index(text) if text in decimal_grid.decimals("t") else round(t * 10)
         late = Fraction(t) - Fraction(text)
         moved = decimal_grid.exact("x")[k] + late * decimal_grid.exact("vx")[k]
-        value = Fraction(found.states[0, 0]) + Fraction(found.low[0, 0])
+        value = Fraction(evaluated.states[0, 0]) + Fraction(evaluated.low[0, 0])
         assert abs(value - moved) < Fraction(1, 10**26)
 
 
 def test_times_in_any_order_and_repeated_come_out_sorted_once(decimal_grid):
-    found = dense(decimal_grid, [2.5, 0.0, 1.25, 2.5])
-    assert found.t.tolist() == [0.0, 1.25, 2.5]
-    assert found.states.shape == found.low.shape == (3, 6)
-    one_by_one = np.vstack([dense(decimal_grid, [t]).states for t in found.t])
-    assert np.abs(one_by_one - found.states).max() < 1e-16
+    evaluated = dense(decimal_grid, [2.5, 0.0, 1.25, 2.5])
+    assert evaluated.t.tolist() == [0.0, 1.25, 2.5]
+    assert evaluated.states.shape == evaluated.low.shape == (3, 6)
+    one_by_one = np.vstack([dense(decimal_grid, [t]).states for t in evaluated.t])
+    assert np.abs(one_by_one - evaluated.states).max() < 1e-16
 
 
 def test_many_rows_go_through_blocks_unharmed(decimal_grid, monkeypatch):
@@ -102,10 +104,10 @@ def test_many_rows_go_through_blocks_unharmed(decimal_grid, monkeypatch):
 
 
 def test_a_step_beyond_the_end_is_measured_and_more_is_refused(decimal_grid):
-    found = dense(decimal_grid, [30.05])
-    assert 0 < found.bound_m < 1e-15
+    evaluated = dense(decimal_grid, [30.05])
+    assert 0 < evaluated.bound_m < 1e-15
     ahead = dense(decimal_grid, [30.0])
-    assert found.states[0, 0] == pytest.approx(ahead.states[0, 0] + 0.05 * ahead.states[0, 3], abs=1e-4)
+    assert evaluated.states[0, 0] == pytest.approx(ahead.states[0, 0] + 0.05 * ahead.states[0, 3], abs=1e-4)
     with pytest.raises(InputError, match=r"run\.t_end"):
         dense(decimal_grid, [30.11])
 
@@ -118,14 +120,14 @@ def test_times_outside_are_refused(decimal_grid, times):
 
 def test_near_the_inverted_position_the_number_type_rises_and_the_bound_is_kept(nearly_inverted):
     times, rows = on_another_grid(nearly_inverted, "0.625")
-    found = dense(nearly_inverted, times)
-    assert found.number != "long_double"  # ten seconds there cost more than the 6 bits that it has to spare
-    assert distance_m(found, rows) <= found.bound_m <= 2.0**-58 * 1.01
+    evaluated = dense(nearly_inverted, times)
+    assert evaluated.number != "long_double"  # ten seconds there cost more than the 6 bits that it has to spare
+    assert distance_m(evaluated, rows) <= evaluated.bound_m <= 2.0**-58 * 1.01
 
 
 def test_where_no_type_is_enough_the_bound_says_so(nearly_inverted, monkeypatch):
     monkeypatch.setattr("reference.dataset.dense.TYPES", (LONG_DOUBLE,))
     times, rows = on_another_grid(nearly_inverted, "0.625")
-    found = dense(nearly_inverted, times)
-    assert found.bound_m > 2.0**-58
-    assert distance_m(found, rows) <= found.bound_m
+    evaluated = dense(nearly_inverted, times)
+    assert evaluated.bound_m > 2.0**-58
+    assert distance_m(evaluated, rows) <= evaluated.bound_m

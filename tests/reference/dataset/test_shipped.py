@@ -1,4 +1,4 @@
-"""The golden datasets that come with the project are whole, and the same command still gives the same bytes."""
+"""The golden datasets that come with the project pass every check, and recomputing them gives the same bytes."""
 
 from __future__ import annotations
 

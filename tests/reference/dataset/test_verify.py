@@ -1,4 +1,4 @@
-"""The gate itself: every kind of damage must be found."""
+"""Verification of datasets: every kind of damage must be found."""
 
 from __future__ import annotations
 
@@ -71,9 +71,9 @@ def test_any_changed_byte_in_any_file_is_found(dataset, seed):
 def test_a_missing_and_a_strange_file_are_found(dataset):
     (dataset / "transits.csv").unlink()
     (dataset / "notes.txt").write_text("mine")
-    found = problems_of(dataset)
-    assert any(problem.startswith("transits.csv: No such file") for problem in found)
-    assert "notes.txt: not in the manifest" in found
+    problems = problems_of(dataset)
+    assert any(problem.startswith("transits.csv: No such file") for problem in problems)
+    assert "notes.txt: not in the manifest" in problems
 
 
 def test_a_wrong_count_is_found(dataset):

@@ -1,4 +1,4 @@
-"""Golden datasets: what stands in the files, written whole or not at all, and read back."""
+"""Golden datasets: the contents of their files, written whole or not at all, and read back."""
 
 from __future__ import annotations
 
@@ -19,11 +19,10 @@ import pytest
 from small_scenes import make_scene
 
 import reference
-from reference.dataset import read as golden
-from reference.dataset import write as publish
+from reference.dataset import write as writer
 from reference.dataset.manifest import json_schema
-from reference.dataset.read import MANIFEST, load
-from reference.dataset.render import render
+from reference.dataset.read import MANIFEST, load, read_table
+from reference.dataset.render import command, render
 from reference.dataset.verify import problems_of
 from reference.dataset.write import check_target, default_folder, write
 from reference.errors import DatasetError, InputError
@@ -67,15 +66,15 @@ def test_headers_and_digits_after_the_point_are_fixed(dataset):
 
 
 def test_the_largest_number_of_a_column_has_the_digits_asked(dataset):
-    columns = golden.read_table(dataset / "grid.csv")
+    columns = read_table(dataset / "grid.csv")
     for name in ("x", "y", "z", "vx", "vy"):
         largest = max(columns[name], key=lambda text: abs(Fraction(text)))
         assert len(largest.lstrip("-0.").replace(".", "")) == 25
 
 
 def test_doubles_are_given_with_seventeen_digits_and_as_hexfloats(dataset):
-    grid = golden.read_table(dataset / "grid.csv")
-    doubles = golden.read_table(dataset / "grid.binary64.csv")
+    grid = read_table(dataset / "grid.csv")
+    doubles = read_table(dataset / "grid.binary64.csv")
     for name in grid:
         for text, plain, hexadecimal in zip(grid[name], doubles[name], doubles[f"{name}_hex"], strict=True):
             assert float(Fraction(text)) == float(plain) == float.fromhex(hexadecimal)
@@ -116,15 +115,15 @@ def test_the_page_for_people_carries_the_certified_values(dataset):
 
 
 def test_a_dataset_is_read_back_as_arrays_strings_and_fractions(dataset, solution):
-    read = load(dataset)
-    assert np.array_equal(read.t, solution.t)
-    assert read.x.dtype == np.float64
-    assert read.exact("x")[3] == Fraction(read.decimals("x")[3])
-    assert abs(read.exact("x")[3] - solution.grid.exact("x")[3]) <= Fraction(1, 2 * 10**25)
-    assert len(read.transits["t"]) == 36
-    assert read.scene == solution.scene
+    golden = load(dataset)
+    assert np.array_equal(golden.t, solution.t)
+    assert golden.x.dtype == np.float64
+    assert golden.exact("x")[3] == Fraction(golden.decimals("x")[3])
+    assert abs(golden.exact("x")[3] - solution.grid.exact("x")[3]) <= Fraction(1, 2 * 10**25)
+    assert len(golden.transits["t"]) == 36
+    assert golden.scene == solution.scene
     with pytest.raises(AttributeError):
-        _ = read.nonsense
+        _ = golden.nonsense
 
 
 def test_what_has_no_transits_says_why(tmp_path):
@@ -164,7 +163,7 @@ def test_a_target_that_is_something_else_is_left_alone(tmp_path):
 def test_a_dataset_that_fails_its_own_checks_is_not_put_in_place(dataset, solution, monkeypatch):
     before = {path.name: path.read_bytes() for path in dataset.iterdir()}
     broken = {**render(solution), "grid.csv": "t,x\n"}
-    monkeypatch.setattr(publish, "render", lambda _: broken)
+    monkeypatch.setattr(writer, "render", lambda _: broken)
     with pytest.raises(DatasetError):
         write(solution, dataset)
     assert {path.name: path.read_bytes() for path in dataset.iterdir()} == before
@@ -175,7 +174,7 @@ def test_an_older_dataset_is_replaced_also_where_folders_cannot_be_swapped(datas
     shorter = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level="computed")
     write(shorter, dataset)
     assert load(dataset).manifest.digits == 8
-    monkeypatch.setattr(publish, "_exchange", lambda *_: False)
+    monkeypatch.setattr(writer, "_exchange", lambda *_: False)
     write(solution, dataset)
     assert load(dataset).manifest.digits == 25
     assert [path.name for path in dataset.parent.iterdir()] == ["paris"]
@@ -197,7 +196,7 @@ def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch):
     assert default_folder(scene, as_shipped=False) == Path("golden/paris")
     binary = scene.with_values(["inputs=binary64"])
     assert default_folder(binary, as_shipped=True).name == "paris.binary64"
-    monkeypatch.setattr(publish, "in_checkout", lambda: False)
+    monkeypatch.setattr(writer, "in_checkout", lambda: False)
     assert default_folder(scene, as_shipped=True) == Path("golden/paris")
 
 
@@ -235,12 +234,12 @@ def test_bounds_cover_the_rounding_to_the_printed_digits(dataset):
 
 def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     plain = "foucault generate paris --t-end 86400 --digits 40 --level confirmed"
-    assert publish.command(paris, "real(184)") == f"{plain} --engine heyoka"
-    assert publish.command(paris, "limbs(184)") == f"{plain} --engine limbs"
+    assert command(paris, "real(184)") == f"{plain} --engine heyoka"
+    assert command(paris, "limbs(184)") == f"{plain} --engine limbs"
     changed = paris.with_values(["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"])
     sets = "--set site.latitude=0 --set release.vx=1 --set run.grid_step=600 --set inputs=binary64"
-    named = publish.command(changed, "double")
-    assert sets in named and named.startswith(plain)
-    words = [word for word in named.split() if "=" in word]
+    text = command(changed, "double")
+    assert sets in text and text.startswith(plain)
+    words = [word for word in text.split() if "=" in word]
     assert paris.with_values(words) == changed
-    assert publish.command(make_scene("mine"), "double").startswith("foucault generate mine.toml --t-end")
+    assert command(make_scene("mine"), "double").startswith("foucault generate mine.toml --t-end")
