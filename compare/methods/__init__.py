@@ -1,17 +1,17 @@
-"""Integrators of the paper and of others behind one interface, each declared in a file of its own.
+"""Integrators behind one interface (the paper's, this project's, libraries'), each declared in a file of its own.
 
 >>> from compare.methods import METHODS, available
 >>> METHODS["rk4"].title
 'classical Runge-Kutta, order 4'
 
-A method makes a problem ready and hands back the work, so that whoever measures can time the work alone:
+A method prepares a problem and returns a function that integrates it, so that the integration can be timed alone:
 
     problem = Problem.of(reference.load_scene("paris"), "plane")
     work = METHODS["rk4"].prepare(problem, 0.01)    # imports and compiles
     outcome = work()                                # integrates
     outcome.states                                  # x, y, z, vx, vy, vz at problem.times
 
-A method is imported when it is asked for, and its library when it prepares something.
+A method's file is imported when the method is looked up, and its library when it prepares a problem.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .method import Exact, Method, Outcome, Work, available
 
 __all__ = ["EXTERNAL", "METHODS", "Exact", "Method", "Outcome", "Problem", "Work", "available", "external"]
 
-EXTERNAL = "external: "  # before a command, which then is a method
+EXTERNAL = "external: "  # begins the id of a method that is a command
 
 _HOMES = {
     "rk4": ("rk4",),
@@ -48,7 +48,7 @@ _HOME_OF = {name: home for home, inside in _HOMES.items() for name in inside}
 
 
 class _Methods(Mapping[str, Method]):
-    """Methods by id, in the order of the documentation; a module is imported when one of its methods is asked for."""
+    """The mapping from id to method, in the order of the documentation; modules are imported on first use."""
 
     def __getitem__(self, name: str) -> Method:
         if name.startswith(EXTERNAL):

@@ -1,6 +1,7 @@
-"""diffrax's Dopri8 in binary64, on one thread of the processor, the right-hand side compiled by JAX.
+"""Dormand-Prince 8(7), order 8, explicit Runge-Kutta with adaptive step: `Dopri8` of diffrax, compiled by JAX.
 
-The relative tolerance is the one asked for, the absolute one that times the smallest of the variables' swings.
+It runs in binary64 on one thread of the processor. The relative tolerance is the setting, the absolute tolerance the
+setting times the smallest of the variables' swings.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 
 
 def prepare(problem: Problem, setting: float) -> Work:
-    """Compile the whole integration; the work is its second run."""
+    """Compile the whole integration; the returned function runs it."""
     os.environ.setdefault("XLA_FLAGS", ONE_THREAD)
     os.environ.setdefault("JAX_PLATFORMS", "cpu")
     import diffrax
@@ -33,7 +34,7 @@ def prepare(problem: Problem, setting: float) -> Work:
         return jnp.stack([jnp.asarray(part) for part in problem.system.rates(tuple(y), jnp, parameters)])
 
     def integrate(start: Any, times: Any) -> Any:
-        found = diffrax.diffeqsolve(
+        solution = diffrax.diffeqsolve(
             diffrax.ODETerm(rhs),
             solver,
             t0=0.0,
@@ -45,7 +46,7 @@ def prepare(problem: Problem, setting: float) -> Work:
             max_steps=None,
             throw=False,
         )
-        return found.ys, found.stats["num_steps"], found.result == diffrax.RESULTS.successful
+        return solution.ys, solution.stats["num_steps"], solution.result == diffrax.RESULTS.successful
 
     start, times = jnp.asarray(problem.start), jnp.asarray(problem.times)
     compiled = jax.jit(integrate).lower(start, times).compile()
@@ -54,9 +55,9 @@ def prepare(problem: Problem, setting: float) -> Work:
     def work() -> Outcome:
         if len(problem.times) == 1:
             return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
-        ys, taken, successful = compiled(start, times)
-        states, steps = np.array(ys), int(taken)
-        reason = "" if successful else "diffrax gave up"
+        ys, step_count, successful = compiled(start, times)
+        states, steps = np.array(ys), int(step_count)
+        reason = "" if successful else "diffrax stopped before the end"
         if not successful:
             states = states[: int(np.isfinite(states).all(axis=1).sum())]
         return outcome(problem, states, steps=steps, rhs_evaluations=steps * stages + 1, reason=reason)

@@ -1,7 +1,7 @@
-"""Somebody's own program as a method: a command, run by `candidates.external`, whose output is read as a candidate.
+"""A user's own program as a method: a command is run and its output is read as a candidate.
 
-The command may use the placeholders of `foucault score --run`, and {setting} for what a study varies. It has to
-print the scene's grid times; `{t_end}` and `{grid_step}` are those of the problem's times.
+The command may use the placeholders of `foucault score --run`, and {setting} for the step, tolerance or precision that
+a study varies. It has to print the scene's grid times; `{t_end}` and `{grid_step}` are those of the problem's times.
 """
 
 from __future__ import annotations
@@ -14,19 +14,19 @@ from reference.scene import Scene
 from ..rhs.problem import Array, Problem
 from .method import Method, Outcome, Setting, Work, failed
 
-SAME_TIME = 1e-9  # relative: decimals that a program prints for a time that is no short decimal
+SAME_TIME = 1e-9  # relative difference of times that count as equal, for programs that print few decimals
 
 
 def external(
     command: str, *, name: str = "external", setting: Setting = "step", ladder: tuple[float, ...] = (0.01,)
 ) -> Method:
-    """A method from a command.
+    """Declare a method that runs a command.
 
     Args:
         command: with placeholders in braces; `{setting}` is the step, tolerance or precision.
         name: its id in tables.
-        setting: what is varied.
-        ladder: settings from loose to tight; one if the command does not use it.
+        setting: which of step, tolerance and precision is varied.
+        ladder: settings from loose to tight; a single one if the command does not use it.
     """
     return Method(
         id=name,
@@ -51,9 +51,9 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
         try:
             output, cpu_s, _ = run_program(words)
             with output:
-                read = read_stream(output, "the program's output")
-            states = _at(problem, read.t, read.columns)
-        except InputError as error:  # for a study a program that fails is a row that says so
+                candidate = read_stream(output, "the program's output")
+            states = _at(problem, candidate.t, candidate.columns)
+        except InputError as error:  # a study reports a program that fails as a row
             return failed(problem, str(error))
         if not len(states):
             return failed(problem, "the output does not begin at t = 0")
@@ -72,7 +72,7 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
 
 
 def _scene(problem: Problem) -> Scene:
-    """The scene with the end and the grid step of the problem's times."""
+    """Return the scene with the end and the grid step of the problem's times."""
     times = problem.times.tolist()
     if len(times) < 2:
         raise InputError("times", times, "at least one output time after 0")
@@ -80,14 +80,14 @@ def _scene(problem: Problem) -> Scene:
 
 
 def _at(problem: Problem, t: Array, columns: dict[str, Array]) -> Array:
-    """The rows at the problem's times, as far as all of them are there; what is not printed is completed."""
+    """Return the states at the problem's times, up to the first missing one; columns not printed are derived."""
     places = np.clip(np.searchsorted(t, problem.times * (1 - SAME_TIME)), 0, len(t) - 1)
-    there = np.abs(t[places] - problem.times) <= SAME_TIME * problem.times
-    kept = {name: column[places] for name, column in columns.items()}
-    x, y = kept["x"], kept["y"]
-    nothing = np.full(len(x), np.nan)  # a velocity that was not printed is not known
-    vx, vy = kept.get("vx", nothing), kept.get("vy", nothing)
-    z = kept.get("z", -np.sqrt(np.maximum(problem.constants.length**2 - x * x - y * y, 0.0)))
-    vz = kept.get("vz", -(x * vx + y * vy) / z)
-    rows = len(there) if there.all() else int(np.argmin(there))
+    present = np.abs(t[places] - problem.times) <= SAME_TIME * problem.times
+    printed = {name: column[places] for name, column in columns.items()}
+    x, y = printed["x"], printed["y"]
+    unknown = np.full(len(x), np.nan)  # a velocity that was not printed
+    vx, vy = printed.get("vx", unknown), printed.get("vy", unknown)
+    z = printed.get("z", -np.sqrt(np.maximum(problem.constants.length**2 - x * x - y * y, 0.0)))
+    vz = printed.get("vz", -(x * vx + y * vy) / z)
+    rows = len(present) if present.all() else int(np.argmin(present))
     return np.array([x, y, z, vx, vy, vz]).T[:rows].copy()

@@ -1,4 +1,4 @@
-"""One-step methods at a fixed step: the whole step is traced to straight-line code and compiled in a loop."""
+"""Explicit Runge-Kutta and Runge-Kutta-Nyström steps at a fixed step size, traced to code and compiled in a loop."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .tableau import NystromTableau, Tableau
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
 Step = Callable[[Sequence[Any], Any, Derivatives], Sequence[Any]]
 
-# a step may be longer than asked by this part, so that 60 s hold 600 steps of 0.1 s, which the double is not
+# a step may be longer than the setting by this part: 60 s then hold 600 steps of 0.1 s, although 0.1 is not a double
 ROUNDING = 1e-9
 
 _MARCH = """
@@ -38,21 +38,21 @@ def march(y, k, times, counts, states):
 
 
 def traced_step(problem: Problem, step: Step) -> Program:
-    """A step as straight-line code: inputs state, parameters and h, outputs the new state."""
+    """Trace a step to straight-line code: its inputs are state, parameters and h, its outputs the new state."""
 
-    def whole(state: Sequence[Any], functions: Any, parameters: Any) -> Sequence[Any]:
+    def whole_step(state: Sequence[Any], functions: Any, parameters: Any) -> Sequence[Any]:
         constants = {name: number for name, number in parameters.items() if name != "h"}
         return step(state, parameters["h"], lambda at: problem.system.rates(at, functions, constants))
 
-    return problem.system.traced(whole, "h")
+    return problem.system.traced(whole_step, "h")
 
 
 def prepare_fixed(problem: Problem, setting: float, step: Step, stages: int) -> Work:
-    """Compile a step for a problem's system; the work is all its steps.
+    """Compile a step for a problem's system; the returned function takes all steps.
 
     Args:
-        problem: what to solve.
-        setting: step in s; shortened where output times do not lie a whole number of steps apart.
+        problem: to be solved.
+        setting: step in s; shortened where output times are not a whole number of steps apart.
         step: `step(state, h, derivatives)` in the model's generic style.
         stages: evaluations of the right-hand side in a step.
     """
@@ -74,21 +74,21 @@ def prepare_fixed(problem: Problem, setting: float, step: Step, stages: int) -> 
         states = np.empty((len(problem.times), variables))
         states[0] = problem.start
         rows = march(problem.start, problem.parameters, problem.times, counts, states)
-        taken = int(counts[:rows].sum())
-        return outcome(problem, states[:rows], steps=taken, rhs_evaluations=stages * taken)
+        steps = int(counts[:rows].sum())
+        return outcome(problem, states[:rows], steps=steps, rhs_evaluations=stages * steps)
 
     return work
 
 
 def steps_between(times: Array, step: float) -> Any:
-    """How many steps lead to each time from the one before, none to the first, shape (rows,)."""
+    """Return the number of steps that lead to each time from the one before (0 for the first), shape (rows,)."""
     counts = np.ceil(np.diff(times, prepend=times[0]) / step * (1 - ROUNDING)).astype(np.int64)
     counts[1:] = np.maximum(counts[1:], 1)
     return counts
 
 
 def runge_kutta(tableau: Tableau) -> Step:
-    """The step of an explicit Runge-Kutta method."""
+    """Return the step of an explicit Runge-Kutta method."""
 
     def step(state: Sequence[Any], h: Any, derivatives: Derivatives) -> Sequence[Any]:
         slopes: list[Sequence[Any]] = []
@@ -100,7 +100,7 @@ def runge_kutta(tableau: Tableau) -> Step:
 
 
 def nystrom(tableau: NystromTableau) -> Step:
-    """The step of an explicit Runge-Kutta-Nyström method, for formulations whose state is (y, y')."""
+    """Return the step of an explicit Runge-Kutta-Nyström method, for formulations whose state is (y, y')."""
 
     def step(state: Sequence[Any], h: Any, derivatives: Derivatives) -> Sequence[Any]:
         half = len(state) // 2
@@ -120,7 +120,7 @@ def nystrom(tableau: NystromTableau) -> Step:
 
 
 def nystrom_method(name: str, title: str, tableau: NystromTableau, ladder: tuple[float, ...], source: str) -> Method:
-    """The declaration of a Runge-Kutta-Nyström method with a fixed step; it wants a state (y, y')."""
+    """Declare a Runge-Kutta-Nyström method with a fixed step, for formulations whose state is (y, y')."""
 
     def prepare(problem: Problem, setting: float) -> Work:
         return prepare_fixed(problem, setting, nystrom(tableau), stages=len(tableau.c))
@@ -141,11 +141,11 @@ def nystrom_method(name: str, title: str, tableau: NystromTableau, ladder: tuple
 
 
 def combined(weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]], size: int) -> list[Any]:
-    """Σ weight slope for each of `size` components; a weight of zero leaves its slope out."""
+    """Return Σ weight slope for each of `size` components; a slope with weight zero is left out."""
     exact = [0 if weight == 0 else weight for weight in weights]
     return [plus(*(product(w, slope[i]) for w, slope in zip(exact, slopes, strict=True))) for i in range(size)]
 
 
 def moved(state: Sequence[Any], h: Any, weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]]) -> list[Any]:
-    """State + h Σ weight slope."""
+    """Return state + h Σ weight slope."""
     return [plus(x, product(h, part)) for x, part in zip(state, combined(weights, slopes, len(state)), strict=True)]

@@ -1,9 +1,9 @@
-"""Gauss-Legendre collocation, order 16: symplectic, time-symmetric, and it keeps every quadratic invariant.
+"""Gauss-Legendre collocation with 8 stages, order 16: implicit Runge-Kutta, symplectic, fixed step, by this project.
 
-In `momentum` that is n·n, H·n and, without drag, the energy: whatever the step, the bob stays on the sphere and on
-its energy. The stages are found by fixed-point iteration, begun from the polynomial of the step before and ended
-where rounding ends it; sums over steps are compensated (Hairer, Lubich, Wanner, Geometric Numerical Integration,
-IV.2, VIII.5, VIII.6).
+It is symmetric in time and conserves every quadratic invariant. In `momentum` these are n·n, H·n and, without drag, the
+energy: whatever the step, the bob stays on the sphere and keeps its energy. The stages are found by fixed-point
+iteration, which starts from the polynomial of the step before and stops where only rounding is left; sums over steps
+are compensated (Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.2, VIII.5, VIII.6).
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from .tableau import TableauError
 
 STAGES = 8
 MOST_ITERATIONS = 60
-CONVERGED = 1e-9  # relative change of the stages below which it may only be rounding that keeps them moving
-_BITS = 200
+CONVERGED = 1e-9  # below this relative change, an iteration that no longer shrinks has converged to rounding
+_BITS = 200  # precision of the coefficients before they are rounded to double
 
 _MARCH = """
 @nb.njit("Tuple((int64, int64, int64))(float64[::1], float64[::1], float64[::1], int64[::1], float64[:, ::1],"
@@ -85,12 +85,12 @@ def march(y, k, times, counts, states, a, b, ahead, sizes):
 
 @dataclass(frozen=True)
 class Collocation:
-    """A collocation method at the Gauss points, rounded once: a_ij, b_j, and the stages of the step that follows.
+    """A collocation method at the Gauss points, rounded once: a_ij, b_j, and a prediction of the next step's stages.
 
     Attributes:
         a: shape (stages, stages).
         b: shape (stages,).
-        ahead: weights of a step's slopes in the guess for the next step's, shape (stages, stages).
+        ahead: weights of a step's slopes in the first guess for the next step's, shape (stages, stages).
     """
 
     a: Array
@@ -100,7 +100,7 @@ class Collocation:
 
 @cache
 def gauss(stages: int) -> Collocation:
-    """The Gauss-Legendre method of order 2 stages.
+    """Return the Gauss-Legendre method of order 2 stages.
 
     Raises:
         TableauError: the quadrature does not have that order.
@@ -129,18 +129,18 @@ def gauss(stages: int) -> Collocation:
 
 
 def _cardinal(ctx: Any, nodes: list[Any], j: int) -> list[Any]:
-    """Coefficients, lowest power first, of the polynomial that is 1 at node j and 0 at the others."""
-    made = [ctx.mpf(1)]
+    """Return the coefficients, lowest power first, of the polynomial that is 1 at node j and 0 at the others."""
+    coefficients = [ctx.mpf(1)]
     for i, node in enumerate(nodes):
         if i != j:
             gap = nodes[j] - node
-            raised, lowered = [ctx.mpf(0), *made], [*(c * node for c in made), ctx.mpf(0)]
-            made = [(up - down) / gap for up, down in zip(raised, lowered, strict=True)]
-    return made
+            raised, lowered = [ctx.mpf(0), *coefficients], [*(c * node for c in coefficients), ctx.mpf(0)]
+            coefficients = [(up - down) / gap for up, down in zip(raised, lowered, strict=True)]
+    return coefficients
 
 
 def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
-    """Fixed step of `setting` seconds."""
+    """Compile the integration at a fixed step of `setting` seconds; the returned function runs it."""
     from ..rhs.compiled import compiled, elements, fill, function_text, names, unpacked
 
     size, parameters = len(problem.start), len(problem.system.parameters)

@@ -1,10 +1,10 @@
-"""heyoka's Taylor method in the number types of the reference: double, long double, and MPFR of any precision.
+"""Taylor series, order set by the tolerance, adaptive step: heyoka in double, long double, quadruple and MPFR.
 
-In a fixed number type `space` is more accurate than `momentum`: where the cord pulls it corrects what rounding does
-to |n|, while `momentum` keeps it, and with it the period (1e-12 against 8e-12 m after a day of Paris in double,
-4e-16 against 5e-15 m in long double). Where more bits are to be had, `momentum` is faster.
+In a fixed number type `space` is more accurate than `momentum`: while the cord is under tension, `space` corrects the
+rounding errors of |n|, whereas `momentum` keeps them, which changes the period (1e-12 against 8e-12 m after a day of
+Paris in double, 4e-16 against 5e-15 m in long double). Where more bits are available, `momentum` is faster.
 
-`heyoka_real128` computes in `real` of 113 bits: the same format as a quadruple, as fast, and in every wheel.
+`heyoka_real128` computes in MPFR of 113 bits: the same format as quadruple, as fast, and part of every wheel.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from ..rhs.problem import Array, Problem
 from .method import Exact, Method, Outcome, Setting, Work, failed
 
 QUADRUPLE_BITS = 113
-SPARE_BITS = 64  # exact states carry this much below the number type's epsilon
+SPARE_BITS = 64  # exact states are written with this many bits below the number type's epsilon
 
 
 def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) -> Work:
-    """Build heyoka's integrator for a problem; the work is its steps and the dense output.
+    """Build heyoka's integrator for a problem; the returned function takes the steps and evaluates the dense output.
 
     Args:
         problem: its scene's exact inputs are used, rounded once to the number type.
         number: type to compute in.
-        tolerance: relative error of a step, the type's epsilon if None.
+        tolerance: relative error of a step; the type's epsilon if None.
     """
     from reference.engines.heyoka.numbers import Numbers
     from reference.engines.heyoka.propagator import Propagator
@@ -96,7 +96,7 @@ def _declared(
 METHODS = (
     _declared(
         "heyoka_double",
-        "Taylor, variable order and step, double",
+        "Taylor series, adaptive step, heyoka in double",
         "tolerance",
         (1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14, 2.0**-52),
         lambda problem, setting: prepare_in(problem, DOUBLE, setting),
@@ -104,7 +104,7 @@ METHODS = (
     ),
     _declared(
         "heyoka_long_double",
-        "Taylor, variable order and step, 80-bit long double",
+        "Taylor series, adaptive step, heyoka in 80-bit long double",
         "tolerance",
         (1e-12, 1e-14, 1e-16, 1e-18, 2.0**-63),
         lambda problem, setting: prepare_in(problem, LONG_DOUBLE, setting),
@@ -112,7 +112,7 @@ METHODS = (
     ),
     _declared(
         "heyoka_real128",
-        "Taylor, variable order and step, quadruple (113 bits)",
+        "Taylor series, adaptive step, heyoka in quadruple (113 bits)",
         "tolerance",
         (1e-20, 1e-24, 1e-28, 2.0**-112),
         lambda problem, setting: prepare_in(problem, real(QUADRUPLE_BITS), setting),
@@ -120,7 +120,7 @@ METHODS = (
     ),
     _declared(
         "heyoka_real",
-        "Taylor, variable order and step, MPFR",
+        "Taylor series, adaptive step, heyoka in MPFR",
         "precision",
         (64, 113, 160, 256, 512),
         lambda problem, setting: prepare_in(problem, real(int(setting)), None),

@@ -1,4 +1,4 @@
-"""The reference's own Taylor method in numbers of many digits, each a whole number in a double."""
+"""Taylor series, order set by the precision, adaptive step: the reference's engine `limbs`, in limbs of 22 bits."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .method import Exact, Method, Outcome, Work, failed
 
 
 def prepare(problem: Problem, setting: float) -> Work:
-    """Compile the limbs' kernels by a first short run; the work is the run."""
+    """Compile the engine's kernels by a short first run; the returned function makes the whole run."""
     from reference.engines import limbs
     from reference.engines.plan import Plan
     from reference.errors import IntegrationError
@@ -24,27 +24,27 @@ def prepare(problem: Problem, setting: float) -> Work:
 
     def work() -> Outcome:
         try:
-            done = limbs.run(plan)
+            finished_run = limbs.run(plan)
         except IntegrationError as error:
             return failed(problem, error.reason)
 
         def cartesian() -> Array:
-            return np.array([[value / (1 << done.bits) for value in row[:6]] for row in done.grid])
+            return np.array([[value / (1 << finished_run.bits) for value in row[:6]] for row in finished_run.grid])
 
         def finer() -> Exact:
-            return Exact(done.bits, [row[:6] for row in done.grid])
+            return Exact(finished_run.bits, [row[:6] for row in finished_run.grid])
 
-        return Outcome("ok", "", float(problem.times[-1]), done.steps, None, cartesian, finer)
+        return Outcome("ok", "", float(problem.times[-1]), finished_run.steps, None, cartesian, finer)
 
     return work
 
 
 METHOD = Method(
     id="limbs",
-    title="Taylor in digits of 22 bits",
+    title="Taylor series, adaptive step, this project's limbs of 22 bits",
     setting="precision",
     ladder=(100, 150, 200),
-    source="this project's reference/limbs",
+    source="this project's reference/engines/limbs",
     licence="this project's",
     prepare=prepare,
     formulations=("momentum",),

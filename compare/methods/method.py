@@ -1,4 +1,4 @@
-"""What every integrator is here: a declaration, and a function that makes a problem ready to be solved."""
+"""The interface of an integrator: `Method`, its declaration, and `Outcome`, the result of a run."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from ..rhs.problem import Array, Problem
 Setting = Literal["step", "tolerance", "precision"]
 Status = Literal["ok", "gave_up", "not_finite"]
 
-PARIS = Fraction("67") / Fraction("9.80665")  # l/g in s² of the pendulum that ladders of steps are for
-TRACEABLE = ("momentum", "space", "spin", "plane", "angles")  # formulations that can become straight-line code
+PARIS = Fraction("67") / Fraction("9.80665")  # l/g in s² of the pendulum for which ladders of steps are written
+TRACEABLE = ("momentum", "space", "spin", "plane", "angles")  # formulations that can be traced to straight-line code
 UNITS: dict[Setting, str] = {"step": "s", "tolerance": "relative", "precision": "bits"}
 
 
@@ -34,17 +34,17 @@ class Exact:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run came to. A numerical failure is an outcome too, with its reason and what was reached.
+    """The result of a run. A numerical failure is an outcome too, with its reason and the states before it.
 
     Attributes:
-        status: `ok`; `gave_up` where the method stopped by itself; `not_finite` where it went on to NaN or infinity.
-        reason: why it is not ok, in the library's words where it has any; or its warning.
+        status: `ok`; `gave_up` if the method stopped by itself; `not_finite` if it continued to NaN or infinity.
+        reason: why it is not ok, in the library's words if it has any; or its warning.
         reached_t: last output time that was reached, in s.
-        steps: steps taken, None if the method does not tell.
-        rhs_evaluations: evaluations of the right-hand side (for a Taylor method None: it has none).
-        cartesian: makes `states`; called at most once, so that conversion is no part of a timed run.
-        finer: makes `exact`, for number types finer than binary64.
-        cpu_s: CPU seconds as the run itself knows them, where the work was done by another process.
+        steps: number of steps, None if the method does not report it.
+        rhs_evaluations: number of evaluations of the right-hand side (None for Taylor methods, which make none).
+        cartesian: computes `states`; called at most once, so that the conversion is not timed with the run.
+        finer: computes `exact`, for number types finer than binary64.
+        cpu_s: CPU seconds as measured by the run itself, if another process did the work.
     """
 
     status: Status
@@ -63,7 +63,7 @@ class Outcome:
 
     @cached_property
     def exact(self) -> Exact | None:
-        """The same as computed in a finer number type; None for binary64."""
+        """The states as computed in a number type finer than binary64; None for binary64."""
         return None if self.finer is None else self.finer()
 
 
@@ -75,20 +75,20 @@ class Method:
     """An integrator.
 
     Attributes:
-        id: the word for it on the command line.
-        title: its name, with order.
-        setting: what is varied: `step` in s, `tolerance` (relative), `precision` in bits.
+        id: its name on the command line.
+        title: its name in tables, with the order.
+        setting: the quantity that a study varies: `step` in s, `tolerance` (relative), `precision` in bits.
         ladder: settings from loose to tight, for the pendulum of Paris; see `settings`.
-        source: where the method or its code is from.
-        licence: of the code that does the work.
-        prepare: makes a problem ready at a setting: everything is imported and compiled when it returns, and the
-            call of what it returns is the work alone. It may be called again.
-        formulations: those that it may be used with; the first is what it does best or was written for.
-        stiff: meant for stiff problems.
-        dense: output at many times costs little; other methods shorten their steps to end on output times.
+        source: publication or origin of the code.
+        licence: of the code that integrates.
+        prepare: imports and compiles everything for a problem and a setting, and returns a function that only
+            integrates, which may be called repeatedly.
+        formulations: those that it may be used with; the first suits it best, or is the one it was written for.
+        stiff: whether it is meant for stiff problems.
+        dense: whether output at many times costs little; other methods shorten their steps to end on output times.
         requires: modules that must be installed.
-        extra: what `pip install 'foucault-reference[…]'` brings them; None if nothing is needed.
-        longest_s: simulated time beyond which it is not reasonable to run it.
+        extra: the extra of `pip install 'foucault-reference[…]'` that installs them; None if nothing is needed.
+        longest_s: simulated time in s beyond which a run would take unreasonably long.
     """
 
     id: str
@@ -106,16 +106,16 @@ class Method:
     longest_s: float | None = None
 
     def settings(self, scene: Scene) -> tuple[float, ...]:
-        """The ladder for a scene: steps in proportion to the time of its swing, others as they are.
+        """Return the ladder for a scene: steps in proportion to its period, other settings unchanged.
 
         The ladder's steps are for the pendulum of Paris; the proportion is rounded to 1, 2 or 5 times a power of ten.
         """
         inputs = scene.exact
         if self.setting != "step" or not inputs.gravity:
             return self.ladder
-        slower = math.log10(float(inputs.length / inputs.gravity / PARIS)) / 2
-        power = math.floor(slower)
-        ratio = min((1.0, 2.0, 5.0, 10.0), key=lambda x: abs(math.log10(x) - (slower - power))) * 10.0**power
+        log_ratio = math.log10(float(inputs.length / inputs.gravity / PARIS)) / 2
+        power = math.floor(log_ratio)
+        ratio = min((1.0, 2.0, 5.0, 10.0), key=lambda x: abs(math.log10(x) - (log_ratio - power))) * 10.0**power
         return tuple(float(f"{step * ratio:.6g}") for step in self.ladder)
 
     @property
@@ -125,7 +125,7 @@ class Method:
 
 
 def available(method: Method) -> str | None:
-    """None if the method can run here, otherwise what would bring it."""
+    """Return None if the method can run here, otherwise which modules are missing and how to install them."""
     missing = [name for name in method.requires if not _installed(name)]
     if not missing:
         return None
@@ -135,23 +135,23 @@ def available(method: Method) -> str | None:
 
 def _installed(module: str) -> bool:
     try:
-        found = importlib.util.find_spec(module)
-    except ModuleNotFoundError:  # the package that it would be in
+        spec = importlib.util.find_spec(module)
+    except ModuleNotFoundError:  # its parent package is missing
         return False
-    return found is not None and found.origin is not None  # a bare folder has no origin
+    return spec is not None and spec.origin is not None  # a folder without code has no origin
 
 
 def outcome(
     problem: Problem, states: Array, *, steps: int | None, rhs_evaluations: int | None, reason: str = ""
 ) -> Outcome:
-    """The outcome of a run in binary64.
+    """Return the outcome of a run in binary64.
 
     Args:
-        problem: what was solved.
-        states: of the problem's variables at its first output times, shape (rows, variables); fewer rows than
-            times are a run that stopped, rows from the first NaN or infinity on are left out.
-        steps: taken.
-        rhs_evaluations: counted.
+        problem: as it was integrated.
+        states: of the problem's variables at its first output times, shape (rows, variables); a run with fewer rows
+            than times has stopped early; rows from the first NaN or infinity on are left out.
+        steps: number of steps.
+        rhs_evaluations: number of evaluations of the right-hand side.
         reason: the library's own, if it gave one.
     """
     finite = np.isfinite(states).all(axis=1)
@@ -161,7 +161,7 @@ def outcome(
     if rows < len(states):
         status, reason = "not_finite", reason or f"the state is not finite after t = {reached_t:g} s"
     elif rows < len(problem.times):
-        status, reason = "gave_up", reason or f"stopped after t = {reached_t:g} s without saying why"
+        status, reason = "gave_up", reason or f"stopped after t = {reached_t:g} s without giving a reason"
     return Outcome(
         status=status,
         reason=reason,
@@ -173,5 +173,5 @@ def outcome(
 
 
 def failed(problem: Problem, reason: str) -> Outcome:
-    """A run that gave up and left no more than where it began."""
+    """Return the outcome of a run that gave up and produced no state after the first."""
     return outcome(problem, problem.start[None, :], steps=None, rhs_evaluations=None, reason=reason)

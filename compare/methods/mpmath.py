@@ -1,4 +1,4 @@
-"""mpmath's `odefun`: a Taylor method for any right-hand side, in any precision, on one page of Python. Slow."""
+"""Taylor series from the right-hand side alone, order set by the precision: mpmath's `odefun`, pure Python, slow."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
 from ..rhs.problem import Array, Problem
 from .method import Exact, Method, Outcome, Work
 
-SPARE_BITS = 64
+SPARE_BITS = 64  # exact states are written with this many bits below the precision
 
 
 def prepare(problem: Problem, setting: float) -> Work:
-    """Set up contexts of `setting` bits; the work is the series and their sums."""
+    """Set up contexts of `setting` bits; the returned function computes the series and sums them."""
     import numpy as np
 
     prec = int(setting)
@@ -41,8 +41,8 @@ def prepare(problem: Problem, setting: float) -> Work:
         states = [solution(t) for t in times]
 
         def rows() -> list[list[Any]]:
-            moved = [model.cartesian(state, k, ctx) for state in states]
-            return [[part * k.length for part in (*position, *velocity)] for position, velocity in moved]
+            vectors = [model.cartesian(state, k, ctx) for state in states]
+            return [[part * k.length for part in (*position, *velocity)] for position, velocity in vectors]
 
         def cartesian() -> Array:
             return np.array([[float(value) for value in row] for row in rows()])

@@ -1,4 +1,4 @@
-"""What a compiled library writes to the process's stdout and stderr: kept from the user's, and read for reasons."""
+"""Capture what compiled libraries write to stdout and stderr: the terminal stays clean, failures can be quoted."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-LONGEST = 300  # characters of what was written that a reason quotes
+LONGEST = 300  # characters of a message that a reason quotes
 
 
 class Said:
-    """What was written while it was listened to; complete after the end."""
+    """The text that was written; complete when the capture has ended."""
 
     text = ""
 
 
 @contextmanager
 def listened() -> Iterator[Said]:
-    """Redirect file descriptors 1 and 2 into a file while a library works."""
-    said, flush = Said(), ctypes.CDLL(None).fflush if os.name == "posix" else None
+    """Redirect file descriptors 1 and 2 to a file while a library runs."""
+    output, flush = Said(), ctypes.CDLL(None).fflush if os.name == "posix" else None
     sys.stdout.flush()
     sys.stderr.flush()
-    kept = os.dup(1), os.dup(2)
+    originals = os.dup(1), os.dup(2)
     with tempfile.TemporaryFile() as handle:
         try:
             for descriptor in (1, 2):
                 os.dup2(handle.fileno(), descriptor)
-            yield said
+            yield output
         finally:
             if flush is not None:
-                flush(None)  # C's own buffers
-            for descriptor, copy in enumerate(kept, start=1):
+                flush(None)  # empty the buffers of C's own streams
+            for descriptor, copy in enumerate(originals, start=1):
                 os.dup2(copy, descriptor)
                 os.close(copy)
             handle.seek(0)
-            said.text = " ".join(handle.read(10 * LONGEST).decode(errors="replace").split())[:LONGEST]
+            output.text = " ".join(handle.read(10 * LONGEST).decode(errors="replace").split())[:LONGEST]

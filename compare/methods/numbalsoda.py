@@ -1,7 +1,8 @@
-"""DOP853 and LSODA compiled from Fortran and C, by way of numbalsoda: no Python between the steps.
+"""DOP853 (explicit Runge-Kutta, order 8) and LSODA (multistep, orders 1 to 12), compiled: numbalsoda.
 
-Its absolute tolerance is one number for all variables: the tolerance asked for times the smallest of their
-swings; the relative one is the tolerance itself. Its wheel is built from source and wants a Fortran compiler.
+They are Fortran and C, and no Python runs between their steps. The relative tolerance is the setting; the absolute
+tolerance is one number for all variables, the setting times the smallest of their swings. The library is built from
+source, which needs a Fortran compiler.
 """
 
 from __future__ import annotations
@@ -26,8 +27,10 @@ def rates(t, y, dy, k):
 
 
 def prepare(problem: Problem, setting: float, code: str) -> Work:
-    """Compile the right-hand side; the work is the library's integration."""
-    os.environ.setdefault("GFORTRAN_UNBUFFERED_PRECONNECTED", "y")  # else its words come when the process ends
+    """Compile the right-hand side; the returned function runs the library's integration."""
+    os.environ.setdefault(
+        "GFORTRAN_UNBUFFERED_PRECONNECTED", "y"
+    )  # otherwise its messages appear when the process ends
     from numbalsoda import driver, driver_dop853
 
     from ..rhs.compiled import compiled, elements, fill, function_text
@@ -46,7 +49,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         states[0], start = problem.start, problem.start.copy()
         data = np.append(problem.parameters, 0.0)
         pointers: list[Any] = [array.ctypes.data for array in (start, data, problem.times, states, success)]
-        with listened() as said:
+        with listened() as output:
             if rows > 1:
                 integrate(
                     address, variables, pointers[0], pointers[1], rows, pointers[2], pointers[3],
@@ -54,10 +57,10 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
                 )  # fmt: skip
         calls = int(data[-1])
         if rows == 1 or success == 1:
-            return outcome(problem, states, steps=None, rhs_evaluations=calls, reason=said.text)
+            return outcome(problem, states, steps=None, rhs_evaluations=calls, reason=output.text)
         finite = np.isfinite(states).all(axis=1)
         reached = rows if finite.all() else int(np.argmin(finite))
-        reason = said.text or f"numbalsoda's {code} gave up"
+        reason = output.text or f"numbalsoda's {code} stopped without a message"
         return outcome(problem, states[:reached], steps=None, rhs_evaluations=calls, reason=reason)
 
     return work
@@ -82,7 +85,7 @@ def _declared(code: str, title: str, source: str, licence: str, ladder: tuple[fl
 METHODS = (
     _declared(
         "dop853",
-        "Dormand-Prince 8(5,3), compiled",
+        "Dormand-Prince 8(5,3), numbalsoda",
         "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
         "MIT and BSD",
         (1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
@@ -90,7 +93,7 @@ METHODS = (
     ),
     _declared(
         "lsoda",
-        "Adams and BDF with automatic switching, compiled",
+        "Adams and BDF with automatic switching, numbalsoda",
         "L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136; liblsoda",
         "MIT",
         (1e-7, 1e-8, 1e-10, 1e-12, 1e-13),

@@ -1,8 +1,9 @@
-"""REBOUND's Bulirsch-Stoer method and IAS15, with forces compiled to C functions. GPL: used only if installed.
+"""Gragg-Bulirsch-Stoer extrapolation, variable order, and IAS15, Gauss-Radau of order 15: REBOUND.
 
-Bulirsch-Stoer solves the system as an `ode` of REBOUND's, with eps_rel the tolerance asked for and eps_abs that
-times the smallest of the variables' swings. IAS15 moves one particle at n = r/l under the accelerations of the
-formulation `space`; its tolerance is `epsilon`, 1e-9 by REBOUND's own choice. Steps end on the output times.
+Forces are compiled to C functions. REBOUND is under the GPL and used only if it is installed. Bulirsch-Stoer integrates
+the system as an `ode` of REBOUND's, with eps_rel the setting and eps_abs the setting times the smallest of the
+variables' swings. IAS15 moves one particle at n = r/l under the accelerations of the formulation `space`; its tolerance
+is `epsilon`, 1e-9 by REBOUND's own choice. Steps end on the output times.
 """
 
 from __future__ import annotations
@@ -55,7 +56,7 @@ def rates(simulation):
 
 
 def prepare_bs(problem: Problem, setting: float) -> Work:
-    """Compile the right-hand side; the work makes a simulation and integrates."""
+    """Compile the right-hand side; the returned function sets up a simulation and integrates."""
     import rebound
 
     size = len(problem.start)
@@ -82,7 +83,7 @@ def prepare_bs(problem: Problem, setting: float) -> Work:
 
 
 def prepare_ias15(problem: Problem, setting: float) -> Work:
-    """Compile the forces; the work makes a simulation and integrates."""
+    """Compile the forces; the returned function sets up a simulation and integrates."""
     import rebound
 
     fields = rebound.Simulation
@@ -115,19 +116,19 @@ def _compiled(problem: Problem, template: str, y: str, dy: str = "", **offsets: 
 
 
 def _first_step(problem: Problem) -> float:
-    """A hundredth of the time of a small swing, in s; the method takes it from there."""
+    """Return a first step, a hundredth of the time scale of a small swing, in s; the method adapts it."""
     strength = float(np.linalg.norm(np.array(problem.constants.pull, dtype=float)))
     return min(0.01 / math.sqrt(strength) if strength else 1.0, float(problem.times[-1]) or 1.0)
 
 
 def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Array) -> Outcome:
-    """Integrate to every output time, until the simulation complains or leaves the finite numbers."""
+    """Integrate to every output time, until the simulation reports an error or the state is not finite."""
     import rebound
 
     failures = (RuntimeError, rebound.GenericError, rebound.NoParticles, rebound.Escape)
     states, reason, rows = np.empty((len(problem.times), len(problem.start))), "", 1
     states[0] = problem.start
-    with warnings.catch_warnings(record=True) as said:
+    with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         for span in np.diff(problem.times).tolist():
             simulation.t = 0.0  # it adds up its steps: at 86400 s their rounding alone would cost 6e-10 m
@@ -140,7 +141,7 @@ def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Ar
             rows += 1
             if not np.isfinite(states[rows - 1]).all():
                 break
-    reason = reason or "; ".join(dict.fromkeys(str(entry.message) for entry in said))
+    reason = reason or "; ".join(dict.fromkeys(str(entry.message) for entry in caught))
     steps = int(simulation.steps_done)
     return outcome(problem, states[:rows], steps=steps, rhs_evaluations=int(data[-1]), reason=reason)
 

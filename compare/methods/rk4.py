@@ -1,4 +1,4 @@
-"""The classical Runge-Kutta method, as the paper's program foucPend has it: -R 4."""
+"""Classical Runge-Kutta, order 4, explicit, fixed step, by this project: option -R 4 of the paper's foucPend."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TABLEAU = Tableau(
 
 
 def prepare(problem: Problem, setting: float) -> Work:
-    """Fixed step of `setting` seconds."""
+    """Compile the integration at a fixed step of `setting` seconds; the returned function runs it."""
     return prepare_fixed(problem, setting, runge_kutta(TABLEAU), stages=len(TABLEAU.b))
 
 

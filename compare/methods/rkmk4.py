@@ -1,8 +1,8 @@
-"""Runge-Kutta-Munthe-Kaas of order 4: n turns by rotations and so stays on the sphere.
+"""Runge-Kutta-Munthe-Kaas, order 4, explicit Lie-group method, fixed step, by this project: n stays on the sphere.
 
-n' = ω × n with ω = n × n' is solved in the rotations: n = cay(u) n₀, and u' = dcay⁻¹_u(ω) is a plain vector
-equation that the classical tableau solves. The Cayley map is rational, and its inverse differential has three
-terms, so that nothing is cut off and nothing is singular. The other half of the state, H or w, is a vector.
+n' = ω × n with ω = n × n' is solved in the group of rotations: n = cay(u) n₀, and u' = dcay⁻¹_u(ω) is an ordinary
+vector equation, to which the classical tableau applies. The Cayley map is rational, and its inverse differential has
+three terms, so that no series is truncated and nothing is singular. The other half of the state, H or w, is a vector.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .rk4 import TABLEAU
 
 
 def turned(n: Vector, u: Vector) -> Vector:
-    """cay(u) n = n + (u × n + u × (u × n) / 2) / (1 + u·u/4): as long as n."""
+    """Return cay(u) n = n + (u × n + u × (u × n) / 2) / (1 + u·u/4), which is as long as n."""
     if all(map(is_zero, u)):
         return n
     once = cross(u, n)
@@ -29,23 +29,26 @@ def turned(n: Vector, u: Vector) -> Vector:
 
 
 def rate_of_u(u: Vector, omega: Vector) -> Vector:
-    """dcay⁻¹_u(ω) = ω - u × ω / 2 + (u·ω) u / 4 (Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.8.3)."""
+    """Return dcay⁻¹_u(ω) = ω - u × ω / 2 + (u·ω) u / 4.
+
+    (Hairer, Lubich, Wanner, Geometric Numerical Integration, IV.8.3.)
+    """
     return add(subtract(omega, scale(0.5, cross(u, omega))), scale(product(0.25, dot(u, omega)), u))
 
 
 def step(state: Sequence[Any], h: Any, derivatives: Derivatives) -> Sequence[Any]:
-    """One step of length h, s."""
-    n, rest = _vector(state[:3]), state[3:]
+    """Take one step of h seconds."""
+    n, other = _vector(state[:3]), state[3:]
     turns: list[Vector] = []
     rates: list[Sequence[Any]] = []
     for row in TABLEAU.a:
         u = _vector([product(h, part) for part in combined(row, turns, 3)])
         at = turned(n, u)
-        found = derivatives((*at, *moved(rest, h, row, rates)))
-        turns.append(rate_of_u(u, cross(at, _vector(found[:3]))))
-        rates.append(found[3:])
+        slopes = derivatives((*at, *moved(other, h, row, rates)))
+        turns.append(rate_of_u(u, cross(at, _vector(slopes[:3]))))
+        rates.append(slopes[3:])
     u = _vector([product(h, part) for part in combined(TABLEAU.b, turns, 3)])
-    return (*turned(n, u), *moved(rest, h, TABLEAU.b, rates))
+    return (*turned(n, u), *moved(other, h, TABLEAU.b, rates))
 
 
 def _vector(parts: Sequence[Any]) -> Vector:
@@ -53,7 +56,7 @@ def _vector(parts: Sequence[Any]) -> Vector:
 
 
 def prepare(problem: Problem, setting: float) -> Work:
-    """Fixed step of `setting` seconds."""
+    """Compile the integration at a fixed step of `setting` seconds; the returned function runs it."""
     return prepare_fixed(problem, setting, step, stages=len(TABLEAU.b))
 
 

@@ -1,4 +1,4 @@
-"""Fehlberg's RKN-G 5(6) with 8 stages for y'' = f(y, y'), as the paper's program has it: -R 5."""
+"""Fehlberg's RKN-G 5(6), order 5, explicit Runge-Kutta-Nyström for y'' = f(y, y'), fixed step: foucPend's -R 5."""
 
 from __future__ import annotations
 
@@ -33,7 +33,8 @@ TABLEAU = NystromTableau(
     position_weights=fractions("31/360", "0", "0", "0", "0", "64/585", "2401/7800", "-1/300"),
 )
 
-# (table, row, column, as printed): public copies have these where the conditions want the entry above
+# Misprints of public copies: (table, row, column, as printed), counted from 0. Only the tests use them: put in place of
+# the entry above, each must make the order conditions fail.
 MISPRINTS = (("position", 4, 0, "81/840"),)
 
 METHOD = nystrom_method(

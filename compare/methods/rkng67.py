@@ -1,4 +1,4 @@
-"""Fehlberg's RKN-G 6(7) with 10 stages for y'' = f(y, y'), as the paper's program has it: -R 6."""
+"""Fehlberg's RKN-G 6(7), order 6, explicit Runge-Kutta-Nyström for y'' = f(y, y'), fixed step: foucPend's -R 6."""
 
 from __future__ import annotations
 
@@ -69,9 +69,10 @@ TABLEAU = NystromTableau(
     tolerance=Fraction("1e-30"),
 )
 
-# (table, row, column, as printed). The first stands where column 3 should have it, whose entry is then 0; the
-# second breaks Σ position_ij c_j^q = c_i^(q+2) / ((q+1) (q+2)) by 4.877e-24 times c_7^q, for q = 0 to 3, which
-# names the column: there the 24th to the 27th digit are wrong.
+# Misprints of public copies: (table, row, column, as printed), counted from 0. Only the tests use them: each must make
+# the order conditions fail. The first is the entry of column 2 printed in column 1, which leaves 0 in its own. The
+# second violates Σ position_ij c_j^q = c_i^(q+2) / ((q+1) (q+2)) by 4.877e-24 times c_7^q, for q = 0 to 3; the factor
+# c_7^q identifies the column, where the 24th to the 27th digit are wrong.
 MISPRINTS = (
     ("position", 8, 1, "-0.6816741819616552879282309588555"),
     ("position", 9, 7, "1.6612294394931082916619461943874"),

@@ -1,8 +1,8 @@
-"""SciPy's `solve_ivp` with a compiled right-hand side and, for the implicit methods, a compiled Jacobian.
+"""Runge-Kutta 5(4) and 8(5,3), Radau IIA of order 5, BDF (orders 1 to 5), LSODA (1 to 12): SciPy's `solve_ivp`.
 
-The tolerance t asked for is rtol = t and atol = t times each variable's swing, so that a variable which passes
-zero is held to the same part of its amplitude as one which does not. Output at the times asked comes from each
-method's own interpolant, as `t_eval` gives it.
+The right-hand side is compiled and, for the implicit methods, the Jacobian. A tolerance t means rtol = t and atol = t
+times each variable's swing, so that a variable which passes zero is controlled to the same part of its amplitude as one
+which does not. Output is each method's own dense output, through `t_eval`.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ IMPLICIT = ("Radau", "BDF", "LSODA")
 
 
 def prepare(problem: Problem, setting: float, code: str) -> Work:
-    """Compile the right-hand side; the work is `solve_ivp`."""
+    """Compile the right-hand side; the returned function calls `solve_ivp`."""
     from scipy.integrate import solve_ivp
 
     keywords: dict[str, Any] = {"method": code, "rtol": setting, "atol": setting * problem.sizes}
     if code in IMPLICIT:
         keywords["jac"] = problem.jacobian
     rhs, end = problem.rhs, float(problem.times[-1])
-    if len(problem.times) > 1:  # imports what the method imports late
+    if len(problem.times) > 1:  # a tiny run triggers the method's late imports
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             solve_ivp(rhs, (0.0, end * 1e-12), problem.start, **keywords)
@@ -35,18 +35,18 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     def work() -> Outcome:
         if len(problem.times) == 1:
             return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
-        with warnings.catch_warnings(record=True) as said:
+        with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            found = solve_ivp(rhs, (0.0, end), problem.start, t_eval=problem.times, **keywords)
-        words = [str(found.message)] if found.status < 0 else []
-        reason = "; ".join(dict.fromkeys([*words, *(str(entry.message) for entry in said)]))
-        return outcome(problem, found.y.T.copy(), steps=None, rhs_evaluations=int(found.nfev), reason=reason)
+            solution = solve_ivp(rhs, (0.0, end), problem.start, t_eval=problem.times, **keywords)
+        words = [str(solution.message)] if solution.status < 0 else []
+        reason = "; ".join(dict.fromkeys([*words, *(str(entry.message) for entry in caught)]))
+        return outcome(problem, solution.y.T.copy(), steps=None, rhs_evaluations=int(solution.nfev), reason=reason)
 
     return work
 
 
 def _declared(name: str, code: str, title: str, source: str, ladder: tuple[float, ...], *, stiff: bool) -> Method:
-    first = "momentum" if code == "LSODA" else "space"  # in `space` it takes rounding for stiffness
+    first = "momentum" if code == "LSODA" else "space"  # in `space` it mistakes rounding for stiffness
     return Method(
         id=name,
         title=title,

@@ -1,8 +1,8 @@
-"""CVODE of SUNDIALS by way of scikit-sundae: Adams and BDF of variable order, steps and iterations in C.
+"""Adams (orders 1 to 12) and BDF (orders 1 to 5), multistep: CVODE of SUNDIALS, through scikit-sundae.
 
-Both iterate with Newton's method and a dense Jacobian, as the library has it. The right-hand side and the Jacobian
-are compiled, but called through Python, a microsecond each. The tolerance t asked for is
-rtol = t and atol = t times each variable's swing. Output at the times asked is CVODE's own interpolant.
+Both solve their implicit equations by Newton's method with a dense Jacobian, the library's default. The right-hand side
+and the Jacobian are compiled, but called through Python, a microsecond each. A tolerance t means rtol = t and atol = t
+times each variable's swing. Output is CVODE's own dense output.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ MOST_STEPS = 100_000_000  # between two output times
 
 
 def prepare(problem: Problem, setting: float, code: str) -> Work:
-    """Compile the right-hand side and make the solver; the work is its `solve`."""
+    """Compile the right-hand side and create the solver; the returned function calls its `solve`."""
     from sksundae.cvode import CVODE
 
     rates, slopes, k = problem.rates.rhs_into, problem.slopes.jacobian_into, problem.parameters
@@ -36,12 +36,12 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         times = problem.times
         if len(times) == 1:
             return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
-        asked = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])  # two mean every step
-        with listened():  # it prints what its message says
-            found = solver.solve(asked, problem.start)
-        states = np.array(found.y)[np.isin(found.t, times)]
-        reason = "" if found.success else str(found.message)
-        return outcome(problem, states, steps=None, rhs_evaluations=int(found.nfev), reason=reason)
+        output_times = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])  # two mean every step
+        with listened():  # it prints its message as well
+            solution = solver.solve(output_times, problem.start)
+        states = np.array(solution.y)[np.isin(solution.t, times)]
+        reason = "" if solution.success else str(solution.message)
+        return outcome(problem, states, steps=None, rhs_evaluations=int(solution.nfev), reason=reason)
 
     return work
 

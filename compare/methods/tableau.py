@@ -1,4 +1,4 @@
-"""Coefficients of one-step methods, which check their own order conditions when they are made."""
+"""Runge-Kutta and Runge-Kutta-Nyström tableaux in exact fractions, which check their own order conditions."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class NystromTableau:
         position: the same.
         velocity_weights: of the step's y'.
         position_weights: of the step's y.
-        tolerance: what the conditions may be off by, for tables that are printed as decimals.
+        tolerance: residual that the conditions may leave, for tables that are printed as decimals.
     """
 
     name: str
@@ -89,12 +89,12 @@ class NystromTableau:
 
 
 def fractions(*numbers: str) -> Vector:
-    """Exact numbers from "81/640" or decimals."""
+    """Return exact numbers from "81/640" or decimals."""
     return tuple(map(Fraction, numbers))
 
 
 def triangle(*rows: str) -> Matrix:
-    """Rows of exact numbers separated by blanks."""
+    """Return rows of exact numbers, which are separated by blanks."""
     return tuple(fractions(*row.split()) for row in rows)
 
 

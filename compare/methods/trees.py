@@ -1,4 +1,4 @@
-"""Order conditions of Runge-Kutta-Nyström methods for y'' = f(y, y'), from their trees.
+"""Order conditions of Runge-Kutta and Runge-Kutta-Nyström methods, for y'' = f(y, y'), from rooted trees.
 
 The Taylor series of the solution and of the method are sums over the same rooted trees (Hairer, Nørsett,
 Wanner, Solving Ordinary Differential Equations I, II.14): a vertex is an f, and hangs from the vertex below
@@ -21,7 +21,7 @@ Matrix = tuple[Vector, ...]
 
 @dataclass(frozen=True, eq=False)
 class Tree:
-    """An f with arguments: trees by way of y', trees by way of y, and how many y that end in y'."""
+    """An f with its arguments: trees by way of y', trees by way of y, and the number of y that end in y'."""
 
     by_velocity: tuple[Tree, ...] = ()
     by_position: tuple[Tree, ...] = ()
@@ -44,14 +44,14 @@ class Tree:
 
 
 class Stages:
-    """Values of trees in every stage of a method, each worked out once."""
+    """Values of trees in every stage of a method, each computed once."""
 
     def __init__(self, c: Vector, velocity: Matrix, position: Matrix) -> None:
         self._c, self._velocity, self._position = c, velocity, position
         self._known: dict[Tree, Vector] = {}
 
     def of(self, tree: Tree) -> Vector:
-        """The value of a tree, shape (stages,)."""
+        """Return the value of a tree, shape (stages,)."""
         if tree not in self._known:
             values = [node**tree.ends for node in self._c]
             for matrix, sons in ((self._velocity, tree.by_velocity), (self._position, tree.by_position)):
@@ -68,32 +68,32 @@ def _dot(a: Sequence[Fraction], b: Sequence[Fraction]) -> Fraction:
 
 @cache
 def trees(order: int, *, second: bool) -> tuple[Tree, ...]:
-    """All trees of an order; without `second` those of a first-order system."""
+    """Return all trees of an order; without `second` those of a first-order system."""
     parts: list[tuple[int, str, Any]] = [(1, "end", None)] if second else []
     for smaller in range(1, order):
         parts += [(smaller, "velocity", tree) for tree in trees(smaller, second=second)]
         if second and smaller + 1 < order:
             parts += [(smaller + 1, "position", tree) for tree in trees(smaller, second=second)]
 
-    def chosen(rest: int, first: int) -> Iterator[tuple[int, ...]]:
-        if rest == 0:
+    def choices(remainder: int, first: int) -> Iterator[tuple[int, ...]]:
+        if remainder == 0:
             yield ()
         for i in range(first, len(parts)):
-            if parts[i][0] <= rest:
-                for others in chosen(rest - parts[i][0], i):
+            if parts[i][0] <= remainder:
+                for others in choices(remainder - parts[i][0], i):
                     yield (i, *others)
 
-    made = []
-    for choice in chosen(order - 1, 0):
+    found_trees = []
+    for choice in choices(order - 1, 0):
         kinds = [parts[i] for i in choice]
         by_velocity = tuple(tree for _, kind, tree in kinds if kind == "velocity")
         by_position = tuple(tree for _, kind, tree in kinds if kind == "position")
-        made.append(Tree(by_velocity, by_position, sum(kind == "end" for _, kind, _ in kinds)))
-    return tuple(made)
+        found_trees.append(Tree(by_velocity, by_position, sum(kind == "end" for _, kind, _ in kinds)))
+    return tuple(found_trees)
 
 
 def worst_residual(order: int, stages: Stages, b: Vector, b_position: Vector | None) -> Fraction:
-    """The largest violation of the conditions of an order (lower orders are not looked at).
+    """Return the largest violation of the conditions of exactly this order (lower ones are not checked).
 
     Args:
         order: of the method.

@@ -1,1 +1,1 @@
-"""The model as other integrators need it: traced from the one place where it stands, differentiated, compiled."""
+"""Right-hand sides for other integrators: the one model traced to straight-line code, differentiated and compiled."""

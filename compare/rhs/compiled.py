@@ -1,7 +1,7 @@
-"""Generated Python source as a module that numba compiles, kept on disk so that it is compiled once.
+"""Compile generated Python source with numba, and cache it on disk so that it is compiled only once.
 
-A module's file name is the hash of its text, so that equal sources share one compiled code, whichever scene
-or process asks. Nothing in a source may depend on a scene's values: they come as arguments.
+A module's file name is the hash of its text, so that equal sources share one compiled code, whichever scene or process
+needs it. Nothing in a source may depend on a scene's values: they are passed as arguments.
 """
 
 from __future__ import annotations
@@ -31,36 +31,35 @@ OPTIONS = dict(cache=CACHE, error_model="numpy", fastmath=False)
 
 
 def function_text(program: Program, name: str) -> str:
-    """A program as a compiled function of numbers."""
+    """Return the source of a program as a compiled function of numbers."""
     return "@nb.njit(**OPTIONS)\n" + program.source(name) + "\n\n"
 
 
 def fill(template: str, **texts: str) -> str:
-    """A template with texts put in its ${places}."""
+    """Return a template with texts in place of its ${placeholders}."""
     return Template(template).substitute(texts)
 
 
 def names(letter: str, count: int) -> str:
-    """Local variables x0, x1, … as arguments or targets, with a trailing comma; nothing if there are none."""
+    """Return variables x0, x1, … as arguments or targets, with a trailing comma; nothing if there are none."""
     return "".join(f"{letter}{i}, " for i in range(count))
 
 
 def elements(array: str, count: int, row: str = "") -> str:
-    """The elements of an array (of its row, if one is named) in the same way."""
+    """Return the elements of an array (of its row, if one is named) in the same way."""
     return "".join(f"{array}[{row and row + ', '}{i}], " for i in range(count))
 
 
 def unpacked(letter: str, array: str, count: int) -> str:
-    """The statement that takes an array apart."""
+    """Return the statement that unpacks an array into variables."""
     return f"{names(letter, count)}= {elements(array, count)}" if count else "pass"
 
 
 @cache
 def compiled(body: str) -> ModuleType:
-    """The module of a source whose functions numba compiles; decorators write `**OPTIONS`.
+    """Return the module of a source whose functions numba compiles; decorators write `**OPTIONS`.
 
-    It is read from the cache if the very same text is there; where the cache cannot be written it is compiled
-    in memory.
+    It is read from the cache if the very same text is there; if the cache cannot be written, it is compiled in memory.
     """
     on_disk = _stored(HEADER.replace("CACHE", "True") + body)
     if on_disk is not None:
@@ -69,7 +68,7 @@ def compiled(body: str) -> ModuleType:
 
 
 def _stored(text: str) -> Path | None:
-    """The file of a text, written atomically if it is not there yet; None if there is no place for it."""
+    """Return the cached file of a text, written atomically if need be; None if the cache cannot be written."""
     data = text.encode()
     try:
         folder = root() / "generated"
@@ -95,7 +94,7 @@ def _imported(path: Path) -> ModuleType:
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module  # numba's cache unpickles functions of it by the module's name
+    sys.modules[path.stem] = module  # numba's cache unpickles its functions by the module's name
     spec.loader.exec_module(module)
     return module
 

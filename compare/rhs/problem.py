@@ -1,4 +1,4 @@
-"""The initial value problem as a method gets it: doubles, a right-hand side, and the way back to metres."""
+"""The initial value problem as methods get it: start and constants in double, right-hand side, conversion to metres."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .tracing import record
 Array = npt.NDArray[np.float64]
 Rates = Callable[[Sequence[Any], Any, Mapping[str, Any]], Sequence[Any]]
 
-CONSTANT_BITS = 200  # constants are folded in this precision and rounded once, so that they are no method's floor
+CONSTANT_BITS = 200  # constants are computed in this precision and rounded once, far below any method's error
 
 
 @dataclass(frozen=True)
@@ -34,8 +34,8 @@ class FirstOrderSystem:
 
     Attributes:
         variables: names of the state's variables.
-        rates: `rates(state, functions, parameters)` gives their derivatives; see `tracing.record`.
-        parameters: doubles by name, which `rates` gets as numbers; what it writes as literals needs none.
+        rates: `rates(state, functions, parameters)` returns their derivatives; see `tracing.record`.
+        parameters: doubles by name, which `rates` gets as numbers; literals in it need none.
     """
 
     variables: tuple[str, ...]
@@ -58,7 +58,7 @@ class FirstOrderSystem:
         return tuple(f"x{i}" for i in range(len(self.variables))) + tuple(f"k{i}" for i in range(len(self.parameters)))
 
     def traced(self, function: Rates, *more: str) -> Program:
-        """Trace a function of state, functions and parameters; with `more` inputs, of these as well."""
+        """Trace a function of state, functions and parameters, and of further inputs named by `more`."""
         count, names = len(self.variables), tuple(self.parameters)
 
         def flat(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
@@ -76,11 +76,11 @@ class Problem:
 
     Attributes:
         scene: its exact inputs, in the scene's own reading.
-        formulation: a word of `reference.model.formulations.FORMULATIONS`.
-        constants: of the model, folded in 200 bits and rounded once.
+        formulation: a key of `reference.model.formulations.FORMULATIONS`.
+        constants: of the model, computed in 200 bits and rounded once.
         start: state at t = 0, rounded once, shape (variables,).
         times: output times in s, increasing, from 0, shape (rows,).
-        sizes: how far each variable swings at most, from the energy; what tolerances are measured by.
+        sizes: bound on each variable's swing, from the energy; absolute tolerances are parts of it.
         system: the equations, with the constants they use as parameters.
     """
 
@@ -94,10 +94,10 @@ class Problem:
 
     @classmethod
     def of(cls, scene: Scene, formulation: str, times: npt.ArrayLike | None = None) -> Problem:
-        """The problem of a scene; output at its own grid times unless others are given.
+        """Return the problem of a scene, with output at its own grid times unless others are given.
 
         Raises:
-            InputError: the formulation cannot say where the bob is released, or the times do not increase from 0.
+            InputError: the formulation cannot express the release, or the times do not increase from 0.
         """
         model = FORMULATIONS[formulation]
         ctx = context(CONSTANT_BITS)
@@ -157,7 +157,7 @@ class Problem:
         return compiled(function_text(program, "traced") + fill(template, j=matrix, **places))
 
     def cartesian(self, states: Array) -> Array:
-        """x, y, z in m and vx, vy, vz in m/s of states of shape (rows, variables), shape (rows, 6)."""
+        """Return x, y, z in m and vx, vy, vz in m/s, shape (rows, 6), of states of shape (rows, variables)."""
         columns = tuple(np.ascontiguousarray(states.T))
         n, v = FORMULATIONS[self.formulation].cartesian(columns, self.constants, np)
         rows = [np.broadcast_to(part * self.constants.length, len(states)) for part in (*n, *v)]
@@ -203,14 +203,14 @@ def jacobian_into(y, k, j):
 
 
 def _increasing(times: npt.ArrayLike) -> Array:
-    given = np.array(times, dtype=np.float64).ravel()
-    if len(given) == 0 or given[0] != 0 or not np.isfinite(given).all() or not (np.diff(given) > 0).all():
-        raise InputError("times", given.tolist() if len(given) < 9 else "an array", "finite times increasing from 0")
-    return given
+    t = np.array(times, dtype=np.float64).ravel()
+    if len(t) == 0 or t[0] != 0 or not np.isfinite(t).all() or not (np.diff(t) > 0).all():
+        raise InputError("times", t.tolist() if len(t) < 9 else "an array", "finite times increasing from 0")
+    return t
 
 
 def _model_system(formulation: str, k: Constants) -> FirstOrderSystem:
-    """The model's equations with the constants that they use as parameters, by name."""
+    """Return the model's equations, with the constants that they use as named parameters."""
     model = FORMULATIONS[formulation]
     named: dict[str, float] = {}
 
@@ -230,12 +230,14 @@ def _model_system(formulation: str, k: Constants) -> FirstOrderSystem:
 
         return model.derivatives(state, Constants(**{key: number(name) for key, name in names.items()}), functions)
 
-    whole = FirstOrderSystem(model.variables, rates, named)
-    used = {operand for line in whole.program.lines for operand in line.operands} | set(whole.program.outputs)
-    inputs = dict(zip(whole.inputs[len(model.variables) :], named, strict=True))
-    kept = {name: named[name] for given, name in inputs.items() if given in used}
+    full_system = FirstOrderSystem(model.variables, rates, named)
+    used = {operand for line in full_system.program.lines for operand in line.operands} | set(
+        full_system.program.outputs
+    )
+    inputs = dict(zip(full_system.inputs[len(model.variables) :], named, strict=True))
+    used_constants = {name: named[name] for symbol, name in inputs.items() if symbol in used}
 
     def used_rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
         return rates(state, functions, dict.fromkeys(named, 0) | dict(parameters))
 
-    return FirstOrderSystem(model.variables, used_rates, kept)
+    return FirstOrderSystem(model.variables, used_rates, used_constants)

@@ -1,4 +1,4 @@
-"""Straight-line code: elementary operations in order, printed as a Python function."""
+"""Straight-line code: a list of elementary operations, which can be printed as a Python function."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _SYMBOLS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
 
 @dataclass(frozen=True)
 class CodeLine:
-    """One operation: the name it defines, what is done, and the names or literals it is done to."""
+    """One operation: the name it defines, the operation, and its operands, which are names or literals."""
 
     name: str
     operation: str
@@ -21,7 +21,7 @@ class CodeLine:
 
     @property
     def expression(self) -> str:
-        """The right-hand side, in Python."""
+        """The right-hand side of the assignment, in Python."""
         if self.operation == "neg":
             return f"-{self.operands[0]}"
         if self.operation in _SYMBOLS:
@@ -38,14 +38,14 @@ class Program:
     outputs: tuple[str, ...]
 
     def source(self, name: str) -> str:
-        """A Python function of the inputs, which returns the tuple of the outputs."""
+        """Return the source of a Python function of the inputs, which returns the tuple of the outputs."""
         body = [f"{line.name} = {line.expression}" for line in self.lines]
         ending = ", ".join(self.outputs) + ("," if len(self.outputs) == 1 else "")
         return "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"]) + "\n"
 
     def function(self) -> Callable[..., tuple[float, ...]]:
-        """The same without a compiler: a Python function of floats."""
+        """Return that function, not compiled: a Python function of floats."""
         namespace: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
         exec(self.source("traced"), namespace)
-        made: Callable[..., tuple[float, ...]] = namespace["traced"]
-        return made
+        function: Callable[..., tuple[float, ...]] = namespace["traced"]
+        return function

@@ -1,4 +1,4 @@
-"""How far and how fast a bob can get, by its energy: what tolerances are measured by, and which formulation holds."""
+"""How far and how fast a bob can get, by its energy: scales for tolerances, and which formulations hold."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from reference.scene import Scene
 
 Array = npt.NDArray[np.float64]
 
-SMALLEST_SIZE = 1e-12  # of a variable's swing, for a bob at rest: a tolerance must not become zero
+SMALLEST_SIZE = 1e-12  # least swing of a variable, so that tolerances for a bob at rest are not zero
 
 
 @dataclass(frozen=True)
@@ -28,8 +28,8 @@ class Swing:
     Attributes:
         cosine: of that largest angle; at most 1, -1 or less where the bob can go over the top.
         fastest: speed over l, in 1/s.
-        aside: how far the rest position is off the vertical, as a part of l.
-        spread: what the centrifugal gradient may add to the energy, as a part of the pull.
+        aside: distance of the rest position from the vertical, as a part of l.
+        spread: largest energy that the centrifugal gradient may add, as a part of the pull.
     """
 
     cosine: float
@@ -39,7 +39,7 @@ class Swing:
 
     @classmethod
     def of(cls, position: Vector, velocity: Vector, k: Constants) -> Swing:
-        """From n = r/l and n' at the release, in any number type."""
+        """Return the swing that follows from n = r/l and n' at the release, in any number type."""
         n, v, pull = (np.array(part, dtype=float) for part in (position, velocity, k.pull))
         strength = float(np.linalg.norm(pull))
         if strength == 0:
@@ -56,7 +56,7 @@ class Swing:
         return self.cosine > self.aside + self.spread
 
     def sizes(self, variables: int) -> Array:
-        """Positions (radians, or n) and rates (1/s), in the order of a state's variables."""
+        """Return bounds on positions (radians, or n) and rates (1/s), in the order of a state's variables."""
         reach = math.sqrt(1 - self.cosine**2) if self.cosine > 0 else 1.0
         half = variables // 2
         sizes: Array = np.array([min(reach + self.aside, 1.0)] * half + [self.fastest] * half)
@@ -64,10 +64,10 @@ class Swing:
 
 
 def suited(scene: Scene, formulations: Sequence[str]) -> str:
-    """The first of some formulations that can carry the scene's motion all the way.
+    """Return the first of some formulations that can describe the scene's whole motion.
 
-    `plane` holds below the horizontal only, and `space` leaves the sphere where the cord is pushed; for a bob whose
-    energy may take it there any other is better, `space` is next, and `plane` cannot do it.
+    `plane` holds below the horizontal only, and `space` leaves the sphere where a rod is pushed; for a bob whose energy
+    may take it there any other formulation is better, `space` is second best, and `plane` fails.
     """
     ctx = context(DOUBLE_BITS + GUARD_BITS)
     k = constants(scene.exact, ctx)

@@ -1,4 +1,4 @@
-"""Derivatives of straight-line code, as straight-line code: the Jacobian that implicit methods want."""
+"""Differentiate straight-line code into straight-line code: the Jacobian that implicit methods need."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .tracing import RecordingFunctions, Tape
 
 
 def differentiated(program: Program, variables: Sequence[str]) -> Program:
-    """The program of the Jacobian: ∂ output / ∂ variable, row by row, shape (outputs, variables) flattened."""
+    """Return the program of the Jacobian: ∂ output / ∂ variable, row by row, shape (outputs, variables) flattened."""
     tape = Tape()
     functions = RecordingFunctions(tape)
     values: dict[str, Any] = {name: tape.input(name) for name in program.inputs}
@@ -22,9 +22,9 @@ def differentiated(program: Program, variables: Sequence[str]) -> Program:
 
     for line in program.lines:
         operands = [value(name) for name in line.operands]
-        made = _apply(tape, functions, line.operation, operands)
-        values[line.name] = made
-        partials = _partials(tape, functions, line.operation, operands, made)
+        result = _apply(tape, functions, line.operation, operands)
+        values[line.name] = result
+        partials = _partials(tape, functions, line.operation, operands, result)
         slopes[line.name] = list(none)
         for name, partial in zip(line.operands, partials, strict=True):
             for i, slope in enumerate(slopes.get(name, none)):
@@ -39,8 +39,8 @@ def _apply(tape: Tape, functions: RecordingFunctions, operation: str, operands: 
     return named[operation](*operands) if operation in named else getattr(functions, operation)(*operands)
 
 
-def _partials(tape: Tape, functions: RecordingFunctions, operation: str, x: list[Any], made: Any) -> tuple[Any, ...]:
-    """Derivatives of an operation's result by each of its operands."""
+def _partials(tape: Tape, functions: RecordingFunctions, operation: str, x: list[Any], result: Any) -> tuple[Any, ...]:
+    """Return the derivatives of an operation's result by each of its operands."""
     if operation == "add":
         return (1, 1)
     if operation == "sub":
@@ -48,11 +48,11 @@ def _partials(tape: Tape, functions: RecordingFunctions, operation: str, x: list
     if operation == "mul":
         return (x[1], x[0])
     if operation == "div":
-        return (tape.divide(1, x[1]), tape.negate(tape.divide(made, x[1])))
+        return (tape.divide(1, x[1]), tape.negate(tape.divide(result, x[1])))
     if operation == "neg":
         return (-1,)
     if operation == "sqrt":
-        return (tape.divide(0.5, made),)
+        return (tape.divide(0.5, result),)
     if operation == "sin":
         return (functions.cos(x[0]),)
     if operation == "cos":

@@ -1,9 +1,9 @@
-"""From a generic function of numbers to straight-line source code, compiled by numba or not.
+"""Trace a generic function of numbers to straight-line source code, which numba can compile.
 
-The model is written once, for any number type (`reference.model.formulations`). Called with numbers that record
-what happens to them, it leaves behind the list of its elementary operations: each expression once, what is
-exactly zero nowhere. Printed as Python that is a right-hand side, or a whole Runge-Kutta step, with nothing
-left in it but arithmetic, which numba compiles to what a C compiler would make of the same lines.
+The model is written once, for any number type (`reference.model.formulations`). Called with numbers that record the
+operations on them, it produces a list of elementary operations, in which each expression stands once and exact zeros
+are left out. Printed as Python, the list is a right-hand side, or a whole Runge-Kutta step, of nothing but arithmetic;
+numba compiles it as well as a C compiler would compile the same lines.
 
 >>> def kepler(state, functions):
 ...     x, y = state
@@ -35,11 +35,11 @@ from .program import FUNCTIONS, CodeLine, Program
 
 
 class TracingError(TypeError):
-    """The function did to a recording number what straight-line code cannot do."""
+    """The traced function did something with a number that straight-line code cannot do."""
 
 
 class TracedNumber:
-    """A number that records what is done to it; it has no value, so that nothing may branch on it."""
+    """A number that records the operations on it; it has no value, so that nothing may branch on it."""
 
     __slots__ = ("_tape", "name")
 
@@ -82,13 +82,13 @@ class TracedNumber:
         return power
 
     def _refuse(self, *_: Any) -> Any:
-        raise TracingError("a recorded function must not ask how large a number is: its code has no branches")
+        raise TracingError("a traced function must not compare or convert numbers: straight-line code has no branches")
 
     __bool__ = __lt__ = __le__ = __gt__ = __ge__ = __float__ = __int__ = __abs__ = _refuse
 
 
 class Tape:
-    """What was recorded so far. Only rewritings that change no bit of the result are made."""
+    """The operations recorded so far. Only rewritings that change no bit of the result are made."""
 
     def __init__(self) -> None:
         self._known: dict[tuple[str, tuple[str, ...]], TracedNumber] = {}
@@ -96,11 +96,11 @@ class Tape:
         self.lines: list[CodeLine] = []
 
     def input(self, name: str) -> TracedNumber:
-        """A number given from outside."""
+        """Return a number that is an input of the code."""
         return TracedNumber(self, name)
 
     def operand(self, value: Any) -> str:
-        """The name of a number, or the literal of a constant (the nearest double of a fraction)."""
+        """Return the name of a number, or the literal of a constant (the nearest double of a fraction)."""
         if isinstance(value, TracedNumber):
             return value.name
         if isinstance(value, bool) or not isinstance(value, int | float | Fraction):
@@ -108,17 +108,17 @@ class Tape:
         return repr(float(value))
 
     def record(self, operation: str, *values: Any) -> TracedNumber:
-        """The result of an operation, recorded the first time only."""
+        """Return the result of an operation, which is recorded the first time only."""
         operands = tuple(map(self.operand, values))
         key = (operation, tuple(sorted(operands)) if operation in ("add", "mul") else operands)
         if key not in self._known:
-            made = TracedNumber(self, f"t{len(self.lines)}")
-            self.lines.append(CodeLine(made.name, operation, operands))
-            self._known[key] = made
+            result = TracedNumber(self, f"t{len(self.lines)}")
+            self.lines.append(CodeLine(result.name, operation, operands))
+            self._known[key] = result
         return self._known[key]
 
     def add(self, a: Any, b: Any) -> Any:
-        """A + b; a sum with a negated number is a difference."""
+        """Return a + b; a sum with a negated number is recorded as a difference."""
         if _is(a, 0) or _is(b, 0):
             return b if _is(a, 0) else a
         if self._positive(b) is not None:
@@ -128,7 +128,7 @@ class Tape:
         return self.record("add", a, b)
 
     def subtract(self, a: Any, b: Any) -> Any:
-        """A - b."""
+        """Return a - b."""
         if _is(a, 0) or _is(b, 0):
             return self.negate(b) if _is(a, 0) else a
         if self._positive(b) is not None:
@@ -136,7 +136,7 @@ class Tape:
         return self.record("sub", a, b)
 
     def multiply(self, a: Any, b: Any) -> Any:
-        """A b; ±1 and an exact 0 need no multiplication."""
+        """Return a b; ±1 and an exact 0 need no multiplication."""
         for one, other in ((a, b), (b, a)):
             if _is(one, 0):
                 return 0
@@ -147,49 +147,49 @@ class Tape:
         return self.record("mul", a, b)
 
     def divide(self, a: Any, b: Any) -> Any:
-        """A / b."""
+        """Return a / b."""
         if _is(a, 0) or _is(b, 1):
             return a
         return self.record("div", a, b)
 
     def negate(self, a: Any) -> Any:
-        """-a."""
+        """Return -a."""
         if not isinstance(a, TracedNumber):
             return -a
-        found = self._positive(a)
-        if found is None:
-            found = self.record("neg", a)
-            self._negated[found.name] = a
-        return found
+        negated = self._positive(a)
+        if negated is None:
+            negated = self.record("neg", a)
+            self._negated[negated.name] = a
+        return negated
 
     def _positive(self, a: Any) -> Any:
         return self._negated.get(a.name) if isinstance(a, TracedNumber) else None
 
     def program(self, inputs: Sequence[str], outputs: Sequence[Any]) -> Program:
-        """The operations that the outputs need, renumbered."""
-        wanted = [self.operand(value) for value in outputs]
-        needed, kept = set(wanted), []
+        """Return the operations that the outputs need, renumbered."""
+        results = [self.operand(value) for value in outputs]
+        needed, lines_needed = set(results), []
         for line in reversed(self.lines):
             if line.name in needed:
                 needed.update(line.operands)
-                kept.append(line)
-        kept.reverse()
-        short = {line.name: f"t{i}" for i, line in enumerate(kept)}
+                lines_needed.append(line)
+        lines_needed.reverse()
+        short = {line.name: f"t{i}" for i, line in enumerate(lines_needed)}
 
         def renamed(names: Sequence[str]) -> tuple[str, ...]:
             return tuple(short.get(name, name) for name in names)
 
-        lines = tuple(CodeLine(short[line.name], line.operation, renamed(line.operands)) for line in kept)
-        return Program(tuple(inputs), lines, renamed(wanted))
+        lines = tuple(CodeLine(short[line.name], line.operation, renamed(line.operands)) for line in lines_needed)
+        return Program(tuple(inputs), lines, renamed(results))
 
 
 def _is(value: Any, number: int) -> bool:
-    """True for an exact int or Fraction; the double 0.0 is a value like others, whose sign and NaN count."""
+    """Return True for an exact int or Fraction; the double 0.0 is not exact, because its sign and a NaN matter."""
     return isinstance(value, int | Fraction) and value == number
 
 
 class RecordingFunctions:
-    """sqrt, sin, cos and atan2 of recording numbers."""
+    """sqrt, sin, cos and atan2 of traced numbers."""
 
     def __init__(self, tape: Tape) -> None:
         self._tape = tape
@@ -204,13 +204,13 @@ def record(function: Callable[[Any, Any], Sequence[Any]], inputs: Sequence[str])
     """Trace a generic function.
 
     Args:
-        function: `function(numbers, functions)` gives a sequence of numbers; it may add, subtract, multiply,
-            divide, negate, raise to whole powers, and call sqrt, sin, cos, atan2 of `functions`. An int 0
-            stands for an exact zero and drops out. Ints, floats and fractions become literals.
+        function: `function(numbers, functions)` returns a sequence of numbers; it may add, subtract, multiply, divide,
+            negate, raise to whole powers, and call sqrt, sin, cos, atan2 of `functions`. An int 0 stands for an exact
+            zero and drops out. Ints, floats and fractions become literals.
         inputs: names of the numbers, in order; any identifiers but t0, t1, …
 
     Raises:
-        TracingError: it did something else.
+        TracingError: the function did something else.
     """
     tape = Tape()
     outputs = function([tape.input(name) for name in inputs], RecordingFunctions(tape))

@@ -1,1 +1,1 @@
-"""Measurements: a method at a setting, a scene's character, thirty days; each method in a process of its own."""
+"""Studies: error against run time, stability on extreme scenes, long runs, and how good the approximations are."""

@@ -1,8 +1,8 @@
-"""How good each approximation is: its error against the reference over time; and numbers beside the reference's.
+"""Errors of the analytic approximations against the reference: position and swing plane over time, single numbers.
 
-Two errors are looked at: `error_m`, the largest distance between the approximate and the true bob up to a time, and
-`plane_error_arcsec`, the largest difference of the swing planes (`measure`), each about its own point of rest: the
-direction that somebody who believes the approximation would draw on the floor.
+Two errors are measured: `error_m`, the largest distance between the approximate and the true bob up to a time, and
+`plane_error_arcsec`, the largest difference of the swing planes (`approximations.observed`), each about its own rest
+position: the direction that somebody who believes the approximation would draw on the floor.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from ..approximations.approximation import Array
 from ..approximations.observed import Gauge
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
-_PER_SWING = 16
-_SWINGS = 100  # so many periods' samples where nothing swings
-_MOST = 500_000  # samples; a motion of more swings than that is looked at less often than _PER_SWING times in each
+_PER_SWING = 16  # samples in a period
+_SWINGS = 100  # where nothing swings, the span is sampled as if it held this many periods
+_MOST = 500_000  # samples at most; a motion of very many swings gets fewer than _PER_SWING in each
 _ARCSEC = 180 * 3600 / np.pi
 
 
 @dataclass(frozen=True)
 class TimeRow:
-    """Largest errors from the release up to time t in s; None where there is none, and `status` says why."""
+    """Largest errors from the release up to time t in s; None where one does not exist: `status` says why."""
 
     approximation: str
     t: float
@@ -64,17 +64,17 @@ class ApproximationErrors:
     plane: Array
 
     def at(self, t: float) -> tuple[float, float | None]:
-        """Both up to time t."""
+        """Return the position error in m and the plane error in arcseconds (None if it has none) up to time t."""
         i = int(np.searchsorted(self.times, t * (1 + 1e-12), side="right")) - 1
         plane = float(self.plane[i])
         return float(self.position[i]), None if np.isnan(plane) else plane
 
 
 class ApproximationTruth:
-    """The reference's motion of a scene on a fine grid, to hold approximations against.
+    """The reference's motion of a scene on a fine grid, with which approximations are compared.
 
     Args:
-        scene: what is approximated.
+        scene: to be approximated.
         t_end: end in s; the grid has 16 times in a period, and holds `marks` exactly.
         marks: further times in s.
     """
@@ -90,24 +90,24 @@ class ApproximationTruth:
         self.plane = self._plane(self.gauge, self.rows)
 
     def errors(self, motion: Motion) -> ApproximationErrors:
-        """Errors of an approximation on the grid.
+        """Return the errors of an approximation on the grid.
 
         Raises:
             FoucaultError: the approximation does not apply, or fails.
         """
         rows = motion.trajectory(self.scene, self.times)
         gauge = self.gauge if motion.rest is None else _gauge(self.scene, motion.rest(self.scene))
-        apart = np.linalg.norm(rows[:, :3] - self.rows[:, :3], axis=1)
+        distance = np.linalg.norm(rows[:, :3] - self.rows[:, :3], axis=1)
         turned = self._plane(gauge, rows) - self.plane
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
-        return ApproximationErrors(self.times, np.maximum.accumulate(apart), np.fmax.accumulate(plane))
+        return ApproximationErrors(self.times, np.maximum.accumulate(distance), np.fmax.accumulate(plane))
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
 
 
 def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
-    """None where nothing swings, so that there is no plane."""
+    """Return the gauge of the swing plane; None where nothing swings, so that there is no plane."""
     try:
         return Gauge.of(scene, rest)
     except UnreachableError:
@@ -115,22 +115,27 @@ def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
 
 
 def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
-    """Approximations of the motion by their ids, all if None; InputError names what is none."""
-    made = [approximation(word) for word in (motions() if ids is None else ids)]
-    wrong = [one.id for one in made if not isinstance(one, Motion)]
+    """Return approximations of the motion by their ids, all if None; InputError names those of a single number."""
+    approximations = [approximation(word) for word in (motions() if ids is None else ids)]
+    wrong = [one.id for one in approximations if not isinstance(one, Motion)]
     if wrong:
-        raise InputError("approximations", ", ".join(wrong), "approximations of the motion", "See quantity_table.")
-    return [one for one in made if isinstance(one, Motion)]
+        raise InputError(
+            "approximations",
+            ", ".join(wrong),
+            "approximations of the motion",
+            "Single numbers stand in quantity_table.",
+        )
+    return [one for one in approximations if isinstance(one, Motion)]
 
 
 def error_table(
     scene: Scene, ids: Sequence[str] | None = None, t_end: float = TIMES[-1], times: Sequence[float] = TIMES
 ) -> list[TimeRow]:
-    """Errors of approximations of the motion up to each of `times` before t_end, and up to t_end.
+    """Return the errors of approximations of the motion up to each of `times` before t_end, and up to t_end.
 
     Args:
-        scene: what is approximated.
-        ids: which; all of the motion if None.
+        scene: to be approximated.
+        ids: of the approximations; all of the motion if None.
         t_end: in s.
         times: in s.
 
@@ -150,12 +155,12 @@ def error_table(
 
 
 def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[QuantityRow]:
-    """Approximations of a number (rest, gravity, frequency, precession) beside the reference's, to 15 digits."""
+    """Return approximate numbers (rest position, gravity, frequency, precession) beside the true ones, to 15 digits."""
     rows, known = [], dict[Any, Any]()
     for word in quantities() if ids is None else ids:
         one = approximation(word)
         if not isinstance(one, Quantity):
-            raise InputError("approximations", word, "an approximation of a number", "See error_table.")
+            raise InputError("approximations", word, "an approximation of a number", "Motions stand in error_table.")
         try:
             value = one.value(scene)
             if one.truth not in known:
@@ -165,6 +170,6 @@ def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[Quant
         else:
             truth = value.context.mpf(known[one.truth])
             relative = float(abs(value / truth - 1)) if truth else None
-            shown, wanted = (str(value.context.nstr(number, 15)) for number in (value, truth))
-            rows.append(QuantityRow(word, shown, wanted, one.unit, relative))
+            printed, printed_truth = (str(value.context.nstr(number, 15)) for number in (value, truth))
+            rows.append(QuantityRow(word, printed, printed_truth, one.unit, relative))
     return rows

@@ -16,12 +16,14 @@ from .variation import UNITS, varied
 
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
 SWEEP_S = 3600.0
-_SOON, _EARLY = 1e-3, 400  # s and count: a limit that is passed within the first swing is placed in it
+# extra times at which limits over time are looked for, in geometric progression from the first of them in s, so that
+# a limit that is exceeded within the first swing is located inside it
+_FIRST_S, _EXTRA_TIMES = 1e-3, 400
 
 
 @dataclass(frozen=True)
 class SweepRow:
-    """Largest errors up to t in s with one thing of the scene changed to `value` (unit: `variation.UNITS`)."""
+    """Largest errors up to t in s with one quantity of the scene changed to `value` (unit: `variation.UNITS`)."""
 
     approximation: str
     over: str
@@ -34,9 +36,9 @@ class SweepRow:
 
 @dataclass(frozen=True)
 class LimitRow:
-    """Where an approximation is good to a limit: intervals of time in s or of what was varied; none if it never is.
+    """Where an approximation is good to a limit: intervals of time in s or of the varied quantity; none if nowhere.
 
-    `status` is why it could not be tried anywhere, or "ok".
+    `status` says why it could not be tried anywhere, or "ok".
     """
 
     approximation: str
@@ -48,7 +50,7 @@ class LimitRow:
 
 
 def sweep_values(scene: Scene, over: str) -> tuple[float, ...]:
-    """Values that a sweep takes by itself: amplitudes of 1e-5 to 0.1 l, latitudes every 15°, lengths of 1 to 200 m."""
+    """Return a sweep's default values: amplitudes of 1e-5 to 0.1 l, latitudes every 15°, lengths of 1 to 200 m."""
     if over == "amplitude":
         return tuple(float(v) for v in np.geomspace(1e-5, 0.1, 9) * float(scene.exact.length))
     if over == "latitude":
@@ -65,29 +67,29 @@ def sweep(
     values: Sequence[float] | None = None,
     t: float = SWEEP_S,
 ) -> list[SweepRow]:
-    """Errors up to t in s with the amplitude, latitude, length or rotation rate of the scene changed by `varied`."""
+    """Return errors up to t in s as the amplitude, latitude, length or rotation rate of the scene is `varied`."""
     chosen, rows = chosen_motions(ids), []
     for value in sweep_values(scene, over) if values is None else values:
         changed = varied(scene, over, value)
         truth = ApproximationTruth(changed, t)
         for motion in chosen:
             try:
-                found = truth.errors(motion).at(t)
+                errors = truth.errors(motion).at(t)
             except FoucaultError as error:
                 rows.append(SweepRow(motion.id, over, value, t, None, None, str(error)))
             else:
-                rows.append(SweepRow(motion.id, over, value, t, *found))
+                rows.append(SweepRow(motion.id, over, value, t, *errors))
     return rows
 
 
 def limits(
     scene: Scene, ids: Sequence[str] | None = None, over: str = "time", t_end: float | None = None
 ) -> list[LimitRow]:
-    """Where each approximation is good to 1 mm, 1 µm and 1 arcsecond of swing plane.
+    """Find where each approximation is good to 1 mm, 1 µm and 1 arcsecond of swing plane.
 
     Args:
-        scene: what is approximated.
-        ids: which; all of the motion if None.
+        scene: to be approximated.
+        ids: of the approximations; all of the motion if None.
         over: `time` up to t_end (a day), or `amplitude`, `latitude`, `length` up to t_end (an hour). Between the
             values of a sweep the logarithm of the error is interpolated.
         t_end: in s.
@@ -95,28 +97,28 @@ def limits(
     if over == "time":
         return _time_limits(scene, chosen_motions(ids), TIMES[-1] if t_end is None else t_end)
     rows = sweep(scene, ids, over, t=SWEEP_S if t_end is None else t_end)
-    found = []
+    limit_rows = []
     for word in dict.fromkeys(row.approximation for row in rows):
-        mine = sorted((row for row in rows if row.approximation == word), key=lambda row: row.value)
-        status = mine[0].status if all(row.error_m is None for row in mine) else "ok"
-        for name, what, limit in LIMITS:
-            errors = [getattr(row, what) for row in mine]
-            good = _below(over, [row.value for row in mine], errors, limit)
-            found.append(LimitRow(word, over, UNITS[over], name, good, status))
-    return found
+        of_one = sorted((row for row in rows if row.approximation == word), key=lambda row: row.value)
+        status = of_one[0].status if all(row.error_m is None for row in of_one) else "ok"
+        for name, quantity, limit in LIMITS:
+            errors = [getattr(row, quantity) for row in of_one]
+            good = _below(over, [row.value for row in of_one], errors, limit)
+            limit_rows.append(LimitRow(word, over, UNITS[over], name, good, status))
+    return limit_rows
 
 
 def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[LimitRow]:
-    truth, rows = ApproximationTruth(scene, t_end, np.geomspace(_SOON, t_end, _EARLY)), []
+    truth, rows = ApproximationTruth(scene, t_end, np.geomspace(_FIRST_S, t_end, _EXTRA_TIMES)), []
     for motion in chosen:
         try:
             errors = truth.errors(motion)
         except FoucaultError as error:
             rows += [LimitRow(motion.id, "time", "s", name, (), str(error)) for name, _, _ in LIMITS]
             continue
-        for name, what, limit in LIMITS:
-            over = np.flatnonzero(~((errors.position if what == "error_m" else errors.plane) <= limit))
-            last = len(truth.times) - 1 if not len(over) else int(over[0]) - 1
+        for name, quantity, limit in LIMITS:
+            above = np.flatnonzero(~((errors.position if quantity == "error_m" else errors.plane) <= limit))
+            last = len(truth.times) - 1 if not len(above) else int(above[0]) - 1
             rows.append(LimitRow(motion.id, "time", "s", name, ((0.0, float(truth.times[last])),) if last > 0 else ()))
     return rows
 
@@ -124,7 +126,7 @@ def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[L
 def _below(
     over: str, values: Sequence[float], errors: Sequence[float | None], limit: float
 ) -> tuple[tuple[float, float], ...]:
-    """Intervals of `values` in which the error is at most the limit; crossings where log(error) is interpolated."""
+    """Return the intervals of `values` with errors up to the limit; their ends are interpolated in log(error)."""
     scale, back = (float, float) if over == "latitude" else (np.log, np.exp)
     good: list[tuple[float, float]] = []
     inside = [error is not None and error <= limit for error in errors]
@@ -140,7 +142,7 @@ def _below(
 
 
 def _crossing(scale: Any, back: Any, values: Sequence[float], errors: Any, limit: float, i: int) -> float:
-    """Where the error meets the limit between values i and i + 1."""
+    """Return the value between values i and i + 1 at which the error equals the limit."""
     a, b = errors[i], errors[i + 1]
     if a is None or b is None:
         return values[i] if a is not None else values[i + 1]

@@ -1,4 +1,4 @@
-"""Does the error of an approximation grow as its theory says? Measured against the reference."""
+"""Order of an approximation: does its error against the reference grow with the power that its theory says?"""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ BASE = parse_scene(
     {"id": "order", "title": "Paris, against which orders are measured", "release": {"x": "0.3", "y": "0.4"}}
 )
 OBSERVED_S = 60.0
-_SAMPLES = 121
+_SAMPLES = 121  # times at which a motion is compared
 
 
 @dataclass(frozen=True)
 class Measured:
-    """Errors of an approximation at an order's values, and the slope of their logarithms.
+    """Errors of an approximation at the values that an order declares, and the slope of their logarithms.
 
     Attributes:
         errors: of a motion the largest distance in m within OBSERVED_S seconds, of a quantity as it declares.
@@ -33,7 +33,7 @@ class Measured:
 
 
 def error(approximation: Approximation, scene: Scene) -> float:
-    """Largest distance from the reference in m over OBSERVED_S seconds, or the error of a quantity."""
+    """Return the largest distance from the reference in m over OBSERVED_S seconds, or the error of a quantity."""
     if isinstance(approximation, Motion):
         times = np.linspace(0.0, OBSERVED_S, _SAMPLES)
         gap = approximation.trajectory(scene, times)[:, :3] - trajectory(scene, times)[:, :3]
@@ -45,7 +45,7 @@ def error(approximation: Approximation, scene: Scene) -> float:
 
 
 def measure(approximation: Approximation, order: Order, base: Scene = BASE) -> Measured:
-    """The errors at an order's values, in its setting."""
+    """Measure the errors at an order's values, in its setting."""
     setting = base.with_values(order.setting)
     scenes = [varied(setting, order.against, value) for value in order.values]
     if order.amplitude is not None:

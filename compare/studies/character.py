@@ -1,7 +1,7 @@
-"""What makes a scene hard, measured on the true trajectory: rates and their ratio, what the flow magnifies, the rod.
+"""The difficulty of a scene, measured on the true trajectory: rates, error amplification, sign of the rod force.
 
-Rates are eigenvalues of the equations' Jacobian on the tangent space of the sphere: four of them, what the
-motion has, and not what a formulation adds off the sphere.
+Rates are eigenvalues of the equations' Jacobian on the tangent space of the sphere: the four that belong to the
+motion, without those that a formulation adds off the sphere.
 """
 
 from __future__ import annotations
@@ -20,20 +20,20 @@ from reference.solver.sensitivity import sensitivity
 
 from ..rhs.constants import constants_in_double
 
-SAMPLES = 64  # states of the trajectory at which it is looked at
-_NUDGE = 1e-6
+SAMPLES = 64  # states of the trajectory at which rates are measured
+_NUDGE = 1e-6  # relative displacement of the central differences
 
 
 @dataclass(frozen=True)
 class Character:
-    """A scene's difficulty.
+    """The difficulty of a scene.
 
     Attributes:
         fastest: largest size of a rate along the trajectory, 1/s.
         damping: largest rate of decay, 1/s.
         ratio: largest over smallest size of the rates that are not zero.
-        magnified: how much the flow magnifies a displacement at the release, at most.
-        least_tension: least pull of the cord per mass and length, 1/s²; below zero a rod is pushed.
+        magnified: largest factor by which the flow amplifies a displacement at the release.
+        least_tension: least tension of the cord per mass and length, 1/s²; below zero a rod is pushed.
         nearest: least distance from the vertical through the suspension, over the length.
         amplitude: largest distance from it, over the length.
         span: t_end in s.
@@ -50,20 +50,20 @@ class Character:
 
     @property
     def stiff(self) -> bool:
-        """True if decay dictates the step of an explicit method although the motion is slow."""
+        """True if decay limits the step of an explicit method although the motion is slow."""
         return self.damping * self.span > 1e3 and self.ratio > 1e3
 
     @property
     def digits_lost(self) -> float:
-        """Decimal digits of the input that the flow costs between release and end."""
+        """Decimal digits of the input that error amplification costs between release and end."""
         return max(0.0, math.log10(self.magnified)) if self.magnified > 0 else 0.0
 
 
 def character(scene: Scene, times: Array, states: Array) -> Character:
-    """Measure a scene.
+    """Measure how hard a scene is.
 
     Args:
-        scene: whose constants are used.
+        scene: for its constants.
         times: increasing, from 0, in s.
         states: the true x, y, z, vx, vy, vz in m and m/s at these times, shape (times, 6).
     """
@@ -77,8 +77,8 @@ def character(scene: Scene, times: Array, states: Array) -> Character:
         size = np.abs(rates)
         sizes.append(float(size.max()))
         decays.append(float(-rates.real.min()))
-        kept = size[size > 1e-12 * max(size.max(), 1e-300)]
-        ratios.append(float(kept.max() / kept.min()) if len(kept) else 1.0)
+        nonzero = size[size > 1e-12 * max(size.max(), 1e-300)]
+        ratios.append(float(nonzero.max() / nonzero.min()) if len(nonzero) else 1.0)
         pulls.append(float(tension(tuple(state[:3]), tuple(state[3:]), k)))
     aside = np.hypot(scaled[:, 0], scaled[:, 1])
     return Character(
@@ -94,7 +94,7 @@ def character(scene: Scene, times: Array, states: Array) -> Character:
 
 
 def _tangent_jacobian(state: Array, k: Constants) -> Array:
-    """The 4 by 4 Jacobian of n'' = F - n (v·v + n·F) on the tangent space of |n| = 1, n·v = 0."""
+    """Return the 4 by 4 Jacobian of n'' = F - n (v·v + n·F) on the tangent space of |n| = 1, n·v = 0."""
     model = FORMULATIONS["space"]
     n, v = state[:3], state[3:]
     size = np.array([1.0] * 3 + [max(1.0, float(np.abs(v).max()))] * 3)
@@ -108,21 +108,21 @@ def _tangent_jacobian(state: Array, k: Constants) -> Array:
         columns.append((ahead - behind) / (2 * nudge[i]))
     jacobian = np.array(columns).T
     normals = np.array([np.concatenate([n, np.zeros(3)]), np.concatenate([v, n])])
-    scaled = normals * size  # rates and positions on one footing before the tangent space is taken
+    scaled = normals * size  # positions and rates in comparable units before the tangent space is taken
     _, _, basis = np.linalg.svd(scaled)
     tangent = basis[2:].T
     return np.asarray(tangent.T @ (jacobian * size / size[:, None]) @ tangent)
 
 
 def _magnified(scene: Scene, times: Array, length: float) -> float:
-    """The largest response of the position to a displacement of the release, by the variational equations."""
+    """Return the largest response of the position to a displacement of the release, by the variational equations."""
     response = sensitivity(scene, times)
     names = [name for name in ("x", "y", "angle", "azimuth") if f"release.{name}" in response.values]
-    grown = [1.0]
+    factors = [1.0]
     for name in names:
-        moved = response.derivative(f"release.{name}")[:, :3]
-        sizes = np.sqrt((moved**2).sum(axis=1))
+        displacement = response.derivative(f"release.{name}")[:, :3]
+        sizes = np.sqrt((displacement**2).sum(axis=1))
         at_release = float(sizes[0]) if name in ("angle", "azimuth") else 1.0
         if at_release > 1e-12 * length:
-            grown.append(float(sizes.max()) / at_release)
-    return max(grown)
+            factors.append(float(sizes.max()) / at_release)
+    return max(factors)

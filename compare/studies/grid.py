@@ -1,7 +1,7 @@
-"""A grid whose times are doubles: what a method is asked for and what the truth is known at are then the same times.
+"""A scene's grid moved to times that are doubles, so that a method and the truth are compared at the same times.
 
-A step of 0.1 s is no double and its multiples are none either; between a time and the double next to it the bob moves
-by some 1e-16 of its path, which is the whole error of a method with many digits.
+0.1 s is not a double, nor are most of its multiples. Between such a time and the nearest double the bob moves by some
+1e-16 of its path, which would hide the error of a method with many digits.
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from fractions import Fraction
 
 from reference import Scene
 
-STEP_BITS = 12  # of a step's mantissa: its multiples up to 2**41 are doubles
+STEP_BITS = 12  # bits of a step's mantissa: its first 2**41 multiples are doubles
 
 
 def on_doubles(scene: Scene) -> Scene:
-    """The scene, with a grid step and an end of few bits where some grid time is no double."""
+    """Return the scene; if one of its grid times is not a double, with a grid step and an end of few bits."""
     inputs = scene.exact
     if all(Fraction(float(t)) == t for t in inputs.grid):
         return scene
@@ -27,6 +27,6 @@ def on_doubles(scene: Scene) -> Scene:
 
 
 def _decimal(value: Fraction) -> str:
-    """A dyadic number in full."""
+    """Write a dyadic number in decimal, with all its digits."""
     places = max(0, value.denominator.bit_length() - 1)
     return f"{Decimal(value.numerator * 5**places).scaleb(-places):f}"

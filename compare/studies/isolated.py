@@ -1,4 +1,4 @@
-"""A list of measurements in a process of its own: one that hangs or dies costs that one and not the rest."""
+"""Run a list of measurements in a child process: a hang or crash loses only that item."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 from reference import IntegrationError
 from reference.process import Worker
 
-STARTING_S = 30.0  # wall-clock time for imports and compilation, beside the patience for each measurement
+STARTING_S = 30.0  # wall-clock time for imports and compilation, on top of the patience for a process's first item
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -22,40 +22,42 @@ def isolated(
     patience_s: float,
     failed: Callable[[Item, bool, str], Result],
 ) -> Iterator[Result]:
-    """Run `function(emit, *arguments, items)`, which emits one result an item, in order.
+    """Run `function(emit, *arguments, items)` in a child process; it emits one result for each item, in order.
+
+    After a hang or a crash a new process goes on with the next item.
 
     Args:
-        function: at the top level of a module.
-        arguments: whatever pickles.
-        items: what to measure.
-        patience_s: wall-clock seconds for one item; then the process is ended.
-        failed: makes the result of an item that hung (True) or whose process ended, with the reason.
+        function: at the top level of a module, so that it can be pickled.
+        arguments: anything that can be pickled.
+        items: to be measured.
+        patience_s: wall-clock seconds for one item; then the process is killed.
+        failed: called with the item, whether it timed out, and the reason; returns the item's result.
     """
-    todo = list(items)
-    while todo:
-        worker = Worker(function, *arguments, todo)
-        late = threading.Event()
+    remaining = list(items)
+    while remaining:
+        worker = Worker(function, *arguments, remaining)
+        timed_out = threading.Event()
         answers = iter(worker)
-        grace = STARTING_S
+        starting_s = STARTING_S
         try:
-            while todo:
-                alarm = threading.Timer(patience_s + grace, _end, (worker, late))
+            while remaining:
+                alarm = threading.Timer(patience_s + starting_s, _end, (worker, timed_out))
                 alarm.start()
                 try:
                     result = next(answers)
                 finally:
                     alarm.cancel()
-                grace = 0.0
+                starting_s = 0.0
                 yield result
-                todo.pop(0)
+                remaining.pop(0)
         except (IntegrationError, StopIteration) as error:
-            reason = f"no answer within {patience_s:g} s" if late.is_set() else f"its process ended: {error}"
-            yield failed(todo.pop(0), late.is_set(), reason)
+            reason = f"no answer within {patience_s:g} s" if timed_out.is_set() else f"its process ended: {error}"
+            yield failed(remaining.pop(0), timed_out.is_set(), reason)
         finally:
             worker.kill()
             worker.stop()
 
 
-def _end(worker: Worker, late: threading.Event) -> None:
-    late.set()
+def _end(worker: Worker, timed_out: threading.Event) -> None:
+    timed_out.set()
     worker.kill()

@@ -1,4 +1,4 @@
-"""Results kept line by line as they come, so that an interrupted study goes on where it stopped."""
+"""A JSON-lines file to which a study appends each result, so that an interrupted study resumes where it stopped."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ from reference import InputError
 
 @dataclass(frozen=True)
 class Journal:
-    """A file of JSON lines, each with the recipe that it was made by; None keeps nothing.
+    """A file of JSON lines, each a result with the recipe it was measured by.
 
     Attributes:
-        path: the file.
-        recipe: what results must have in common to be used again.
+        path: the file; None if nothing is to be stored.
+        recipe: must be equal for a stored result to be used again.
     """
 
     path: Path | None
     recipe: str
 
     def __iter__(self) -> Iterator[dict[str, Any]]:
-        """Results of the same recipe, in order; a line that an interrupt cut off is passed over."""
+        """Yield the results of the same recipe, in order; a line cut short by an interrupt is skipped."""
         if self.path is None or not self.path.exists():
             return
         for line in self.path.read_text().splitlines():

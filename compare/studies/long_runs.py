@@ -1,7 +1,7 @@
-"""Long runs: does an error grow in proportion to t, to t^1.5 (Brouwer's law, rounding alone), or to t²?
+"""Long runs (30 days): does a method's error grow like t, like t^1.5 (Brouwer's law, rounding alone), or like t²?
 
-A phase error that comes from a constant drift of the energy grows like t², one from a random walk of the energy
-like t^1.5, and one from a constant error of the frequency like t.
+A phase error grows like t² if the energy drifts at a constant rate, like t^1.5 if it does a random walk, and like t if
+the frequency has a constant error.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from .method_errors import GridTruth
 from .power_of_time import power_of_time
 
 SCENE = "paris_30d"
-TRUTH_DIGITS = 36  # so that 113 bits can be judged
-TRUTH_LEVEL = "self_consistent"  # two precisions: a confirmation takes heyoka twenty minutes (it was made once)
+TRUTH_DIGITS = 36  # enough to judge runs in 113 bits
+TRUTH_LEVEL = "self_consistent"  # confirming it takes heyoka twenty minutes, which was done once
 LAWS = {"t": 1.0, "t^1.5": 1.5, "t^2": 2.0}
 PATIENCE_S = 1800.0  # wall-clock time for one method
-FROM = 1 / 40  # of the run: growth is fitted from here to the end
-PARTS = 24  # of the logarithm of time, whose largest errors make the curve that is fitted
+FROM = 1 / 40  # the exponent of time is fitted from this part of the run to its end
+PARTS = 24  # points of the fitted curve, equally far apart in log t
 
-Item = tuple[str, str, float]
+Item = tuple[str, str, float]  # method, formulation, setting
 
 ITEMS: tuple[Item, ...] = (
     ("heyoka_double", "momentum", 2.0**-52),
@@ -54,10 +54,11 @@ class LongRun:
     """A method's errors over a long run.
 
     Attributes:
-        method, formulation, setting: what ran.
-        status: ok, or why not.
+        method, formulation, setting: the run.
+        status: ok, or how it failed.
+        reason: why it failed.
         t: times in s.
-        error_m: position error there.
+        error_m: position errors at these times.
         cpu_s: CPU seconds.
         bound_m: of the truth.
     """
@@ -74,15 +75,15 @@ class LongRun:
 
     @property
     def key(self) -> Item:
-        """What tells rows apart."""
+        """The identity of a row."""
         return self.method, self.formulation, self.setting
 
     @property
     def exponent(self) -> float | None:
-        """The exponent p of error ∝ t^p, fitted to the largest error so far; None where nothing was measured."""
+        """The exponent p of error ∝ t^p, fitted to the largest error so far; None if too few errors were measured."""
         t, error = np.array(self.t), np.maximum.accumulate(np.array(self.error_m or [0.0]))
-        kept = (t >= FROM * t[-1]) & (error > 0) if len(t) else np.zeros(0, dtype=bool)
-        return power_of_time(t[kept], error[kept], PARTS) if kept.sum() >= PARTS else None
+        fitted = (t >= FROM * t[-1]) & (error > 0) if len(t) else np.zeros(0, dtype=bool)
+        return power_of_time(t[fitted], error[fitted], PARTS) if fitted.sum() >= PARTS else None
 
     @property
     def law(self) -> str | None:
@@ -91,7 +92,7 @@ class LongRun:
         return None if exponent is None else min(LAWS, key=lambda word: abs(LAWS[word] - exponent))
 
     def document(self) -> dict[str, Any]:
-        """As JSON."""
+        """Return the JSON document."""
         return asdict(self) | {"exponent": self.exponent, "law": self.law}
 
 
@@ -103,34 +104,34 @@ def long_run(
     journal_path: Path | None = None,
     report: Callable[[int, int, str], None] | None = None,
 ) -> list[LongRun]:
-    """The errors of methods over a long run.
+    """Measure the errors of methods over a long run.
 
     Args:
-        scene: in the binary64 reading.
-        golden: its truth.
+        scene: its inputs read as binary64.
+        golden: its golden dataset.
         items: method, formulation and setting of each run.
-        journal_path: a file that results are appended to and taken from again.
-        report: called with runs done, runs in all and what runs now.
+        journal_path: a file to which results are appended, and whose results are not measured again.
+        report: called with the number of finished runs, of all runs, and the method that runs now.
     """
     journal = Journal(journal_path, f"{scene.id} {scene.run.t_end} {golden.manifest.files['grid.csv'].sha256[:16]}")
-    done = {row.key: row for row in (LongRun(**result) for result in journal)}
+    finished = {row.key: row for row in (LongRun(**result) for result in journal)}
     document = scene.model_dump(exclude_none=True)
     for item in items:
         if report is not None:
-            report(len(done), len(items), item[0])
-        if item not in done:
-            for row in isolated(grown, (document, golden.path), [item], PATIENCE_S, _failed):
-                done[row.key] = row
+            report(len(finished), len(items), item[0])
+        if item not in finished:
+            for row in isolated(errors_over_time, (document, golden.path), [item], PATIENCE_S, _failed):
+                finished[row.key] = row
                 journal.add(asdict(row))
-    return [done[item] for item in items]
+    return [finished[item] for item in items]
 
 
-def _failed(item: Item, late: bool, reason: str) -> LongRun:
-    return LongRun(*item, "out_of_time" if late else "gave_up", reason)
+def _failed(item: Item, timed_out: bool, reason: str) -> LongRun:
+    return LongRun(*item, "out_of_time" if timed_out else "gave_up", reason)
 
 
-def grown(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item]) -> None:
-    """In a process of its own: run a method over the whole span and measure its error at the grid times."""
+def errors_over_time(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item]) -> None:
+    """Run methods over the whole span, in a child process, and send each one's error at the grid times."""
     scene = parse_scene(document)
     truth = GridTruth(load(folder), float(scene.exact.t_end))
     bound_m = float(truth.golden.manifest.bounds.position_m)
@@ -158,7 +159,7 @@ def grown(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item])
 
 
 def laws(rows: Sequence[LongRun]) -> Iterator[str]:
-    """A sentence a method."""
+    """Yield a sentence on each method: its error at the end, and the law by which it grew."""
     for row in rows:
         exponent = row.exponent
         if exponent is None:
@@ -178,7 +179,7 @@ def over_thirty_days(
     journal_path: Path | None = None,
     report: Callable[[int, int, str], None] | None = None,
 ) -> list[LongRun]:
-    """`long_run` on Paris over 30 days, with its truth; see there."""
+    """Run `long_run` on Paris over 30 days, and solve for the truth if needed; for the arguments see there."""
     scene = load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
     golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)
     return long_run(

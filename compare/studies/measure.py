@@ -1,8 +1,8 @@
-"""One measurement: a method at a setting on a scene, its cost and its error against the truth, never a gap.
+"""One measurement: a method at a setting on a scene, its cost and error; every attempt gives a row, failed ones too.
 
-Timed is the work alone, in one thread, with output at the golden grid times. Before it a probe over a short
-span warms up and tells what the whole span will cost; where that is beyond the limit, a part of the span is
-measured and the cost is extrapolated, which the row says.
+Only the integration itself is timed, in one thread, with output at the golden grid times. A probe over a short span
+comes first: it warms up, and it predicts the cost of the whole span. Where that exceeds the limit only a part of the
+span is measured and the cost is extrapolated; the row says so.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from ..methods import METHODS, Method, Outcome, Problem, available
 from .method_errors import GridTruth, h_drift
 from .row import EXTRAPOLATED, OK, Row
 
-PROBE = 64  # part of the span that is run first, to warm up and to estimate
-LEAST_ROWS = 4  # of the grid in any span
-REPEAT_S = 1.0  # a run is repeated until so much CPU time is spent on a setting, or
-REPEATS = 5  # so often
-TRANSIT_S = 3.0  # transit times cost a second, untimed run: only up to this much CPU time
-TRANSIT_FLOOR_S = 1e-29  # what one Newton step from the double next to a transit leaves; nothing finer is reported
-MISSED = 0.5  # of the gap to the next transit: a transit that is further off than that is missed
+PROBE = 64  # the probe runs 1/64 of the span, to warm up and to predict the cost
+LEAST_ROWS = 4  # grid rows in any span
+REPEAT_S = 1.0  # a run is repeated while the CPU time spent on its setting stays below this,
+REPEATS = 5  # and at most this often
+TRANSIT_S = 3.0  # transit times need a second, untimed run, which is made only if the first took at most this long
+TRANSIT_FLOOR_S = 1e-29  # error of one Newton step from the double next to a transit; nothing smaller is reported
+MISSED = 0.5  # a transit whose error exceeds this part of the gap to its neighbour counts as missed
 
 
 @dataclass(frozen=True)
@@ -39,11 +39,11 @@ class Bench:
     """A scene ready for measurements.
 
     Attributes:
-        scene: in the reading that the methods get.
+        scene: its inputs read as the methods read them.
         truth: its golden states.
         limit_s: CPU seconds that one run may take.
-        repeats: runs of a setting at most.
-        transits: whether to look at their times as well.
+        repeats: largest number of runs at a setting.
+        transits: whether the times of transits are measured as well.
     """
 
     scene: Scene
@@ -53,7 +53,7 @@ class Bench:
     transits: bool = True
 
     def row(self, method: Method, formulation: str, setting: float) -> Row:
-        """Measure a method at a setting; whatever goes wrong becomes the row's status and reason."""
+        """Measure a method at a setting; a failure of any kind becomes the row's status and reason."""
         base = Row(method.id, formulation, setting, method.setting, self.scene.inputs, OK)
         missing = available(method)
         if missing is not None:
@@ -72,27 +72,27 @@ class Bench:
         probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
         probe = method.prepare(self._problem(base, probe_times), base.setting)
         compile_s = time.process_time() - begun
-        tried, probe_s = _timed(probe)
+        probe_outcome, probe_s = _timed(probe)
         base = replace(base, compile_s=compile_s)
-        if tried.status != OK:
-            return self._failed(base, tried, probe_s)
+        if probe_outcome.status != OK:
+            return self._failed(base, probe_outcome, probe_s)
         probe_s = min(probe_s, _timed(probe)[1]) if probe_s < self.limit_s / PROBE else probe_s
         expected = probe_s * float(times[-1] / probe_times[-1])
         rows = min(len(times), longest)
         if expected > self.limit_s:
             rows = min(rows, max(LEAST_ROWS, int(self.limit_s / 4 / expected * len(times))))
         if rows <= len(probe_times):
-            return self._finished(base, tried, [probe_s], probe_times)
+            return self._finished(base, probe_outcome, [probe_s], probe_times)
         begun = time.process_time()
         work = method.prepare(self._problem(base, times[:rows]), base.setting)
         base = replace(base, compile_s=compile_s + time.process_time() - begun)
         outcome, cpu_s = _timed(work)
         if outcome.status != OK:
             return self._failed(base, outcome, cpu_s)
-        taken = [cpu_s]
-        while len(taken) < self.repeats and sum(taken) + cpu_s < REPEAT_S:
-            taken.append(_timed(work)[1])
-        return self._finished(base, outcome, taken, times[:rows])
+        costs_s = [cpu_s]
+        while len(costs_s) < self.repeats and sum(costs_s) + cpu_s < REPEAT_S:
+            costs_s.append(_timed(work)[1])
+        return self._finished(base, outcome, costs_s, times[:rows])
 
     def _problem(self, base: Row, times: Array) -> Problem:
         return Problem.of(self.scene, base.formulation, times)
@@ -108,11 +108,11 @@ class Bench:
             rhs_evaluations=outcome.rhs_evaluations,
         )
 
-    def _finished(self, base: Row, outcome: Outcome, taken: Sequence[float], times: Array) -> Row:
+    def _finished(self, base: Row, outcome: Outcome, costs_s: Sequence[float], times: Array) -> Row:
         whole = len(times) == len(self.truth.times)
         share = float(self.truth.times[-1] / times[-1])
         errors = self.truth.position_errors(outcome)
-        cpu_s = statistics.median(taken)
+        cpu_s = statistics.median(costs_s)
         reason = "" if whole else f"measured to t = {times[-1]:g} s; the cost is scaled to {self.truth.times[-1]:g} s"
         row = replace(
             base,
@@ -122,7 +122,7 @@ class Bench:
             end_error_m=float(errors[-1]),
             h_drift=h_drift(self.scene, outcome),
             cpu_s=cpu_s * share,
-            cpu_spread=(max(taken) - min(taken)) / cpu_s if cpu_s and len(taken) > 1 else None,
+            cpu_spread=(max(costs_s) - min(costs_s)) / cpu_s if cpu_s and len(costs_s) > 1 else None,
             rhs_evaluations=outcome.rhs_evaluations,
             steps=outcome.steps,
             reached_t=float(times[-1]),
@@ -130,22 +130,22 @@ class Bench:
         return self._with_transits(row) if self.transits and whole and cpu_s <= TRANSIT_S else row
 
     def _with_transits(self, row: Row) -> Row:
-        """The row with the largest error of a transit's time, or as failed if one is missed."""
-        found = self.truth.transits
-        if not len(found):
+        """Return the row with the largest error of a transit's time, or as failed if a transit is missed."""
+        transits = self.truth.transits
+        if not len(transits):
             return row
-        work = METHODS[row.method].prepare(self._problem(row, np.concatenate([[0.0], found])), row.setting)
+        work = METHODS[row.method].prepare(self._problem(row, np.concatenate([[0.0], transits])), row.setting)
         outcome = work()
         if outcome.status != OK:
             return row
-        late = self.truth.transit_errors(self.scene, outcome)
-        gaps = np.diff(np.concatenate([[0.0], found, [np.inf]]))
-        missed = late > MISSED * np.minimum(gaps[1:], gaps[:-1])
+        errors_s = self.truth.transit_errors(self.scene, outcome)
+        gaps = np.diff(np.concatenate([[0.0], transits, [np.inf]]))
+        missed = errors_s > MISSED * np.minimum(gaps[1:], gaps[:-1])
         if missed.any():
-            first = float(found[np.argmax(missed)])
-            text = f"{int(missed.sum())} of {len(found)} transits are missed, the first at t = {first:.6f} s"
+            first = float(transits[np.argmax(missed)])
+            text = f"{int(missed.sum())} of {len(transits)} transits are missed, the first at t = {first:.6f} s"
             return replace(row, status="missed_transits", reason=text)
-        return replace(row, transit_error_s=max(float(late.max()), TRANSIT_FLOOR_S))
+        return replace(row, transit_error_s=max(float(errors_s.max()), TRANSIT_FLOOR_S))
 
 
 def _timed(work: Any) -> tuple[Outcome, float]:
@@ -155,8 +155,8 @@ def _timed(work: Any) -> tuple[Outcome, float]:
     return outcome, spent if outcome.cpu_s is None else outcome.cpu_s
 
 
-def ladder(emit: Emit, scene: dict[str, Any], golden: Path, t_end: float, limit_s: float, todo: list[Any]) -> None:
-    """In a process of its own: measure (method, formulation, setting) one after the other and send each row."""
+def ladder(emit: Emit, scene: dict[str, Any], golden: Path, t_end: float, limit_s: float, items: list[Any]) -> None:
+    """Measure (method, formulation, setting) one after the other, in a child process, and send each row."""
     bench = Bench(parse_scene(scene), GridTruth(load(golden), t_end), limit_s)
-    for name, formulation, setting in todo:
+    for name, formulation, setting in items:
         emit(bench.row(METHODS[name], formulation, setting))

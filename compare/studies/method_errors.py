@@ -1,4 +1,4 @@
-"""How far a method's run is off: positions on the grid, times of transits, drift of h; in any number type."""
+"""Errors of a method's run against the golden dataset: positions, transit times, drift of h; in any number type."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from reference.solver.solution import GRID_COLUMNS
 from ..methods import Outcome
 from ..rhs.constants import constants_in_double
 
-H_ROWS = 64  # at which the drift of h is taken
+H_ROWS = 64  # rows at which h is evaluated
 
 
 @dataclass(frozen=True)
 class GridTruth:
-    """The golden states that rows are measured against.
+    """The golden grid states and transits up to a time, with which a method's run is compared.
 
     Args:
-        golden: of the scene in the reading that the methods get.
+        golden: of the scene, its inputs read as the methods read them.
         t_end: end of the span in s.
     """
 
@@ -53,31 +53,31 @@ class GridTruth:
 
     @cached_property
     def transits_rounded_by(self) -> Array:
-        """How far the doubles of `transits` are from the printed times, in s."""
+        """Distance of the doubles in `transits` from the printed times, in s."""
         texts = self.golden.transits_text["t"][: len(self.transits)]
         pairs = zip(self.transits, texts, strict=True)
         return np.array([float(Fraction(float(t)) - Fraction(text)) for t, text in pairs])
 
     def position_errors(self, outcome: Outcome) -> Array:
-        """Distance from the truth at each row, in m, without cancellation in any number type."""
+        """Return the distance from the truth at each row, in m, without cancellation in any number type."""
         finer = outcome.exact
         if finer is not None:
             unit = Fraction(1, 2**finer.bits)
-            found: Any = [[unit * part for part in row[:3]] for row in finer.rows]
+            positions: Any = [[unit * part for part in row[:3]] for row in finer.rows]
         else:
-            found = [[Fraction(float(part)) for part in row] for row in outcome.states[:, :3]]
+            positions = [[Fraction(float(part)) for part in row] for row in outcome.states[:, :3]]
         differences = [
             [float(p - q) for p, q in zip(row, true, strict=True)]
-            for row, true in zip(found, self.exact[: len(found)], strict=True)
+            for row, true in zip(positions, self.exact[: len(positions)], strict=True)
         ]
         return np.asarray(np.sqrt((np.array(differences) ** 2).sum(axis=1)))
 
     def transit_errors(self, scene: Scene, outcome: Outcome) -> Array:
-        """How late each transit is in s, by one Newton step from the states at the true times, in any number type.
+        """Return the error of each transit's time in s, in any number type, by one Newton step from the true time.
 
         Args:
-            scene: in the reading that the method got.
-            outcome: of a run to t = 0 and `transits`.
+            scene: its inputs read as the method read them.
+            outcome: of a run with output at t = 0 and at `transits`.
         """
         finer, states = outcome.exact, outcome.states[1:]
         vx = states[:, 3] if finer is None else np.array([row[3] / (1 << finer.bits) for row in finer.rows[1:]])
@@ -85,14 +85,15 @@ class GridTruth:
         n, v = (tuple(states[:, part] / k.length for part in parts) for parts in ((0, 1, 2), (3, 4, 5)))
         ax = np.asarray(acceleration(n, v, k)[0] * k.length)
         with np.errstate(divide="ignore", invalid="ignore"):
-            late = np.abs(self.transits_rounded_by - vx / ax)
-        return np.where(np.isfinite(late), late, np.inf)
+            errors_s = np.abs(self.transits_rounded_by - vx / ax)
+        return np.where(np.isfinite(errors_s), errors_s, np.inf)
 
 
 def h_drift(scene: Scene, outcome: Outcome) -> float | None:
-    """Drift of h over the largest kinetic energy, in the precision of the outcome; None with drag."""
+    """Return the drift of h over the largest kinetic energy, in the precision of the outcome; None with drag."""
     if scene.exact.drag:
         return None
+    # 27 bits beyond a double, or 64 beyond an exact state: h is a small difference of large terms
     ctx = context(80 if outcome.exact is None else outcome.exact.bits + 64)
     k = constants(scene.exact, ctx)
     finer = outcome.exact

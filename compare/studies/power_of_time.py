@@ -1,4 +1,4 @@
-"""The power of time that an error grows like."""
+"""The exponent p of error ∝ t^p, fitted to the largest error so far."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import numpy as np
 
 from reference.precision import Array
 
-FEWEST = 3  # points of a fit
+FEWEST = 3  # points that a fit needs
 
 
 def power_of_time(t: Array, error: Array, parts: int) -> float | None:
-    """The exponent p of error ∝ t^p; None where fewer than three points make the curve.
+    """Return the exponent p of error ∝ t^p; None if there are fewer than three points to fit.
 
     Args:
         t: times in s, above zero, increasing, shape (rows,).
-        error: above zero, at these times; what is fitted is the largest so far.
-        parts: into which log t is divided: at the end of each lies a point, so that late times count no more.
+        error: above zero, at these times; the largest error so far is fitted.
+        parts: number of fitted points, equally far apart in log t, so that late times do not weigh more.
     """
     largest = np.maximum.accumulate(error)
     at = np.unique(np.searchsorted(t, np.geomspace(t[0], t[-1], parts), side="right") - 1)

@@ -1,4 +1,4 @@
-"""The precision ladder: what each further digit costs, from double to hundreds of bits."""
+"""The precision ladder: runs in double up to thousands of bits, which measure how much each further digit costs."""
 
 from __future__ import annotations
 
@@ -10,36 +10,36 @@ from reference.precision import DOUBLE_BITS, LONG_DOUBLE_BITS
 
 from ..methods import METHODS
 
-SPAN_S = 600  # a longer scene is cut to this, unless an end is given: 512 bits take a thousand times a double's time
+SPAN_S = 600  # longer scenes are cut to this, unless an end is given: 512 bits take a thousand times as long as double
 MOST_BITS = 4096
-SPARE_DIGITS = 8  # of the truth beyond the finest run's own
+SPARE_DIGITS = 8  # digits of the truth beyond those of the finest run
 LIMBS = "limbs"
 
-Item = tuple[str, str, float]
+Item = tuple[str, str, float]  # method, formulation, setting
 
 
 def bits_of(text: str) -> list[int]:
-    """The precisions of a comma-separated list, in bits.
+    """Read a comma-separated list of precisions in bits.
 
     Raises:
-        InputError: not whole numbers from 53 on.
+        InputError: they are not whole numbers from 53 to 4096.
     """
     try:
-        found = sorted({int(word) for word in text.split(",")})
+        precisions = sorted({int(word) for word in text.split(",")})
     except ValueError:
-        found = []
-    if not found or found[0] < DOUBLE_BITS or found[-1] > MOST_BITS:
+        precisions = []
+    if not precisions or precisions[0] < DOUBLE_BITS or precisions[-1] > MOST_BITS:
         raise InputError(
             "--precisions",
             text,
             f"bits from {DOUBLE_BITS} to {MOST_BITS}, such as 53,64,113,256,512",
-            "Commas between.",
+            "Separate them by commas.",
         )
-    return found
+    return precisions
 
 
 def precision_items(bits: Sequence[int]) -> list[Item]:
-    """What to measure: the machine's own types where they are named, MPFR beyond them, and limbs beside it."""
+    """List the runs: heyoka in double and long double if asked for, in MPFR beyond them, and `limbs` for comparison."""
     items: list[Item] = []
     if DOUBLE_BITS in bits:
         items.append(("heyoka_double", "momentum", 2.0 ** (1 - DOUBLE_BITS)))
@@ -50,12 +50,12 @@ def precision_items(bits: Sequence[int]) -> list[Item]:
 
 
 def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Scene, int]:
-    """The scene to measure on, and the digits of its truth.
+    """Return the scene to measure on, and the digits that its truth needs.
 
     Args:
-        scene: what was asked for.
-        bits: the precisions.
-        whole: keep the scene's span.
+        scene: as requested.
+        bits: the precisions, increasing.
+        whole: whether to keep the scene's whole span.
     """
     digits = math.ceil(bits[-1] * math.log10(2)) + SPARE_DIGITS
     if whole or scene.exact.t_end <= SPAN_S:

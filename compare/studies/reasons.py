@@ -1,4 +1,4 @@
-"""Why a method failed on a scene, in a sentence, from what was measured."""
+"""Why a method failed on a scene: one sentence, derived from the measured numbers."""
 
 from __future__ import annotations
 
@@ -8,47 +8,54 @@ from .character import Character
 from .row import Row
 
 ROUNDING = 2.0**-53
-EXPLICIT_REACH = 3.3  # of the real axis, that an explicit method of order 5 to 8 has per step, about
+EXPLICIT_REACH = 3.3  # rate times step up to which an explicit method of order 5 to 8 is stable, about
 
 
-def reason_of(row: Row, status: str, marks: Character, digits: float | None, asked: float, limit_s: float) -> str:
-    """The cause that the numbers point to, the strongest first; empty where nothing is wrong."""
+def reason_of(row: Row, status: str, traits: Character, digits: float | None, requested: float, limit_s: float) -> str:
+    """Return the causes that the numbers point to, the strongest first; empty if the run is right."""
     if status == "ok":
         return ""
     if status in ("not_installed", "refused"):
         return row.reason
-    causes = [*_causes(row, status, marks)]
-    said = f" It said: {row.reason.rstrip('.')}." if row.reason and status != "out_of_time" else ""
+    causes = [*_causes(row, status, traits)]
+    reported = f" It reported: {row.reason.rstrip('.')}." if row.reason and status != "out_of_time" else ""
     if status == "out_of_time":
-        cost = f"the whole would take about {row.cpu_s:.0f} s; the limit is {limit_s:g} s" if row.cpu_s else row.reason
+        cost = (
+            f"the whole span would take about {row.cpu_s:.0f} s; the limit is {limit_s:g} s"
+            if row.cpu_s
+            else row.reason
+        )
         return _sentence([cost, *causes])
     if status == "silently_wrong" and digits is not None:
-        head = f"success reported with {max(digits, 0):.1f} digits where {asked:.1f} were asked for"
+        head = f"success was reported with {max(digits, 0):.1f} digits where {requested:.1f} were asked for"
         return _sentence([head, *(causes or [_accumulated(row)])])
-    return _sentence(causes or ["nothing in the scene's numbers explains it"]) + said
+    return _sentence(causes or ["no measured property of the scene explains it"]) + reported
 
 
-def _causes(row: Row, status: str, marks: Character) -> list[str]:
-    found = []
-    if marks.stiff:
-        steps = marks.damping * marks.span / EXPLICIT_REACH
-        text = f"stiff: rates up to {marks.damping:.2g}/s, {marks.ratio:.1g} apart"
-        found.append(f"{text}, so that an explicit method needs about {steps:.1g} steps")
-    if row.formulation in ("angles", "lagrangian") and marks.nearest < 1e-3:
-        found.append(f"the path passes the vertical within {marks.nearest:.1g} of the length, where the azimuth jumps")
-    if row.formulation == "plane" and marks.amplitude > 0.99:
-        found.append("the path reaches the height of the suspension, where x and y do not tell the state")
-    if row.formulation == "space" and marks.least_tension < 0:
-        text = f"the rod is pushed (least tension {marks.least_tension:.2g}/s²): |r| - l grows exponentially"
-        found.append(text)
-    if status != "out_of_time" and marks.magnified > 1e3:
-        found.append(f"the flow magnifies an error at the release {marks.magnified:.1g} times")
-    if status == "silently_wrong" and 0 < marks.amplitude < 1e-5 and row.kind != "precision":
-        lost = -math.log10(marks.amplitude)
-        found.append(
-            f"the amplitude is {marks.amplitude:.1g} of the length: rounding beside z = -l costs {lost:.0f} digits"
+def _causes(row: Row, status: str, traits: Character) -> list[str]:
+    causes = []
+    if traits.stiff:
+        steps = traits.damping * traits.span / EXPLICIT_REACH
+        text = f"stiff: rates up to {traits.damping:.2g}/s, a factor of {traits.ratio:.1g} apart"
+        causes.append(f"{text}, so that an explicit method needs about {steps:.1g} steps")
+    if row.formulation in ("angles", "lagrangian") and traits.nearest < 1e-3:
+        causes.append(
+            f"the path passes the vertical within {traits.nearest:.1g} of the length, where the azimuth jumps"
         )
-    return found
+    if row.formulation == "plane" and traits.amplitude > 0.99:
+        causes.append("the path reaches the height of the suspension, where x and y do not determine the state")
+    if row.formulation == "space" and traits.least_tension < 0:
+        text = f"the rod is pushed (least tension {traits.least_tension:.2g}/s²): |r| - l grows exponentially"
+        causes.append(text)
+    if status != "out_of_time" and traits.magnified > 1e3:
+        causes.append(f"the flow amplifies an error at the release {traits.magnified:.1g} times")
+    if status == "silently_wrong" and 0 < traits.amplitude < 1e-5 and row.kind != "precision":
+        lost = -math.log10(traits.amplitude)
+        causes.append(
+            f"the amplitude is {traits.amplitude:.1g} of the length: "
+            f"cancellation against z ≈ −l costs {lost:.0f} digits"
+        )
+    return causes
 
 
 def _accumulated(row: Row) -> str:

@@ -1,7 +1,7 @@
-"""Error against run time: every method over its ladder of settings on one scene, in one run.
+"""Error against run time: every method over its ladder of settings on one scene.
 
-Methods run one after the other, each in a process of its own, so that none pays for another's memory or
-threads and a method that never returns is ended. Rows are kept as they come: a study goes on where it stopped.
+Methods run one after the other, each in a child process, so that none pays for another's memory or threads and one that
+never returns can be killed. Each row is stored at once, so that an interrupted study resumes where it stopped.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ from .journal import Journal
 from .measure import ladder
 from .row import Row
 
-LIMIT_S = 8.0  # CPU seconds of one run; what would take longer is extrapolated from a part of the span
-PATIENCE = 12  # times the limit, in wall-clock time: then a process is ended
+LIMIT_S = 8.0  # CPU seconds of one run; a longer one is extrapolated from a part of the span
+PATIENCE = 12  # wall-clock limit of one run, in multiples of the CPU limit
 FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
-FORMULATIONS_OF = "heyoka_double"  # the method that they are compared with
+FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS", "XLA_FLAGS")
 LIBRARIES = (
     "heyoka", "numpy", "numba", "scipy", "numbalsoda", "scikit-sundae", "rebound", "diffrax", "mpmath", "python-flint",
 )  # fmt: skip
 
-Item = tuple[str, str, float]
+Item = tuple[str, str, float]  # method, formulation, setting
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,12 @@ class Study:
     """A finished study.
 
     Attributes:
-        scene: as the methods got it: inputs read as binary64.
+        scene: as the methods were given it, with inputs read as binary64.
         t_end: end of the span in s.
         limit_s: CPU seconds that one run may take.
-        golden: the truth.
+        golden: the golden dataset that errors are measured against.
         rows: every method at every setting, failed ones included.
-        machine: where it was measured, and with which versions.
+        machine: processor, system and versions of libraries.
     """
 
     scene: Scene
@@ -60,7 +60,7 @@ class Study:
     machine: dict[str, str]
 
     def document(self) -> dict[str, Any]:
-        """The JSON document of the contract."""
+        """Return the JSON document, whose keys are documented."""
         return {
             "scene": self.scene.id,
             "title": self.scene.title,
@@ -77,10 +77,10 @@ class Study:
 
 
 def plan(scene: Scene, methods: Sequence[str] | None = None, formulations: bool = True) -> list[Item]:
-    """What to measure: each method over its settings in the formulation that suits it, and the formulations.
+    """List the runs: each method over its settings in the formulation that suits it, and one method in all of them.
 
     Args:
-        scene: whose swing steps are scaled to, and whose motion a formulation must carry.
+        scene: steps are scaled to its swing, and a formulation must be able to describe its motion.
         methods: ids; all if None.
         formulations: whether to compare the formulations in one method as well.
 
@@ -111,27 +111,27 @@ def study(
     """Measure methods on a scene.
 
     Args:
-        scene: its inputs are read as binary64, because methods in double solve that problem.
-        items: what to measure; see `plan`.
+        scene: its inputs are read as binary64, because that is the problem which methods in double solve.
+        items: the runs; see `plan`.
         limit_s: CPU seconds for one run.
-        journal_path: a file that rows are appended to and taken from again, so that a study goes on where it stopped.
-        digits: of the truth where it has to be solved; the scene's own if None.
-        report: called with rows done, rows in all and what runs now.
-        announce: told when the truth has to be solved.
+        journal_path: a file to which rows are appended, and whose rows are not measured again.
+        digits: of the truth if it has to be solved for; the scene's own if None.
+        report: called with the number of finished rows, of all rows, and the method that runs now.
+        announce: called with a message if the truth has to be solved for.
     """
-    todo = list(items or plan(scene))
+    requested = list(items or plan(scene))
     problem = on_doubles(scene.with_values(["inputs=binary64"]))
     golden = golden_of(problem, digits or problem.run.digits, announce)
     journal = Journal(journal_path, _recipe(problem, limit_s))
     rows = {row.key: row for row in map(Row.parsed, journal)}
-    for name, formulation, settings in _grouped([item for item in todo if item not in rows]):
+    for name, formulation, settings in _grouped([item for item in requested if item not in rows]):
         for row in _measured(problem, golden, limit_s, [(name, formulation, setting) for setting in settings]):
             if report is not None:
-                report(len(rows), len(todo), name)
+                report(len(rows), len(requested), name)
             rows[row.key] = row
             journal.add(asdict(row))
-    wanted = [rows[item] for item in todo]
-    return Study(problem, float(problem.exact.t_end), limit_s, golden, wanted, machine())
+    ordered = [rows[item] for item in requested]
+    return Study(problem, float(problem.exact.t_end), limit_s, golden, ordered, machine())
 
 
 def _grouped(items: Sequence[Item]) -> Iterator[tuple[str, str, list[float]]]:
@@ -142,36 +142,36 @@ def _grouped(items: Sequence[Item]) -> Iterator[tuple[str, str, list[float]]]:
         yield name, formulation, settings
 
 
-def _measured(problem: Scene, golden: Golden, limit_s: float, todo: list[Item]) -> Iterator[Row]:
-    """Rows of one method."""
+def _measured(problem: Scene, golden: Golden, limit_s: float, items: list[Item]) -> Iterator[Row]:
+    """Measure the rows of one method in child processes."""
 
-    def failed(item: Item, late: bool, reason: str) -> Row:
+    def failed(item: Item, timed_out: bool, reason: str) -> Row:
         name, formulation, setting = item
-        status = "out_of_time" if late else "gave_up"
+        status = "out_of_time" if timed_out else "gave_up"
         return Row(name, formulation, setting, METHODS[name].setting, problem.inputs, status, reason)
 
     scene = problem.model_dump(exclude_none=True)
     arguments = (scene, golden.path, float(problem.exact.t_end), limit_s)
-    return isolated(ladder, arguments, todo, PATIENCE * limit_s, failed)
+    return isolated(ladder, arguments, items, PATIENCE * limit_s, failed)
 
 
 def single_thread() -> None:
-    """Keep every library of this process and its children to one thread: cost is CPU time of one core."""
+    """Limit every library of this process and its children to one thread, so that cost is the CPU time of one core."""
     for name in THREADS[:-1]:
         os.environ[name] = "1"
     os.environ.setdefault("XLA_FLAGS", "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1")
 
 
 def machine() -> dict[str, str]:
-    """Processor, system, Python, and versions of the libraries measured."""
-    found = {"processor": _processor(), "system": f"{platform.system()} {platform.machine()}"}
-    found["python"] = platform.python_version()
+    """Return processor, system, Python, and the versions of the libraries that are measured."""
+    description = {"processor": _processor(), "system": f"{platform.system()} {platform.machine()}"}
+    description["python"] = platform.python_version()
     for name in LIBRARIES:
         try:
-            found[name] = version(name)
+            description[name] = version(name)
         except PackageNotFoundError:
-            found[name] = "not installed"
-    return found
+            description[name] = "not installed"
+    return description
 
 
 def _processor() -> str:
@@ -183,7 +183,7 @@ def _processor() -> str:
 
 
 def _recipe(problem: Scene, limit_s: float) -> str:
-    """What rows have to have in common to stand in one study: problem, limit, machine and versions."""
+    """Return a hash of problem, limit, machine and versions, which must agree for rows to stand in one study."""
     document = problem.model_dump(mode="json", exclude={"title", "source", "flags"})
     text = json.dumps([document, limit_s, machine()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]

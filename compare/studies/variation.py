@@ -1,4 +1,4 @@
-"""Scenes that differ from a given one in amplitude, latitude, length or rotation."""
+"""A scene with another amplitude, latitude, length or rotation rate."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from reference import InputError, Scene, parse_scene
 from ..approximations.case import Case
 
 UNITS: dict[str, str] = {"amplitude": "m", "latitude": "degrees", "length": "m", "rotation_rate": "rad/s"}
-_DIGITS = 40
+_DIGITS = 40  # of a release as it is written into a scene
 _FIELDS = {"latitude": "site.latitude", "rotation_rate": "site.rotation_rate"}
 
 
 def varied(scene: Scene, over: str, value: float | str) -> Scene:
-    """The scene with one thing changed.
+    """Return the scene with one quantity changed.
 
     Args:
         scene: to start from.
-        over: `latitude` or `rotation_rate`: that field; `length`: the cord, with the angle of release kept;
-            `amplitude`: displacement from the point of rest in m along the sphere's horizontal projection, with its
-            direction kept, and the velocity of release in proportion.
+        over: `latitude` or `rotation_rate`: that field; `length`: of the cord, with the angle of release kept;
+            `amplitude`: horizontal distance of the release from the rest position in m, with its direction kept,
+            and the velocity of the release in proportion.
         value: its new value.
 
     Raises:
-        InputError: unknown `over`, or a value that no scene can have.
+        InputError: `over` is unknown, or no scene can have the value.
     """
     text = value if isinstance(value, str) else repr(float(value))
     if over in _FIELDS:
@@ -48,7 +48,7 @@ def _lengthened(scene: Scene, text: str) -> Scene:
 
 
 def released(scene: Scene, east: float, north: float) -> Scene:
-    """The scene released at rest, so many m east and north of its point of rest (horizontally)."""
+    """Return the scene released without velocity, `east` and `north` m (horizontally) from its rest position."""
     case = Case.of(scene)
     y = case.ctx.mpf(case.rest[1]) * case.length + case.ctx.mpf(north)
     return _with_release(scene, _release(case, (case.ctx.mpf(east), y), (0, 0)))
@@ -60,7 +60,9 @@ def _displaced(scene: Scene, text: str) -> Scene:
     east, up = case.position[0], case.position[1] - north
     present = case.ctx.hypot(east, up)
     if not present:
-        raise InputError("release", f"x = {scene.release.x}, y = {scene.release.y}", "a release off the point of rest")
+        raise InputError(
+            "release", f"x = {scene.release.x}, y = {scene.release.y}", "a release away from the rest position"
+        )
     ratio = case.ctx.mpf(text) / present
     velocity = tuple(part * ratio for part in case.velocity)
     return _with_release(scene, _release(case, (east * ratio, north + up * ratio), velocity))

@@ -1,4 +1,4 @@
-"""What the tests of methods share: two short scenes with their truth, from inputs that are doubles."""
+"""Shared by the tests of methods: two short scenes with their truth, from inputs that are doubles."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class Case:
         return np.array([getattr(self.solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]).T
 
     def problem(self, name, *, rows=None, formulation=None):
-        words = formulation or suited(self.scene, METHODS[name].formulations)
-        return Problem.of(self.scene, words, self.times[:rows])
+        word = formulation or suited(self.scene, METHODS[name].formulations)
+        return Problem.of(self.scene, word, self.times[:rows])
 
 
 @cache

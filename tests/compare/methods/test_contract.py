@@ -1,4 +1,4 @@
-"""What every method promises, held against the reference on a gentle and on a steep scene."""
+"""The contract of every method, tested against the reference on a gentle and on a steep scene."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ ERRORS = {
 
 
 def run(name, scene, setting=None):
-    method, made = METHODS[name], case(scene)
-    problem = made.problem(name, rows=ROWS.get(name))
-    return problem, method.prepare(problem, setting or SETTINGS.get(name) or method.settings(made.scene)[-1])()
+    method, example = METHODS[name], case(scene)
+    problem = example.problem(name, rows=ROWS.get(name))
+    return problem, method.prepare(problem, setting or SETTINGS.get(name) or method.settings(example.scene)[-1])()
 
 
 @pytest.fixture(params=list(METHODS))
@@ -42,37 +42,37 @@ def name(request):
 
 @pytest.mark.parametrize("scene", ["paris", "steep"])
 def test_every_method_finds_the_reference(name, scene):
-    problem, done = run(name, scene)
+    problem, outcome = run(name, scene)
     truth, length = case(scene).truth[: len(problem.times)], float(case(scene).scene.exact.length)
-    assert (done.status, done.reached_t) == ("ok", problem.times[-1])
-    assert done.states.shape == (len(problem.times), 6)
-    assert np.abs(done.states - truth)[:, :3].max() < ERRORS.get(name, ERROR) * length
-    assert np.abs(done.states - truth)[:, 3:].max() < ERRORS.get(name, ERROR) * length * np.sqrt(9.8 / length)
+    assert (outcome.status, outcome.reached_t) == ("ok", problem.times[-1])
+    assert outcome.states.shape == (len(problem.times), 6)
+    assert np.abs(outcome.states - truth)[:, :3].max() < ERRORS.get(name, ERROR) * length
+    assert np.abs(outcome.states - truth)[:, 3:].max() < ERRORS.get(name, ERROR) * length * np.sqrt(9.8 / length)
 
 
 def test_a_run_can_be_repeated_and_gives_the_same_bits(name):
-    method, made = METHODS[name], case("paris")
-    work = method.prepare(made.problem(name, rows=2), method.ladder[0])
+    method, paris = METHODS[name], case("paris")
+    work = method.prepare(paris.problem(name, rows=2), method.ladder[0])
     first, second = work(), work()
     assert np.array_equal(first.states, second.states)
     assert (first.steps, first.rhs_evaluations) == (second.steps, second.rhs_evaluations)
 
 
 def test_a_tighter_setting_is_better(name):
-    method, made = METHODS[name], case("paris")
-    problem = made.problem(name, rows=ROWS.get(name))
+    method, paris = METHODS[name], case("paris")
+    problem = paris.problem(name, rows=ROWS.get(name))
     errors = [
-        np.abs(method.prepare(problem, setting)().states - made.truth[: len(problem.times)])[:, :3].max()
+        np.abs(method.prepare(problem, setting)().states - paris.truth[: len(problem.times)])[:, :3].max()
         for setting in (method.ladder[0], SETTINGS.get(name) or method.ladder[-1])
     ]
     assert errors[1] < errors[0] or errors[0] < 1e-13
 
 
 def test_problems_of_one_moment_need_no_integration(name):
-    method, made = METHODS[name], case("paris")
-    done = method.prepare(made.problem(name, rows=1), method.ladder[0])()
-    np.testing.assert_allclose(done.states, made.truth[:1], atol=1e-13)
-    assert done.status == "ok"
+    method, paris = METHODS[name], case("paris")
+    outcome = method.prepare(paris.problem(name, rows=1), method.ladder[0])()
+    np.testing.assert_allclose(outcome.states, paris.truth[:1], atol=1e-13)
+    assert outcome.status == "ok"
 
 
 def test_a_declaration_is_complete(name):
@@ -92,16 +92,16 @@ def test_exact_states_show_errors_far_below_a_doubles(name):
     if available(METHODS[name]):
         pytest.skip("not installed")
     setting = {"heyoka_real": 160, "mpmath_odefun": 113}.get(name)
-    problem, done = run(name, "paris", setting)
+    problem, outcome = run(name, "paris", setting)
     grid = case("paris").solution.grid
     errors = [
-        abs(Fraction(row[0], 1 << done.exact.bits) - truth)
-        for row, truth in zip(done.exact.rows, grid.exact("x"), strict=False)
+        abs(Fraction(row[0], 1 << outcome.exact.bits) - truth)
+        for row, truth in zip(outcome.exact.rows, grid.exact("x"), strict=False)
     ]
-    assert len(done.exact.rows) == len(problem.times)
+    assert len(outcome.exact.rows) == len(problem.times)
     assert float(max(errors)) < {"heyoka_long_double": 1e-17}.get(name, 1e-27)
-    nearest = [float(Fraction(row[0], 1 << done.exact.bits)) for row in done.exact.rows]
-    np.testing.assert_allclose(done.states[:, 0], nearest, rtol=3e-16, atol=1e-19)
+    nearest = [float(Fraction(row[0], 1 << outcome.exact.bits)) for row in outcome.exact.rows]
+    np.testing.assert_allclose(outcome.states[:, 0], nearest, rtol=3e-16, atol=1e-19)
 
 
 def test_doubles_have_no_finer_form():
@@ -111,8 +111,8 @@ def test_doubles_have_no_finer_form():
 def test_fixed_steps_are_counted_by_the_step():
     for name, stages in (("rk4", 4), ("rkng56", 8), ("rkng67", 10), ("rkmk4", 4)):
         if available(METHODS[name]) is None:
-            _, done = run(name, "paris", 0.1)
-            assert (done.steps, done.rhs_evaluations) == (600, 600 * stages)
+            _, outcome = run(name, "paris", 0.1)
+            assert (outcome.steps, outcome.rhs_evaluations) == (600, 600 * stages)
 
 
 def test_steps_end_on_output_times_that_they_do_not_divide():
@@ -174,8 +174,8 @@ def test_declarations_load_no_library():
         "import sys, compare.methods as m; [m.METHODS[name] for name in m.METHODS]; "
         "print([x for x in ('heyoka', 'scipy', 'numba', 'flint', 'rebound', 'jax', 'sksundae') if x in sys.modules])"
     )
-    done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
-    assert done.stdout.strip() == "[]"
+    process = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    assert process.stdout.strip() == "[]"
 
 
 def test_what_is_not_installed_says_what_brings_it():

@@ -1,4 +1,4 @@
-"""What goes wrong is an outcome with a status, a reason and the rows that were reached; nothing is raised."""
+"""A failure is an outcome with a status, a reason and the rows that were reached; nothing is raised."""
 
 from __future__ import annotations
 
@@ -35,42 +35,42 @@ FIXED = ["rk4", "rkng56", "rkng67", "gauss_legendre"]
 @pytest.mark.parametrize("name", [*FIXED, "scipy_lsoda", "numbalsoda_lsoda", "rebound_bs"])
 def test_a_formulation_that_ends_at_the_horizontal_ends_the_run(name):
     problem = Problem.of(over_the_horizontal(), "plane")
-    done = checked(name).prepare(problem, METHODS[name].settings(problem.scene)[1])()
-    assert done.status in ("gave_up", "not_finite")
-    assert done.reason
-    assert done.reached_t < problem.times[-1]
-    assert len(done.states) == np.searchsorted(problem.times, done.reached_t) + 1
-    assert np.isfinite(done.states).all()
+    outcome = checked(name).prepare(problem, METHODS[name].settings(problem.scene)[1])()
+    assert outcome.status in ("gave_up", "not_finite")
+    assert outcome.reason
+    assert outcome.reached_t < problem.times[-1]
+    assert len(outcome.states) == np.searchsorted(problem.times, outcome.reached_t) + 1
+    assert np.isfinite(outcome.states).all()
 
 
 def test_a_tolerance_that_scipy_raises_is_said():
     problem = Problem.of(case("steep").scene, "momentum", [0.0, 1.0])
-    done = checked("scipy_dop853").prepare(problem, 1e-17)()
-    assert done.status == "ok"
-    assert "rtol" in done.reason
+    outcome = checked("scipy_dop853").prepare(problem, 1e-17)()
+    assert outcome.status == "ok"
+    assert "rtol" in outcome.reason
 
 
 def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd):
     problem = Problem.of(case("steep").scene, "momentum")
-    done = checked("numbalsoda_lsoda").prepare(problem, 1e-17)()
-    assert done.status == "gave_up"
-    assert done.reason
+    outcome = checked("numbalsoda_lsoda").prepare(problem, 1e-17)()
+    assert outcome.status == "gave_up"
+    assert outcome.reason
     assert capfd.readouterr() == ("", "")
 
 
 def test_a_step_too_long_for_the_implicit_equations_is_said():
     problem = Problem.of(case("steep").scene, "momentum")
-    done = checked("gauss_legendre").prepare(problem, 2.0)()
-    assert done.status == "gave_up"
-    assert "shorten the step" in done.reason
-    assert done.reached_t == 0
+    outcome = checked("gauss_legendre").prepare(problem, 2.0)()
+    assert outcome.status == "gave_up"
+    assert "shorten the step" in outcome.reason
+    assert outcome.reached_t == 0
 
 
 def test_an_unstable_step_ends_in_numbers_that_are_not_finite():
     scene = make_scene(pendulum={"length": "1", "drag": "1000"}, run={"t_end": "10", "grid_step": "1"})
-    done = checked("rk4").prepare(Problem.of(scene, "momentum"), 0.01)()
-    assert done.status == "not_finite"
-    assert done.reached_t < 10
+    outcome = checked("rk4").prepare(Problem.of(scene, "momentum"), 0.01)()
+    assert outcome.status == "not_finite"
+    assert outcome.reached_t < 10
 
 
 def program(body):
@@ -83,12 +83,12 @@ def test_a_program_of_somebody_else_is_a_method_too():
         " [print(i * g, x + s, 0.4, sep=',') for i in range(n + 1)]"
     )
     problem = Problem.of(make_scene(run={"t_end": "3", "grid_step": "1"}), "momentum")
-    done = external(program(body), ladder=(0.5,)).prepare(problem, 0.5)()
-    assert (done.status, done.reached_t) == ("ok", 3.0)
-    np.testing.assert_allclose(done.states[:, :2], [[0.8, 0.4]] * 4)
-    np.testing.assert_allclose(done.states[:, 2], -np.sqrt(67**2 - 0.8**2 - 0.4**2))
-    assert np.isnan(done.states[:, 3:]).all()
-    assert done.cpu_s > 0
+    outcome = external(program(body), ladder=(0.5,)).prepare(problem, 0.5)()
+    assert (outcome.status, outcome.reached_t) == ("ok", 3.0)
+    np.testing.assert_allclose(outcome.states[:, :2], [[0.8, 0.4]] * 4)
+    np.testing.assert_allclose(outcome.states[:, 2], -np.sqrt(67**2 - 0.8**2 - 0.4**2))
+    assert np.isnan(outcome.states[:, 3:]).all()
+    assert outcome.cpu_s > 0
 
 
 @pytest.mark.parametrize(
@@ -102,9 +102,9 @@ def test_a_program_of_somebody_else_is_a_method_too():
 )
 def test_a_program_that_fails_is_an_outcome_with_its_reason(body, reason):
     problem = Problem.of(make_scene(run={"t_end": "3", "grid_step": "1"}), "momentum")
-    done = external(program(body)).prepare(problem, 1.0)()
-    assert done.status == "gave_up"
-    assert reason in done.reason
+    outcome = external(program(body)).prepare(problem, 1.0)()
+    assert outcome.status == "gave_up"
+    assert reason in outcome.reason
 
 
 def test_a_command_with_an_unknown_placeholder_is_a_mistake_of_the_users():

@@ -132,14 +132,14 @@ def test_there_are_as_many_rooted_trees_as_cayley_counted():
 
 @pytest.mark.parametrize("stages", [1, 2, 3, 8])
 def test_gauss_legendre_collocates_at_the_nodes_of_the_quadrature(stages):
-    made = gauss_legendre.gauss(stages)
+    method = gauss_legendre.gauss(stages)
     nodes, weights = np.polynomial.legendre.leggauss(stages)
     c = (nodes + 1) / 2
-    np.testing.assert_allclose(made.b, weights / 2, atol=1e-15)
+    np.testing.assert_allclose(method.b, weights / 2, atol=1e-15)
     for power in range(stages):  # exact for polynomials of lower degree, within the step and ahead of it
-        np.testing.assert_allclose(made.a @ c**power, c ** (power + 1) / (power + 1), atol=1e-14)
-        np.testing.assert_allclose(made.ahead @ c**power, (1 + c) ** power, rtol=1e-9)
-    m = made.b[:, None] * made.a + made.b[None, :] * made.a.T - np.outer(made.b, made.b)
+        np.testing.assert_allclose(method.a @ c**power, c ** (power + 1) / (power + 1), atol=1e-14)
+        np.testing.assert_allclose(method.ahead @ c**power, (1 + c) ** power, rtol=1e-9)
+    m = method.b[:, None] * method.a + method.b[None, :] * method.a.T - np.outer(method.b, method.b)
     np.testing.assert_allclose(m, 0, atol=1e-15)  # the condition for quadratic invariants (Cooper 1987)
 
 

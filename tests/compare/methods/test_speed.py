@@ -20,7 +20,7 @@ ROWS, STEP = 120, 0.01  # two hours
 
 def arguments(problem):
     k = problem.constants
-    given = [
+    values = [
         k.length,
         k.gravity * k.length,
         math.radians(48.846111),
@@ -30,7 +30,7 @@ def arguments(problem):
         0.4,
         STEP,
     ]
-    return [*(repr(float(value)) for value in given), str(ROWS), "6000"]
+    return [*(repr(float(value)) for value in values), str(ROWS), "6000"]
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
@@ -47,8 +47,8 @@ def test_rk4_is_as_fast_as_the_same_program_in_c_and_finds_the_same(tmp_path):
         printed = subprocess.run([program, *arguments(problem)], check=True, capture_output=True, text=True).stdout
         *lines, theirs = printed.split("\n")[:-1]
         ratios.append(ours / float(theirs))
-    found = np.array([[float.fromhex(word) for word in line.split()] for line in lines])
-    np.testing.assert_allclose(states[1:, :2], found, atol=1e-11)  # metres against n, other roundings
+    theirs_xy = np.array([[float.fromhex(word) for word in line.split()] for line in lines])
+    np.testing.assert_allclose(states[1:, :2], theirs_xy, atol=1e-11)  # metres against n, other roundings
     assert min(ratios) < 1.5
 
 
@@ -57,12 +57,12 @@ def test_momentum_costs_a_step_half_of_what_plane_does():
 
     def cost(formulation):
         work = METHODS["rk4"].prepare(Problem.of(scene, formulation, [0.0, 7200.0]), STEP)
-        took = []
+        costs_s = []
         for _ in range(3):
             begun = time.process_time()
             work()
-            took.append(time.process_time() - begun)
-        return min(took)
+            costs_s.append(time.process_time() - begun)
+        return min(costs_s)
 
     assert cost("momentum") < 0.7 * cost("plane")
 
@@ -80,12 +80,12 @@ def test_generated_code_is_kept_whole_and_renewed_where_it_was_damaged(tmp_path,
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
     compiled.cache_clear()
     assert compiled(SOURCE).twice(2.0) == 4.0
-    (kept,) = tmp_path.rglob("f*.py")
-    good = kept.read_text()
-    kept.write_text("raise SystemExit")
+    (cached,) = tmp_path.rglob("f*.py")
+    good = cached.read_text()
+    cached.write_text("raise SystemExit")
     compiled.cache_clear()
     assert compiled(SOURCE).twice(3.0) == 6.0
-    assert kept.read_text() == good
+    assert cached.read_text() == good
     assert list(tmp_path.rglob("*.nbi"))
 
 

@@ -32,11 +32,11 @@ def test_the_example_in_the_module_runs():
 
 @pytest.mark.parametrize("formulation", TRACED)
 def test_traced_code_gives_the_bits_of_the_model_evaluated_in_doubles(formulation):
-    made = problem(formulation, pendulum={"drag": "0.1"}, site={"rotation_rate": "0.05"})
-    state = made.start + 0.01 * np.arange(1, len(made.start) + 1)
-    expected = FORMULATIONS[formulation].derivatives(state.tolist(), made.constants, math)
-    got = made.system.program.function()(*state.tolist(), *made.parameters.tolist())
-    np.testing.assert_allclose(got, expected, rtol=1e-14, atol=1e-18)
+    example = problem(formulation, pendulum={"drag": "0.1"}, site={"rotation_rate": "0.05"})
+    state = example.start + 0.01 * np.arange(1, len(example.start) + 1)
+    expected = FORMULATIONS[formulation].derivatives(state.tolist(), example.constants, math)
+    values = example.system.program.function()(*state.tolist(), *example.parameters.tolist())
+    np.testing.assert_allclose(values, expected, rtol=1e-14, atol=1e-18)
 
 
 def test_an_expression_that_stands_twice_is_computed_once():
@@ -59,9 +59,9 @@ def test_rewritings_change_no_bit(a, b):
         negated = -x
         return (x + -y, -x + y, x - (-y), -negated, -1 * x, 0 + x, x - 0, 0 - x, 1 * y, x / 1)
 
-    got = record(function, ["x", "y"]).function()(a, b)
+    values = record(function, ["x", "y"]).function()(a, b)
     expected = (a + -b, -a + b, a - -b, a, -1 * a, a, a, -a, b, a)
-    assert all(p == q or (math.isnan(p) and math.isnan(q)) for p, q in zip(got, expected, strict=True))
+    assert all(p == q or (math.isnan(p) and math.isnan(q)) for p, q in zip(values, expected, strict=True))
 
 
 def test_an_exact_zero_drops_out_but_a_double_zero_does_not():
@@ -93,15 +93,15 @@ def test_what_cannot_be_straight_line_code_is_refused(function):
 
 @pytest.mark.parametrize("formulation", TRACED)
 def test_the_jacobian_is_the_derivative_of_the_rates(formulation):
-    made = problem(formulation, pendulum={"drag": "0.1"}, site={"rotation_rate": "0.05"})
-    at = (made.start + 0.05 * np.arange(1, len(made.start) + 1)).tolist()
-    rates, slopes = made.system.program.function(), made.system.jacobian.function()
-    k, step = made.parameters.tolist(), 1e-6
-    got = np.array(slopes(*at, *k)).reshape(len(at), len(at))
+    example = problem(formulation, pendulum={"drag": "0.1"}, site={"rotation_rate": "0.05"})
+    at = (example.start + 0.05 * np.arange(1, len(example.start) + 1)).tolist()
+    rates, slopes = example.system.program.function(), example.system.jacobian.function()
+    k, step = example.parameters.tolist(), 1e-6
+    values = np.array(slopes(*at, *k)).reshape(len(at), len(at))
     for i in range(len(at)):
         ahead, behind = ([x + (sign * step if j == i else 0) for j, x in enumerate(at)] for sign in (1, -1))
         slope = (np.array(rates(*ahead, *k)) - np.array(rates(*behind, *k))) / (2 * step)
-        np.testing.assert_allclose(got[:, i], slope, rtol=1e-7, atol=1e-8)
+        np.testing.assert_allclose(values[:, i], slope, rtol=1e-7, atol=1e-8)
 
 
 def test_every_operation_has_its_derivative():
@@ -131,11 +131,11 @@ def test_scenes_of_one_kind_share_their_code():
 
 
 def test_constants_are_rounded_once():
-    made = Problem.of(load_scene("paris"), "momentum")
+    example = Problem.of(load_scene("paris"), "momentum")
     exact = -9.80665 + 7.292115e-5**2 * 4.2e6 * 0.66
-    assert made.constants.pull[2] == pytest.approx(exact / 67, rel=1e-3)
-    assert made.constants.length == 67
-    assert all(isinstance(value, float) for value in made.system.parameters.values())
+    assert example.constants.pull[2] == pytest.approx(exact / 67, rel=1e-3)
+    assert example.constants.length == 67
+    assert all(isinstance(value, float) for value in example.system.parameters.values())
 
 
 def test_a_system_of_somebody_else_is_compiled_too():
@@ -147,8 +147,8 @@ def test_a_system_of_somebody_else_is_compiled_too():
 
 
 def test_a_state_goes_back_to_metres():
-    made = Problem.of(load_scene("paris"), "plane")
-    rows = made.cartesian(made.start[None, :])
+    example = Problem.of(load_scene("paris"), "plane")
+    rows = example.cartesian(example.start[None, :])
     np.testing.assert_allclose(rows, [[0.3, 0.4, -math.sqrt(67**2 - 0.25), 0, 0, 0]], rtol=1e-15)
 
 

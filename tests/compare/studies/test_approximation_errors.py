@@ -1,4 +1,4 @@
-"""Tables of errors and of limits: what they say agrees with the motions themselves."""
+"""Tables of errors and of limits agree with the motions themselves."""
 
 from __future__ import annotations
 
@@ -109,8 +109,8 @@ def test_limits_over_time_are_where_the_error_passes_them():
     assert [(row.approximation, row.limit) for row in rows] == [(word, name) for word in ids for name, _, _ in LIMITS]
     truth = ApproximationTruth(PARIS, 7200.0)
     for row in rows:
-        _, what, limit = next(entry for entry in LIMITS if entry[0] == row.limit)
-        (start, end), index = row.good[0], ("error_m", "plane_error_arcsec").index(what)
+        _, quantity, limit = next(entry for entry in LIMITS if entry[0] == row.limit)
+        (start, end), index = row.good[0], ("error_m", "plane_error_arcsec").index(quantity)
         errors = truth.errors(approximation(row.approximation))
         assert start == 0.0
         assert errors.at(end)[index] <= limit
@@ -161,7 +161,7 @@ def test_a_table_ends_at_a_time_after_the_release(t_end):
 
 
 # Varied scenes -------------------------------------------------------------------------------------------------------
-def test_amplitude_is_the_distance_from_the_point_of_rest_in_the_same_direction():
+def test_amplitude_is_the_distance_from_the_rest_position_in_the_same_direction():
     from compare.approximations.case import Case
 
     for scene in (PARIS, PARIS.with_values(["release.vx=0.1"]), load_scene("hard")):
@@ -193,7 +193,7 @@ def test_impossible_variations_are_refused(over, value):
 
 
 def test_a_bob_at_rest_has_no_direction_to_vary():
-    with pytest.raises(InputError, match="point of rest"):
+    with pytest.raises(InputError, match="rest position"):
         varied(PARIS.with_values(["site.rotation_rate=0", "release.x=0", "release.y=0"]), "amplitude", 1.0)
 
 

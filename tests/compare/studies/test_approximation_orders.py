@@ -10,34 +10,34 @@ from compare.approximations import APPROXIMATIONS, Motion, approximation
 from compare.studies.approximation_orders import BASE, error, measure
 from compare.studies.variation import varied
 
-STATED = [(word, i) for word, made in APPROXIMATIONS.items() for i in range(len(made.orders))]
+STATED = [(word, i) for word, one in APPROXIMATIONS.items() for i in range(len(one.orders))]
 EXACT_M, EXACT_RELATIVE = 2e-12, 1e-13  # rounding of a metre-sized motion, and of a measured frequency
 
 
 @pytest.mark.parametrize(("word", "which"), STATED)
 def test_the_error_has_the_slope_of_its_theory(word, which):
-    made = approximation(word)
-    found = measure(made, made.orders[which])
-    if found.order.power is None:
-        assert max(found.errors) < (EXACT_M if isinstance(made, Motion) else EXACT_RELATIVE)
+    one = approximation(word)
+    measured = measure(one, one.orders[which])
+    if measured.order.power is None:
+        assert max(measured.errors) < (EXACT_M if isinstance(one, Motion) else EXACT_RELATIVE)
     else:
-        assert min(found.errors) > 0
-        assert abs(found.slope - found.order.power) < 0.25, found
+        assert min(measured.errors) > 0
+        assert abs(measured.slope - measured.order.power) < 0.25, measured
 
 
 def test_every_approximation_states_an_order():
-    assert all(made.orders for made in APPROXIMATIONS.values())
+    assert all(one.orders for one in APPROXIMATIONS.values())
 
 
 def test_the_slope_tells_a_wrong_order():
     wrong = approximation("mathar_item_4").orders[0]
-    found = measure(approximation("mathar_item_2"), wrong)
-    assert abs(found.slope - wrong.power) > 0.25
+    measured = measure(approximation("mathar_item_2"), wrong)
+    assert abs(measured.slope - wrong.power) > 0.25
 
 
 def test_one_value_has_no_slope():
-    made = approximation("conical")
-    assert math.isnan(measure(made, made.orders[0]).slope)
+    conical = approximation("conical")
+    assert math.isnan(measure(conical, conical.orders[0]).slope)
 
 
 @pytest.mark.parametrize("word", ["mathar_item_1", "mathar_item_1_variant", "linear_g", "method_2"])
@@ -49,10 +49,10 @@ def test_without_the_centrifugal_force_the_tilt_costs_as_many_metres_as_the_rest
 
 
 def test_the_variant_of_item_1_is_exact_to_the_cord_at_the_equator():
-    there = BASE.with_values(["site.latitude=0"])
+    equator = BASE.with_values(["site.latitude=0"])
     assert (
-        error(approximation("mathar_item_1_variant"), there)
+        error(approximation("mathar_item_1_variant"), equator)
         < 1e-6
         < 1e-2
-        < error(approximation("mathar_item_1"), there)
+        < error(approximation("mathar_item_1"), equator)
     )

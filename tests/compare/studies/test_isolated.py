@@ -1,4 +1,4 @@
-"""Lanes and journals: what hangs or dies costs itself and nothing else, and nothing measured is lost."""
+"""Child processes and journals: a hang or crash loses only its own item, and nothing measured is lost."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ def answers(emit: Emit, offset: int, items: list[str]) -> None:
         emit(f"{item} {offset}")
 
 
-def failed(item: str, late: bool, reason: str) -> str:
-    return f"{item} failed: {'late' if late else 'ended'}"
+def failed(item: str, timed_out: bool, reason: str) -> str:
+    return f"{item} failed: {'timed out' if timed_out else 'ended'}"
 
 
 def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("compare.studies.isolated.STARTING_S", 5.0)
-    found = list(isolated(answers, (7,), ["a", "dies", "b", "hangs", "c"], 0.5, failed))
-    assert found == ["a 7", "dies failed: ended", "b 7", "hangs failed: late", "c 7"]
+    results = list(isolated(answers, (7,), ["a", "dies", "b", "hangs", "c"], 0.5, failed))
+    assert results == ["a 7", "dies failed: ended", "b 7", "hangs failed: timed out", "c 7"]
 
 
 def test_a_journal_gives_back_results_of_its_recipe_only(tmp_path: Path) -> None:

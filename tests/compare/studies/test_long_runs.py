@@ -1,4 +1,4 @@
-"""Long runs, made short: growth is measured, kept, and a method that is not there is a row."""
+"""Long runs, made short: the exponent of time is measured, rows are stored, and a method that cannot run is a row."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path:
     assert rows[0].status == "ok"
     assert rows[0].exponent == pytest.approx(1, abs=0.15)  # a constant error of the frequency
     assert rows[0].bound_m == float(golden.manifest.bounds.position_m)
-    seen: list[str] = []
+    reports: list[str] = []
     again = long_run(
         scene,
         golden,
         ITEMS,
         journal_path=journal_path,
-        report=lambda done, total, now: seen.append(f"{done} of {total}"),
+        report=lambda finished, total, now: reports.append(f"{finished} of {total}"),
     )
     assert again[0] == rows[0]
-    assert seen == ["1 of 3", "1 of 3", "2 of 3"]
+    assert reports == ["1 of 3", "1 of 3", "2 of 3"]
     assert [row.key for row in again] == list(ITEMS)
 
 
@@ -42,13 +42,15 @@ def test_what_cannot_run_is_a_row_with_its_reason() -> None:
 
 
 def test_thirty_days_are_paris_with_a_truth_of_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[str] = []
+    requests: list[str] = []
 
     def short(scene, golden, items, **keywords):  # type: ignore[no-untyped-def]
-        asked.append(f"{scene.id} {scene.inputs} {float(scene.exact.t_end):g} {golden} {[item[0] for item in items]}")
+        requests.append(
+            f"{scene.id} {scene.inputs} {float(scene.exact.t_end):g} {golden} {[item[0] for item in items]}"
+        )
         return [LongRun("m", "f", 1.0, "ok")]
 
     monkeypatch.setattr(longrun, "golden_of", lambda scene, digits, level: f"{digits} {level}")
     monkeypatch.setattr(longrun, "long_run", short)
     longrun.over_thirty_days(["rk4"])
-    assert asked == ["paris_30d binary64 2.592e+06 36 self_consistent ['rk4']"]
+    assert requests == ["paris_30d binary64 2.592e+06 36 self_consistent ['rk4']"]

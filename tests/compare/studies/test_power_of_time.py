@@ -1,4 +1,4 @@
-"""The power of time that an error grows like, of errors whose power is known."""
+"""The exponent of time of errors whose exponent is known."""
 
 from __future__ import annotations
 

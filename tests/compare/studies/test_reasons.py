@@ -15,23 +15,23 @@ ROW = Row("rk4", "space", 0.1, "step", "binary64", "ok", steps=6000, h_drift=1e-
 
 
 @pytest.mark.parametrize(
-    ("status", "row", "marks", "words"),
+    ("status", "row", "traits", "words"),
     [
         ("out_of_time", ROW, replace(CALM, damping=4000.0, ratio=1e6), ["about 12 s", "stiff: rates up to 4e+03/s"]),
         (
             "gave_up",
             replace(ROW, reason="Step too small."),
             replace(CALM, least_tension=-9.8),
-            ["the rod is pushed", "It said: Step too small"],
+            ["the rod is pushed", "It reported: Step too small"],
         ),
         (
             "silently_wrong",
             ROW,
             CALM,
-            ["success reported with 1.0 digits", "local errors of 6000 steps add up", "h drifts"],
+            ["success was reported with 1.0 digits", "local errors of 6000 steps add up", "h drifts"],
         ),
-        ("silently_wrong", ROW, replace(CALM, magnified=1e8), ["magnifies an error at the release 1e+08 times"]),
-        ("silently_wrong", ROW, replace(CALM, amplitude=1e-11), ["costs 11 digits"]),
+        ("silently_wrong", ROW, replace(CALM, magnified=1e8), ["amplifies an error at the release 1e+08 times"]),
+        ("silently_wrong", ROW, replace(CALM, amplitude=1e-11), ["cancellation against z ≈ −l costs 11 digits"]),
         (
             "silently_wrong",
             replace(ROW, formulation="angles"),
@@ -44,14 +44,14 @@ ROW = Row("rk4", "space", 0.1, "step", "binary64", "ok", steps=6000, h_drift=1e-
             replace(CALM, amplitude=1.0),
             ["height of the suspension"],
         ),
-        ("not_finite", replace(ROW, reason=""), CALM, ["nothing in the scene's numbers explains it"]),
+        ("not_finite", replace(ROW, reason=""), CALM, ["no measured property of the scene explains it"]),
         ("refused", replace(ROW, reason="not below"), CALM, ["not below"]),
     ],
 )
-def test_each_cause_is_named(status: str, row: Row, marks: Character, words: list[str]) -> None:
-    said = reason_of(row, status, marks, 1.0, 9.0, 3.0)
+def test_each_cause_is_named(status: str, row: Row, traits: Character, words: list[str]) -> None:
+    reason = reason_of(row, status, traits, 1.0, 9.0, 3.0)
     for word in words:
-        assert word.lower() in said.lower()
+        assert word.lower() in reason.lower()
 
 
 def test_what_is_right_needs_no_reason() -> None:

@@ -1,4 +1,4 @@
-"""What fails on extreme scenes, and the reason given for it."""
+"""Failures on extreme scenes, the reasons given for them, and the digits that methods are asked for."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ from reference import load_scene, trajectory
 from reference.scene import data_root
 
 
-def measured(scene_id: str, *changes: str):  # type: ignore[no-untyped-def]
+def character_of(scene_id: str, *changes: str):  # type: ignore[no-untyped-def]
     scene = load_scene(scene_id, changes)
     times = np.linspace(0, float(scene.exact.t_end), 200)
     return character(scene, times, trajectory(scene, times))
 
 
 def test_the_rates_of_a_small_swing_are_those_of_the_linear_pendulum() -> None:
-    found = measured("paris", "run.t_end=600", "site.rotation_rate=0", "release.x=1e-4", "release.y=0")
-    assert found.fastest == pytest.approx(math.sqrt(9.80665 / 67), rel=1e-5)
-    assert found.ratio == pytest.approx(1, abs=1e-3)
-    assert found.magnified == pytest.approx(1, rel=0.01)
-    assert not found.stiff
+    traits = character_of("paris", "run.t_end=600", "site.rotation_rate=0", "release.x=1e-4", "release.y=0")
+    assert traits.fastest == pytest.approx(math.sqrt(9.80665 / 67), rel=1e-5)
+    assert traits.ratio == pytest.approx(1, abs=1e-3)
+    assert traits.magnified == pytest.approx(1, rel=0.01)
+    assert not traits.stiff
 
 
 def test_the_rates_of_a_creeping_bob_are_its_drag_and_gravity_over_drag() -> None:
-    found = measured("creeping", "run.t_end=1", "run.grid_step=0.01")
-    assert found.damping == pytest.approx(4000, rel=1e-3)
-    assert found.ratio > 1e6
-    assert found.stiff
+    traits = character_of("creeping", "run.t_end=1", "run.grid_step=0.01")
+    assert traits.damping == pytest.approx(4000, rel=1e-3)
+    assert traits.ratio > 1e6
+    assert traits.stiff
 
 
 def test_near_the_top_the_flow_magnifies_and_the_rod_is_pushed() -> None:
-    found = measured("near_inverted", "run.t_end=5", "run.grid_step=0.1")
-    assert found.least_tension < 0
-    assert found.magnified > 100  # exp(t sqrt(g/l)) while it lingers there
+    traits = character_of("near_inverted", "run.t_end=5", "run.grid_step=0.1")
+    assert traits.least_tension < 0
+    assert traits.magnified > 100  # exp(t sqrt(g/l)) while it lingers there
 
 
 def test_there_are_thirty_extreme_scenes_and_each_says_what_it_catches() -> None:
@@ -60,7 +60,7 @@ def test_there_are_thirty_extreme_scenes_and_each_says_what_it_catches() -> None
 def test_the_orders_that_decide_what_is_asked_are_those_that_the_tableaux_prove() -> None:
     tableaux = {"rk4": rk4.TABLEAU, "rkng56": rkng56.TABLEAU, "rkng67": rkng67.TABLEAU, "rkmk4": rk4.TABLEAU}
     proved = {name: tableau.order for name, tableau in tableaux.items()}
-    for tableau in tableaux.values():  # it was checked up to its order when it was made, and has no higher one
+    for tableau in tableaux.values():  # checked up to its order when it was created, and has no higher one
         with pytest.raises(TableauError) as caught:
             replace(tableau, order=tableau.order + 1)
         assert caught.value.order == tableau.order + 1
@@ -88,17 +88,17 @@ def cells(tmp_path_factory: pytest.TempPathFactory) -> list[Cell]:
     short.write_text(text.replace('t_end = "100"', 't_end = "10"').replace('grid_step = "0.2"', 'grid_step = "0.125"'))
     names = ["near_inverted", str(short), "hard"]
     methods = ["heyoka_double", "scipy_dop853", "scipy_radau", "rkmk4"]
-    made = stability(names, methods, journal_path=journal_path)
-    assert stability(names, methods, journal_path=journal_path) == made  # from the journal
-    return made
+    measured = stability(names, methods, journal_path=journal_path)
+    assert stability(names, methods, journal_path=journal_path) == measured  # from the journal
+    return measured
 
 
 def test_space_is_silently_wrong_above_the_horizontal_and_momentum_is_not(cells: list[Cell]) -> None:
-    found = {(cell.scene, cell.precision): cell for cell in cells if cell.method == "heyoka_double"}
-    space = found["near_inverted", "double, space"]
+    by_key = {(cell.scene, cell.precision): cell for cell in cells if cell.method == "heyoka_double"}
+    space = by_key["near_inverted", "double, space"]
     assert space.status == "silently_wrong"
     assert "the rod is pushed" in space.reason
-    assert found["near_inverted", "double, momentum"].status == "ok"
+    assert by_key["near_inverted", "double, momentum"].status == "ok"
 
 
 def test_a_stiff_method_wins_where_it_is_stiff_and_loses_where_it_is_not(cells: list[Cell]) -> None:
@@ -114,17 +114,17 @@ def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:
             assert cell.digits is not None and cell.digits < cell.asked - 3
 
 
-def test_a_growth_of_known_power_is_named() -> None:
+def test_the_law_of_a_known_exponent_of_time_is_named() -> None:
     t = np.linspace(0, 100, 400)
-    made = LongRun("m", "f", 1.0, "ok", "", t.tolist(), (1e-9 * t**1.5).tolist(), 1.0)
-    assert made.exponent == pytest.approx(1.5, abs=0.02)
-    assert made.law == "t^1.5"
-    assert "grows like t^1.5" in next(laws([made]))
+    run = LongRun("m", "f", 1.0, "ok", "", t.tolist(), (1e-9 * t**1.5).tolist(), 1.0)
+    assert run.exponent == pytest.approx(1.5, abs=0.02)
+    assert run.law == "t^1.5"
+    assert "grows like t^1.5" in next(laws([run]))
 
 
 def test_the_command_reports_rows_and_a_page(tmp_path: Path) -> None:
-    asked = ["stability", "--scenes", "hard,two_radians", "--methods", "rkmk4,heyoka_double", "--json"]
-    result = CliRunner().invoke(app, [*asked, "--out", str(tmp_path)])
+    words = ["stability", "--scenes", "hard,two_radians", "--methods", "rkmk4,heyoka_double", "--json"]
+    result = CliRunner().invoke(app, [*words, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     rows = json.loads(result.stdout)["rows"]
     assert {"scene", "method", "precision", "status", "digits", "cpu_s", "reason"} <= rows[0].keys()

@@ -1,4 +1,4 @@
-"""Studies: rows that say what they measured, failures as rows, and the same ranking twice."""
+"""Studies: rows of measurements, failures as rows, and the same ranking twice."""
 
 from __future__ import annotations
 
@@ -75,30 +75,32 @@ def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pyt
 
 def test_a_study_goes_on_where_it_stopped_and_gives_the_same_front(short: Scene, tmp_path: Path) -> None:
     items = [item for item in plan(short, ["rk4", "heyoka_double", "gauss_legendre"], False) if item[2] != 0.002]
-    seen: list[str] = []
+    reports: list[str] = []
     journal_path = tmp_path / "rows.jsonl"
     first = study(short, items=items[:4], journal_path=journal_path)
-    again = study(short, items=items, journal_path=journal_path, report=lambda done, total, now: seen.append(now))
+    again = study(
+        short, items=items, journal_path=journal_path, report=lambda finished, total, now: reports.append(now)
+    )
     assert again.rows[:4] == first.rows
-    assert len(seen) == len(items) - 4
+    assert len(reports) == len(items) - 4
     other = study(short, items=items)
     costs = [{row.key: row.cpu_s for row in one.rows if row.measured} for one in (again, other)]
     ahead = {row.key for one in (again, other) for row in front(one.rows)} & costs[0].keys() & costs[1].keys()
     assert len(ahead) > 5
     for one, two in itertools.combinations(ahead, 2):
-        ratios = [found[one] / found[two] for found in costs]
+        ratios = [cost[one] / cost[two] for cost in costs]
         assert not min(ratios) < 1 / CLEARLY < CLEARLY < max(ratios), (one, two)
     assert Row.parsed(json.loads(json.dumps(vars(again.rows[0])))) == again.rows[0]
 
 
 def test_the_command_writes_a_report_and_one_json_document(tmp_path: Path) -> None:
-    asked = ["study", "paris", "--methods", "heyoka_double", "--no-formulations", "--t-end", T_END, "--json"]
-    result = CliRunner().invoke(app, [*asked, "--out", str(tmp_path / "out")])
+    words = ["study", "paris", "--methods", "heyoka_double", "--no-formulations", "--t-end", T_END, "--json"]
+    result = CliRunner().invoke(app, [*words, "--out", str(tmp_path / "out")])
     assert result.exit_code == 0, result.output
-    said = json.loads(result.stdout)
-    assert {"scene", "t_end", "reference", "rows"} <= said.keys()
+    document = json.loads(result.stdout)
+    assert {"scene", "t_end", "reference", "rows"} <= document.keys()
     keys = {"method", "setting", "inputs", "status", "error_m", "end_error_m", "transit_error_s", "h_drift", "cpu_s"}
-    assert keys | {"compile_s", "rhs_evaluations", "steps"} <= said["rows"][0].keys()
+    assert keys | {"compile_s", "rhs_evaluations", "steps"} <= document["rows"][0].keys()
     assert (tmp_path / "out" / "index.html").read_text().startswith("<!doctype html>")
 
 
@@ -119,8 +121,8 @@ def test_somebody_elses_program_is_a_row_of_the_study(tmp_path: Path) -> None:
         "for i in range(round(end / step) + 1):\n    print(f'{i * step!r},0.3,0.4')\n"
     )
     command = f"python3 {script} {{t_end}} {{grid_step}}"
-    asked = ["study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--settings", "1", "--json"]
-    result = CliRunner().invoke(app, asked)
+    words = ["study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--settings", "1", "--json"]
+    result = CliRunner().invoke(app, words)
     assert result.exit_code == 0, result.output
     row = json.loads(result.stdout)["rows"][-1]
     assert row["method"] == f"external: {command}"
@@ -133,8 +135,8 @@ def test_the_precision_ladder_gains_digits_with_bits() -> None:
     assert (scene.run.t_end, digits) == ("600", 57)
     items = [item for item in precision_items(bits) if item[0].startswith("heyoka")]
     assert [item[0] for item in items] == ["heyoka_double", "heyoka_long_double", "heyoka_real", "heyoka_real"]
-    found = study(scene.with_values(["run.t_end=60"]), items=items, digits=digits)
-    errors = [row.error_m for row in found.rows]
+    result = study(scene.with_values(["run.t_end=60"]), items=items, digits=digits)
+    errors = [row.error_m for row in result.rows]
     assert all(
         later is not None and earlier is not None and later < earlier for earlier, later in itertools.pairwise(errors)
     )
