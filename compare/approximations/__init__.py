@@ -1,4 +1,4 @@
-"""Every analytic or truncated model of the seeds, one idea a file, each scored against the reference.
+"""Registry of the analytic and truncated models of the source papers, by id; one idea in each file.
 
 >>> from compare.approximations import approximation
 >>> from reference import load_scene
@@ -60,13 +60,13 @@ _MODULE_OF = {word: module for module, words in _MODULES.items() for word in wor
 _QUANTITIES = ("rest_angle", "apparent_gravity", "frequency", "precession")
 
 
-class _Registry(Mapping[str, Approximation]):
-    """Approximations by id, each module imported where one of its own is first looked up."""
+class _Approximations(Mapping[str, Approximation]):
+    """Approximations by id; a module is imported when one of its ids is first looked up."""
 
     def __getitem__(self, word: str) -> Approximation:
         module = import_module(f".{_MODULE_OF[word]}", __name__)
-        found: dict[str, Approximation] = {made.id: made for made in module.APPROXIMATIONS}
-        return found[word]
+        by_id: dict[str, Approximation] = {declared.id: declared for declared in module.APPROXIMATIONS}
+        return by_id[word]
 
     def __iter__(self) -> Iterator[str]:
         return iter(_MODULE_OF)
@@ -75,14 +75,14 @@ class _Registry(Mapping[str, Approximation]):
         return len(_MODULE_OF)
 
 
-APPROXIMATIONS: Mapping[str, Approximation] = _Registry()
+APPROXIMATIONS: Mapping[str, Approximation] = _Approximations()
 
 
 def approximation(word: str) -> Approximation:
-    """One approximation by its id.
+    """Return the approximation with this id.
 
     Raises:
-        InputError: no such id.
+        InputError: there is no such id.
     """
     if word not in _MODULE_OF:
         raise InputError("approximation", word, "an approximation's id", f"Known ids: {', '.join(_MODULE_OF)}.")
@@ -90,10 +90,10 @@ def approximation(word: str) -> Approximation:
 
 
 def motions() -> tuple[str, ...]:
-    """Ids of the approximations that give a trajectory."""
+    """Return the ids of the approximations that give a trajectory."""
     return tuple(word for word, module in _MODULE_OF.items() if module not in _QUANTITIES)
 
 
 def quantities() -> tuple[str, ...]:
-    """Ids of the approximations that give one number."""
+    """Return the ids of the approximations that give one number."""
     return tuple(word for word, module in _MODULE_OF.items() if module in _QUANTITIES)

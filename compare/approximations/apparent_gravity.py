@@ -1,4 +1,4 @@
-"""The apparent gravity that the cord bears at rest, in m/s²: Gastebois 4.2, which is Mathar (48)."""
+"""Apparent gravity in m/s², the cord's pull per mass at the point of rest: Gastebois 4.2, Mathar (48)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .case import Case, under_gravity
 
 
 def of_the_model(scene: Scene) -> Any:
-    """Pull of the cord per mass at the point of rest."""
+    """Return the pull of the cord per mass at the full model's point of rest."""
     case = Case.of(scene)
     return case.length * tension(case.rest, (0, 0, 0), case.k)
 
@@ -39,7 +39,7 @@ APPROXIMATIONS = (
         refuses=under_gravity,
         printed=Printed(
             "g_a² = g² + Ω² R_p cos λ - 2 g Ω² R_p cos² λ",
-            "g_a² = g² + Ω⁴ R_p² cos² λ - 2 g Ω² R_p cos² λ: the square of a_e lost its squares",
+            "g_a² = g² + Ω⁴ R_p² cos² λ - 2 g Ω² R_p cos² λ: the term a_e² lost its square in print",
             _as_printed,
         ),
         formula=_triangle,

@@ -1,4 +1,4 @@
-"""What an approximation declares: where it stands, what it drops, how its error must grow, and how it is computed."""
+"""Declaration of an approximation: its source, domain, dropped terms, order of its error, and formula."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ Against = Literal["amplitude", "rotation_rate", "length"]
 
 @dataclass(frozen=True)
 class Order:
-    """A statement of theory that `order.measure` puts to the test: error proportional to `against` ** `power`.
+    """A statement of theory, error proportional to `against` ** `power`, which `studies.approximation_orders` tests.
 
     Attributes:
-        against: what is varied: the displacement from the point of rest in m, Ω in rad/s, or the length in m.
-        power: the exponent; None where the approximation is exact, so that only rounding is left.
-        values: the sizes at which the error is measured.
-        setting: `section.key=value` replacements that leave this error as the largest.
-        amplitude: displacement from the point of rest in m that is kept, released at rest; None: as the scene says.
+        against: quantity that is varied: the displacement from the point of rest in m, Ω in rad/s, or the length in m.
+        power: the exponent; None where the approximation is exact and only rounding errors remain.
+        values: values of `against` at which the error is measured.
+        setting: `section.key=value` replacements that make this error the largest one.
+        amplitude: fixed displacement from the point of rest in m, released at rest; None: as the scene says.
     """
 
     against: Against
@@ -36,12 +36,12 @@ class Order:
 
 @dataclass(frozen=True)
 class Printed:
-    """How a document prints it, where that differs from the right form.
+    """A misprint: the formula as a source paper prints it, beside the right form.
 
     Attributes:
-        text: as printed.
-        right: as it must be.
-        compute: the printed form evaluated, with the signature of the right one; None if it has no meaning.
+        text: the formula as printed.
+        right: the formula as it must be.
+        compute: evaluates the printed form, with the signature of the right one; None if it has no meaning.
     """
 
     text: str
@@ -51,17 +51,17 @@ class Printed:
 
 @dataclass(frozen=True, kw_only=True)
 class Approximation:
-    """One analytic or truncated model of the seeds.
+    """An analytic or truncated model from the source papers.
 
     Attributes:
-        id: its word, the same everywhere.
-        title: one line for people.
-        where: document and equation numbers.
+        id: its name on the command line, in files and in tests.
+        title: its description in one line.
+        where: source paper and equation numbers.
         domain: amplitude, latitude and time that it is meant for.
-        drops: what it leaves out.
-        orders: how its error grows.
-        refuses: a reason why a scene is outside its domain, or None.
-        printed: the form in print, where it is wrong.
+        drops: terms and effects that it leaves out.
+        orders: how its error grows with amplitude, rotation rate or length.
+        refuses: `refuses(scene)`, the reason why a scene is outside its domain, or None.
+        printed: the printed form, where it is wrong.
     """
 
     id: str
@@ -85,26 +85,26 @@ class Motion(Approximation):
     """An approximation of the whole motion.
 
     Attributes:
-        path: `path(scene, times)` without checks; see `trajectory`.
-        rest: its own point of rest (x, y, z) in m, about which it swings; None for that of the full model.
+        path: `path(scene, times)`, the motion without checks of scene and times; see `trajectory`.
+        rest: `rest(scene)`, the point (x, y, z) in m about which it swings; None: the full model's point of rest.
     """
 
     path: Callable[[Scene, Array], Array]
     rest: Callable[[Scene], Any] | None = None
 
     def trajectory(self, scene: Scene, times: npt.ArrayLike) -> Array:
-        """The approximate motion.
+        """Return the approximate motion at the times.
 
         Args:
-            scene: what to approximate.
+            scene: the scene to approximate.
             times: increasing, not negative, in s.
 
         Returns:
-            x, y, z in m and vx, vy, vz in m/s, shape (times, 6); z is always that of the sphere.
+            x, y, z in m and vx, vy, vz in m/s, shape (times, 6); z is always on the sphere.
 
         Raises:
-            InputError: the scene is outside the domain, or the times are not increasing from 0 or later.
-            UnreachableError: the motion leaves the sphere or the numbers.
+            InputError: the scene is outside the domain, or the times are negative or do not increase.
+            UnreachableError: the motion leaves the sphere or is not finite.
         """
         self.check(scene)
         grid = np.asarray(times, dtype=np.float64)
@@ -121,10 +121,10 @@ class Quantity(Approximation):
     """An approximation of one number.
 
     Attributes:
-        formula: `formula(scene)`, an mpf, without checks; see `value`.
-        truth: what the number is in the full model, from the reference.
-        unit: of both.
-        relative: whether `orders` speak of the relative error, or of the error in `unit`.
+        formula: `formula(scene)`, an mpf, without checks of the scene; see `value`.
+        truth: `truth(scene)`, the number in the full model, from the reference.
+        unit: unit of both.
+        relative: whether `orders` describe the relative error, or the error in `unit`.
     """
 
     formula: Callable[[Scene], Any]
@@ -133,7 +133,7 @@ class Quantity(Approximation):
     relative: bool = True
 
     def value(self, scene: Scene) -> Any:
-        """The approximate number as an mpf in `unit`.
+        """Return the approximate number as an mpf in `unit`.
 
         Raises:
             InputError: the scene is outside the domain.

@@ -1,4 +1,4 @@
-"""An approximation as a candidate for the oracle: its motion at a scene's grid times."""
+"""An approximation as a candidate to be scored: its motion at a scene's grid times."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from . import Motion, approximation, motions
 
 
 def candidate_of(word: str, scene: Scene) -> Candidate:
-    """The motion that an approximation gives, at the scene's grid times.
+    """Return the motion of an approximation at the scene's grid times, as a candidate.
 
     Raises:
-        InputError: no approximation of the motion has that id, or the scene is outside its domain.
+        InputError: no approximation of the motion has this id, or the scene is outside its domain.
     """
-    made = approximation(word)
-    if not isinstance(made, Motion):
+    motion = approximation(word)
+    if not isinstance(motion, Motion):
         raise InputError("--approximation", word, f"one of {', '.join(motions())}", "It gives a number, not a motion.")
     times = np.array([float(t) for t in scene.exact.grid])
-    rows = made.trajectory(scene, times)
+    rows = motion.trajectory(scene, times)
     return Candidate.of(word, times, {name: np.ascontiguousarray(rows[:, i]) for i, name in enumerate(COLUMNS)})

@@ -1,4 +1,4 @@
-"""What closed forms need of a scene, in high precision; and the ways back to rows of binary64."""
+"""A scene's numbers for closed forms in high precision, plumb-line axes, rows in binary64, and reasons to refuse."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from reference.precision import context
 
 from .approximation import Array
 
-PREC = 200  # bits: a series that cancels to Ω⁶, some 40 digits below its first term, keeps 20 digits
+PREC = 200  # bits, 60 digits: a series that cancels to Ω⁶, some 40 digits below its first term, keeps 20 digits
 
 
 @dataclass(frozen=True)
 class Case:
-    """A scene's numbers as mpf in SI units, under the names of the documents."""
+    """A scene's numbers as mpf in SI units, under the names used in the source papers."""
 
     ctx: Any
     k: Constants
@@ -29,7 +29,7 @@ class Case:
 
     @classmethod
     def of(cls, scene: Scene) -> Case:
-        """Read a scene."""
+        """Return the case of a scene."""
         ctx = context(PREC)
         position, velocity = release(scene.exact, ctx)
         return cls(ctx, constants(scene.exact, ctx), position, velocity)
@@ -71,13 +71,13 @@ class Case:
 
     @cached_property
     def apparent_gravity(self) -> Any:
-        """The g' of Mathar (48), which is g_a of Gastebois 4.2 rightly printed: the law of cosines."""
+        """Apparent gravity g' by the law of cosines: Mathar (48); g_a of Gastebois 4.2, misprint corrected."""
         g, a = self.gravity, self.outward
         return self.ctx.sqrt(g**2 + a**2 - 2 * g * a * self.cos)
 
     @cached_property
     def tilt(self) -> Any:
-        """Angle α from the vertical to the plumb line, south positive, Gastebois 4.2."""
+        """Angle α from the vertical to the plumb line, positive to the south, Gastebois 4.2."""
         return self.ctx.atan2(self.outward * self.sin, self.gravity - self.outward * self.cos)
 
     @cached_property
@@ -85,7 +85,7 @@ class Case:
         """Direction n of the full model's point of rest, Mathar (46).
 
         Raises:
-            UnreachableError: there is none, or none that an iteration finds.
+            UnreachableError: there is none, or the iteration does not converge.
         """
         try:
             return rest_position(self.k, self.ctx)
@@ -94,35 +94,35 @@ class Case:
 
     @cached_property
     def apparent_latitude(self) -> Any:
-        """λ_a = λ + α."""
+        """Apparent latitude λ_a = λ + α, Gastebois 4.2."""
         return self.ctx.atan2(self.sin, self.cos) + self.tilt
 
 
 @dataclass(frozen=True)
-class Level:
-    """Axes east, north and up along a plumb line that hangs at n = (0, sin θ, -cos θ)."""
+class PlumbAxes:
+    """Axes east, north and up of a plumb line that hangs along n = (0, sin θ, -cos θ)."""
 
     sin: Any
     cos: Any
 
     @classmethod
-    def tilted(cls, theta: Any, ctx: Any) -> Level:
-        """From θ in the context `ctx`; north of the vertical is positive."""
+    def tilted(cls, theta: Any, ctx: Any) -> PlumbAxes:
+        """Return the axes for the angle θ (rad, positive to the north of the vertical) in the mpmath context `ctx`."""
         return cls(ctx.sin(theta), ctx.cos(theta))
 
     def inward(self, v: Vector) -> Vector:
-        """Components along the plumb line's axes of a vector given along the scene's."""
+        """Turn a vector from the scene's axes to the plumb line's."""
         return (v[0], self.cos * v[1] + self.sin * v[2], self.cos * v[2] - self.sin * v[1])
 
     def outward(self, rows: Array) -> Array:
-        """Rows x, y, z, vx, vy, vz of the plumb line's axes, along the scene's."""
+        """Turn rows x, y, z, vx, vy, vz from the plumb line's axes to the scene's."""
         x, y, z, vx, vy, vz = rows.T
         sin, cos = float(self.sin), float(self.cos)
         return np.column_stack((x, cos * y - sin * z, sin * y + cos * z, vx, cos * vy - sin * vz, sin * vy + cos * vz))
 
 
 def hung(x: Array, y: Array, vx: Array, vy: Array, length: Any) -> Array:
-    """Rows with z below the suspension from |r| = l, and vz from r·v = 0: Mathar (7), (12).
+    """Return rows x, y, z, vx, vy, vz with z < 0 from |r| = l and vz from r·v = 0: Mathar (7), (12).
 
     Raises:
         UnreachableError: x² + y² reaches l².
@@ -136,23 +136,23 @@ def hung(x: Array, y: Array, vx: Array, vy: Array, length: Any) -> Array:
 
 
 def without_drag(scene: Scene) -> str | None:
-    """A reason, if the scene has drag: none of the documents has."""
-    return "It has no drag: set pendulum.drag=0" if scene.exact.drag else None
+    """Return a reason to refuse a scene with drag, which none of the source papers has, or None."""
+    return "The approximation has no drag: set pendulum.drag=0" if scene.exact.drag else None
 
 
 def below(scene: Scene) -> str | None:
-    """A reason, if the bob has drag or is not let go below the suspension."""
+    """Return a reason to refuse a scene with drag or a release that is not below the suspension, or None."""
     angles = scene.exact.angles
     if angles is not None and angles[0] >= 90:
-        return "It holds below the suspension only: give release.angle under 90"
+        return "It holds below the suspension only: give release.angle below 90"
     return without_drag(scene)
 
 
 def at_rest(scene: Scene) -> str | None:
-    """A reason, if the bob has drag, starts above or is not let go at rest."""
+    """Return a reason to refuse drag or a release that is not at rest below the suspension, or None."""
     return below(scene) or (None if scene.exact.at_rest else "It is for a release at rest: leave out vx and vy")
 
 
 def under_gravity(scene: Scene) -> str | None:
-    """A reason, if nothing pulls the bob back."""
-    return None if scene.exact.gravity else "Nothing pulls it back: give site.gravity above 0"
+    """Return a reason to refuse a scene without gravity, where nothing pulls the bob back, or None."""
+    return None if scene.exact.gravity else "Without gravity nothing pulls the bob back: give site.gravity above 0"

@@ -1,4 +1,4 @@
-"""The conical pendulum, Ω = 0: a circle at constant height."""
+"""Conical pendulum without rotation (Ω = 0): a circle at constant height."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from reference import Scene
 from .approximation import Array, Motion, Order
 from .case import Case, below, under_gravity
 
-_CONICAL_ENOUGH = 0.1  # how far the release may be from the speed and the direction of the circle
+_CONICAL_ENOUGH = 0.1  # part of the circle's speed by which the velocity of release may differ from it
 
-_CIRCLE = (  # cos φ = 0.8, one radian a second
+_CIRCLE = (  # cos φ = 0.8, angular velocity 1 rad/s
     "pendulum.length=12.25",
     "site.gravity=9.8",
     "release.x=7.35",
@@ -23,7 +23,7 @@ _CIRCLE = (  # cos φ = 0.8, one radian a second
 
 
 def _circle(case: Case) -> tuple[Any, Any]:
-    """Radius in m and angular velocity in rad/s, sqrt(g/(l cos φ)) in the sense of the release."""
+    """Return the radius in m and the angular velocity in rad/s, sqrt(g/(l cos φ)) in the sense of the release."""
     ctx, (x, y, z), (vx, vy, _) = case.ctx, case.position, case.velocity
     return ctx.hypot(x, y), ctx.sign(x * vy - y * vx) * ctx.sqrt(case.gravity / -z)
 
@@ -45,10 +45,12 @@ def _refused(scene: Scene) -> str | None:
     case = Case.of(scene)
     radius, omega = _circle(case)
     x, y, _ = case.position
-    wanted = (-y * omega, x * omega)
-    miss = case.ctx.hypot(case.velocity[0] - wanted[0], case.velocity[1] - wanted[1])
+    circular = (-y * omega, x * omega)
+    miss = case.ctx.hypot(case.velocity[0] - circular[0], case.velocity[1] - circular[1])
     if not radius or not omega or miss > _CONICAL_ENOUGH * radius * abs(omega):
-        return "It goes round in a circle: give a velocity across x, y of about sqrt(g/|z|) times their distance"
+        return (
+            "The bob moves on a circle: give a velocity at right angles to x, y of about sqrt(g/|z|) times the radius"
+        )
     return None
 
 

@@ -1,4 +1,4 @@
-"""Frequencies of the swing, in Hz: the five approximations of Mathar, section VII."""
+"""Frequency of the swing in Hz: the five approximations of Mathar, section VII."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 from reference import Scene
 
-from . import observed as measure
+from . import observed
 from .approximation import Order, Printed, Quantity
 from .case import Case, at_rest, below, under_gravity
 from .mathar_linear import slow_down
@@ -16,14 +16,14 @@ from .mathar_linear import slow_down
 _STILL = ("site.rotation_rate=0",)
 _SQUARE_IN_AMPLITUDE = Order("amplitude", 2, (1.0, 2.0, 4.0, 8.0), _STILL)
 _SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_radius=0",), 1e-2)
-_PULLED_OUT = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4), (), 1e-2)
+_CENTRIFUGAL = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4), (), 1e-2)
 
 
 def _swinging(scene: Scene) -> str | None:
     return below(scene) or under_gravity(scene)
 
 
-def _let_go(scene: Scene) -> str | None:
+def _released_at_rest(scene: Scene) -> str | None:
     return at_rest(scene) or under_gravity(scene)
 
 
@@ -34,7 +34,7 @@ def _harmonic(scene: Scene) -> Any:
 
 
 def _planar(scene: Scene) -> Any:
-    """1/(4 sqrt(l/g) K(sin(φ0/2))), φ0 from the vertical."""
+    """1/(4 sqrt(l/g) K(sin(φ0/2))), with φ0 counted from the vertical."""
     case = Case.of(scene)
     quarter = case.ctx.ellipk((1 + case.position[2] / case.length) / 2)
     return case.ctx.sqrt(case.gravity / case.length) / (4 * quarter)
@@ -48,12 +48,12 @@ def _turntable(scene: Scene, gravity: Callable[[Case], Any]) -> Any:
 
 
 def _slowed(scene: Scene) -> Any:
-    """The same with g', divided by 2K/π."""
+    """The frequency on a turntable with g', divided by 2K/π."""
     return _turntable(scene, lambda case: case.apparent_gravity) / slow_down(Case.of(scene))
 
 
 def _slowed_as_printed(scene: Scene) -> Any:
-    """The same divided by 4K."""
+    """The frequency on a turntable with g', divided by 4K as printed."""
     case = Case.of(scene)
     return _slowed(scene) / (2 * case.ctx.pi)
 
@@ -61,6 +61,7 @@ def _slowed_as_printed(scene: Scene) -> Any:
 def _quantity(
     word: str, number: int, title: str, drops: str, orders: tuple[Order, ...], formula: Any, **more: Any
 ) -> Any:
+    """Declare one frequency of section VII; `number` counts them as the paper does, `more` are further fields."""
     return Quantity(
         id=word,
         title=title,
@@ -69,7 +70,7 @@ def _quantity(
         drops=drops,
         orders=orders,
         formula=formula,
-        truth=measure.frequency,
+        truth=observed.frequency,
         unit="Hz",
         **{"refuses": _swinging} | more,
     )
@@ -81,7 +82,7 @@ APPROXIMATIONS = (
         1,
         "harmonic frequency sqrt(g/l)/2π",
         "the amplitude, Ω, the centrifugal force",
-        (_SQUARE_IN_AMPLITUDE, _PULLED_OUT),
+        (_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
         _harmonic,
     ),
     _quantity(
@@ -89,22 +90,22 @@ APPROXIMATIONS = (
         2,
         "frequency of the plane pendulum of finite amplitude",
         "Ω and the centrifugal force",
-        (Order("amplitude", None, (1.0, 8.0, 40.0), _STILL), _PULLED_OUT),
+        (Order("amplitude", None, (1.0, 8.0, 40.0), _STILL), _CENTRIFUGAL),
         _planar,
-        refuses=_let_go,
+        refuses=_released_at_rest,
     ),
     _quantity(
         "frequency_turntable",
         3,
         "harmonic frequency on a turntable, sqrt(g/l + (Ω sin φ)²)/2π",
         "the amplitude, the centrifugal force",
-        (_SQUARE_IN_AMPLITUDE, _PULLED_OUT),
+        (_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
         partial(_turntable, gravity=lambda case: case.gravity),
     ),
     _quantity(
         "frequency_apparent",
         4,
-        "the same with the apparent gravity g' of (48)",
+        "harmonic frequency on a turntable, with the apparent gravity g' of (48)",
         "the amplitude, the centrifugal gradient",
         (_SQUARE_IN_AMPLITUDE, _SQUARE_IN_RATE),
         partial(_turntable, gravity=lambda case: case.apparent_gravity),
@@ -112,13 +113,13 @@ APPROXIMATIONS = (
     _quantity(
         "frequency_anharmonic",
         5,
-        "the same slowed down by the amplitude, 2K/π",
-        "the centrifugal gradient; what the ellipse and Ω cos φ do at finite amplitude",
+        "harmonic frequency on a turntable with g', slowed down by the amplitude, 2K/π",
+        "the centrifugal gradient; the effects of the ellipse and of Ω cos φ at finite amplitude",
         (Order("amplitude", None, (1.0, 8.0, 40.0), _STILL), _SQUARE_IN_RATE),
         _slowed,
-        refuses=_let_go,
+        refuses=_released_at_rest,
         printed=Printed(
-            "slow-down with the factor 4K(sin(φ0/2))", "2K(sin(φ0/2))/π, one at no amplitude", _slowed_as_printed
+            "slow-down with the factor 4K(sin(φ0/2))", "2K(sin(φ0/2))/π, which is 1 at amplitude 0", _slowed_as_printed
         ),
     ),
 )

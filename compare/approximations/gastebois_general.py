@@ -1,7 +1,8 @@
-"""Gastebois 7.2: a spherical pendulum of any amplitude in uniform apparent gravity, with the Coriolis force.
+"""Spherical pendulum of any amplitude in uniform apparent gravity, with the Coriolis force: Gastebois 7.2.
 
-His θ and φ, counted from the plumb line and from east to north, are singular there. Seen along the scene's axes his
-system is the model without the centrifugal gradient: apparent gravity is `pull` at the suspension, everywhere.
+His angles θ (from the plumb line) and φ (from east to north) are singular on the plumb line. Along the scene's axes
+his system is the model without the centrifugal gradient: the apparent gravity is everywhere that at the suspension,
+`pull`.
 """
 
 from __future__ import annotations
@@ -21,12 +22,12 @@ from .case import Case
 
 
 def uniform(k: Constants) -> Constants:
-    """The model's constants with the apparent gravity of the suspension everywhere."""
+    """Return the model's constants with the apparent gravity at the suspension everywhere."""
     return replace(k, centrifugal=(0, 0, 0, 0))
 
 
 def hanging(scene: Scene) -> Any:
-    """His point of rest, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
+    """Return his point of rest in m, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
     case = Case.of(scene)
     return (0, -case.length * case.ctx.sin(case.tilt), -case.length * case.ctx.cos(case.tilt))
 

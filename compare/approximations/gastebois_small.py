@@ -1,4 +1,4 @@
-"""Gastebois 5: small angles about the tilted plumb line, with his closed solutions 6.1, 6.2 and 6.3."""
+"""Small angles about the tilted plumb line: Gastebois 5, with his closed solutions 6.1, 6.2 and 6.3."""
 
 from __future__ import annotations
 
@@ -10,53 +10,54 @@ import numpy as np
 from reference import Scene
 
 from .approximation import Array, Motion, Order, Printed
-from .case import Case, Level, at_rest, below, hung, under_gravity
+from .case import Case, PlumbAxes, at_rest, below, hung, under_gravity
 from .gastebois_general import hanging
 from .oscillator import oscillation, turntable_frequency
 
 
-def small_angles(case: Case) -> tuple[Level, Any, Any]:
-    """The plumb line's axes, ω = (ω0² + Ω_z²)^(1/2) with ω0² = g_a/L0, and Ω_z = Ω sin λ_a."""
+def small_angles(case: Case) -> tuple[PlumbAxes, Any, Any]:
+    """Return the plumb line's axes, ω = (ω0² + Ω_z²)^(1/2) with ω0² = g_a/L0, and Ω_z = Ω sin λ_a."""
     turn = case.rate * case.ctx.sin(case.apparent_latitude)
     omega = turntable_frequency(case, case.apparent_gravity, turn)
-    return Level.tilted(-case.tilt, case.ctx), omega, turn
+    return PlumbAxes.tilted(-case.tilt, case.ctx), omega, turn
 
 
-def _level(case: Case, level: Level, z: Any, rate: Any) -> Array:
-    return level.outward(hung(z.real, z.imag, rate.real, rate.imag, case.length))
+def _rows(case: Case, plumb: PlumbAxes, z: Any, rate: Any) -> Array:
+    """Return rows along the scene's axes from Z = x + i y and Z' along the plumb line's."""
+    return plumb.outward(hung(z.real, z.imag, rate.real, rate.imag, case.length))
 
 
 def _general(scene: Scene, times: Array) -> Array:
-    """6.1: any release."""
+    """Return rows of 6.1, for any release."""
     case = Case.of(scene)
-    level, omega, turn = small_angles(case)
-    place, speed = level.inward(case.position), level.inward(case.velocity)
-    return _level(case, level, *oscillation(place[:2], speed[:2], omega, turn, times))
+    plumb, omega, turn = small_angles(case)
+    place, speed = plumb.inward(case.position), plumb.inward(case.velocity)
+    return _rows(case, plumb, *oscillation(place[:2], speed[:2], omega, turn, times))
 
 
 def _general_as_printed(scene: Scene, times: Array) -> Array:
-    """6.1 with the sine that is printed at the end of v_x."""
+    """Return rows of 6.1 with the sine that is printed at the end of v_x."""
     case = Case.of(scene)
-    level, omega, turn = small_angles(case)
-    (x, y, _), (vx, vy, _) = level.inward(case.position), level.inward(case.velocity)
+    plumb, omega, turn = small_angles(case)
+    (x, y, _), (vx, vy, _) = plumb.inward(case.position), plumb.inward(case.velocity)
     z, rate = oscillation((x, y), (vx, vy), omega, turn, times)
     second, slow = float(((omega + turn) * y - vx) / (2 * omega)), float(omega - turn)  # c'2
-    return _level(case, level, z, rate + second * slow * (np.cos(slow * times) - np.sin(slow * times)))
+    return _rows(case, plumb, z, rate + second * slow * (np.cos(slow * times) - np.sin(slow * times)))
 
 
 def _in_turning_axes(scene: Scene, times: Array, across: Callable[[Any, Any], Any]) -> Array:
-    """X = r0 cos ωt, Y = r0 `across`(ω, Ω_z) sin ωt in axes that turn at -Ω_z, X along the release."""
+    """Return rows of X = r0 cos ωt, Y = r0 `across`(ω, Ω_z) sin ωt in axes that turn at -Ω_z, X along the release."""
     case = Case.of(scene)
-    level, omega, turn = small_angles(case)
-    x, y, _ = level.inward(case.position)
+    plumb, omega, turn = small_angles(case)
+    x, y, _ = plumb.inward(case.position)
     minor, w, u = float(across(omega, turn)), float(omega), float(turn)
     cos, sin = np.cos(w * times), np.sin(w * times)
     place, speed = cos + 1j * minor * sin, w * (1j * minor * cos - sin)
     turned = complex(x, y) * np.exp(-1j * u * times)
-    return _level(case, level, turned * place, turned * (speed - 1j * u * place))
+    return _rows(case, plumb, turned * place, turned * (speed - 1j * u * place))
 
 
-def _flat(scene: Scene, times: Array) -> Array:
+def _launched_in_the_plane(scene: Scene, times: Array) -> Array:
     return _in_turning_axes(scene, times, lambda omega, turn: 0)
 
 
@@ -91,13 +92,13 @@ APPROXIMATIONS = (
     ),
     Motion(
         id="gastebois_6_2",
-        title="small angles, launched so that the swing is flat in turning axes",
+        title="small angles, launched so that the swing stays in a plane of the turning axes",
         where="Gastebois 6.2",
-        domain="small angles, released with the velocity -r0 Ωz across; an hour",
+        domain="small angles, released with the transverse velocity -r0 Ωz; an hour",
         drops=_DROPS + "; the scene's own velocity of release (for a release at rest an error of the order Ω)",
         orders=(Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4), ("site.equatorial_radius=0",)), _CUBE_IN_AMPLITUDE),
         refuses=lambda scene: below(scene) or under_gravity(scene),
-        path=_flat,
+        path=_launched_in_the_plane,
         rest=hanging,
     ),
     Motion(

@@ -1,10 +1,10 @@
-"""The full system linearised about its point of rest, solved exactly: the best that small angles can do.
+"""The full system linearised about its point of rest and solved exactly: the best that a small-angle model can do.
 
-With δ in the level plane of the plumb line (east, north), Ω_n the component of Ω along it, T the pull of the cord at
-rest and C the centrifugal gradient, all over l,
+Let δ be the displacement at right angles to the plumb line (east, north), Ω_n the component of Ω along the plumb line,
+T the pull of the cord at the point of rest and C the centrifugal gradient, all over l. Then
     δ1'' = -a δ1 + 2 Ω_n δ2',   δ2'' = -b δ2 - 2 Ω_n δ1',   a = T - C11, b = T - C22.
 In p = (√a δ1, √b δ2, δ1', δ2') this is p' = S p with S skew: i S is hermitian, so its eigenvectors are orthonormal
-and the solution has no trouble where frequencies meet.
+and the solution stays accurate where two frequencies coincide.
 """
 
 from __future__ import annotations
@@ -19,44 +19,44 @@ from reference.model.constants import Vector
 from reference.model.force import tension
 
 from .approximation import Array, Motion, Order
-from .case import Case, Level, below, hung
+from .case import Case, PlumbAxes, below, hung
 
 
-def plumb_line(case: Case) -> tuple[Level, Vector]:
-    """Axes of the plumb line and its direction n, at the point of rest of the full model, Mathar (46)."""
+def plumb_line(case: Case) -> tuple[PlumbAxes, Vector]:
+    """Return the plumb line's axes and its direction n at the full model's point of rest, Mathar (46)."""
     _, y, z = case.rest
-    return Level(case.ctx.mpf(y), -z), (0, y, z)
+    return PlumbAxes(case.ctx.mpf(y), -z), (0, y, z)
 
 
 def stiffness(case: Case) -> tuple[Any, Any, Any]:
-    """A and b in 1/s², and Ω_n in rad/s."""
-    level, rest = plumb_line(case)
+    """Return a and b in 1/s², and Ω_n in rad/s."""
+    plumb, rest = plumb_line(case)
     xx, yy, yz, zz = case.k.centrifugal
     pull = tension(rest, (0, 0, 0), case.k)
     across = (
-        product(yy, level.cos, level.cos) + product(2, yz, level.cos, level.sin) + product(zz, level.sin, level.sin)
+        product(yy, plumb.cos, plumb.cos) + product(2, yz, plumb.cos, plumb.sin) + product(zz, plumb.sin, plumb.sin)
     )
-    turn = level.cos * case.ctx.mpf(case.k.turn[2]) - level.sin * case.ctx.mpf(case.k.turn[1])
+    turn = plumb.cos * case.ctx.mpf(case.k.turn[2]) - plumb.sin * case.ctx.mpf(case.k.turn[1])
     return pull - xx, pull - across, turn
 
 
 def _path(scene: Scene, grid: Array) -> Array:
     case = Case.of(scene)
     ctx = case.ctx
-    level, _ = plumb_line(case)
+    plumb, _ = plumb_line(case)
     a, b, turn = stiffness(case)
     east, north = ctx.sqrt(a), ctx.sqrt(b)
     skew = ctx.matrix([[0, 0, east, 0], [0, 0, 0, north], [-east, 0, 0, 2 * turn], [0, -north, -2 * turn, 0]])
     frequencies, modes = ctx.eighe(ctx.j * skew)  # S q = -i w q
-    x, y, _ = level.inward(case.position)
-    vx, vy, _ = level.inward(case.velocity)
-    shares = modes.H * ctx.matrix([east * x, north * y, vx, vy])
+    x, y, _ = plumb.inward(case.position)
+    vx, vy, _ = plumb.inward(case.velocity)
+    weights = modes.H * ctx.matrix([east * x, north * y, vx, vy])
     states = np.zeros((4, len(grid)), dtype=complex)
     for j in range(4):
         phase = np.exp(-1j * float(frequencies[j]) * grid)
-        states += np.outer([complex(modes[i, j] * shares[j]) for i in range(4)], phase)
+        states += np.outer([complex(modes[i, j] * weights[j]) for i in range(4)], phase)
     p = states.real
-    return level.outward(hung(p[0] / float(east), p[1] / float(north), p[2], p[3], case.length))
+    return plumb.outward(hung(p[0] / float(east), p[1] / float(north), p[2], p[3], case.length))
 
 
 def _refused(scene: Scene) -> str | None:
@@ -74,9 +74,9 @@ def _refused(scene: Scene) -> str | None:
 APPROXIMATIONS = (
     Motion(
         id="linear_3d",
-        title="the full system, linear about its point of rest, with every centrifugal term",
-        where="linearisation of Mathar (43) at (46); 'exact for the linear system' in the third document",
-        domain="small amplitudes about the point of rest, any rotation; for ever as the amplitude goes to 0",
+        title="the full system, linearised about its point of rest, with every centrifugal term",
+        where="linearisation of Mathar (43) at (46); 'exact for the linear system' in the third source paper",
+        domain="small amplitudes about the point of rest, any rotation; exact at all times as the amplitude goes to 0",
         drops="second and higher powers of the displacement from the point of rest",
         orders=(
             Order("amplitude", 2, (0.1, 0.2, 0.4, 0.8), ("site.equatorial_radius=0", "site.rotation_rate=0.02")),

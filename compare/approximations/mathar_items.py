@@ -1,9 +1,9 @@
-"""Mathar, section VI: the full equations (43) with one kind of term left out at a time, integrated as they then stand.
+"""Truncated equations of Mathar, section VI: (43) without one kind of term (an item) at a time, integrated numerically.
 
-Items 1 and 4 and the variant only change constants of the model; items 2, 3 and 5 change (43) itself. Written over
-the cord length, with |z| as `depth`, and with g and the terms in R folded into k.pull as everywhere in the project.
+Items 1 and 4 and the variant only change constants of the model; items 2, 3 and 5 change (43) itself. Lengths are
+over the cord length, `depth` is |z|, and g and the terms in R are folded into k.pull as everywhere in the project.
 
-All five items together do not give (51)-(52) yet: the diagonal of (43) keeps y² + l² and x² + l². To drop these
+All five items together do not yet give (51)-(52): the diagonal of (43) keeps y² + l² and x² + l². To drop these
 squares too is one more step, of the same order, which the paper takes without saying so.
 """
 
@@ -33,13 +33,18 @@ _RATES = (1e-5, 2e-5, 4e-5, 8e-5)
 
 
 def derivatives(state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()) -> State:
-    """(43) without the terms of items 2, 3, 5; with no item it is `reference.model.formulations.Plane`.
+    """Return the derivatives of x, y, vx, vy by (43) without the terms of items 2, 3 and 5.
+
+    With no item this is `reference.model.formulations.Plane.derivatives`, where powers of z are cancelled. It is
+    written again on purpose, with every term multiplied by z⁴ as in the paper: the items leave out these terms one by
+    one, and item 5 changes the powers of z themselves. In tests/compare/approximations/test_closed_forms.py
+    `test_with_nothing_left_out_the_truncated_equations_are_the_model` keeps the two equal.
 
     Args:
         state: x, y, vx, vy over the cord length.
-        k: constants; items 1 and 4 are in them (`truncated`).
+        k: constants, from which `truncated` has left out items 1 and 4.
         functions: elementary functions of the number type.
-        items: what is left out.
+        items: items to leave out.
     """
     x, y, vx, vy = state
     depth = 1 if 5 in items else functions.sqrt(1 - x * x - y * y)  # item 5: z becomes l
@@ -63,14 +68,14 @@ def derivatives(state: State, k: Constants, functions: Functions, items: frozens
         product(fourth, minus(product(y, minus(zz, yy)), k.pull[1])),  # (41)
         product(cube, yz, depth * depth - y * y),
     )
-    crossed = 0 if 2 in items else x * y  # item 2: no outer diagonal
+    crossed = 0 if 2 in items else x * y  # item 2: no off-diagonal elements -xy
     ax = minus(product(crossed, beta_y), (y * y + depth * depth) * beta_x) / fourth
     ay = minus(product(crossed, beta_x), (x * x + depth * depth) * beta_y) / fourth
     return (vx, vy, minus(ax, product(k.drag, vx)), minus(ay, product(k.drag, vy)))
 
 
 def truncated(k: Constants, items: frozenset[Item]) -> Constants:
-    """The constants without what items 1 (or its variant) and 4 leave out."""
+    """Return the constants without the terms that item 1 (or its variant) and item 4 leave out."""
     if 1 in items:
         k = replace(k, pull=(0, 0, product(-1, k.gravity)), centrifugal=(0, 0, 0, 0))
     if VARIANT in items:  # ḡ = g - RΩ² cos φ
@@ -81,14 +86,14 @@ def truncated(k: Constants, items: frozenset[Item]) -> Constants:
 
 
 def path(scene: Scene, grid: Array, items: frozenset[Item]) -> Array:
-    """Rows of (43) without the terms of `items`."""
+    """Integrate (43) without the terms of `items`; return rows x, y, z, vx, vy, vz."""
     case = Case.of(scene)
     n, v = scaled(case.position, case.length), scaled(case.velocity, case.length)
     start, k = (n[0], n[1], v[0], v[1]), truncated(case.k, items)
     try:
         states = integrated(VARIABLES, partial(derivatives, items=items), start, k, grid)
     except IntegrationError as error:
-        raise IntegrationError(f"{error} (43) ends where the bob comes to the horizontal.") from None
+        raise IntegrationError(f"{error} (43) holds only until the bob comes to the horizontal.") from None
     x, y, vx, vy = (states * float(case.length)).T
     return hung(x, y, vx, vy, case.length)
 
@@ -96,7 +101,7 @@ def path(scene: Scene, grid: Array, items: frozenset[Item]) -> Array:
 def _above(scene: Scene) -> str | None:
     angles = scene.exact.angles
     high = angles is not None and angles[0] >= 90
-    return "(43) holds below the suspension only: give release.angle under 90" if high else None
+    return "(43) holds below the suspension only: give release.angle below 90" if high else None
 
 
 def _suspension(scene: Scene) -> Any:
@@ -107,6 +112,7 @@ def _suspension(scene: Scene) -> Any:
 def _motion(
     word: str, items: tuple[Item, ...], title: str, drops: str, domain: str, orders: tuple[Order, ...]
 ) -> Motion:
+    """Declare (43) without `items`; where item 1 or its variant is among them, it swings about the vertical."""
     vertical = 1 in items or VARIANT in items
     rest: Callable[[Scene], Any] | None = _suspension if vertical else None
     names = ", ".join(str(item) for item in items)
@@ -135,7 +141,7 @@ APPROXIMATIONS = (
         "mathar_item_1",
         (1,),
         "Mathar's equations without the terms in Ω²",
-        "β of (35), (41): centrifugal force, tilt of the plumb line; of relative size RΩ²/g = 3e-3, not 5e-9",
+        "β of (35), (41): centrifugal force, tilt of the plumb line; RΩ²/g = 3e-3 of gravity, not Ω² = 5e-9 as printed",
         "any amplitude below the suspension; slow rotation",
         (_SQUARE_IN_RATE,),
     ),
@@ -143,14 +149,14 @@ APPROXIMATIONS = (
         "mathar_item_1_variant",
         (VARIANT,),
         "Mathar's equations without the terms in Ω², gravity less RΩ² cos φ",
-        "β of (35), (41) apart from the term in R cos φ: the tilt of the plumb line remains out",
+        "β of (35), (41) apart from the term in R cos φ: the tilt of the plumb line is left out",
         "any amplitude below the suspension; slow rotation; best at the equator",
         (_SQUARE_IN_RATE,),
     ),
     _motion(
         "mathar_item_2",
         (2,),
-        "Mathar's equations without the outer diagonal -xy",
+        "Mathar's equations without the off-diagonal elements -xy",
         "the matrix elements -xy of (43)",
         "small amplitudes",
         (_CUBE_IN_AMPLITUDE,),
@@ -183,7 +189,7 @@ APPROXIMATIONS = (
         "mathar_items_1_2",
         (1, 2),
         "both approximations of the paper's program, foucPend -a 3",
-        "the terms in Ω² and the outer diagonal",
+        "the terms in Ω² and the off-diagonal elements -xy",
         "small amplitudes, slow rotation",
         (_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
     ),
@@ -191,11 +197,8 @@ APPROXIMATIONS = (
         "mathar_items_1_to_5",
         (1, 2, 3, 4, 5),
         "Mathar's five items together",
-        "everything of section VI, but the diagonal of (43) still holds x² + l² and y² + l²",
+        "everything that section VI names; the diagonal of (43) still holds x² + l² and y² + l²",
         "small amplitudes, slow rotation",
         (_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
     ),
 )
-
-PROGRAM_BITS = {1: "mathar_item_2", 2: "mathar_item_1", 3: "mathar_items_1_2"}
-"""The value of foucPend's switch -a (appendix A) and the approximation that it stands for; 0 is the full model."""

@@ -1,4 +1,4 @@
-"""Mathar (51)-(52), the harmonic pendulum on a turntable, and what section VII makes of it step by step.
+"""Harmonic pendulum on a turntable, Mathar (51)-(52), and its improvements in section VII: g', centre, slow-down.
 
 All four are Gastebois' closed solution 6.1 with other constants: gravity g or g', the centre of the swing, and the
 frequency. In print (51)-(52) lost hats and dots; dimensions and the limit of (43) leave no doubt about the right form.
@@ -23,7 +23,7 @@ _ABOUT_REST = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_ra
 
 
 def slow_down(case: Case) -> Any:
-    """2K/π, how much longer than harmonic the period is: K of modulus sin(φ0/2), φ0 from the point of rest."""
+    """Return 2K/π, the period over the harmonic one; K has the modulus sin(φ0/2), φ0 counted from the point of rest."""
     cosine = dot(case.position, case.rest) / case.length
     return 2 * case.ctx.ellipk((1 - cosine) / 2) / case.ctx.pi
 
@@ -65,7 +65,7 @@ APPROXIMATIONS = (
         id="linear_g",
         title="harmonic pendulum on a turntable",
         where="Mathar (51)-(52)",
-        domain="small amplitudes, slow rotation; seconds, for the plumb line is not vertical",
+        domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
         drops="Ω² (so the tilt and strength of the apparent gravity), all powers of x/l and y/l beyond the first",
         orders=(_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
         refuses=_refused(below),
@@ -77,7 +77,7 @@ APPROXIMATIONS = (
         id="linear_apparent",
         title="harmonic pendulum on a turntable, apparent gravity",
         where="Mathar (51)-(52) with g' of (48), section VII",
-        domain="small amplitudes; the frequency fits for hours, the centre does not",
+        domain="small amplitudes; the frequency holds for hours, the centre does not",
         drops="the tilt of the plumb line, the centrifugal gradient, all powers of x/l and y/l beyond the first",
         orders=(_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
         refuses=_refused(below),
@@ -96,7 +96,7 @@ APPROXIMATIONS = (
     ),
     Motion(
         id="linear_anharmonic",
-        title="the same with the slow-down of the anharmonic plane pendulum",
+        title="harmonic pendulum on a turntable, about the point of rest, with the slow-down of the plane pendulum",
         where="Mathar section VII, fifth frequency: 2K(sin(φ0/2))/π, where 4K is printed",
         domain="amplitudes of some degrees, released at rest; a day",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the overtones of the swing",

@@ -1,13 +1,13 @@
-"""What an observer reads off a motion: the direction of the swing plane, the frequency, the period of precession.
+"""Quantities that an observer reads off a motion: the swing plane, its precession period, and the frequency.
 
-About a point of rest the linear oscillator on a turntable moves, in axes that do not turn, on an ellipse. With
-Z = X + iY the displacement in the plane across the plumb line (X east, Y north), Z' its rate on the ground, Ω_n the
-component of Ω along the plumb line and ω the frequency, position and velocity over ω are Z and
-S = (Z' + i Ω_n Z)/ω, and
-    ψ = arg(Z² + S²)/2
-is the direction of its major axis: for Z = C1 exp(-iωt) + C2 exp(iωt) it is arg(4 C1 C2)/2 at every t. Axes on the
-ground and those that do not turn coincide at the moment looked at, so ψ is the azimuth (east to north) on the ground.
-ψ has no meaning on a circle (C1 or C2 zero), and counts modulo 180°.
+A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its point of rest. Let
+Z = X + iY be the displacement in the plane at right angles to the plumb line (X east, Y north), Z' its rate on the
+ground, Ω_n the component of Ω along the plumb line, and ω the frequency. In axes that do not turn, position and
+velocity over ω are Z and S = (Z' + i Ω_n Z)/ω, and the major axis of the ellipse has the direction
+    ψ = arg(Z² + S²)/2.
+For Z = C1 exp(-iωt) + C2 exp(iωt) this is arg(4 C1 C2)/2 at every t. The axes on the ground and those that do not turn
+coincide at the moment in question, so ψ is the azimuth (from east to north) on the ground. It is counted modulo 180°,
+and it has no meaning on a circle (C1 or C2 zero).
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ from reference.model.force import tension
 from .approximation import Array
 from .case import Case
 
-PER_SWING = 64  # samples in a period: the interpolation of an apsis between them is good to 1e-12
-_NODES = 12
-_ROUND = 1e-6  # an ellipse with |Z² + S²| below this part of |Z|² + |S|² has no direction
+PER_SWING = 64  # samples in a period: the interpolation of an apsis between them is accurate to 1e-12
+_NODES = 12  # samples that the interpolation of an apsis uses
+_ROUND = 1e-6  # an ellipse with |Z² + S²| below this part of |Z|² + |S|² is nearly a circle and has no direction
 
 
 @dataclass(frozen=True)
 class Gauge:
-    """A point of rest and the linear oscillator about it, to measure a motion with.
+    """A point of rest and the linear oscillator about it, by which the swing plane and the apsides are measured.
 
     Attributes:
         rest: unit vector from the suspension to the point of rest.
@@ -47,7 +47,9 @@ class Gauge:
 
     @classmethod
     def of(cls, scene: Scene, rest: Any = None) -> Gauge:
-        """For a scene, about `rest` in m, or about its own point of rest; ω from the pull of the cord there.
+        """Return the gauge of a scene about `rest` in m, or about the scene's own point of rest.
+
+        ω follows from the pull of the cord at the scene's point of rest.
 
         Raises:
             UnreachableError: there is no point of rest, or nothing pulls the bob back to it.
@@ -68,16 +70,16 @@ class Gauge:
 
     @cached_property
     def period(self) -> float:
-        """2π/ω in s."""
+        """Period 2π/ω in s."""
         return float(2 * np.pi / self.omega)
 
     def displacement(self, rows: Array) -> tuple[Any, Any]:
-        """Z in m and Z' in m/s of rows x, y, z, vx, vy, vz."""
+        """Return Z in m and Z' in m/s of rows x, y, z, vx, vy, vz."""
         _, y, z = self.rest
         return rows[:, 0] + 1j * (rows[:, 2] * y - rows[:, 1] * z), rows[:, 3] + 1j * (rows[:, 5] * y - rows[:, 4] * z)
 
     def swing_plane(self, rows: Array) -> Array:
-        """ψ in rad, in (-π/2, π/2]; NaN where the ellipse is a circle."""
+        """Return ψ in rad, in (-π/2, π/2]; NaN where the ellipse is a circle."""
         place, rate = self.displacement(rows)
         speed = (rate + 1j * self.turn * place) / self.omega
         square = place**2 + speed**2
@@ -85,34 +87,34 @@ class Gauge:
         return np.where(np.abs(square) > _ROUND * size, np.angle(square) / 2, np.nan)
 
     def apsides(self, times: Array, rows: Array) -> tuple[Array, Array]:
-        """Times in s and azimuths in rad (unwrapped modulo π) of the largest distances from rest.
+        """Return times in s and azimuths in rad (unwrapped modulo π) of the largest distances from the point of rest.
 
         Args:
-            times: evenly spaced in s, some PER_SWING in a period.
-            rows: the motion there.
+            times: evenly spaced in s, about PER_SWING in a period.
+            rows: states x, y, z, vx, vy, vz at the times.
         """
         place, rate = self.displacement(rows)
         height = rows[:, :3] @ np.array(self.rest)  # along the plumb line
         radial = (place.conj() * rate).real if np.min(height) > 0 else -rows[:, 3:] @ np.array(self.rest)
-        found = np.flatnonzero((radial[:-1] > 0) & (radial[1:] <= 0))
+        before = np.flatnonzero((radial[:-1] > 0) & (radial[1:] <= 0))
         half = _NODES // 2
-        found = found[(found >= half - 1) & (found + half < len(times))]
+        before = before[(before >= half - 1) & (before + half < len(times))]
         nodes = np.arange(1 - half, half + 1)
         inverse = np.linalg.inv(np.vander(nodes, _NODES, increasing=True))  # the nodes are small: condition 1e7
-        at = found[:, None] + nodes
+        at = before[:, None] + nodes
         distance = inverse @ radial[at].T
         east, north = inverse @ place.real[at].T, inverse @ place.imag[at].T
-        step = radial[found] / (radial[found] - radial[found + 1])
+        step = radial[before] / (radial[before] - radial[before + 1])
         powers, slopes = np.arange(_NODES)[:, None], np.arange(1, _NODES)[:, None]
-        for _ in range(4):  # Newton from a secant: the function is nearly linear here
+        for _ in range(4):  # Newton, from a secant: the function is nearly linear between two samples
             value = np.sum(distance * step**powers, axis=0)
             step = step - value / np.sum(slopes * distance[1:] * step ** (slopes - 1), axis=0)
         z = np.sum(east * step**powers, axis=0) + 1j * np.sum(north * step**powers, axis=0)
         azimuth = np.unwrap(2 * np.angle(z)) / 2
-        return times[found] + step * (times[1] - times[0]), azimuth
+        return times[before] + step * (times[1] - times[0]), azimuth
 
 
-def _look(scene: Scene, duration: float) -> tuple[Gauge, Array, Array]:
+def _sampled_motion(scene: Scene, duration: float) -> tuple[Gauge, Array, Array]:
     gauge = Gauge.of(scene)
     step = gauge.period / PER_SWING
     times: Array = np.arange(int(duration / step) + _NODES + 1) * np.float64(step)
@@ -120,13 +122,13 @@ def _look(scene: Scene, duration: float) -> tuple[Gauge, Array, Array]:
 
 
 def frequency(scene: Scene, swings: int = 50) -> float:
-    """Frequency in Hz of the full model over about `swings` periods, from the largest distances from rest.
+    """Return the frequency in Hz of the full model over about `swings` periods, from its apsides.
 
     Raises:
-        UnreachableError: no swing was found.
+        UnreachableError: the bob does not swing.
     """
     gauge = Gauge.of(scene)
-    _, times, rows = _look(scene, (swings + 1) * gauge.period)
+    _, times, rows = _sampled_motion(scene, (swings + 1) * gauge.period)
     apsides, _ = gauge.apsides(times, rows)
     if len(apsides) < 3:
         raise UnreachableError("the bob does not swing: it has no largest distances from its point of rest.")
@@ -134,7 +136,7 @@ def frequency(scene: Scene, swings: int = 50) -> float:
 
 
 def precession_period(scene: Scene, longest: float = 1e6) -> float:
-    """Time in s in which the swing plane of the full model turns by 360°: twice the time of its first half turn.
+    """Return the time in s in which the swing plane of the full model turns by 360°: twice that of its first half turn.
 
     Raises:
         UnreachableError: it does not turn by 180° within `longest` seconds.
@@ -144,7 +146,7 @@ def precession_period(scene: Scene, longest: float = 1e6) -> float:
     for stretch in (1.1, 2.0, 4.0):
         if not guess * stretch < longest:
             break
-        _, times, rows = _look(scene, guess * stretch + 2 * gauge.period)
+        _, times, rows = _sampled_motion(scene, guess * stretch + 2 * gauge.period)
         apsides, azimuths = gauge.apsides(times, rows)
         turned = np.abs(azimuths - azimuths[0])
         if turned[-1] >= np.pi:

@@ -1,4 +1,4 @@
-"""The small-angle pendulum on a turntable in closed form, Z = x + i y: Gastebois 6.1.
+"""Closed form of the small-angle pendulum on a turntable, Z = x + i y, shared by several models: Gastebois 6.1.
 
 Z'' = -ω0² Z - 2 i Ω_z Z' has the solution Z = C1 exp(-i (ω + Ω_z) t) + C2 exp(i (ω - Ω_z) t), ω² = ω0² + Ω_z².
 """
@@ -16,10 +16,10 @@ from .case import Case, hung
 
 
 def turntable_frequency(case: Case, gravity: Any, turn: Any) -> Any:
-    """ω = (gravity/l + Ω_z²)^(1/2).
+    """Return ω = (gravity/l + Ω_z²)^(1/2) in rad/s.
 
     Raises:
-        UnreachableError: it is zero.
+        UnreachableError: ω is zero.
     """
     omega = case.ctx.sqrt(gravity / case.length + turn**2)
     if not omega:
@@ -28,11 +28,11 @@ def turntable_frequency(case: Case, gravity: Any, turn: Any) -> Any:
 
 
 def oscillation(place: tuple[Any, Any], speed: tuple[Any, Any], omega: Any, turn: Any, times: Array) -> Any:
-    """Z and Z' at the times, two complex arrays.
+    """Return Z in m and Z' in m/s at the times, two complex arrays.
 
     Args:
-        place: x, y in m at t = 0, mpf; as `speed`, in m/s.
-        speed: vx, vy.
+        place: x, y in m at t = 0, mpf.
+        speed: vx, vy in m/s at t = 0, mpf.
         omega: ω in rad/s, mpf, not zero.
         turn: Ω_z in rad/s, mpf.
         times: in s.
@@ -46,7 +46,7 @@ def oscillation(place: tuple[Any, Any], speed: tuple[Any, Any], omega: Any, turn
 
 
 def swung(case: Case, gravity: Any, centre: Any, times: Array, slowed: Any = 1) -> Array:
-    """Rows of Mathar (51)-(52): ω0² = gravity/l about (0, centre), Ω_z = Ω sin φ, and ω divided by `slowed`."""
+    """Return rows of Mathar (51)-(52): ω0² = gravity/l about (0, centre), Ω_z = Ω sin φ, and ω divided by `slowed`."""
     turn = case.rate * case.sin
     omega = turntable_frequency(case, gravity, turn) / slowed
     place = (case.position[0], case.position[1] - centre)

@@ -1,4 +1,4 @@
-"""The plane pendulum, Ω = 0, in Jacobi's elliptic functions: the green curves of Mathar, figure 7."""
+"""Plane pendulum without rotation (Ω = 0) in Jacobi's elliptic functions: the green curves of Mathar, figure 7."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from reference import Scene
 from .approximation import Array, Motion, Order
 from .case import Case, under_gravity, without_drag
 
-_SMALLEST = 1e-20  # terms of the series below this are nothing in binary64
+_SMALLEST = 1e-20  # terms of the series below this are lost in binary64 rounding
 
 
 def sn_cn(u: Array, modulus: Any, ctx: Any) -> tuple[Array, Array]:
-    """K sn(u) and k cn(u), k the modulus, by their Fourier series in the nome (DLMF 22.11.1, 22.11.2).
+    """Return k sn(u) and k cn(u), k the modulus, by their Fourier series in the nome (DLMF 22.11.1, 22.11.2).
 
-    With q the nome and v = π u/(2 K(k)), k sn = (2π/K) Σ q^(n+1/2)/(1 - q^(2n+1)) sin((2n+1) v) and k cn has a plus
-    sign below and a cosine; for a swing of 170° fourteen terms are left.
+    With q the nome and v = π u/(2 K(k)), k sn = (2π/K) Σ q^(n+1/2)/(1 - q^(2n+1)) sin((2n+1) v); for k cn the sine is
+    a cosine and the denominator has a plus sign. A swing of 170° needs fourteen terms.
     """
     quarter = ctx.ellipk(modulus**2)
     nome = ctx.qfrom(k=modulus)
@@ -61,9 +61,9 @@ def _path(scene: Scene, times: Array) -> Array:
 
 def _refused(scene: Scene) -> str | None:
     if not scene.exact.at_rest:
-        return "It swings in the plane of a release at rest: leave out the velocity"
+        return "It is for a release at rest: leave out the velocity"
     if scene.exact.angles is not None and scene.exact.angles[0] == 180:
-        return "It stands upright: give release.angle under 180"
+        return "The bob stands upright: give release.angle below 180"
     return without_drag(scene) or under_gravity(scene)
 
 

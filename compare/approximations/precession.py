@@ -1,4 +1,4 @@
-"""The period of the swing plane's precession T_f, in s: Gastebois 4.1, 4.2, 6.3. T_p is 2π/Ω."""
+"""Precession period T_f of the swing plane in s: Gastebois 4.1, 4.2, 6.3, where T_p is 2π/Ω."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from typing import Any
 
 from reference import Scene
 
-from . import observed as measure
+from . import observed
 from .approximation import Order, Printed, Quantity
-from .case import Case, Level, at_rest, below, under_gravity
+from .case import Case, PlumbAxes, at_rest, below, under_gravity
 from .gastebois_small import small_angles
 
 _AT_POLE = ("site.latitude=90", "site.rotation_rate=2e-3")
@@ -18,13 +18,13 @@ _SMALL = 1e-2
 def _turning(scene: Scene) -> str | None:
     still = not scene.exact.rotation_rate or not scene.exact.latitude
     return (
-        "The plane does not turn: a rotation and a latitude other than 0"
+        "The plane does not turn: give a rotation rate and a latitude other than 0"
         if still
         else below(scene) or under_gravity(scene)
     )
 
 
-def _let_go(scene: Scene) -> str | None:
+def _released_at_rest(scene: Scene) -> str | None:
     return _turning(scene) or at_rest(scene)
 
 
@@ -41,9 +41,9 @@ def _tilted(scene: Scene) -> Any:
 
 
 def _spherical(scene: Scene) -> Any:
-    """T_p/sin λ_a (1 + 3/8 r0²/L0²), r0 from the plumb line."""
+    """T_p/sin λ_a (1 + 3/8 r0²/L0²), with r0 counted from the plumb line."""
     case = Case.of(scene)
-    x, y, _ = Level.tilted(-case.tilt, case.ctx).inward(case.position)
+    x, y, _ = PlumbAxes.tilted(-case.tilt, case.ctx).inward(case.position)
     return _tilted(scene) * (1 + 3 * (x**2 + y**2) / (8 * case.length**2))
 
 
@@ -57,6 +57,7 @@ def _swing_over_sine(scene: Scene) -> Any:
 def _quantity(
     word: str, title: str, where: str, drops: str, orders: tuple[Order, ...], formula: Any, **more: Any
 ) -> Any:
+    """Declare one precession period of Gastebois; `more` are further fields."""
     return Quantity(
         id=word,
         title=title,
@@ -65,7 +66,7 @@ def _quantity(
         drops=drops,
         orders=orders,
         formula=formula,
-        truth=measure.precession_period,
+        truth=observed.precession_period,
         unit="s",
         **{"refuses": _turning} | more,
     )
@@ -99,6 +100,6 @@ APPROXIMATIONS = (
         "the fourth power of the amplitude; the centrifugal gradient, which changes the ellipse that drifts",
         (Order("amplitude", 4, (4.0, 8.0, 16.0), _AT_POLE),),
         _spherical,
-        refuses=_let_go,
+        refuses=_released_at_rest,
     ),
 )

@@ -1,6 +1,6 @@
-"""Where the bob hangs at rest: the angle from the vertical towards the south, Mathar section V.
+"""Angle in rad from the vertical to the point of rest: Mathar section V, equation, series and triangle of forces.
 
-The sign follows the latitude: positive is south in the northern hemisphere's sense, so that y = -l sin of the angle.
+The angle is positive to the south, so that y = -l sin of the angle at the point of rest, in either hemisphere.
 """
 
 from __future__ import annotations
@@ -15,27 +15,31 @@ from .case import Case, under_gravity
 
 
 def of_the_model(scene: Scene) -> Any:
-    """The angle at which the tangential force of the reference's own model vanishes."""
+    """Return the angle at which the tangential force vanishes in the model of `reference`."""
     case = Case.of(scene)
     _, y, z = case.rest
     return case.ctx.atan2(-y, -z)
 
 
 def _equation(scene: Scene) -> Any:
-    """(46) solved for its angle ϕ south of the vertical: R̂Ω² sin(φ + ϕ) - Ω² cos(φ + ϕ) sin(φ + ϕ) = (g/l) sin ϕ."""
+    """Solve (46) for its angle ϕ south of the vertical: R̂Ω² sin(φ + ϕ) - Ω² cos(φ + ϕ) sin(φ + ϕ) = (g/l) sin ϕ."""
     case = Case.of(scene)
     ctx, square = case.ctx, case.rate**2
     latitude, distance, fall = ctx.atan2(case.sin, case.cos), case.axis_distance / case.length, case.k.gravity
 
     def balance(angle: Any) -> Any:
-        off = latitude + angle
-        return distance * square * ctx.sin(off) - square * ctx.cos(off) * ctx.sin(off) - fall * ctx.sin(angle)
+        apparent = latitude + angle
+        return (
+            distance * square * ctx.sin(apparent)
+            - square * ctx.cos(apparent) * ctx.sin(apparent)
+            - fall * ctx.sin(angle)
+        )
 
     return ctx.findroot(balance, case.tilt)
 
 
 def _series(scene: Scene, terms: int) -> Any:
-    """(47) up to Ω^(2 terms)."""
+    """Return the series (47) up to Ω^(2 terms)."""
     case = Case.of(scene)
     ctx, cord, g = case.ctx, case.length, case.gravity
     latitude = ctx.atan2(case.sin, case.cos)
@@ -63,12 +67,17 @@ def _triangle(scene: Scene) -> Any:
 
 def _not_at_a_pole(scene: Scene) -> str | None:
     pole = abs(scene.exact.latitude) == 90
-    return "(47) divides by cos φ here: a latitude short of the pole" if pole else under_gravity(scene)
+    return (
+        "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude"
+        if pole
+        else under_gravity(scene)
+    )
 
 
 def _quantity(
     word: str, title: str, where: str, drops: str, orders: tuple[Order, ...], formula: Any, **more: Any
 ) -> Any:
+    """Declare one formula for the angle of the point of rest; `more` are further fields."""
     return Quantity(
         id=word,
         title=title,
@@ -85,7 +94,7 @@ def _quantity(
 
 
 _RATES = (5e-5, 1e-4, 2e-4)
-_FAST, _SMALL_BODY = (4e-3, 8e-3, 1.6e-2), ("site.equatorial_radius=300",)  # where l is a good part of N + h
+_FAST, _SMALL_BODY = (4e-3, 8e-3, 1.6e-2), ("site.equatorial_radius=300",)  # where l is a large part of N + h
 _NAMES = ("Ω²", "Ω⁴", "Ω⁶")
 _EQUATION = _quantity(
     "rest_equation",
@@ -96,7 +105,7 @@ _EQUATION = _quantity(
     _equation,
     printed=Printed(
         "(45) begins with y²",
-        "y: as printed nothing solves it in the north, where its right side is negative for every y near 0",
+        "y; as printed it has no solution in the north, where its right side is negative for every y near 0",
     ),
 )
 _SERIES = tuple(

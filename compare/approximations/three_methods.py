@@ -1,6 +1,6 @@
-"""The third document: ẍ + (g/L) x = 2 ω sin α ẏ and its partner, solved in three ways.
+"""Harmonic pendulum of the third source paper, ẍ + (g/L) x = 2 ω sin α ẏ and its counterpart in y, solved three ways.
 
-They are one motion, that of `linear_g`; each is computed here by its own route, so that they check each other.
+All three give one motion, that of `linear_g`. Each is computed by its own method, so that they check each other.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .case import Case, below, hung, under_gravity
 
 
 def _numbers(scene: Scene) -> tuple[Case, float, float]:
-    """The case, ω̃ = (g/L + ω_p²)^(1/2) and ω sin α."""
+    """Return the case, ω̃ = (g/L + ω_p²)^(1/2) and ω sin α."""
     case = Case.of(scene)
     turn = case.rate * case.sin
     return case, float(case.ctx.sqrt(case.gravity / case.length + turn**2)), float(turn)
@@ -25,7 +25,7 @@ def _numbers(scene: Scene) -> tuple[Case, float, float]:
 def _rotating_frame(scene: Scene, times: Array) -> Array:
     """Method 1: x' = x cos ω_p t - y sin ω_p t, y' = x sin ω_p t + y cos ω_p t; x, y oscillate, ω_p = -ω sin α.
 
-    The primed coordinates are the ground's: it is into their equations of motion that the document substitutes.
+    The primed coordinates are those of the ground: the paper substitutes into their equations of motion.
     """
     case, w, turn = _numbers(scene)
     (x0, y0, _), (vx0, vy0, _) = (tuple(map(float, v)) for v in (case.position, case.velocity))
@@ -44,19 +44,19 @@ def _coriolis_theorem(scene: Scene, times: Array, squared: Any = None) -> Array:
     rotate = np.array([[0.0, turn], [-turn, 0.0]])  # ω_p ×
     start = np.array([float(part) for part in case.position[:2]])
     speed = np.array([float(part) for part in case.velocity[:2]]) - rotate @ start
-    seen = np.outer(start, np.cos(w * times)) + np.outer(speed / w, np.sin(w * times))
-    rate = np.outer(speed, np.cos(w * times)) - np.outer(start * w, np.sin(w * times)) + rotate @ seen
+    place = np.outer(start, np.cos(w * times)) + np.outer(speed / w, np.sin(w * times))
+    rate = np.outer(speed, np.cos(w * times)) - np.outer(start * w, np.sin(w * times)) + rotate @ place
     cos, sin = np.cos(turn * times), np.sin(turn * times)
 
     def ground(v: Any) -> Any:
         return cos * v[0] + sin * v[1], cos * v[1] - sin * v[0]
 
-    (x, y), (vx, vy) = ground(seen), ground(rate)
+    (x, y), (vx, vy) = ground(place), ground(rate)
     return hung(x, y, vx, vy, case.length)
 
 
-def _one_error_mended(scene: Scene, times: Array) -> Array:
-    """Method 2 with the double cross product mended and F_eff left as printed: ω̃² = g/L - ω_p²."""
+def _one_error_corrected(scene: Scene, times: Array) -> Array:
+    """Method 2 with the double cross product corrected and F_eff left as printed: ω̃² = g/L - ω_p²."""
     return _coriolis_theorem(scene, times, lambda case: case.gravity / case.length - (case.rate * case.sin) ** 2)
 
 
@@ -73,6 +73,7 @@ def _complex_variable(scene: Scene, times: Array, sign: int = 1) -> Array:
 
 
 def _complex_variable_as_concluded(scene: Scene, times: Array) -> Array:
+    """Method 3 with the sign of ω_P that its conclusion prints."""
     return _complex_variable(scene, times, -1)
 
 
@@ -84,11 +85,12 @@ _ORDERS = (
 
 
 def _motion(number: int, title: str, path: Any, printed: Printed | None) -> Motion:
+    """Declare one of the three methods."""
     return Motion(
         id=f"method_{number}",
         title=title,
-        where=f"third document, method {number}",
-        domain="small amplitudes, slow rotation; seconds, for the plumb line is not vertical",
+        where=f"third source paper, method {number}",
+        domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
         drops="the centrifugal force, the vertical motion, all powers of x/L beyond the first",
         orders=_ORDERS,
         refuses=lambda scene: below(scene) or under_gravity(scene),
@@ -107,7 +109,7 @@ APPROXIMATIONS = (
         Printed(
             "-m ω_p × (ω_p × x') = -m ω_p² x', and F_eff with ẋ' for ẋ: two errors that cancel",
             "+m ω_p² x', and ẋ = ẋ' + ω_p × x' in F_eff; with one error alone ω̃² is off by 2 ω_p²",
-            _one_error_mended,
+            _one_error_corrected,
         ),
     ),
     _motion(

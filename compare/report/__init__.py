@@ -1,1 +1,1 @@
-"""Pages, pictures and tables of what was measured."""
+"""Reports of studies, stability runs and approximations: self-contained pages, pictures, tables, CSV and JSON."""

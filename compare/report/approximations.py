@@ -1,4 +1,4 @@
-"""The seeds' approximations on a scene: errors over time, where each stops being good, numbers; as text, JSON, page."""
+"""Report of the source papers' approximations on a scene: errors, and where each is accurate; text, JSON and page."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from .page import Column, TableRow, figure, page, paragraph, section, table
 
 CSV, JSON = "rows.csv", "approximations.json"
 OVERS = ("time", "amplitude", "latitude", "length")
-CURVE_TIMES = 80
+CURVE_TIMES = 80  # points of a curve over time
 
 
 def document(scene: Scene) -> dict[str, Any]:
-    """Errors up to 20 s, 1 h, 12000 s and the end; where each is good to 1 mm, 1 µm, 1 arcsecond; numbers."""
+    """Return errors up to 20 s, 1 h, 12000 s and the end, ranges good to 1 mm, 1 µm and 1 arcsecond, and quantities."""
     t_end = float(scene.exact.t_end)
     within = min(SWEEP_S, t_end)
     good = [row for over in OVERS for row in limits(scene, over=over, t_end=t_end if over == "time" else within)]
@@ -36,14 +36,17 @@ def document(scene: Scene) -> dict[str, Any]:
     }
 
 
-def text_table(made: dict[str, Any]) -> str:
-    """For the terminal."""
-    times = sorted({row["t"] for row in made["rows"]})
-    errors = {(row["approximation"], row["t"]): row for row in made["rows"]}
-    names = list(dict.fromkeys(row["approximation"] for row in made["rows"]))
-    good = {(row["approximation"], row["limit"]): row for row in made["limits"] if row["over"] == "time"}
-    heads = "".join(f"{f'{t:g} s':>12}" for t in times) + "".join(f"{f'to {name}':>16}" for name, _, _ in LIMITS)
-    lines = [f"{made['scene']}: largest position error in m up to a time, and how long each is good", f"{'':22}{heads}"]
+def text_table(report: dict[str, Any]) -> str:
+    """Return the report as text for a terminal."""
+    times = sorted({row["t"] for row in report["rows"]})
+    errors = {(row["approximation"], row["t"]): row for row in report["rows"]}
+    names = list(dict.fromkeys(row["approximation"] for row in report["rows"]))
+    good = {(row["approximation"], row["limit"]): row for row in report["limits"] if row["over"] == "time"}
+    heads = "".join(f"{f'{t:g} s':>12}" for t in times) + "".join(f"{f'within {name}':>16}" for name, _, _ in LIMITS)
+    lines = [
+        f"{report['scene']}: largest position error in m up to a time, and how long it stays within a limit",
+        f"{'':22}{heads}",
+    ]
     for name in names:
         cells: list[str] = []
         for t in times:
@@ -56,69 +59,78 @@ def text_table(made: dict[str, Any]) -> str:
             cells.append(f"{f'{intervals[0][1]:.4g} s' if intervals else '–':>16}")
         lines.append(f"{name:22}" + "".join(cells))
     lines.append("")
-    for row in made["quantities"]:
+    for row in report["quantities"]:
         error = "" if row["relative_error"] is None else f"  relative error {row['relative_error']:.1e}"
         lines.append(f"{row['approximation']:22}{row['value'] or row['status']} {row['unit']}{error}")
     return "\n".join(lines)
 
 
-def write(scene: Scene, made: dict[str, Any], out: Path) -> Path:
-    """Write rows.csv, approximations.json and the page, all or none; returns the page."""
-    rows = csv_text(made["rows"][0], made["rows"])
-    write_files(out, {CSV: rows, JSON: json_text(made), PAGE: page_text(scene, made)})
+def write(scene: Scene, report: dict[str, Any], out: Path) -> Path:
+    """Write rows.csv, approximations.json and the page, all or none; return the path of the page."""
+    rows = csv_text(report["rows"][0], report["rows"])
+    write_files(out, {CSV: rows, JSON: json_text(report), PAGE: page_text(scene, report)})
     return out / PAGE
 
 
-def page_text(scene: Scene, made: dict[str, Any]) -> str:
-    """The page."""
-    t_end = made["t_end"]
+def page_text(scene: Scene, report: dict[str, Any]) -> str:
+    """Return the page as HTML."""
+    t_end = report["t_end"]
     over_time = error_table(scene, t_end=t_end, times=[float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)])
     pictures = [
-        figure(plot(over_time), "Largest position error so far. Approximations that coincide share a line."),
-        figure(plot(over_time, "plane_error_arcsec"), "Largest error of the swing plane so far."),
+        figure(
+            plot(over_time),
+            "Largest position error up to each time. Approximations with nearly equal errors share a line.",
+        ),
+        figure(
+            plot(over_time, "plane_error_arcsec"), "Largest error of the direction of the swing plane up to each time."
+        ),
     ]
     pictures += [
         figure(
             plot(sweep(scene, over=over, t=min(SWEEP_S, t_end))),
-            f"Largest position error within {min(SWEEP_S, t_end):g} s, with the {over} changed.",
+            f"Largest position error within {min(SWEEP_S, t_end):g} s, as a function of {over}.",
         )
         for over in OVERS[1:]
     ]
     return page(
-        f"{scene.id}: how good the approximations are",
+        f"{scene.id}: how accurate the approximations are",
         [
-            section("Error over time", *pictures[:2], _errors(made)),
-            section("Where each stops being good", *pictures[2:], *(_limits(made, over) for over in OVERS)),
-            section("Numbers", _quantities(made)),
-            section("What each is", _about()),
+            section("Error over time", *pictures[:2], _errors(report)),
+            section("Where each is accurate", *pictures[2:], *(_limits(report, over) for over in OVERS)),
+            section("Single quantities", _quantities(report)),
+            section("The approximations", _about()),
         ],
-        lead=paragraph("The analytic and truncated models of the seed documents against the full Lagrangian."),
+        lead=paragraph(
+            "The analytic and truncated models of the source papers, compared with the full Lagrangian system."
+        ),
     )
 
 
-def _errors(made: dict[str, Any]) -> str:
-    """A line an approximation: position and plane at each time."""
-    times = sorted({row["t"] for row in made["rows"]})
-    found = {(row["approximation"], row["t"]): row for row in made["rows"]}
+def _errors(report: dict[str, Any]) -> str:
+    """Return a table with one row for each approximation: errors of position and swing plane up to each time."""
+    times = sorted({row["t"] for row in report["rows"]})
+    by_key = {(row["approximation"], row["t"]): row for row in report["rows"]}
     columns = [Column("approximation")]
-    columns += [Column(f"m, to {t:g} s", "number") for t in times]
-    columns += [Column(f"arcsec, to {t:g} s", "number") for t in times]
+    columns += [Column(f"m, up to {t:g} s", "number") for t in times]
+    columns += [Column(f"arcsec, up to {t:g} s", "number") for t in times]
     rows = []
-    for name in dict.fromkeys(row["approximation"] for row in made["rows"]):
-        values = [found[name, t][what] for what in ("error_m", "plane_error_arcsec") for t in times]
-        remark = "" if found[name, times[0]]["status"] == "ok" else "does not apply to this scene"
+    for name in dict.fromkeys(row["approximation"] for row in report["rows"]):
+        values = [by_key[name, t][what] for what in ("error_m", "plane_error_arcsec") for t in times]
+        remark = "" if by_key[name, times[0]]["status"] == "ok" else "does not apply to this scene"
         rows.append(TableRow((name, *("" if value is None else f"{value:.3g}" for value in values), remark)))
-    return table([*columns, Column("remark", "prose")], rows, "Largest errors of position and of swing plane")
+    return table(
+        [*columns, Column("remark", "prose")], rows, "Largest errors of position and of the swing plane's direction"
+    )
 
 
-def _limits(made: dict[str, Any], over: str) -> str:
-    rows = [row for row in made["limits"] if row["over"] == over]
+def _limits(report: dict[str, Any], over: str) -> str:
+    rows = [row for row in report["limits"] if row["over"] == over]
     names = list(dict.fromkeys(row["approximation"] for row in rows))
-    found = {(row["approximation"], row["limit"]): row for row in rows}
-    columns = [Column("approximation"), *(Column(f"good to {name}", "number") for name, _, _ in LIMITS)]
-    body = [TableRow((name, *(_intervals(found[name, limit]) for limit, _, _ in LIMITS))) for name in names]
+    by_key = {(row["approximation"], row["limit"]): row for row in rows}
+    columns = [Column("approximation"), *(Column(f"within {name}", "number") for name, _, _ in LIMITS)]
+    body = [TableRow((name, *(_intervals(by_key[name, limit]) for limit, _, _ in LIMITS))) for name in names]
     unit = rows[0]["unit"] if rows else ""
-    return table(columns, body, f"Over {over}, in {unit}")
+    return table(columns, body, f"Ranges of {over} in {unit}")
 
 
 def _intervals(row: dict[str, Any] | LimitRow) -> str:
@@ -126,7 +138,7 @@ def _intervals(row: dict[str, Any] | LimitRow) -> str:
     return ", ".join(f"{low:.3g} to {high:.3g}" for low, high in good) or "nowhere"
 
 
-def _quantities(made: dict[str, Any]) -> str:
+def _quantities(report: dict[str, Any]) -> str:
     columns = [Column("approximation"), Column("value", "number"), Column("reference", "number"), Column("unit")]
     rows = [
         TableRow(
@@ -135,12 +147,12 @@ def _quantities(made: dict[str, Any]) -> str:
                 "" if row["relative_error"] is None else f"{row['relative_error']:.1e}",
             )
         )
-        for row in made["quantities"]
+        for row in report["quantities"]
     ]  # fmt: skip
     return table([*columns, Column("relative error", "number")], rows)
 
 
 def _about() -> str:
-    columns = [Column("id"), Column("what", "prose"), Column("where", "prose"), Column("drops", "prose")]
+    columns = [Column("id"), Column("description", "prose"), Column("source", "prose"), Column("leaves out", "prose")]
     rows = [TableRow((one.id, one.title, one.where, one.drops)) for one in APPROXIMATIONS.values()]
     return table(columns, rows)

@@ -1,4 +1,4 @@
-"""The files of a report: rows as CSV, a document as JSON, and a folder into which all are written or none."""
+"""A report's folder, whose files are written all or none; rows as CSV text, documents as JSON text."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ from reference import InputError
 from .page import MARK
 
 PAGE = "index.html"
-_HEAD = 1024  # bytes of a page within which its mark stands
+_HEAD = 1024  # bytes at the start of a page that hold its mark
 
 
 def check_folder(folder: Path, names: Iterable[str]) -> None:
-    """Refuse a folder in which a file of somebody else's would be replaced: one with such a file and no page of ours.
+    """Refuse a folder with one of these files but without a page of ours: somebody else's file would be replaced.
 
     Raises:
-        InputError: it is such a folder, or no folder.
+        InputError: there is such a file, or `folder` is not a folder.
     """
-    taken = next((name for name in names if (folder / name).exists()), None)
-    if (taken is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
-        got = str(folder) if taken is None else f"{folder}, which has a {taken} of its own"
-        raise InputError("--out", got, "a new folder, or one that an earlier run made", "Choose another name.")
+    existing = next((name for name in names if (folder / name).exists()), None)
+    if (existing is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
+        got = str(folder) if existing is None else f"{folder}, which has a {existing} of its own"
+        raise InputError("--out", got, "a new folder, or one that an earlier run wrote", "Choose another name.")
 
 
 def _is_ours(page: Path) -> bool:
@@ -41,25 +41,29 @@ def _is_ours(page: Path) -> bool:
         return False
 
 
-def write_files(folder: Path, made: Mapping[str, str]) -> None:
-    """Write files into a folder, all or none; whatever else is in it stays as it is.
+def write_files(folder: Path, texts: Mapping[str, str]) -> None:
+    """Write files into a folder, all or none; other files in it are left alone.
 
-    All are written beside their targets first and then renamed in order; an error or an interruption on the way
-    brings back what was there.
+    All files are first written beside their targets and then renamed in order. After an error or an interruption the
+    old files are put back.
+
+    Args:
+        folder: created if it does not exist.
+        texts: content of each file, by name.
 
     Raises:
         InputError: the folder cannot be written to, or `check_folder` refuses it.
     """
-    check_folder(folder, made)
-    new, old = ({name: folder / f".{name}.{word}-{os.getpid()}" for name in made} for word in ("partial", "before"))
+    check_folder(folder, texts)
+    new, old = ({name: folder / f".{name}.{word}-{os.getpid()}" for name in texts} for word in ("partial", "before"))
     renamed: list[str] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, content in made.items():
+        for name, content in texts.items():
             _write(new[name], content)
             if (folder / name).exists():
                 shutil.copy2(folder / name, old[name])
-        for name in made:
+        for name in texts:
             os.replace(new[name], folder / name)
             renamed.append(name)
     except BaseException as error:
@@ -69,9 +73,9 @@ def write_files(folder: Path, made: Mapping[str, str]) -> None:
             raise InputError("--out", str(folder), "a folder that can be written to", f"{error.strerror}.") from None
         raise
     finally:
-        for left in (*new.values(), *old.values()):
+        for path in (*new.values(), *old.values()):
             with suppress(OSError):
-                left.unlink(missing_ok=True)
+                path.unlink(missing_ok=True)
 
 
 def _write(path: Path, content: str) -> None:
@@ -90,7 +94,7 @@ def _bring_back(old: Path, target: Path) -> None:
 
 
 def csv_text(columns: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> str:
-    """Rows as CSV: a header line, doubles with all their digits, nothing where there is no value."""
+    """Return rows as CSV: a header line, doubles with all their digits, an empty field where there is no value."""
     stream = io.StringIO()
     writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
     writer.writeheader()
@@ -99,13 +103,13 @@ def csv_text(columns: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> str:
 
 
 def json_text(document: Any) -> str:
-    """A document as JSON; NaN and infinity, which JSON does not have, become null."""
+    """Return a document as JSON; NaN and infinity, which JSON does not have, become null."""
     return json.dumps(_finite(document), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def _finite(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _finite(one) for key, one in value.items()}
+        return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_finite(one) for one in value]
+        return [_finite(item) for item in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value

@@ -1,6 +1,6 @@
-"""The parts that pages are made of: one self-contained HTML file, styles and pictures inside, no script.
+"""HTML building blocks: sections, tables, figures, and a self-contained page with its styles and without scripts.
 
-Text is escaped wherever it is put in; what is HTML already says so by its type.
+Text is escaped wherever it is inserted, unless its type `Html` says that it is HTML already.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-MARK = '<meta name="generator" content="foucault">'  # of every page: by it a folder of ours is known
+MARK = '<meta name="generator" content="foucault">'  # in every page; shows that a folder was written by us
 
 
 class Html(str):
-    """Text that is HTML and is put in as it stands."""
+    """Text that is already HTML and is inserted without escaping."""
 
     __slots__ = ()
 
@@ -27,9 +27,9 @@ class Column:
     """A column of a table.
 
     Attributes:
-        title: over it.
-        kind: `text`, `number` (to the right), `prose` (may be broken into lines), `line` (the same, for long ones), or
-            `wrapped` (broken anywhere: a table of nothing else is as wide as the page).
+        title: heading of the column.
+        kind: `text`, `number` (aligned right), `prose` (wrapped), `line` (wrapped, but wider), or `wrapped` (wrapped
+            anywhere; a table of only such columns is as wide as the page).
     """
 
     title: str
@@ -42,8 +42,8 @@ class TableRow:
 
     Attributes:
         cells: one for each column.
-        kind: how it looks: `front`, `failed`, `first` (of a group), a verdict, several words, or nothing.
-        anchor: the word by which it is linked to, or nothing.
+        kind: CSS classes: `front`, `failed`, `first` (of a group), a verdict, several of them, or none.
+        anchor: id by which the row can be linked to, or empty.
     """
 
     cells: Sequence[str]
@@ -52,57 +52,57 @@ class TableRow:
 
 
 def text(value: str) -> Html:
-    """Escaped, unless it is HTML already."""
+    """Return a text as HTML, escaped unless it is HTML already."""
     return value if isinstance(value, Html) else Html(html.escape(str(value)))
 
 
 def join(parts: Iterable[str]) -> Html:
-    """Parts one after the other, each escaped unless it is HTML already."""
+    """Join parts with line breaks, each escaped unless it is HTML already."""
     return Html("\n".join(text(part) for part in parts))
 
 
 def strong(value: str) -> Html:
-    """Set off from its neighbours."""
+    """Return emphasised text."""
     return Html(f"<strong>{text(value)}</strong>")
 
 
 def faint(value: str) -> Html:
-    """Set back behind its neighbours."""
+    """Return text in a fainter colour."""
     return Html(f'<span class="faint">{text(value)}</span>')
 
 
 def paragraph(value: str) -> Html:
-    """A paragraph."""
+    """Return a paragraph."""
     return Html(f"<p>{text(value)}</p>")
 
 
 def findings(sentences: Iterable[str]) -> Html:
-    """A list of sentences that matter."""
+    """Return a list of the most important sentences."""
     return Html('<ul class="findings">\n' + "\n".join(f"<li>{text(one)}</li>" for one in sentences) + "\n</ul>")
 
 
 def facts(pairs: Mapping[str, str]) -> Html:
-    """Names and what they stand for."""
+    """Return a list of names and their descriptions."""
     return Html("<dl>\n" + "\n".join(f"<dt>{text(k)}</dt><dd>{text(v)}</dd>" for k, v in pairs.items()) + "\n</dl>")
 
 
 def figure(svg: str, caption: str) -> Html:
-    """A picture with its caption; `svg` is one SVG element. On a narrow screen it moves inside itself."""
+    """Return a picture (`svg` is one SVG element) with its caption; on a narrow screen it scrolls."""
     return Html(f'<figure>\n<div class="wide">\n{svg}</div>\n<figcaption>{text(caption)}</figcaption>\n</figure>')
 
 
 def plate(svg: str, number: int, title: str, remark: str) -> Html:
-    """A numbered picture in its own colours, as an image, with its printed title and a remark beside it."""
+    """Return a numbered picture in its own colours, as an image, with its printed title and a remark beside it."""
     image = f"data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}"
-    words = f"<p>{strong(f'FIG. {number}.')} {text(title)}</p>\n<p>{text(remark)}</p>"
+    caption_html = f"<p>{strong(f'FIG. {number}.')} {text(title)}</p>\n<p>{text(remark)}</p>"
     return Html(
         f'<figure id="figure-{number}" class="plate">\n<img alt="Figure {number}" src="{image}">\n'
-        f"<figcaption>\n{words}\n</figcaption>\n</figure>"
+        f"<figcaption>\n{caption_html}\n</figcaption>\n</figure>"
     )
 
 
 def choices(kinds: Mapping[str, str]) -> Html:
-    """A box for each kind of row, with its label; page.css hides the rows of a kind whose box is not checked."""
+    """Return a check box for each kind of row; page.css hides the rows of a kind whose box is not checked."""
     boxes = (
         f'<label><input type="checkbox" id="show-{kind}" checked> {text(label)}</label>'
         for kind, label in kinds.items()
@@ -111,7 +111,7 @@ def choices(kinds: Mapping[str, str]) -> Html:
 
 
 def table(columns: Sequence[Column], rows: Iterable[TableRow], caption: str = "") -> Html:
-    """A table that moves inside itself where it is wider than the screen."""
+    """Return a table, which scrolls where it is wider than the screen."""
     head = "".join(f'<th scope="col"{_class(one)}>{text(one.title)}</th>' for one in columns)
     body = []
     for row in rows:
@@ -130,25 +130,25 @@ def table(columns: Sequence[Column], rows: Iterable[TableRow], caption: str = ""
 
 
 def section(heading: str, *parts: str) -> Html:
-    """A part of the page with a heading that can be linked to."""
+    """Return a section of the page with a heading that can be linked to."""
     return Html(f'<section id="{anchor(heading)}">\n<h2>{text(heading)}</h2>\n{join(parts)}\n</section>')
 
 
 def anchor(heading: str) -> str:
-    """The word by which a section is linked to."""
+    """Return the id by which the section with this heading can be linked to."""
     return re.sub(r"[^a-z0-9]+", "-", heading.lower()).strip("-")
 
 
 def page(title: str, sections: Sequence[str], *, lead: str = "") -> str:
-    """A whole page.
+    """Return a whole page.
 
     Args:
-        title: of the page.
-        sections: made by `section`; their headings are linked at the top.
-        lead: below the title.
+        title: title of the page.
+        sections: results of `section`; the page links to their headings at the top.
+        lead: introduction below the title.
     """
     headings = re.findall(r'<section id="([^"]+)">\n<h2>(.*?)</h2>', "\n".join(sections))
-    links = "\n".join(f'<a href="#{where}">{heading}</a>' for where, heading in headings)
+    links = "\n".join(f'<a href="#{target}">{heading}</a>' for target, heading in headings)
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n'

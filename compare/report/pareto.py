@@ -1,6 +1,6 @@
-"""Who is cheapest at which error: the Pareto front of measured rows, costs at an error, and the sentences of both.
+"""Cost and error of a study's rows: the Pareto front, the cost of reaching an error, and sentences about both.
 
-An error below the reference's bound counts as the bound: nothing here is judged finer than the truth is known.
+An error below the bound of the reference counts as equal to that bound, because nothing smaller is known.
 """
 
 from __future__ import annotations
@@ -16,21 +16,21 @@ from reference import InputError
 from ..studies.row import EXTRAPOLATED, OK, Row
 from .power_law import LEAST_POINTS, PowerLaw, power_law
 
-TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors that the sentences speak of
+TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors for which costs are tabulated and the cheapest method is named
 PAPER_METHOD, PAPER_NAME = "rk4", "the paper's RK4"
-PRECISION_METHOD = "heyoka_real"  # the method whose cost is modelled against digits
-ALIKE = 1.05  # costs closer than this factor are called the same: repeats spread by as much
+PRECISION_METHOD = "heyoka_real"  # the method whose cost is fitted as a power of the digits
+ALIKE = 1.05  # costs closer than this factor count as equal: repeated runs spread by as much
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A method in a formulation over its ladder.
+    """The ladder of a method: its rows in one formulation, over all settings.
 
     Attributes:
-        method: its id.
+        method: id of the method.
         formulation: of the equations of motion.
-        label: the method, with the formulation where that is not the method's own.
-        rows: from loose to tight, failed ones included.
+        label: the method's id, with the formulation in brackets where it is not the method's own.
+        rows: from the loosest setting to the tightest, failed ones included.
     """
 
     method: str
@@ -45,15 +45,15 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Cost:
-    """What an error costs with a method.
+class CostAtError:
+    """Cost of reaching an error with a method.
 
     Attributes:
-        label: of the curve.
-        method: its id.
+        label: label of the curve.
+        method: id of the method.
         cpu_s: CPU seconds.
-        interpolated: between two settings; otherwise that of a measured setting that is at least as accurate.
-        extrapolated: it rests on a run over a part of the span.
+        interpolated: between two settings; otherwise the cost is that of a setting at least as accurate.
+        extrapolated: whether the cost is based on a run over a part of the span.
     """
 
     label: str
@@ -64,12 +64,12 @@ class Cost:
 
 
 def rows_of(document: dict[str, Any]) -> list[Row]:
-    """The rows of a study's document."""
+    """Return the rows of a study's document."""
     return [Row.parsed(row) for row in document["rows"]]
 
 
 def curves(rows: Sequence[Row]) -> list[Curve]:
-    """Rows by method and formulation in the order in which they come; a method's first formulation is its own."""
+    """Group rows by method and formulation, in order of appearance; a method's first formulation is its own."""
     own: dict[str, str] = {}
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
@@ -87,49 +87,50 @@ def curves(rows: Sequence[Row]) -> list[Curve]:
 
 
 def error_of(row: Row, bound_m: float) -> float:
-    """The row's largest position error in m, not finer than the reference is known."""
+    """Return the row's largest position error in m, but at least the bound of the reference."""
     if row.error_m is None:
         raise InputError("row", f"{row.method} at {row.setting:g}: {row.status}", "a row with an error")
     return max(row.error_m, bound_m)
 
 
 def cost_of(row: Row) -> float:
-    """The row's CPU seconds; infinite if it has none."""
+    """Return the row's CPU seconds; infinity if it has none."""
     return math.inf if row.cpu_s is None else row.cpu_s
 
 
 def front(rows: Sequence[Row], bound_m: float = 0.0) -> list[Row]:
-    """The measured rows that no other measured row beats in error without costing more, cheapest first.
+    """Return the Pareto front: the measured rows with no other that is more accurate at no greater cost.
 
     Args:
-        rows: any; failed ones are never on the front, extrapolated ones may be.
-        bound_m: of the reference. Errors below it are equal.
+        rows: any rows; failed ones are never on the front, extrapolated ones may be.
+        bound_m: bound of the reference in m; errors below it count as equal.
 
     Returns:
-        Rows of increasing cost and decreasing error; of equal rows the first.
+        Rows of increasing cost and decreasing error; the first of equal rows.
     """
-    best, found = math.inf, []
+    best, rows_on_front = math.inf, []
     for row in sorted(_measured(rows), key=lambda row: (cost_of(row), error_of(row, bound_m))):
         if error_of(row, bound_m) < best:
             best = error_of(row, bound_m)
-            found.append(row)
-    return found
+            rows_on_front.append(row)
+    return rows_on_front
 
 
-def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> Cost | None:
-    """Least cost at which a method reaches an error, None if it does not.
+def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> CostAtError | None:
+    """Return the least cost at which a method reaches an error; None if it does not reach it.
 
-    Interpolated in logarithms between neighbouring settings that lie on both sides of the error, never across a
-    failed one and never beyond the ladder: where already the loosest setting is finer, its cost stands.
-    Whole runs go before extrapolated ones.
+    The cost is interpolated in logarithms between neighbouring settings on both sides of the error, never across a
+    failed setting and never beyond the ladder: if the loosest setting is already more accurate, its cost is returned.
+    Runs over the whole span take precedence over extrapolated ones.
     """
     if error_m < bound_m:
         return None
-    found = [Cost(curve.label, curve.method, *one) for one in _ways(curve, error_m, bound_m)]
-    return min(found, key=lambda cost: (cost.extrapolated, cost.cpu_s, cost.interpolated), default=None)
+    costs = [CostAtError(curve.label, curve.method, *one) for one in _ways(curve, error_m, bound_m)]
+    return min(costs, key=lambda cost: (cost.extrapolated, cost.cpu_s, cost.interpolated), default=None)
 
 
 def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[tuple[float, bool, bool]]:
+    """Yield each cost at which the error is reached: CPU seconds, whether interpolated, whether extrapolated."""
     for row in curve.measured:
         if row.cpu_s and error_of(row, bound_m) <= error_m:
             yield row.cpu_s, False, row.status == EXTRAPOLATED
@@ -142,22 +143,22 @@ def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[tuple[float,
             yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part, True, EXTRAPOLATED in (a.status, b.status)
 
 
-def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[Cost]:
-    """Cost of an error with every method that reaches it, whole runs before extrapolated ones, cheapest first."""
-    found = [cost_at(curve, error_m, bound_m) for curve in curves(rows)]
-    return sorted((cost for cost in found if cost is not None), key=lambda cost: (cost.extrapolated, cost.cpu_s))
+def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[CostAtError]:
+    """Return the cost of an error with every method that reaches it: whole runs first, then by cost."""
+    costs = [cost_at(curve, error_m, bound_m) for curve in curves(rows)]
+    return sorted((cost for cost in costs if cost is not None), key=lambda cost: (cost.extrapolated, cost.cpu_s))
 
 
 def sentences(document: dict[str, Any]) -> list[str]:
-    """What a reader takes home: the cheapest method at each error that is reached, and what a digit costs.
+    """Return the main results as sentences: the cheapest method at each error that is reached, and the cost of digits.
 
-    A ladder of precisions has nothing to say about large errors: there only the cost of digits is told.
+    A study of high precisions alone says nothing about large errors; then only the cost of digits is given.
     """
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
     law = cost_of_digits(rows, bound_m)
     coarse = {row.method for row in _measured(rows) if error_of(row, bound_m) > TARGETS_M[-1]}
-    found = [_sentence(rows, error_m, bound_m) for error_m in TARGETS_M] if coarse or law is None else []
-    return [sentence for sentence in (*found, cost_sentence(law) if law else "") if sentence]
+    cheapest = [_sentence(rows, error_m, bound_m) for error_m in TARGETS_M] if coarse or law is None else []
+    return [sentence for sentence in (*cheapest, cost_sentence(law) if law else "") if sentence]
 
 
 def _sentence(rows: Sequence[Row], error_m: float, bound_m: float) -> str:
@@ -165,7 +166,7 @@ def _sentence(rows: Sequence[Row], error_m: float, bound_m: float) -> str:
     if not costs:
         return ""
     first = costs[0]
-    head = f"At {_metres(error_m)} the cheapest is {first.label}, {seconds(first.cpu_s)} of CPU time"
+    head = f"At {_metres(error_m)} the cheapest method is {first.label}, with {seconds(first.cpu_s)} of CPU time"
     if first.extrapolated:
         head += " (extrapolated from a part of the span)"
     paper = next((cost for cost in costs if cost.method == PAPER_METHOD), None)
@@ -178,7 +179,7 @@ def _sentence(rows: Sequence[Row], error_m: float, bound_m: float) -> str:
     return head + (f"; {PAPER_NAME} does not reach it ({best:.1e} m at best)." if best is not None else ".")
 
 
-def _times(dear: Cost, cheap: Cost) -> str:
+def _times(dear: CostAtError, cheap: CostAtError) -> str:
     ratio = dear.cpu_s / cheap.cpu_s
     if ratio < ALIKE:
         return "as cheap as"
@@ -186,14 +187,14 @@ def _times(dear: Cost, cheap: Cost) -> str:
 
 
 def digits_of(row: Row, bound_m: float) -> float:
-    """Right decimals of the position in m: -log10 of the largest error."""
+    """Return the correct decimals of the position in m: -log10 of the largest error."""
     return -math.log10(error_of(row, bound_m))
 
 
 def cost_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> PowerLaw | None:
-    """CPU seconds of `heyoka_real` as a power of the digits achieved; None with fewer than three rows to fit.
+    """Fit CPU seconds of `heyoka_real` as a power of the digits achieved; None with fewer than three rows to fit.
 
-    Rows at or below the reference's bound are left out: what they achieved is not known.
+    Rows at or below the bound of the reference are left out, because their true error is not known.
     """
     known = [
         row
@@ -206,7 +207,7 @@ def cost_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> PowerLaw | None
 
 
 def cost_sentence(law: PowerLaw) -> str:
-    """The model of the cost of digits in words."""
+    """Return the fitted cost of digits as a sentence."""
     return (
         f"The cost of {PRECISION_METHOD} is {law.factor:.2g} s · digits^a with a = {law.exponent:.2f} ± "
         f"{law.standard_error:.2f} (standard error of the fit to {law.points} settings, {law.low:.0f} to "
@@ -215,14 +216,14 @@ def cost_sentence(law: PowerLaw) -> str:
 
 
 def whole_evaluations(row: Row, t_end: float) -> float | None:
-    """Evaluations of the right-hand side for the whole span: an extrapolated row has counted those of its part."""
+    """Return the evaluations of the right-hand side over the whole span, scaled up for an extrapolated row."""
     if row.rhs_evaluations is None or row.status == OK or not row.reached_t:
         return row.rhs_evaluations
     return row.rhs_evaluations * t_end / row.reached_t
 
 
 def seconds(cpu_s: float) -> str:
-    """CPU time with its unit, two or three digits."""
+    """Return a CPU time with its unit, to three digits."""
     if cpu_s < 1e-3:
         return f"{cpu_s * 1e6:.3g} µs"
     return f"{cpu_s * 1e3:.3g} ms" if cpu_s < 0.1 else f"{cpu_s:.3g} s" if cpu_s < 1000 else f"{cpu_s:.0f} s"
@@ -233,5 +234,5 @@ def _metres(error_m: float) -> str:
 
 
 def _measured(rows: Sequence[Row]) -> list[Row]:
-    """Rows with a cost and an error that are numbers: a broken one must not reach the front by comparing false."""
+    """Return rows with a finite cost and error; a NaN must not reach the front because its comparisons are false."""
     return [row for row in rows if row.measured and math.isfinite((row.error_m or 0.0) + cost_of(row))]

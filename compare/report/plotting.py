@@ -1,4 +1,4 @@
-"""What every picture begins and ends with: matplotlib without a window, colours that all can tell apart, SVG text."""
+"""Shared matplotlib setup and SVG export: no window, colours for colour-blind readers, the same bytes every time."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ from typing import Any
 
 from reference import InputError
 
-# Okabe and Ito's colours, told apart by the colour-blind; line styles tell them apart in grey
+# Okabe and Ito's palette for colour-blind readers; in grey the line styles tell lines apart
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-SAME_BYTES = {"svg.hashsalt": "foucault", "svg.fonttype": "none"}  # for the same picture
+SAME_BYTES = {"svg.hashsalt": "foucault", "svg.fonttype": "none"}  # the same picture gives the same SVG bytes
 
 
 def pyplot(field: str) -> Any:
-    """Import matplotlib, which will open no window.
+    """Return matplotlib.pyplot, set up to open no window.
 
     Args:
-        field: of the message: what asked for a picture.
+        field: option or function that needs the picture, for the error message.
 
     Raises:
-        InputError: it is not installed.
+        InputError: matplotlib is not installed.
     """
     try:
         import matplotlib
@@ -33,7 +33,7 @@ def pyplot(field: str) -> Any:
 
 
 def svg_of(figure: Any) -> str:
-    """A figure as SVG text, without date; drawn in a context of `SAME_BYTES`."""
+    """Return a figure as SVG text without a date; call it in an rc context with `SAME_BYTES`."""
     text = io.StringIO()
     figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
     return text.getvalue()

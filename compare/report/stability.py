@@ -1,4 +1,4 @@
-"""The report of `foucault stability`: what is silently wrong first, a heat map, the reasons, and long runs."""
+"""Report of `foucault stability`: silently wrong runs first, a heat map, reasons of failures, and long runs."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_b
 
 
 def document(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, str]) -> dict[str, Any]:
-    """The JSON document of the contract."""
+    """Return the JSON document of the command."""
     return {
         "rows": [asdict(cell) for cell in cells],
         "silently_wrong": sum(cell.status == "silently_wrong" for cell in cells),
@@ -36,22 +36,22 @@ def document(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, 
 
 
 def headlines(cells: Sequence[Cell]) -> list[str]:
-    """What a reader takes home."""
+    """Return the main results as sentences."""
     wrong = [cell for cell in cells if cell.status == "silently_wrong"]
-    ran = [cell for cell in cells if cell.status not in ("not_installed", "refused")]
+    tried = [cell for cell in cells if cell.status not in ("not_installed", "refused")]
     methods = Counter(cell.method for cell in wrong)
-    said = [
-        f"{len(wrong)} of {len(ran)} runs are silently wrong: success was reported, and the error is more than {WRONG} "
+    sentences = [
+        f"{len(wrong)} of {len(tried)} runs are silently wrong: they report success, but the error is over {WRONG} "
         "times what was asked for."
     ]
     if methods:
         worst = ", ".join(f"{name} ({count})" for name, count in methods.most_common(6))
-        said.append(f"Silently wrong most often: {worst}.")
-    return said + list(_stiffness(cells))
+        sentences.append(f"Silently wrong most often: {worst}.")
+    return sentences + list(_stiffness(cells))
 
 
 def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
-    """Do stiff methods win where it is stiff, and lose where it is not?"""
+    """Yield for each pair a sentence: is the implicit method cheaper on stiff scenes, and more expensive on others?"""
     by_key = {(cell.scene, cell.method): cell for cell in cells if cell.cpu_s is not None}
     stiff = {cell.scene for cell in cells if "stiff" in load_scene(cell.scene).flags}
     for implicit, explicit in PAIRS:
@@ -63,31 +63,34 @@ def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
         if ratios[True] and ratios[False]:
             wins, loses = median(ratios[True]), 1 / median(ratios[False])
             yield (
-                f"{implicit} against {explicit}, median CPU time: {_times(wins)} where it is stiff "
-                f"({len(ratios[True])} scenes), {_times(1 / loses)} elsewhere ({len(ratios[False])})."
+                f"{implicit} compared with {explicit}, median CPU time: {_times(wins)} on stiff scenes "
+                f"({len(ratios[True])} of them), {_times(1 / loses)} on the others ({len(ratios[False])})."
             )
 
 
 def _times(gain: float) -> str:
-    return f"{gain:.2g} times cheaper" if gain >= 1 else f"{1 / gain:.2g} times dearer"
+    return f"{gain:.2g} times cheaper" if gain >= 1 else f"{1 / gain:.2g} times more expensive"
 
 
-def write(made: dict[str, Any], cells: Sequence[Cell], runs: Sequence[LongRun], out: Path) -> Path:
-    """Write rows.csv, stability.json and the page, all or none; returns the page."""
-    rows = csv_text((one.name for one in fields(Cell)), made["rows"])
-    write_files(out, {CSV: rows, JSON: json_text(made), PAGE: page_text(cells, runs, made["machine"])})
+def write(report: dict[str, Any], cells: Sequence[Cell], runs: Sequence[LongRun], out: Path) -> Path:
+    """Write rows.csv, stability.json and the page, all or none; return the path of the page."""
+    rows = csv_text((one.name for one in fields(Cell)), report["rows"])
+    write_files(out, {CSV: rows, JSON: json_text(report), PAGE: page_text(cells, runs, report["machine"])})
     return out / PAGE
 
 
 def page_text(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, str]) -> str:
-    """The page."""
+    """Return the page as HTML."""
     letters = "; ".join(f"{letter}: {meaning}" for letter, meaning in CLASSES.values())
-    drawn = [Field(cell.scene, f"{cell.method} {_short(cell.precision)}", cell.status, cell.digits) for cell in cells]
+    squares = [Field(cell.scene, f"{cell.method} {_short(cell.precision)}", cell.status, cell.digits) for cell in cells]
     parts = [
         section("Findings", findings(headlines(cells))),
         section(
             "Digits kept",
-            figure(heat_map(drawn), f"Whole digits of the amplitude that were kept, or how it failed. {letters}."),
+            figure(
+                heat_map(squares),
+                f"Digits of the amplitude that a run kept, rounded down, or a letter for how it failed. {letters}.",
+            ),
         ),
         section("Silently wrong", _reasons([cell for cell in cells if cell.status == "silently_wrong"])),
         section(
@@ -112,7 +115,8 @@ def page_text(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str,
         "Stiff and extreme scenes: what breaks, and when",
         parts,
         lead=paragraph(
-            "Every method was asked for the same on every scene; what it returned was held against the truth."
+            "Each method was asked for the same number of digits on every scene, and its result was compared with the "
+            "reference solution."
         ),
     )
 
@@ -124,7 +128,7 @@ def _short(precision: str) -> str:
 
 def _reasons(cells: Sequence[Cell]) -> str:
     columns = [Column("scene"), Column("method"), Column("precision"), Column("status")]
-    columns += [Column("digits", "number"), Column("asked", "number"), Column("why", "prose")]
+    columns += [Column("digits", "number"), Column("asked for", "number"), Column("reason", "prose")]
     rows = [
         TableRow(
             (
@@ -142,15 +146,17 @@ def _scenes(cells: Sequence[Cell]) -> str:
     rows = []
     for name in names:
         scene = load_scene(name)
-        kept = [cell.digits for cell in cells if cell.scene == name and cell.status == "ok" and cell.digits is not None]
+        digits = [
+            cell.digits for cell in cells if cell.scene == name and cell.status == "ok" and cell.digits is not None
+        ]
         failed = sum(cell.scene == name and cell.status not in ("ok", "not_installed", "refused") for cell in cells)
-        rows.append(TableRow((name, scene.title, ", ".join(scene.flags), f"{len(kept)}", f"{failed}")))
-    columns = [Column("scene"), Column("what it is", "prose"), Column("flags", "prose")]
-    return table([*columns, Column("right", "number"), Column("failed", "number")], rows)
+        rows.append(TableRow((name, scene.title, ", ".join(scene.flags), f"{len(digits)}", f"{failed}")))
+    columns = [Column("scene"), Column("description", "prose"), Column("flags", "prose")]
+    return table([*columns, Column("correct", "number"), Column("failed", "number")], rows)
 
 
 def text_table(cells: Sequence[Cell], runs: Sequence[LongRun]) -> str:
-    """For the terminal: the headlines, and a line a method."""
+    """Return main results and one line for each method, as text for a terminal."""
     names = list(dict.fromkeys((cell.method, cell.precision) for cell in cells))
     words = ["ok", "silently_wrong", "not_finite", "gave_up", "out_of_time", "refused", "not_installed"]
     lines = [
@@ -159,6 +165,6 @@ def text_table(cells: Sequence[Cell], runs: Sequence[LongRun]) -> str:
         f"{'method':20}{'precision':24}" + "".join(f"{word.replace('_', ' '):>16}" for word in words),
     ]
     for method, precision in names:
-        found = Counter(cell.status for cell in cells if (cell.method, cell.precision) == (method, precision))
-        lines.append(f"{method:20}{precision:24}" + "".join(f"{found[word] or '':>16}" for word in words))
+        counts = Counter(cell.status for cell in cells if (cell.method, cell.precision) == (method, precision))
+        lines.append(f"{method:20}{precision:24}" + "".join(f"{counts[word] or '':>16}" for word in words))
     return "\n".join([*lines, *([""] if runs else []), *laws(runs)])

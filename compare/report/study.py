@@ -1,6 +1,6 @@
-"""The report of a study: rows.csv, study.json, and one self-contained page with pictures and tables; a table as text.
+"""Report of a study (error against run time): rows.csv, study.json, a self-contained page, and a table as text.
 
-Everything is made from the study's JSON document alone: the same document, the same bytes.
+Everything is made from the study's JSON document alone: the same document gives the same bytes.
 """
 
 from __future__ import annotations
@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from ..studies.row import Row
-from . import explanations as say
-from . import tables
+from . import explanations, tables
 from .folder import PAGE, csv_text, json_text, write_files
 from .page import Html, facts, figure, findings, join, page, paragraph, section
 from .pareto import rows_of, sentences
@@ -26,15 +25,15 @@ FILES = (CSV, JSON, PAGE)
 
 
 def write_report(document: dict[str, Any], out: Path) -> Path:
-    """Write the report of a study, all files or none: an interruption leaves what was there.
+    """Write the report of a study, all files or none: after an interruption the old files are there as before.
 
     Args:
-        document: `Study.document()`, or what study.json holds; further keys `title` (of the scene) and `limit_s` (CPU
-            seconds of a run) are used where they are there.
-        out: folder, made if it is not there.
+        document: `Study.document()`, or the content of study.json; the optional keys `title` (of the scene) and
+            `limit_s` (CPU seconds of a run) are used if present.
+        out: folder, created if it does not exist.
 
     Returns:
-        The page.
+        Path of the page.
 
     Raises:
         InputError: the folder cannot be written to.
@@ -45,18 +44,21 @@ def write_report(document: dict[str, Any], out: Path) -> Path:
 
 
 def page_text(document: dict[str, Any]) -> str:
-    """The page."""
+    """Return the page as HTML."""
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
-    home = sentences(document)
+    conclusions = sentences(document)
     failed = tables.failures(rows)
     parts = [
-        section("What to take home", findings(home) if home else paragraph("No method reached 1e-3 m.")),
+        section(
+            "Main results",
+            findings(conclusions) if conclusions else paragraph("No method reached an error of 1e-3 m."),
+        ),
         section("Least cost of an error", tables.costs(rows, bound_m)),
         *_pictures(document, rows, bound_m),
         section("The Pareto front", tables.pareto_front(rows, bound_m)),
         section("Every row", tables.every_row(rows, bound_m)),
         *([section("What failed, and why", failed)] if failed else []),
-        section("How it was measured", *map(paragraph, say.measured(document.get("limit_s")))),
+        section("How it was measured", *map(paragraph, explanations.measured(document.get("limit_s")))),
         section("The methods", tables.methods(rows)),
     ]
     return page(f"Error against run time: {document.get('title') or document['scene']}", parts, lead=_lead(document))
@@ -64,31 +66,31 @@ def page_text(document: dict[str, Any]) -> str:
 
 def _lead(document: dict[str, Any]) -> Html:
     reference, machine = document["reference"], document["machine"]
-    known = {
+    details = {
         "scene": document["scene"],
         "span": f"{document['t_end']:g} s, {reference['transits']} transits",
         "reference": f"level {reference['level']}, bound {float(reference['bound_m']):.1e} m",
         "machine": ", ".join(machine[key] for key in ("processor", "system") if key in machine),
         "versions": ", ".join(f"{k} {v}" for k, v in machine.items() if k not in ("processor", "system")),
     }
-    return join([paragraph(say.LEAD), facts(known)])
+    return join([paragraph(explanations.LEAD), facts(details)])
 
 
 def _pictures(document: dict[str, Any], rows: Sequence[Row], bound_m: float) -> list[Html]:
     if importlib.util.find_spec("matplotlib") is None:
-        return [section("Pictures", paragraph(say.NO_PICTURES))]
+        return [section("Pictures", paragraph(explanations.NO_PICTURES))]
     from . import charts
 
-    made = [
-        ("Error against CPU time", charts.overview(rows, bound_m), say.overview(rows)),
-        ("Family by family", charts.by_family(rows, bound_m), say.FAMILIES),
+    pictures = [
+        ("Error against CPU time", charts.overview(rows, bound_m), explanations.overview(rows)),
+        ("Family by family", charts.by_family(rows, bound_m), explanations.FAMILIES),
         (
             "Evaluations of the right-hand side",
             charts.right_hand_sides(rows, bound_m, document["t_end"]),
-            say.RIGHT_HAND_SIDES,
+            explanations.RIGHT_HAND_SIDES,
         ),
-        ("Tolerance asked for, error achieved", charts.achieved_tolerance(rows, bound_m), say.TOLERANCE),
-        ("Formulations", charts.formulations(rows, bound_m), say.FORMULATIONS),
-        ("What digits cost", charts.precision_ladder(rows, bound_m), say.PRECISION),
+        ("Tolerance asked for, error achieved", charts.achieved_tolerance(rows, bound_m), explanations.TOLERANCE),
+        ("Formulations", charts.formulations(rows, bound_m), explanations.FORMULATIONS),
+        ("What digits cost", charts.precision_ladder(rows, bound_m), explanations.PRECISION),
     ]
-    return [section(heading, figure(svg, caption)) for heading, svg, caption in made if svg is not None]
+    return [section(heading, figure(svg, caption)) for heading, svg, caption in pictures if svg is not None]

@@ -1,13 +1,13 @@
-"""Pictures as SVG text (matplotlib, extra `plot`): for the page of a study, and for those of stability and long runs.
+"""Charts of the reports as SVG text (matplotlib, extra `plot`): costs, precision, stability map, growth of errors.
 
-Every function takes plain data and gives one SVG element, ready to stand in a page: text kept as text, the same data
-the same bytes. Colours are Okabe and Ito's; markers, dashes and labels repeat what colour says, so grey loses nothing.
+Every function takes plain data and returns one SVG element for a page. Text stays text, and the same data give the same
+bytes. The colours are Okabe and Ito's; markers, dashes and labels repeat their information, so nothing is lost in grey.
 """
 
 from __future__ import annotations
 
+from .error_growth import ErrorHistory, error_growth
 from .errors import achieved_tolerance, formulations, right_hand_sides
-from .growth import ErrorHistory, error_growth
 from .heat_map import CLASSES, Field, heat_map
 from .overview import by_family, overview
 from .precision import precision_ladder

@@ -1,7 +1,7 @@
-"""One picture of the errors of approximations, as SVG text: logarithmic, labelled at the lines, legible in grey.
+"""Chart of the errors of approximations over time or one varied quantity, labelled at the lines, legible in grey.
 
-Lines that lie on each other are drawn once, with all their names. Dashes and marks repeat what
-colour says. Needs the extra `plot`.
+Lines that coincide are drawn once, with all their names. Dashes repeat the information of the colours. Needs the extra
+`plot`.
 """
 
 from __future__ import annotations
@@ -24,9 +24,9 @@ from ..plotting import COLOURS, SAME_BYTES, pyplot, svg_of
 
 _COLOURS = (COLOURS[-1], *COLOURS[:-1])  # black first
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (7, 1.5, 1.2, 1.5)))
-_SAME = 0.15  # lines that differ by less than this part everywhere are one line to the eye
-_WRAP = 2  # names in a line of a label
-_ROW, _GAP = 0.022, 0.008  # height of a line of a label and space around it, parts of the picture
+_SAME = 0.15  # relative difference: lines that differ by less everywhere are drawn as one
+_WRAP = 2  # names per line of a label
+_ROW, _GAP = 0.022, 0.008  # height of a line of a label and space around it, as parts of the height of the axes
 _NAMES = {
     "error_m": "largest error of position up to then, m",
     "plane_error_arcsec": "largest error of the swing plane, arcsec",
@@ -35,8 +35,8 @@ _MARKS = {"error_m": ((1e-3, "1 mm"), (1e-6, "1 µm")), "plane_error_arcsec": ((
 
 
 @dataclass(frozen=True)
-class Line:
-    """One or more approximations with the same errors."""
+class ChartLine:
+    """A line of the chart: one or more approximations with the same errors."""
 
     names: list[str]
     x: Array
@@ -44,37 +44,38 @@ class Line:
 
     @property
     def label(self) -> str:
-        """The names, some to a line."""
+        """The names, `_WRAP` to a line."""
         return "\n".join(", ".join(self.names[i : i + _WRAP]) for i in range(0, len(self.names), _WRAP))
 
 
-def _lines(rows: Sequence[TimeRow | SweepRow], what: str) -> list[Line]:
-    found: list[Line] = []
+def _lines(rows: Sequence[TimeRow | SweepRow], what: str) -> list[ChartLine]:
+    """Return the lines of the rows, the one with the largest last error first."""
+    lines: list[ChartLine] = []
     for name in dict.fromkeys(row.approximation for row in rows):
         mine = [row for row in rows if row.approximation == name and getattr(row, what)]
         if not mine:
             continue
         x = np.array([row.t if isinstance(row, TimeRow) else row.value for row in mine])
         y = np.array([getattr(row, what) for row in mine])
-        for line in found:
+        for line in lines:
             if len(line.x) == len(x) and np.array_equal(line.x, x) and np.all(np.abs(y / line.y - 1) < _SAME):
                 line.names.append(name)
                 break
         else:
-            found.append(Line([name], x, y))
-    return sorted(found, key=lambda line: -line.y[-1])
+            lines.append(ChartLine([name], x, y))
+    return sorted(lines, key=lambda line: -line.y[-1])
 
 
 def plot(rows: Sequence[TimeRow | SweepRow], what: str = "error_m", title: str = "") -> str:
-    """SVG of the errors in `rows` (one kind: `domain.error_table` at many times, or one `limits.sweep`).
+    """Return an SVG of the errors in `rows`: those of `error_table` at many times, or of one `sweep`.
 
     Args:
-        rows: what to draw; rows without an error are left out.
-        what: `error_m` or `plane_error_arcsec`.
-        title: above the picture.
+        rows: rows of one kind; those without an error are left out.
+        what: error to draw, `error_m` or `plane_error_arcsec`.
+        title: title above the picture.
 
     Raises:
-        InputError: nothing to draw, an unknown `what`, or matplotlib is not installed.
+        InputError: there is nothing to draw, `what` is unknown, or matplotlib is not installed.
     """
     if what not in _NAMES:
         raise InputError("what", what, f"one of {', '.join(_NAMES)}")
@@ -91,7 +92,7 @@ def plot(rows: Sequence[TimeRow | SweepRow], what: str = "error_m", title: str =
     return text
 
 
-def _draw(axes: Any, row: TimeRow | SweepRow, lines: list[Line], what: str, title: str) -> None:
+def _draw(axes: Any, row: TimeRow | SweepRow, lines: list[ChartLine], what: str, title: str) -> None:
     over = "time" if isinstance(row, TimeRow) else row.over
     axes.set_yscale("log")
     if over != "latitude":
@@ -112,8 +113,8 @@ def _draw(axes: Any, row: TimeRow | SweepRow, lines: list[Line], what: str, titl
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def _label(axes: Any, lines: list[Line]) -> None:
-    """Names beside the right ends, moved apart so that none covers another, with a thin line to their own end."""
+def _label(axes: Any, lines: list[ChartLine]) -> None:
+    """Put names beside the right ends, moved apart so that they do not touch, each joined to its end by a thin line."""
     low, high = (math.log(limit) for limit in axes.get_ylim())
     tall = [_ROW * (line.label.count("\n") + 1) + _GAP for line in lines]
     ends = [(math.log(line.y[-1]) - low) / (high - low) for line in lines]
@@ -125,18 +126,23 @@ def _label(axes: Any, lines: list[Line]) -> None:
         )
 
 
-def _apart(wanted: list[float], tall: list[float]) -> list[float]:
-    """Falling places, nearest (least squares) to falling `wanted`, where labels of these heights do not touch."""
+def _apart(ends: list[float], tall: list[float]) -> list[float]:
+    """Return decreasing heights nearest to the decreasing `ends` (least squares) at which labels do not touch.
+
+    Args:
+        ends: heights of the ends of the lines, largest first.
+        tall: heights of the labels.
+    """
     offsets = [0.0]
     for upper, lower in pairwise(tall):
         offsets.append(offsets[-1] + (upper + lower) / 2)
     blocks: list[list[float]] = []  # isotonic regression: blocks of labels that touch move as one
-    for place, offset in zip(wanted, offsets, strict=True):
+    for place, offset in zip(ends, offsets, strict=True):
         blocks.append([place + offset, 1])
         while len(blocks) > 1 and blocks[-2][0] < blocks[-1][0]:
             (one, few), (two, more) = blocks[-2:]
             blocks[-2:] = [[(one * few + two * more) / (few + more), few + more]]
-    level = [value for value, count in blocks for _ in range(int(count))]
-    places = [value - offset for value, offset in zip(level, offsets, strict=True)]
+    centres = [value for value, count in blocks for _ in range(int(count))]
+    places = [value - offset for value, offset in zip(centres, offsets, strict=True)]
     shift = max(0.0, tall[-1] / 2 - places[-1]) - max(0.0, places[0] + tall[0] / 2 - 1)
     return [place + shift for place in places]

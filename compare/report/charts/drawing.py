@@ -1,4 +1,4 @@
-"""What all pictures share: the sheet, its inks, logarithmic axes with plain labels, and the way to SVG text."""
+"""Shared parts of the charts: the figure and its colours, logarithmic axes with plain labels, and SVG for a page."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any
 
 from ..plotting import SAME_BYTES, pyplot, svg_of
 
-# In a page these follow its light or dark scheme, through these names: the greys of the sheet, and the darkest colour
+# Colours that follow a page's light or dark scheme, by these names: the greys of a figure, and its darkest colour
 INKS = {
     "ink": "#1b1b1b", "faint": "#6b6b6b", "rule": "#dcdcdc", "band": "#e9e9e9", "paper": "#fefefe", "blue": "#0072b2",
 }  # fmt: skip
 INK, FAINT, RULE, BAND, PAPER, _ = INKS.values()
 
-_ROOM = 0.06  # at the ends of a logarithmic axis, in parts of its length
-PIXELS = 4 / 3  # of a page for a point of a picture
+_ROOM = 0.06  # free part of a logarithmic axis at each end
+PIXELS = 4 / 3  # CSS pixels in a typographic point
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PARAMETERS = SAME_BYTES | {
     "font.size": 9,
@@ -42,7 +42,7 @@ _PARAMETERS = SAME_BYTES | {
 
 @contextmanager
 def sheet(size: tuple[float, float], rows: int = 1, columns: int = 1, **shared: Any) -> Iterator[tuple[Any, Any]]:
-    """A figure of this size in inches and its array of axes, closed afterwards.
+    """Yield a figure of this size in inches and its array of axes; close the figure afterwards.
 
     Raises:
         InputError: matplotlib is not installed.
@@ -60,13 +60,13 @@ def sheet(size: tuple[float, float], rows: int = 1, columns: int = 1, **shared: 
 
 
 def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> str:
-    """The figure as one SVG element that fits its place in a page.
+    """Return the figure as one SVG element that fits into a page.
 
     Args:
-        figure: of `sheet`.
-        name: a word that keeps its ids apart from those of other pictures of the page.
-        description: for those who do not see it.
-        kind: its class; the text of `lines` gets a halo in a page, so that it reads over lines.
+        figure: figure from `sheet`.
+        name: prefix of the ids, which keeps them apart from those of other pictures in the page.
+        description: text for readers who cannot see the picture.
+        kind: CSS class; in class `lines` the page gives text a halo, so that it is legible over lines.
     """
     text = svg_of(figure)
     text = text[text.index("<svg") :]
@@ -84,13 +84,14 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
 
 
 def _own_ids(text: str, name: str) -> str:
-    """Ids that something refers to get the picture's name, the others go."""
-    used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
-    text = re.sub(r' id="([^"]+)"', lambda found: f' id="{name}-{found[1]}"' if found[1] in used else "", text)
+    """Put the picture's name before ids that are referred to, and remove all other ids."""
+    targets = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
+    text = re.sub(r' id="([^"]+)"', lambda match: f' id="{name}-{match[1]}"' if match[1] in targets else "", text)
     return re.sub(r'(href="#|url\(#)([^")]+)', rf"\g<1>{name}-\g<2>", text)
 
 
 def _with_inks(text: str) -> str:
+    """Replace the colours of `INKS` by CSS variables of the page."""
     for word, colour in INKS.items():
         text = text.replace(colour, f"var(--{word}, {colour})")
     return text
@@ -101,7 +102,7 @@ def _quoted(text: str) -> str:
 
 
 def power_of_ten(value: float, _: Any = None) -> str:
-    """A tick's label: 0.01, 1, 100, and 10⁻⁹ beyond."""
+    """Return a tick's label: 0.01, 1 or 100 near 1, and 10⁻⁹ farther away."""
     if value <= 0:
         return ""
     exponent = round(math.log10(value))
@@ -109,7 +110,7 @@ def power_of_ten(value: float, _: Any = None) -> str:
 
 
 def logarithmic(axes: Any, which: str, low: float, high: float, labels: int = 8) -> None:
-    """Make an axis logarithmic between limits, with a label at every decade or at as few as fit."""
+    """Make an axis logarithmic between limits, with at most about `labels` labels, at every decade or every n-th."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 
     axis = getattr(axes, f"{which}axis")
@@ -125,6 +126,6 @@ def logarithmic(axes: Any, which: str, low: float, high: float, labels: int = 8)
 
 
 def limits(values: Sequence[float], low: float = 0.6, high: float = 1.8) -> tuple[float, float]:
-    """Limits of a logarithmic axis around positive values, with room: these factors, or a part of a long axis."""
+    """Return limits of a logarithmic axis around positive values, wider by these factors, or by more on a long axis."""
     spread = (max(values) / min(values)) ** _ROOM
     return min(values) * min(low, 1 / spread), max(values) * max(high, spread)

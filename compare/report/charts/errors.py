@@ -1,4 +1,4 @@
-"""Error against something else than its cost, and of formulations: pictures of a single panel."""
+"""Charts with a single panel: error against evaluations, against tolerance, and of formulations of one system."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .ladders import CPU, ERROR, Horizontal, Style, band, draw, label, points
 
 
 def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str | None:
-    """Error against evaluations of the right-hand side, of methods that count them; None if there are none."""
+    """Draw error against evaluations of the right-hand side, for methods that count them; None if there are none."""
     own = [one for one in curves(rows) if "(" not in one.label]
     return _single(
         own,
@@ -27,7 +27,7 @@ def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str |
 
 
 def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
-    """The error achieved against the relative tolerance asked for; None if no method takes a tolerance."""
+    """Draw the error achieved against the relative tolerance asked for; None if no method takes a tolerance."""
     own = [
         one
         for one in curves(rows)
@@ -38,21 +38,21 @@ def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
 
 
 def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
-    """Error against CPU seconds of the formulations of the same equations with one method; None without such rows."""
+    """Draw error against CPU seconds of formulations of the same equations with one method; None without such rows."""
     every = curves(rows)
     compared = {one.method for one in every if "(" in one.label}
-    mine = [
+    ladders = [
         Curve(one.method, one.formulation, one.formulation, one.rows)
         for one in every
         if one.method in compared and one.measured
     ]
     words = ("formulations", CPU, "Error against CPU seconds of formulations of the same equations")
-    looks = [line_style(COLOURS[i % 6], i) for i in range(len(mine))]
-    return _single(mine, cost_of, bound_m, words, looks=looks)
+    looks = [line_style(COLOURS[i % 6], i) for i in range(len(ladders))]
+    return _single(ladders, cost_of, bound_m, words, looks=looks)
 
 
 def _single(
-    drawn: Sequence[Curve],
+    ladders: Sequence[Curve],
     x_of: Horizontal,
     bound_m: float,
     words: tuple[str, str, str],
@@ -60,12 +60,12 @@ def _single(
     looks: Sequence[Style] | None = None,
     diagonal: str = "",
 ) -> str | None:
-    """One panel: words are the picture's name, the horizontal axis and the description."""
-    drawn = [one for one in drawn if any(x_of(row) for row in one.measured)]
-    if not drawn:
+    """Draw one panel; `words` are the picture's name, the label of the horizontal axis and the description."""
+    ladders = [one for one in ladders if any(x_of(row) for row in one.measured)]
+    if not ladders:
         return None
-    looks = looks or styles(drawn)
-    x, y = zip(*[point for one in drawn for point in zip(*points(one, x_of, bound_m), strict=True)], strict=True)
+    looks = looks or styles(ladders)
+    x, y = zip(*[point for one in ladders for point in zip(*points(one, x_of, bound_m), strict=True)], strict=True)
     with sheet((9.5, 5.6)) as (figure, grid):
         axes = grid[0, 0]
         logarithmic(axes, "x", *limits(x, 0.4, 3.0), 12)
@@ -77,7 +77,7 @@ def _single(
             ends = np.geomspace(low, high, 9).tolist()
             axes.plot(ends, ends, color=FAINT, linewidth=0.9, linestyle=(0, (1, 2)))
             others.append(Label(diagonal, FAINT, ends, ends))
-        draw(axes, drawn, looks, x_of, bound_m)
+        draw(axes, ladders, looks, x_of, bound_m)
         axes.set(xlabel=words[1], ylabel=ERROR)
-        label(axes, drawn, x_of, bound_m, colours=[look["color"] for look in looks], others=others)
-        return svg_text(figure, words[0], f"{words[2]}, log-log: {', '.join(one.label for one in drawn)}.")
+        label(axes, ladders, x_of, bound_m, colours=[look["color"] for look in looks], others=others)
+        return svg_text(figure, words[0], f"{words[2]}, log-log: {', '.join(one.label for one in ladders)}.")

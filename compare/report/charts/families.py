@@ -1,4 +1,4 @@
-"""How a method looks: methods of one family share a colour, within it markers and dashes differ."""
+"""Line styles of methods: a family shares a colour; markers and dashes differ within it."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
 
 
 @dataclass(frozen=True)
-class Family:
-    """Methods of one kind.
+class MethodFamily:
+    """A family of methods that share a colour.
 
     Attributes:
-        title: over its panel.
-        colour: of its lines.
-        prefixes: of the ids of its methods.
+        title: title of its panel.
+        colour: colour of its lines.
+        prefixes: beginnings of the ids of its methods.
     """
 
     title: str
@@ -31,37 +31,37 @@ class Family:
 
 
 MANY_DIGITS = "many digits"
-OTHERS = Family("others", FAINT, ())
+OTHERS = MethodFamily("others", FAINT, ())
 FAMILIES = (
-    Family("the paper's, fixed step", INK, ("rk4", "rkng")),
-    Family("geometric, fixed step", _PURPLE, ("rkmk", "gauss_legendre")),
-    Family(MANY_DIGITS, _SKY, ("heyoka_real", "limbs", "mpmath")),
-    Family("heyoka, Taylor", _BLUE, ("heyoka",)),
-    Family("SciPy", _ORANGE, ("scipy",)),
-    Family("numbalsoda and CVODE", _VERMILLION, ("numbalsoda", "cvode")),
-    Family("rebound", _GREEN, ("rebound",)),
+    MethodFamily("the paper's, fixed step", INK, ("rk4", "rkng")),
+    MethodFamily("geometric, fixed step", _PURPLE, ("rkmk", "gauss_legendre")),
+    MethodFamily(MANY_DIGITS, _SKY, ("heyoka_real", "limbs", "mpmath")),
+    MethodFamily("heyoka, Taylor", _BLUE, ("heyoka",)),
+    MethodFamily("SciPy", _ORANGE, ("scipy",)),
+    MethodFamily("numbalsoda and CVODE", _VERMILLION, ("numbalsoda", "cvode")),
+    MethodFamily("rebound", _GREEN, ("rebound",)),
     OTHERS,
 )
 
 
-def family_of(method: str) -> Family:
-    """The family of a method's id."""
+def family_of(method: str) -> MethodFamily:
+    """Return the family of a method, by its id."""
     return next((family for family in FAMILIES if method.startswith(family.prefixes)), OTHERS)
 
 
 def styles(curves: Sequence[Curve]) -> list[dict[str, Any]]:
-    """A line style per curve: colour of the family, and marker and dashes by its place in the family."""
-    seen: dict[str, int] = {}
-    made = []
+    """Return a line style for each curve: the colour of its family, marker and dashes by its place in the family."""
+    places: dict[str, int] = {}
+    looks = []
     for curve in curves:
         family = family_of(curve.method)
-        place = seen[family.title] = seen.get(family.title, -1) + 1
-        made.append(line_style(family.colour, place))
-    return made
+        place = places[family.title] = places.get(family.title, -1) + 1
+        looks.append(line_style(family.colour, place))
+    return looks
 
 
 def line_style(colour: str, place: int) -> dict[str, Any]:
-    """The style of the n-th line of a colour: full and hollow markers take turns."""
+    """Return the style of the n-th line of a colour; full and hollow markers alternate."""
     return {
         "color": colour,
         "linestyle": _DASHES[place % len(_DASHES)],

@@ -1,4 +1,4 @@
-"""Scenes × methods: digits kept, or the letter of how it failed."""
+"""Heat map of scenes × methods: digits kept by each run, or a letter for how it failed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from reference import InputError
 
 from .drawing import BAND, FAINT, INK, PAPER, sheet, svg_text
 
-# status: letter, what it means
+# status: letter and meaning
 CLASSES = {
     "silently_wrong": ("W", "silently wrong"),
     "not_finite": ("N", "NaN or infinity"),
@@ -20,12 +20,12 @@ CLASSES = {
     "refused": ("R", "refused"),
     "not_installed": ("–", "not installed"),
 }
-LOUD = "silently_wrong"
+LOUD = "silently_wrong"  # the status that stands out by its colour
 _LOUD_COLOUR, _QUIET_COLOUR = "#D55E00", "#F2C9A8"
-_BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")  # few digits … many: darker in grey too
-_DARK_FROM = 3  # blues that carry white text
-_CELL = 0.27  # inches
-_MARGINS = (2.3, 1.9)  # inches for names
+_BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")  # few to many digits, in grey as well
+_DARK_FROM = 3  # index of the first blue with white text
+_CELL = 0.27  # side of a cell in inches
+_MARGINS = (2.3, 1.9)  # width and height for the names, in inches
 _CHARACTER = 0.27  # width of a character in cells
 _LEAST_COLUMNS, _KEY_ROWS = 15, 5.5  # cells that the key needs
 
@@ -35,10 +35,10 @@ class Field:
     """One field of the map.
 
     Attributes:
-        row: the scene.
-        column: the method, with what else tells columns apart.
-        status: `ok`, or a word of `CLASSES`.
-        digits: kept, of an `ok` cell.
+        row: scene.
+        column: method, with its precision where that is needed to tell columns apart.
+        status: `ok` or a key of `CLASSES`.
+        digits: digits kept, if the status is `ok`.
     """
 
     row: str
@@ -48,21 +48,21 @@ class Field:
 
     @property
     def mark(self) -> str:
-        """What stands in it: whole digits kept, or the letter of its class."""
+        """Text of the field: digits kept, rounded down, or the letter of its status."""
         if self.status in CLASSES:
             return CLASSES[self.status][0]
         return "?" if self.digits is None else f"{int(max(0.0, self.digits))}"
 
 
 def heat_map(cells: Sequence[Field], steps: Sequence[float] = (3, 6, 9, 12, 15)) -> str:
-    """The map: rows and columns in the order in which they come; a field that is not in `cells` stays empty.
+    """Draw the map, rows and columns in order of appearance; a field that is not in `cells` stays empty.
 
     Args:
-        cells: any number, at least one.
-        steps: digits at which the colour changes, five of them.
+        cells: fields of the map, at least one.
+        steps: the five numbers of digits at which the colour changes.
 
     Raises:
-        InputError: nothing to draw, or an unknown status.
+        InputError: there is nothing to draw, or a status is unknown.
     """
     if not cells:
         raise InputError("cells", "none", "at least one")
@@ -91,10 +91,10 @@ def heat_map(cells: Sequence[Field], steps: Sequence[float] = (3, 6, 9, 12, 15))
 
 
 def _colours(cell: Field, steps: Sequence[float]) -> tuple[str, str]:
-    """Of the field and of what stands in it."""
+    """Return the colours of the field and of its text."""
     if cell.status == "ok":
-        level = sum((cell.digits or 0.0) >= step for step in steps)
-        return _BLUES[level], PAPER if level >= _DARK_FROM else "#10202c"
+        shade = sum((cell.digits or 0.0) >= step for step in steps)
+        return _BLUES[shade], PAPER if shade >= _DARK_FROM else "#10202c"
     if cell.status == "not_installed":
         return BAND, FAINT
     return (_LOUD_COLOUR, "#000000") if cell.status == LOUD else (_QUIET_COLOUR, "#3a1c05")
@@ -107,7 +107,7 @@ def _field(axes: Any, x: float, y: float, mark: str, colour: str, ink: str) -> N
 
 
 def _key(axes: Any, y: float, wide: float, present: set[str], steps: Sequence[float]) -> None:
-    """What the fields mean, below the map."""
+    """Draw the key below the map."""
     for i, digits in enumerate([0.0, *steps]):
         cell = Field("", "", "ok", digits)
         _field(axes, i, y, cell.mark, *_colours(cell, steps))

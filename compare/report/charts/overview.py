@@ -1,4 +1,4 @@
-"""Error against CPU seconds: all methods in one picture with the Pareto front, and family by family."""
+"""Charts of error against CPU seconds: all methods with the Pareto front, and one panel for each family."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from .drawing import BAND, FAINT, RULE, limits, logarithmic, sheet, svg_text
 from .families import FAMILIES, MANY_DIGITS, family_of, styles
 from .ladders import CPU, ERROR, band, draw, label, points
 
-FINEST_M = 1e-20  # the upper panel goes to the methods of fixed precision, but not beyond this
-_SPLIT = 4.0  # the panels meet so far below the finest of them
-_BAND_WITHIN = 1e12  # the bound is shown if it is not further than this below the finest error
-_COLUMNS = 3  # of small multiples
-_STRIP = 0.95  # where the strip of failed rows begins, in heights of the panel
+FINEST_M = 1e-20  # m: the upper panel shows the methods of fixed precision, but no errors below this
+_SPLIT = 4.0  # the panels meet at the smallest error of these methods divided by this
+_BAND_WITHIN = 1e12  # the bound is shown if the smallest error is less than this many times larger
+_COLUMNS = 3  # panels side by side
+_STRIP = 0.95  # lower edge of the strip of failed rows, as a part of the height of the panel
 
 
 def overview(rows: Sequence[Row], bound_m: float) -> str | None:
-    """Error against CPU seconds, every method a line, with the Pareto front; failed rows along the top.
+    """Draw error against CPU seconds, one line for each method, with the Pareto front and failed rows along the top.
 
-    What is finer than the methods of fixed precision has a panel of its own below. None if no row is measured.
+    Errors below those of the methods of fixed precision have a panel of their own. None if no row is measured.
     """
     best = front(rows, bound_m)
     on_front = {row.key for row in best}
-    shown = [one for one in curves(rows) if "(" not in one.label or any(row.key in on_front for row in one.rows)]
-    drawn = [one for one in shown if points(one, cost_of, bound_m)[0]]
-    if not drawn:
+    ladders = [one for one in curves(rows) if "(" not in one.label or any(row.key in on_front for row in one.rows)]
+    ladders = [one for one in ladders if points(one, cost_of, bound_m)[0]]
+    if not ladders:
         return None
-    scales = _scales(drawn, bound_m)
+    scales = _scales(ladders, bound_m)
     with sheet(
         (9.5, 8.6 if len(scales) > 1 else 6.6), len(scales), sharex=True, height_ratios=(3.4, 1.2)[: len(scales)]
     ) as (
@@ -42,21 +42,21 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
             logarithmic(panel, "y", *scale, 18 if panel is axes[0, 0] else 8)
             band(panel, bound_m)
             _front_line(panel, best, bound_m)
-            draw(panel, drawn, styles(drawn), cost_of, bound_m)
+            draw(panel, ladders, styles(ladders), cost_of, bound_m)
         _failed(axes[0, 0], rows)
         axes[-1, 0].set_xlabel(CPU)
         figure.supylabel(ERROR, fontsize=9)
         for panel, (low, high) in zip(axes[:, 0], scales, strict=True):
-            ending = [one for one in drawn if low <= points(one, cost_of, bound_m)[1][-1] < high]
-            label(panel, ending, cost_of, bound_m, lines=drawn)
-        names = ", ".join(one.label for one in drawn)
+            ending = [one for one in ladders if low <= points(one, cost_of, bound_m)[1][-1] < high]
+            label(panel, ending, cost_of, bound_m, lines=ladders)
+        names = ", ".join(one.label for one in ladders)
         return svg_text(figure, "overview", f"Largest position error against CPU seconds, log-log, of {names}.")
 
 
-def _scales(drawn: Sequence[Curve], bound_m: float) -> list[tuple[float, float]]:
-    """Lowest and highest error of each panel."""
-    errors = [error for one in drawn for error in points(one, cost_of, bound_m)[1]]
-    split = _split(drawn, bound_m)
+def _scales(ladders: Sequence[Curve], bound_m: float) -> list[tuple[float, float]]:
+    """Return the lowest and the highest error of each panel."""
+    errors = [error for one in ladders for error in points(one, cost_of, bound_m)[1]]
+    split = _split(ladders, bound_m)
     if split is None:
         return [(min(errors) / _SPLIT, max(errors) * 30)]
     finest = min(errors)
@@ -64,10 +64,10 @@ def _scales(drawn: Sequence[Curve], bound_m: float) -> list[tuple[float, float]]
     return [(split, max(errors) * 30), (lowest / 30, split)]
 
 
-def _split(drawn: Sequence[Curve], bound_m: float) -> float | None:
-    """The error at which panels meet; None if one is enough."""
+def _split(ladders: Sequence[Curve], bound_m: float) -> float | None:
+    """Return the error at which the panels meet; None if one panel is enough."""
     ends = {True: [], False: []}  # type: dict[bool, list[float]]
-    for one in drawn:
+    for one in ladders:
         ends[family_of(one.method).title == MANY_DIGITS] += points(one, cost_of, bound_m)[1]
     if not ends[False]:
         return None
@@ -76,7 +76,7 @@ def _split(drawn: Sequence[Curve], bound_m: float) -> float | None:
 
 
 def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
-    """Small multiples of error against CPU seconds: each family of methods before all others in grey.
+    """Draw error against CPU seconds in one panel for each family, with all other methods in grey behind it.
 
     The family of many digits is left to `precision_ladder` if there are others. None if no row is measured.
     """
@@ -116,7 +116,7 @@ def _front_line(axes: Any, best: Sequence[Row], bound_m: float) -> None:
 
 
 def _failed(axes: Any, rows: Sequence[Row]) -> None:
-    """Failed rows that have a cost stand as crosses in a strip along the top, in their family's colour."""
+    """Draw failed rows that have a cost as crosses in a strip along the top, in the colour of their family."""
     failed = [row for row in rows if not row.measured and row.cpu_s]
     strip = {"transform": axes.transAxes, "zorder": 0}
     axes.fill([0, 1, 1, 0], [_STRIP, _STRIP, 1, 1], color=BAND, linewidth=0, **strip)

@@ -1,4 +1,4 @@
-"""The precision ladder: what digits cost."""
+"""Chart of CPU seconds against digits achieved (the precision ladder), with the fitted power law."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ _METHODS = ("heyoka", "limbs", "mpmath")
 
 
 def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
-    """CPU seconds against digits achieved, with the fitted power law; None without rows of `heyoka_real`.
+    """Draw CPU seconds against digits achieved, with the fitted power law; None without rows of `heyoka_real`.
 
-    Methods that compute in numbers of several precisions, each in its own formulation.
+    The chart shows methods that can compute at several precisions, each in its own formulation.
     """
-    drawn = [one for one in curves(rows) if "(" not in one.label and one.method.startswith(_METHODS)]
-    drawn = [one for one in drawn if _points(one, bound_m)[0]]
-    if not any(one.method == PRECISION_METHOD for one in drawn):
+    ladders = [one for one in curves(rows) if "(" not in one.label and one.method.startswith(_METHODS)]
+    ladders = [one for one in ladders if _points(one, bound_m)[0]]
+    if not any(one.method == PRECISION_METHOD for one in ladders):
         return None
-    looks = styles(drawn)
-    lines = [Label(one.label, look["color"], *_points(one, bound_m)) for one, look in zip(drawn, looks, strict=True)]
+    looks = styles(ladders)
+    lines = [Label(one.label, look["color"], *_points(one, bound_m)) for one, look in zip(ladders, looks, strict=True)]
     law = cost_of_digits(rows, bound_m)
     with sheet((9.5, 5.2)) as (figure, grid):
         axes = grid[0, 0]
@@ -55,7 +55,7 @@ def _digits(axes: Any, low: float, high: float) -> None:
 
 
 def _known(axes: Any, bound_m: float) -> None:
-    """The band of digits that the reference itself does not have."""
+    """Draw a band over the digits that the reference itself does not have."""
     high = axes.get_xlim()[1]
     most = -math.log10(bound_m) if bound_m > 0 else math.inf
     if most < high:
@@ -65,7 +65,7 @@ def _known(axes: Any, bound_m: float) -> None:
 
 
 def _law(axes: Any, law: PowerLaw) -> Label:
-    """The fitted line, wide and faint below the others, and its label."""
+    """Draw the fitted line, wide and faint below the others, and return its label."""
     x, y = [law.low, law.high], [law(law.low), law(law.high)]
     axes.plot(x, y, color=FAINT, linewidth=6, alpha=0.3, zorder=1)
     return Label(f"∝ digits^{law.exponent:.2f} ± {law.standard_error:.2f}", FAINT, x, y)

@@ -1,4 +1,4 @@
-"""Closed solutions and truncated systems against textbook formulas, other routes and the documents' own equations."""
+"""Closed solutions and truncated systems against textbook formulas, other methods and the papers' own equations."""
 
 from __future__ import annotations
 
@@ -53,8 +53,8 @@ def test_with_nothing_left_out_the_truncated_equations_are_the_model():
     k = constants(PARIS.with_values(["site.rotation_rate=0.3", "pendulum.drag=0.1"]).exact, ctx)
     for _ in range(20):
         state = random_state(ctx, rng)
-        wanted = FORMULATIONS["plane"].derivatives(state, k, ctx)
-        for got, right in zip(derivatives(state, k, ctx), wanted, strict=True):
+        expected = FORMULATIONS["plane"].derivatives(state, k, ctx)
+        for got, right in zip(derivatives(state, k, ctx), expected, strict=True):
             assert abs(got - right) <= 1e-55 * (1 + abs(right))
 
 
@@ -92,15 +92,15 @@ def test_each_item_changes_the_equations_only_where_it_says(item):
 # Harmonic pendulum on a turntable --------------------------------------------------------------------------------
 @pytest.mark.parametrize("word", ["method_1", "method_2", "method_3"])
 def test_the_three_methods_are_one_motion(word):
-    wanted = approximation("linear_g").trajectory(MOVING, DAY)
-    assert np.max(np.abs(approximation(word).trajectory(MOVING, DAY) - wanted)) < 3e-11
+    expected = approximation("linear_g").trajectory(MOVING, DAY)
+    assert np.max(np.abs(approximation(word).trajectory(MOVING, DAY) - expected)) < 3e-11
 
 
 def test_the_solution_6_1_solves_the_system_of_section_5():
     case = Case.of(MOVING)
-    level, omega, turn = small_angles(case)
+    plumb, omega, turn = small_angles(case)
     square, turning = float(omega**2 - turn**2), float(turn)
-    place, speed = level.inward(case.position), level.inward(case.velocity)
+    place, speed = plumb.inward(case.position), plumb.inward(case.velocity)
 
     def section_5(state, functions):
         x, y, vx, vy = state
@@ -108,7 +108,7 @@ def test_the_solution_6_1_solves_the_system_of_section_5():
 
     states = integrate(("x", "y", "vx", "vy"), section_5, (*place[:2], *speed[:2]), DAY)
     rows = approximation("gastebois_6_1").trajectory(MOVING, DAY)
-    along = np.column_stack([np.asarray(part, dtype=float) for part in level.inward(tuple(rows.T[:3]))])
+    along = np.column_stack([np.asarray(part, dtype=float) for part in plumb.inward(tuple(rows.T[:3]))])
     assert np.max(np.abs(along[:, :2] - states[:, :2])) < 1e-10
 
 
@@ -139,8 +139,8 @@ def test_his_general_system_is_that_of_the_angles_of_7_2():
         ["release.x=20", "release.y=-9", "release.vx=2", "release.vy=6", "site.rotation_rate=0.002"]
     )
     case = Case.of(scene)
-    level, _, _ = small_angles(case)
-    (x, y, z), (vx, vy, vz) = level.inward(case.position), level.inward(case.velocity)
+    plumb, _, _ = small_angles(case)
+    (x, y, z), (vx, vy, vz) = plumb.inward(case.position), plumb.inward(case.velocity)
     aside = case.ctx.hypot(x, y)
     start = (case.ctx.atan2(aside, -z), case.ctx.atan2(y, x), vz / aside, (x * vy - y * vx) / aside**2)
     fall, rate, latitude = (float(v) for v in (case.apparent_gravity / case.length, case.rate, case.apparent_latitude))
@@ -159,9 +159,9 @@ def test_his_general_system_is_that_of_the_angles_of_7_2():
     times = np.linspace(0.0, 600.0, 301)
     theta, phi, _, _ = integrate(("theta", "phi", "theta_rate", "phi_rate"), section_7_2, start, times).T
     rows = approximation("gastebois_general").trajectory(scene, times)
-    along = level.inward(tuple(rows.T[:3]))
-    wanted = 67 * np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), -np.cos(theta)])
-    assert np.max(np.abs(np.array([np.asarray(part, dtype=float) for part in along]) - wanted)) < 1e-10
+    along = plumb.inward(tuple(rows.T[:3]))
+    expected = 67 * np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), -np.cos(theta)])
+    assert np.max(np.abs(np.array([np.asarray(part, dtype=float) for part in along]) - expected)) < 1e-10
 
 
 # Plane, cone, and the linear system --------------------------------------------------------------------------------
@@ -196,15 +196,15 @@ def test_the_linear_solution_is_the_exponential_of_its_matrix():
     scene = MOVING.with_values(["site.equatorial_radius=500", "site.rotation_rate=0.05", "release.x=0.1"])
     case = Case.of(scene)
     a, b, turn = stiffness(case)
-    level, _ = plumb_line(case)
-    start = [*level.inward(case.position)[:2], *level.inward(case.velocity)[:2]]
+    plumb, _ = plumb_line(case)
+    start = [*plumb.inward(case.position)[:2], *plumb.inward(case.velocity)[:2]]
     ctx = case.ctx
     matrix = ctx.matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-a, 0, 0, 2 * turn], [0, -b, -2 * turn, 0]])
     times = np.array([0.0, 3.0, 70.0])
     rows = approximation("linear_3d").trajectory(scene, times)
     for t, row in zip(times, rows, strict=True):
         x, y, vx, vy = ctx.expm(matrix * ctx.mpf(t)) * ctx.matrix(start)
-        got = level.inward(tuple(row[:3])), level.inward(tuple(row[3:]))
+        got = plumb.inward(tuple(row[:3])), plumb.inward(tuple(row[3:]))
         assert [float(got[0][0] - x), float(got[0][1] - y)] == pytest.approx([0, 0], abs=1e-13)
         assert [float(got[1][0] - vx), float(got[1][1] - vy)] == pytest.approx([0, 0], abs=1e-13)
 
@@ -213,13 +213,13 @@ def test_the_linear_system_is_the_derivative_of_the_model_at_its_point_of_rest()
     case = Case.of(MOVING.with_values(["site.rotation_rate=0.02", "site.equatorial_radius=3000"]))
     ctx = case.ctx
     a, b, turn = stiffness(case)
-    level, rest = plumb_line(case)
-    axes = ((1, 0, 0), (0, level.cos, level.sin))
+    plumb, rest = plumb_line(case)
+    axes = ((1, 0, 0), (0, plumb.cos, plumb.sin))
     tiny = ctx.mpf(10) ** -25
 
     def felt(place, speed):
         rates = FORMULATIONS["space"].derivatives((*place, *speed), case.k, ctx)[3:]
-        return level.inward(rates)[:2]
+        return plumb.inward(rates)[:2]
 
     for axis, stiff in zip(axes, ((-a, 0), (0, -b)), strict=True):
         moved = felt(tuple(r + tiny * e for r, e in zip(rest, axis, strict=True)), (0, 0, 0))

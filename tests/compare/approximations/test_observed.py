@@ -1,4 +1,4 @@
-"""The swing plane, the apsides, the frequency and the precession that are read off a motion."""
+"""Swing plane, apsides, frequency and precession as they are read off a motion."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ def test_the_plane_of_a_turntable_ellipse_is_its_major_axis_at_every_phase(turn,
     ellipse = np.exp(1j * direction) * (np.cos(omega * t) + 0.2j * np.sin(omega * t))
     speed = np.exp(1j * direction) * omega * (0.2j * np.cos(omega * t) - np.sin(omega * t))
     frame = np.exp(-1j * turn * t)
-    seen = gauge.swing_plane(rows_of(frame * ellipse, frame * (speed - 1j * turn * ellipse)))
-    assert np.abs(np.sin(seen - direction + turn * t)) == pytest.approx(0, abs=1e-14)
+    plane = gauge.swing_plane(rows_of(frame * ellipse, frame * (speed - 1j * turn * ellipse)))
+    assert np.abs(np.sin(plane - direction + turn * t)) == pytest.approx(0, abs=1e-14)
 
 
 def test_a_circle_has_no_plane():
@@ -53,13 +53,13 @@ def test_apsides_of_an_ellipse_are_found_to_rounding():
     gauge = Gauge((0.0, 0.0, -1.0), 1.0, omega, 0.0)
     t = np.arange(600) * (gauge.period / PER_SWING)
     phase = omega * t - start
-    found, azimuths = gauge.apsides(
+    times, azimuths = gauge.apsides(
         t, rows_of(np.cos(phase) + 1j * minor * np.sin(phase), omega * (1j * minor * np.cos(phase) - np.sin(phase)))
     )
-    wanted = (start + np.pi * np.arange(len(found) + 1)) / omega
-    wanted = wanted[wanted > found[0] - 1][: len(found)]
-    assert len(found) > 15
-    assert found == pytest.approx(wanted, abs=1e-10)
+    expected = (start + np.pi * np.arange(len(times) + 1)) / omega
+    expected = expected[expected > times[0] - 1][: len(times)]
+    assert len(times) > 15
+    assert times == pytest.approx(expected, abs=1e-10)
     assert np.sin(azimuths) == pytest.approx(0, abs=1e-10)
 
 

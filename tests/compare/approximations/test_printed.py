@@ -1,4 +1,4 @@
-"""The documents' own numbers come out of their formulas; the printed and the right forms differ as they must."""
+"""The source papers' own numbers follow from their formulas; printed and right forms differ where they must."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def gastebois(sidereal_hours="23.93", latitude="48.87"):
     )
 
 
-def shown(word, scene, decimals, unit=1):
+def printed_value(word, scene, decimals, unit=1):
     return f"{float(approximation(word).value(scene)) / unit:.{decimals}f}"
 
 
@@ -50,18 +50,18 @@ def shown(word, scene, decimals, unit=1):
     ],
 )
 def test_the_frequencies_of_section_vii(word, printed):
-    assert shown(word, PARIS, len(printed) - 2) == printed
+    assert printed_value(word, PARIS, len(printed) - 2) == printed
 
 
 def test_the_period_of_the_plane_pendulum_and_the_apparent_gravity_of_48():
     assert 1 / float(approximation("frequency_planar").value(PARIS)) == pytest.approx(16.423225, abs=5e-7)
-    assert shown("apparent_gravity", PARIS, 5) == "9.79195"
+    assert printed_value("apparent_gravity", PARIS, 5) == "9.79195"
 
 
 def test_the_frequency_of_the_reference_is_the_papers_cut_off_after_nine_decimals():
-    found = frequency(PARIS, 1000)
-    assert math.floor(found * 1e9) == 60843633
-    assert float(approximation("frequency_anharmonic").value(PARIS)) == pytest.approx(found, rel=1e-8)
+    hertz = frequency(PARIS, 1000)
+    assert math.floor(hertz * 1e9) == 60843633
+    assert float(approximation("frequency_anharmonic").value(PARIS)) == pytest.approx(hertz, rel=1e-8)
 
 
 def test_the_papers_point_of_rest_is_right_to_four_digits_only():
@@ -81,7 +81,7 @@ def test_the_series_47_comes_nearer_with_every_order():
 
 # Gastebois -----------------------------------------------------------------------------------------------------------
 def test_the_periods_of_precession_of_6_3():
-    assert shown("precession_sine", gastebois(), 2, HOUR) == "31.77"
+    assert printed_value("precession_sine", gastebois(), 2, HOUR) == "31.77"
     assert float(approximation("precession_tilted").value(gastebois("23.9345"))) / HOUR == pytest.approx(
         31.74, abs=0.02
     )
@@ -140,21 +140,21 @@ TIMES = np.linspace(0.0, 3600.0, 3601)
 
 
 def printed_motion(word, scene, times=TIMES):
-    made = approximation(word)
-    assert isinstance(made, Motion)
-    return made.printed.compute(scene, times), made.trajectory(scene, times)
+    declared = approximation(word)
+    assert isinstance(declared, Motion)
+    return declared.printed.compute(scene, times), declared.trajectory(scene, times)
 
 
 def test_every_printed_form_that_has_a_meaning_differs_from_the_right_one():
-    with_meaning = [made for made in APPROXIMATIONS.values() if made.printed and made.printed.compute]
+    with_meaning = [declared for declared in APPROXIMATIONS.values() if declared.printed and declared.printed.compute]
     assert len(with_meaning) >= 7
-    for made in with_meaning:
-        assert made.printed.text != made.printed.right
-        if isinstance(made, Motion):
-            printed, right = printed_motion(made.id, MOVING if made.id != "gastebois_6_3" else PARIS)
-            assert np.max(np.abs(printed - right)) > 1e-6, made.id
+    for declared in with_meaning:
+        assert declared.printed.text != declared.printed.right
+        if isinstance(declared, Motion):
+            printed, right = printed_motion(declared.id, MOVING if declared.id != "gastebois_6_3" else PARIS)
+            assert np.max(np.abs(printed - right)) > 1e-6, declared.id
         else:
-            assert abs(made.printed.compute(PARIS) / made.value(PARIS) - 1) > 1e-6, made.id
+            assert abs(declared.printed.compute(PARIS) / declared.value(PARIS) - 1) > 1e-6, declared.id
 
 
 def test_the_printed_velocity_of_6_1_is_not_that_of_its_positions():
@@ -195,12 +195,12 @@ def test_with_the_sign_of_the_conclusion_method_3_turns_the_wrong_way():
 
 
 def test_printed_numbers_miss_by_their_lost_factor():
-    made = approximation("frequency_anharmonic")
-    assert float(made.value(PARIS) / made.printed.compute(PARIS)) == pytest.approx(2 * math.pi, rel=1e-14)
-    made = approximation("precession_tilted")
-    assert float(made.printed.compute(PARIS)) == pytest.approx(16.4358 / math.sin(math.radians(48.9446)), rel=1e-4)
-    made, outward = approximation("apparent_gravity"), Case.of(PARIS).outward
-    missing = made.printed.compute(PARIS) ** 2 - made.value(PARIS) ** 2
+    declared = approximation("frequency_anharmonic")
+    assert float(declared.value(PARIS) / declared.printed.compute(PARIS)) == pytest.approx(2 * math.pi, rel=1e-14)
+    declared = approximation("precession_tilted")
+    assert float(declared.printed.compute(PARIS)) == pytest.approx(16.4358 / math.sin(math.radians(48.9446)), rel=1e-4)
+    declared, outward = approximation("apparent_gravity"), Case.of(PARIS).outward
+    missing = declared.printed.compute(PARIS) ** 2 - declared.value(PARIS) ** 2
     assert float(missing) == pytest.approx(float(outward - outward**2), rel=1e-14)
 
 

@@ -1,4 +1,4 @@
-"""The registry: lazy, complete, and plain about what it refuses."""
+"""The registry of approximations: lazy, complete, and with a reason for every scene it refuses."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ from compare.approximations import (
     Motion,
     Quantity,
     approximation,
+    mathar_items,
     motions,
     quantities,
 )
-from compare.approximations.mathar_items import PROGRAM_BITS
+from compare.foucpend.march import ITEMS
 from reference import InputError, UnreachableError, load_scene
 
 PARIS = load_scene("paris")
@@ -31,10 +32,10 @@ def test_every_module_declares_what_the_registry_says_it_does():
 
 
 def test_every_declaration_is_filled_in():
-    for word, made in APPROXIMATIONS.items():
-        assert isinstance(made, Approximation)
-        assert made.id == word
-        assert all((made.title, made.where, made.domain, made.drops, made.orders)), word
+    for word, declared in APPROXIMATIONS.items():
+        assert isinstance(declared, Approximation)
+        assert declared.id == word
+        assert all((declared.title, declared.where, declared.domain, declared.drops, declared.orders)), word
     assert all(isinstance(approximation(word), Motion) for word in motions())
     assert all(isinstance(approximation(word), Quantity) for word in quantities())
 
@@ -45,8 +46,8 @@ def test_listing_the_approximations_loads_no_heavy_library():
         "[a.approximation(w) for w in a.APPROXIMATIONS];"
         "print(sorted({'heyoka', 'flint', 'scipy', 'numba', 'matplotlib'} & set(sys.modules)))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "[]"
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert process.stdout.strip() == "[]"
 
 
 def test_an_unknown_word_is_answered_with_the_known_ones():
@@ -57,11 +58,13 @@ def test_an_unknown_word_is_answered_with_the_known_ones():
 
 
 def test_the_bits_of_the_papers_program_name_motions():
-    assert sorted(PROGRAM_BITS) == [1, 2, 3]
-    assert set(PROGRAM_BITS.values()) <= set(motions())
+    word_of = {motion.path.keywords["items"]: motion.id for motion in mathar_items.APPROXIMATIONS}
+    names = {bits: word_of[items] for bits, items in ITEMS.items() if bits}
+    assert sorted(names) == [1, 2, 3]
+    assert set(names.values()) <= set(motions())
     # Its first bit is item 2, its second item 1.
-    assert PROGRAM_BITS[1] == "mathar_item_2"
-    assert PROGRAM_BITS[2] == "mathar_item_1"
+    assert names[1] == "mathar_item_2"
+    assert names[2] == "mathar_item_1"
 
 
 @pytest.mark.parametrize(
@@ -79,9 +82,9 @@ def test_the_bits_of_the_papers_program_name_motions():
     ],
 )
 def test_a_scene_outside_the_domain_is_refused_with_the_reason(word, change, reason):
-    made, scene = approximation(word), PARIS.with_values([change])
+    declared, scene = approximation(word), PARIS.with_values([change])
     with pytest.raises(InputError, match=reason) as refused:
-        made.trajectory(scene, [0.0, 1.0]) if isinstance(made, Motion) else made.value(scene)
+        declared.trajectory(scene, [0.0, 1.0]) if isinstance(declared, Motion) else declared.value(scene)
     assert word in str(refused.value)
 
 

@@ -1,4 +1,4 @@
-"""The picture: every name stands in it, none twice, and the same rows give the same bytes."""
+"""The chart of approximations: every name appears in it once, and the same rows give the same bytes."""
 
 from __future__ import annotations
 
@@ -41,8 +41,8 @@ def test_a_sweep_is_drawn_over_its_own_axis():
 
 
 def test_labels_do_not_touch_and_stay_near_their_lines():
-    wanted, tall = [0.9, 0.9, 0.9, 0.5, 0.1, 0.1], [0.05, 0.1, 0.05, 0.05, 0.05, 0.05]
-    places = apart(wanted, tall)
+    ends, tall = [0.9, 0.9, 0.9, 0.5, 0.1, 0.1], [0.05, 0.1, 0.05, 0.05, 0.05, 0.05]
+    places = apart(ends, tall)
     for (a, b), (upper, lower) in zip(pairwise(places), pairwise(tall), strict=True):
         assert a - b >= (upper + lower) / 2 - 1e-12
     assert places[3] == pytest.approx(0.5)

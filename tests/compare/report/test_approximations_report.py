@@ -15,22 +15,22 @@ from reference import InputError
 
 def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(approximation_report, "OVERS", ("time", "amplitude"))
-    asked = ["study", "hard", "--approximations", "--set", "release.angle=5", "--t-end", "60", "--json"]
-    result = CliRunner().invoke(app, [*asked, "--out", str(tmp_path)])
+    arguments = ["study", "hard", "--approximations", "--set", "release.angle=5", "--t-end", "60", "--json"]
+    result = CliRunner().invoke(app, [*arguments, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
-    said = json.loads(result.stdout)
-    assert {row["t"] for row in said["rows"]} == {20.0, 60.0}
-    assert {row["over"] for row in said["limits"]} == {"time", "amplitude"}
+    document = json.loads(result.stdout)
+    assert {row["t"] for row in document["rows"]} == {20.0, 60.0}
+    assert {row["over"] for row in document["limits"]} == {"time", "amplitude"}
     page = (tmp_path / "index.html").read_text()
-    assert all(row["approximation"] in page for row in said["rows"])
+    assert all(row["approximation"] in page for row in document["rows"])
 
 
 def test_an_approximation_is_scored_like_a_program() -> None:
-    asked = ["score", "paris", "--approximation", "linear_3d", "--json", "--no-diagnosis"]
-    result = CliRunner().invoke(app, [*asked, "--set", "run.t_end=3600"])
-    said = json.loads(result.stdout)
-    assert (result.exit_code, said["verdict"]) == (1, "disagrees")
-    assert said["max_error_m"] == pytest.approx(4.06e-3, rel=0.05)
+    arguments = ["score", "paris", "--approximation", "linear_3d", "--json", "--no-diagnosis"]
+    result = CliRunner().invoke(app, [*arguments, "--set", "run.t_end=3600"])
+    document = json.loads(result.stdout)
+    assert (result.exit_code, document["verdict"]) == (1, "disagrees")
+    assert document["max_error_m"] == pytest.approx(4.06e-3, rel=0.05)
 
 
 def test_an_approximation_of_a_number_cannot_be_scored_as_a_motion() -> None:

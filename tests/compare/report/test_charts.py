@@ -1,3 +1,5 @@
+"""The charts: well-formed SVG, the same bytes every time, every method named, and labels that do not overlap."""
+
 from __future__ import annotations
 
 import re
@@ -76,7 +78,7 @@ PICTURES = {
 
 
 @pytest.fixture(scope="module")
-def drawn():
+def pictures():
     return {name: draw() for name, draw in PICTURES.items()}
 
 
@@ -85,72 +87,72 @@ def texts(svg):
 
 
 @pytest.mark.parametrize("name", PICTURES)
-def test_a_picture_is_one_svg_element_that_says_what_it_is(drawn, name):
-    root = ET.fromstring(drawn[name])
+def test_a_picture_is_one_svg_element_that_says_what_it_is(pictures, name):
+    root = ET.fromstring(pictures[name])
     assert root.tag == f"{SVG}svg"
     assert root.get("role") == "img"
     assert root.get("aria-label")
     assert root.get("viewBox")
-    assert not re.search(r"<(image|style|script)\b|\bnan\b", drawn[name])
+    assert not re.search(r"<(image|style|script)\b|\bnan\b", pictures[name])
 
 
 @pytest.mark.parametrize("name", ["overview", "growth", "map"])
-def test_the_same_rows_make_the_same_bytes(drawn, name):
-    assert PICTURES[name]() == drawn[name]
+def test_the_same_rows_make_the_same_bytes(pictures, name):
+    assert PICTURES[name]() == pictures[name]
 
 
-def test_ids_are_unique_over_all_pictures_of_a_page_and_every_reference_is_met(drawn):
-    found, wanted = [], set()
-    for svg in drawn.values():
+def test_ids_are_unique_over_all_pictures_of_a_page_and_every_reference_is_met(pictures):
+    ids, references = [], set()
+    for svg in pictures.values():
         for one in ET.fromstring(svg).iter():
-            found += [one.get("id")] if one.get("id") else []
-            wanted |= {value[1:] for key, value in one.attrib.items() if key.endswith("href")}
-        wanted |= set(re.findall(r"url\(#([^)]+)\)", svg))
-    assert len(found) == len(set(found))
-    assert wanted == set(found)
+            ids += [one.get("id")] if one.get("id") else []
+            references |= {value[1:] for key, value in one.attrib.items() if key.endswith("href")}
+        references |= set(re.findall(r"url\(#([^)]+)\)", svg))
+    assert len(ids) == len(set(ids))
+    assert references == set(ids)
 
 
-def test_every_measured_method_is_named_in_the_overview(drawn):
-    named = texts(drawn["overview"])
+def test_every_measured_method_is_named_in_the_overview(pictures):
+    named = texts(pictures["overview"])
     for curve in curves(ROWS):
         if curve.measured and "(" not in curve.label:
             assert curve.label in named
     assert "mpmath_odefun" not in named
 
 
-def test_failed_rows_stand_as_crosses_and_the_bound_as_a_band(drawn):
-    named = texts(drawn["overview"])
+def test_failed_rows_stand_as_crosses_and_the_bound_as_a_band(pictures):
+    named = texts(pictures["overview"])
     assert "failed" in named
     assert any("bound of the reference" in one for one in named)
 
 
-def test_methods_without_evaluations_or_tolerance_are_not_drawn_there(drawn):
-    assert "heyoka_double" not in texts(drawn["evaluations"])
-    assert "rk4" in texts(drawn["evaluations"])
-    assert "rk4" not in texts(drawn["tolerance"])
-    assert "error in m = tolerance" in texts(drawn["tolerance"])
+def test_methods_without_evaluations_or_tolerance_are_not_drawn_there(pictures):
+    assert "heyoka_double" not in texts(pictures["evaluations"])
+    assert "rk4" in texts(pictures["evaluations"])
+    assert "rk4" not in texts(pictures["tolerance"])
+    assert "error in m = tolerance" in texts(pictures["tolerance"])
 
 
-def test_formulations_are_named_by_their_words(drawn):
-    assert {"space", "angles"} <= set(texts(drawn["formulations"]))
+def test_formulations_are_named_by_their_words(pictures):
+    assert {"space", "angles"} <= set(texts(pictures["formulations"]))
 
 
-def test_the_fitted_law_stands_in_the_precision_ladder(drawn):
-    assert any(one.startswith("∝ digits^") for one in texts(drawn["precision"]))
+def test_the_fitted_law_stands_in_the_precision_ladder(pictures):
+    assert any(one.startswith("∝ digits^") for one in texts(pictures["precision"]))
 
 
-def test_growth_names_the_slopes_and_each_lines_own(drawn):
-    named = texts(drawn["growth"])
+def test_growth_names_the_slopes_and_each_lines_own(pictures):
+    named = texts(pictures["growth"])
     assert {"t", "t^1.5", "t²"} <= set(named)
     assert "double, t^1.50" in named
     assert "quadruple, t^1.00" in named
     assert "single" in named
 
 
-def test_the_map_reads_without_colour(drawn):
-    named = texts(drawn["map"])
+def test_the_map_reads_without_colour(pictures):
+    named = texts(pictures["map"])
     assert {"7", "W", "N", "paris", "hard", "silently wrong"} <= set(named)
-    assert "silently wrong: 1." in ET.fromstring(drawn["map"]).get("aria-label")
+    assert "silently wrong: 1." in ET.fromstring(pictures["map"]).get("aria-label")
 
 
 def test_digits_are_rounded_down_in_the_map():
@@ -221,8 +223,8 @@ def test_ticks_are_plain_text(value, text):
     assert power_of_ten(value) == text
 
 
-def test_a_name_stands_once_though_the_picture_has_two_panels(drawn):
-    named = texts(drawn["overview"])
+def test_a_name_stands_once_though_the_picture_has_two_panels(pictures):
+    named = texts(pictures["overview"])
     assert all(named.count(curve.label) <= 1 for curve in curves(ROWS))
 
 

@@ -1,4 +1,4 @@
-"""A report's folder: all files or none, whatever happens on the way, and nobody else's touched."""
+"""A report's folder: all files are written or none, whatever happens, and nobody else's files are touched."""
 
 from __future__ import annotations
 

@@ -1,3 +1,5 @@
+"""The Pareto front, costs at an error, their sentences, and the fitted power law."""
+
 from __future__ import annotations
 
 import math
@@ -157,11 +159,11 @@ def test_whole_runs_go_before_extrapolated_ones():
 def test_the_sentence_names_the_cheapest_and_how_many_times_dearer_the_papers_method_is():
     rows = [row(setting=h, error_m=h**4, cpu_s=0.01 / h) for h in (0.5, 0.1, 0.01)]
     rows += ladder("fast", [(1e-2, 0.001), (1e-12, 0.01)])
-    told = sentences(document(rows))
-    assert len(told) == 4
-    assert told[1].startswith("At 1e-6 m the cheapest is fast, ")
-    assert "130 times cheaper than the paper's RK4" in told[1]  # 0.01 / 1e-6**0.25 over 0.001 * 10**0.4, two digits
-    assert "the paper's RK4 does not reach it (1.0e-08 m at best)" in told[2]
+    lines = sentences(document(rows))
+    assert len(lines) == 4
+    assert lines[1].startswith("At 1e-6 m the cheapest method is fast, with ")
+    assert "130 times cheaper than the paper's RK4" in lines[1]  # 0.01 / 1e-6**0.25 over 0.001 * 10**0.4, two digits
+    assert "the paper's RK4 does not reach it (1.0e-08 m at best)" in lines[2]
 
 
 def test_there_is_no_sentence_where_no_method_reaches():
@@ -170,13 +172,13 @@ def test_there_is_no_sentence_where_no_method_reaches():
 
 
 def test_where_the_papers_method_is_the_cheapest_the_next_is_named():
-    told = sentences(document([row(error_m=1e-4, cpu_s=1.0), *ladder("a", [(1e-4, 3.0)])]))
-    assert told[0] == "At 1e-3 m the cheapest is rk4, 1 s of CPU time: 3 times cheaper than the next, a."
+    lines = sentences(document([row(error_m=1e-4, cpu_s=1.0), *ladder("a", [(1e-4, 3.0)])]))
+    assert lines[0] == "At 1e-3 m the cheapest method is rk4, with 1 s of CPU time: 3 times cheaper than the next, a."
 
 
 def test_an_extrapolated_winner_is_marked_in_its_sentence():
-    told = sentences(document(ladder("a", [(1e-4, 3.0)], status="extrapolated")))
-    assert "extrapolated" in told[0]
+    lines = sentences(document(ladder("a", [(1e-4, 3.0)], status="extrapolated")))
+    assert "extrapolated" in lines[0]
 
 
 def test_the_power_law_and_its_standard_error_are_those_of_scipy():

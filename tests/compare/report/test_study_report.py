@@ -1,3 +1,5 @@
+"""The report of a study: its three files, its page as HTML, and its table as text."""
+
 from __future__ import annotations
 
 import csv
@@ -28,7 +30,7 @@ def row(method, setting_, error_m, cpu_s, status="ok", formulation="space", kind
     return Row(method, formulation, setting_, kind, "binary64", status, error_m=error_m, cpu_s=cpu_s, **more)
 
 
-def made(rows=None, **more):
+def study_document(rows=None, **more):
     rows = rows or [
         row("rk4", 0.1, 1e-4, 0.1, formulation="plane", kind="step", rhs_evaluations=4_000_000, cpu_spread=0.02),
         row("rk4", 0.01, 1e-8, 1.0, formulation="plane", kind="step", rhs_evaluations=40_000_000, steps=10_000_000),
@@ -87,7 +89,7 @@ class Reader(HTMLParser):
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     out = tmp_path_factory.mktemp("report") / "new" / "folder"
-    assert report.write_report(made(), out) == out / "index.html"
+    assert report.write_report(study_document(), out) == out / "index.html"
     return out
 
 
@@ -115,22 +117,22 @@ def test_the_csv_gives_every_row_back(written):
 
 
 def test_the_json_is_the_document(written):
-    assert json.loads((written / "study.json").read_text()) == made()
+    assert json.loads((written / "study.json").read_text()) == study_document()
 
 
 def test_the_page_has_every_row_with_its_marks(read):
     head, *body = table_of(read, "status", "reason")
     assert len(body) == 9
     place = {title: i for i, title in enumerate(head[1])}
-    found = {
+    by_setting = {
         (cells[place["method"]], cells[place["formulation"]], cells[place["setting"]]): (kind, cells)
         for kind, cells in body
     }
-    assert found["rk4", "plane", "0.01 s"][1][place["evaluations"]].replace("\u202f", "") == "40000000"
-    assert "front" in found["heyoka_double", "momentum", "2.22e-16"][0]
-    assert "front" not in found["heyoka_double", "space", "2.22e-16"][0]
-    assert found["scipy_dop853", "space", "1e-6"][1][place["CPU s"]] == "~40.0"
-    kind, cells = found["scipy_lsoda", "space", "1e-12"]
+    assert by_setting["rk4", "plane", "0.01 s"][1][place["evaluations"]].replace("\u202f", "") == "40000000"
+    assert "front" in by_setting["heyoka_double", "momentum", "2.22e-16"][0]
+    assert "front" not in by_setting["heyoka_double", "space", "2.22e-16"][0]
+    assert by_setting["scipy_dop853", "space", "1e-6"][1][place["CPU s"]] == "~40.0"
+    kind, cells = by_setting["scipy_lsoda", "space", "1e-12"]
     assert "failed" in kind
     assert cells[place["last t, s"]] == "123.5"
     assert cells[place["reason"]] == NASTY
@@ -180,11 +182,11 @@ def test_the_page_says_where_and_how_it_was_measured(read):
     text = "".join(read.text)
     for word in ("python 3.11, heyoka 7.13", "level enclosed, bound 5.0e-39 m", "in one thread", "nearest double"):
         assert word in text
-    assert "At 1e-6 m the cheapest is heyoka_double" in text
+    assert "At 1e-6 m the cheapest method is heyoka_double" in text
 
 
 def test_title_and_limit_are_used_where_they_are_given():
-    html = report.page_text(made(title="A & B", limit_s=8.0))
+    html = report.page_text(study_document(title="A & B", limit_s=8.0))
     assert "<title>Error against run time: A &amp; B</title>" in html
     assert "8 CPU seconds" in html
 
@@ -196,8 +198,8 @@ def test_the_same_document_makes_the_same_bytes(written, tmp_path):
 
 
 def test_a_study_in_which_everything_failed_still_has_a_page():
-    html = report.page_text(made([row("my_program", 0.1, None, None, "gave_up", reason="broken")]))
-    assert "No method reached 1e-3 m." in html
+    html = report.page_text(study_document([row("my_program", 0.1, None, None, "gave_up", reason="broken")]))
+    assert "No method reached an error of 1e-3 m." in html
     assert "broken" in html
     Reader(html)
 
@@ -207,13 +209,13 @@ def test_without_matplotlib_the_page_says_what_is_missing(monkeypatch):
     monkeypatch.setattr(
         importlib.util, "find_spec", lambda name, *more: None if name == "matplotlib" else real(name, *more)
     )
-    html = report.page_text(made())
+    html = report.page_text(study_document())
     assert "<svg" not in html
     assert "foucault-reference[plot]" in html
 
 
 def test_an_interrupted_write_leaves_the_old_report(tmp_path, monkeypatch):
-    report.write_report(made(), tmp_path)
+    report.write_report(study_document(), tmp_path)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
     def interrupted(descriptor):
@@ -221,18 +223,18 @@ def test_an_interrupted_write_leaves_the_old_report(tmp_path, monkeypatch):
 
     monkeypatch.setattr("os.fsync", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        report.write_report(made(title="another"), tmp_path)
+        report.write_report(study_document(title="another"), tmp_path)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_a_place_that_cannot_be_written_is_a_message(tmp_path):
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(InputError, match="--out"):
-        report.write_report(made(), tmp_path / "file")
+        report.write_report(study_document(), tmp_path / "file")
 
 
 def test_the_text_table_has_every_row_and_the_sentences():
-    text = report.text_table(made())
+    text = report.text_table(study_document())
     for word in ("rk4", "scipy_dop853", "mpmath_odefun", "~40.0", "At 1e-6 m", "1 of 9 transits is missed"):
         assert word in text
     marked = [line for line in text.splitlines() if line.startswith("* ") and "Pareto" not in line]
@@ -275,5 +277,5 @@ def test_a_row_of_a_table_has_a_cell_for_every_column():
 def test_neither_the_report_nor_its_parts_load_matplotlib():
     modules = "compare.report.study, compare.report.page, compare.report.charts"
     code = f"import {modules}, sys; print('matplotlib' in sys.modules)"
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert found.stdout.strip() == "False"
+    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert process.stdout.strip() == "False"

@@ -1,4 +1,4 @@
-"""Growth of an error over a long run, against the slopes that theory offers."""
+"""Chart of the growth of an error over a long run, with guide lines of the slopes t, t^1.5 and t² of theory."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from .families import line_style
 from .labels import Label, place
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
-_POINTS = 240  # of a line, equally far apart in the logarithm
-_APART = 1e3  # errors closer than this factor at the end share one fan of guides
-_FAN = 50.0  # length of the guides as a factor of time
-_ABOVE = 4.0  # the fan's distance from the lines as a factor of error
+_POINTS = 240  # points of a line, evenly spaced in the logarithm of time
+_APART = 1e3  # lines whose last errors are closer than this factor share one fan of guide lines
+_FAN = 50.0  # length of the guide lines, as a factor of time
+_ABOVE = 4.0  # distance of the fan from the lines, as a factor of error
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,10 @@ class ErrorHistory:
     """An error over time.
 
     Attributes:
-        label: of the line.
+        label: name of the line.
         t: times in s, increasing, shape (rows,).
-        error: at these times, shape (rows,).
-        exponent: p of error ∝ t^p, for its label; None where it is not known.
+        error: errors at these times, shape (rows,).
+        exponent: p of error ∝ t^p, for the label; None if it is not known.
     """
 
     label: str
@@ -39,44 +39,44 @@ class ErrorHistory:
     exponent: float | None = None
 
     def so_far(self) -> tuple[list[float], list[float]]:
-        """Times and the largest error up to them, at few enough points to draw."""
+        """Return times and the largest error up to each of them, thinned to at most `_POINTS` points."""
         largest = np.maximum.accumulate(self.error)
-        known = (self.t > 0) & (largest > 0)
-        t, largest = self.t[known], largest[known]
+        positive = (self.t > 0) & (largest > 0)
+        t, largest = self.t[positive], largest[positive]
         if not len(t):
             raise InputError("growth", self.label, "an error above zero at a time above zero")
-        wanted = np.geomspace(t[0], t[-1], _POINTS)
-        at = np.unique(np.searchsorted(t, wanted * (1 - 1e-12)).clip(0, len(t) - 1))
+        marks = np.geomspace(t[0], t[-1], _POINTS)
+        at = np.unique(np.searchsorted(t, marks * (1 - 1e-12)).clip(0, len(t) - 1))
         return t[at].tolist(), largest[at].tolist()
 
 
 def error_growth(
     lines: Sequence[ErrorHistory], bound_m: float, *, quantity: str = "largest error of position so far in m"
 ) -> str:
-    """Errors over time, log-log, with fans of slopes 1, 1.5 (Brouwer's law) and 2, and each line's own power of time.
+    """Draw errors over time, log-log, with fans of slopes 1, 1.5 (Brouwer's law) and 2 and each line's own exponent.
 
     Args:
         lines: one for each method, at least one.
-        bound_m: of the reference, drawn as a band.
-        quantity: on the vertical axis.
+        bound_m: bound of the reference in m, drawn as a band.
+        quantity: label of the vertical axis.
 
     Raises:
-        InputError: nothing to draw.
+        InputError: there is nothing to draw.
     """
     if not lines:
         raise InputError("growth", "no lines", "at least one")
-    drawn = [(line.label, *line.so_far()) for line in lines]
+    curves = [(line.label, *line.so_far()) for line in lines]
     with sheet((9.5, 6.0)) as (figure, grid):
         axes = grid[0, 0]
-        times, errors = [t for _, ts, _ in drawn for t in ts], [e for _, _, es in drawn for e in es]
+        times, errors = [t for _, ts, _ in curves for t in ts], [e for _, _, es in curves for e in es]
         logarithmic(axes, "x", min(times), max(times) * 6)
-        fans = _fans(drawn)
+        fans = _fans(curves)
         top = max([*errors, *(low * _FAN ** SLOPES[-1][0] for _, low in fans)])
         logarithmic(axes, "y", min(errors) / 5, top * 5, 16)
         if axes.get_ylim()[0] < bound_m:
             axes.axhspan(axes.get_ylim()[0], bound_m, color=BAND, linewidth=0, zorder=0)
         labels, guides = [], []
-        for i, (label, t, error) in enumerate(drawn):
+        for i, (label, t, error) in enumerate(curves):
             look = line_style(COLOURS[i % len(COLOURS)], i) | {"marker": ""}
             axes.plot(t, error, **look, zorder=3)
             power = "" if lines[i].exponent is None else f", t^{lines[i].exponent:.2f}"
@@ -89,13 +89,13 @@ def error_growth(
         axes.set(xlabel="time in s", ylabel=quantity)
         ends = [Label(one.text, one.colour, one.x[-1:], one.y[-1:]) for one in guides]
         place(axes, [*ends, *labels], [*labels, *guides])
-        return svg_text(figure, "growth", f"Error over time, log-log: {', '.join(label for label, *_ in drawn)}.")
+        return svg_text(figure, "growth", f"Error over time, log-log: {', '.join(label for label, *_ in curves)}.")
 
 
-def _fans(drawn: Sequence[tuple[str, list[float], list[float]]]) -> list[tuple[float, float]]:
-    """End and lowest error of fans of guides: one above each group of lines that end close together."""
+def _fans(curves: Sequence[tuple[str, list[float], list[float]]]) -> list[tuple[float, float]]:
+    """Return the end time and the lowest error of each fan of guide lines, one above each group of lines."""
     groups: list[list[tuple[list[float], list[float]]]] = []
-    for _, t, error in sorted(drawn, key=lambda one: one[2][-1]):
+    for _, t, error in sorted(curves, key=lambda one: one[2][-1]):
         if groups and error[-1] < groups[-1][-1][1][-1] * _APART:
             groups[-1].append((t, error))
         else:
