@@ -10,7 +10,12 @@ from compare.commands import app as comparing
 from reference.commands import app as computing
 from reference.errors import FoucaultError
 
-app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None)
+app = typer.Typer(
+    help="Reference solutions of the Foucault pendulum, and programs judged by them.",
+    add_completion=False,
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
 app.add_typer(computing)
 app.add_typer(comparing)
 

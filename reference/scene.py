@@ -346,6 +346,11 @@ def scene_ids() -> list[str]:
     return sorted(path.stem for path in (data_root() / "scenes").glob("*.toml"))
 
 
+def flag_meanings() -> dict[str, str]:
+    """Return why a scene with a flag is nasty: a sentence for each flag, from `data/flags.toml`."""
+    return {flag: str(text) for flag, text in tomllib.loads((data_root() / "flags.toml").read_text("utf-8")).items()}
+
+
 def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
     """Read a scene by id, or from the path of a TOML file, with `section.key=value` replacements.
 

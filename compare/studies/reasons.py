@@ -7,7 +7,6 @@ import math
 from .character import Character
 from .row import Row
 
-ROUNDING = 2.0**-53
 EXPLICIT_REACH = 3.3  # rate times step up to which an explicit method of order 5 to 8 is stable, about
 
 

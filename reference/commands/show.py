@@ -6,7 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..scene import Scene, load_scene
+from ..scene import Scene, flag_meanings, load_scene
 from .terminal import AsJson, Assignments, SceneWord, emit
 
 
@@ -23,7 +23,13 @@ def command(
 ) -> None:
     """Show the inputs of a scene and the derived quantities."""
     scene = load_scene(scene_word, set_ or ())
-    document: dict[str, Any] = {**scene.model_dump(exclude_none=True), "derived": _derived(scene)}
+    meanings = flag_meanings()
+    flags = {flag: meanings.get(flag, "not a flag of the scenes that ship") for flag in scene.flags}
+    document: dict[str, Any] = {
+        **scene.model_dump(exclude_none=True),
+        "flag_meanings": flags,
+        "derived": _derived(scene),
+    }
     if equations:
         from ..engines.equations import lines_and_left_out
 
@@ -40,6 +46,8 @@ def command(
     typer.echo(f"{scene.id}: {scene.title}")
     if scene.source:
         typer.echo(f"source: {scene.source}")
+    for flag, meaning in flags.items():
+        typer.echo(f"{flag}: {meaning}")
     typer.echo(f"inputs are read as: {scene.inputs}")
     for section, table in scene_inputs(scene).items():
         typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))

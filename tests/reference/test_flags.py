@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import tomllib
+from reference.scene import flag_meanings, load_scene, scene_ids
 
-from places import ROOT
-
-from reference.scene import load_scene, scene_ids
-
-MEANINGS = tomllib.loads((ROOT / "data/flags.toml").read_text(encoding="utf-8"))
+MEANINGS = flag_meanings()
 
 
 def test_every_flag_of_a_scene_is_explained_and_every_explanation_is_used():

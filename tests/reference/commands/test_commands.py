@@ -43,6 +43,14 @@ def test_scenes_lists_every_scene(foucault):
     assert {scene["id"] for scene in json.loads(foucault("scenes", "--json")[1])["scenes"]} >= {"paris"}
 
 
+def test_show_says_what_the_flags_of_a_scene_mean(foucault):
+    status, out, _ = foucault("show", "creeping")
+    assert status == 0
+    assert "stiff: Drag makes rates differ" in out and "damped: Drag takes energy away" in out
+    status, out, _ = foucault("show", "paris", "--set", "flags=mine,stiff", "--json")
+    assert json.loads(out)["flag_meanings"]["mine"] == "not a flag of the scenes that ship"
+
+
 def test_show_gives_inputs_and_what_follows_from_them(foucault):
     status, out, _ = foucault("show", "paris")
     assert status == 0
