@@ -4,8 +4,8 @@
 same bits on every machine. `run` fills a plan as `reference.engines.run.run` does; `states` gives double-double arrays.
 """
 
-from .expansion import Expansion
-from .facade import expand, limbs, run, states
+from .integration import expand, limbs, run, states
 from .problem import most_bits
+from .taylor_step import Expansion
 
 __all__ = ["Expansion", "expand", "limbs", "most_bits", "run", "states"]

@@ -1,6 +1,6 @@
 """Eight doubles side by side, as a type that numba compiles to whatever vector registers a machine has.
 
-Products and sums here are exact by the caller's doing (`digits`), so that it makes no difference whether the
+Products and sums here are exact by the caller's doing (`limb`), so that it makes no difference whether the
 compiler fuses them: the same bits come out with and without FMA, on every machine.
 """
 

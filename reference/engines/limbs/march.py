@@ -6,9 +6,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .dense import divide_place, evaluate, finish
-from .digits import Array, aligned
+from .dense_output import divide_place, evaluate, finish
 from .lanes import LANES, SOURCES, compiled, entry, load, store
+from .limb import Array, aligned
 from .series import Counts, Line, Series, expand, room
 from .step import AIM, SLIP, Model, begin, end, next_length, reach, scale_line, settle
 from .zeros import FOUND, GRAZING, Search, bracket_zeros, polish, search_room, sign_leaving, sign_now
@@ -43,7 +43,7 @@ class Outputs(NamedTuple):
 
     Attributes:
         whole, rest: times in grains, and digits of what is beyond the whole ones, shape (times * limbs,).
-        states: `limbs` rows per time, as `dense.finish` makes them.
+        states: `limbs` rows per time, as `dense_output.finish` makes them.
         moments: per zero the step's start and length in grains, and the crossing's sign.
         places: per zero the digits of its place in the step.
         met: `limbs` rows per zero.

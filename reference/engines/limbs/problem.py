@@ -17,7 +17,7 @@ from ...model.algebra import add, cross
 from ...model.constants import Constants, Vector, constants, release, scaled
 from ...precision import GUARD_BITS, context
 from ...scene import Inputs
-from .digits import MOST_LIMBS, Array, fraction_bits, rows_of
+from .limb import MOST_LIMBS, Array, fraction_bits, rows_of
 from .series import Line
 from .step import GRAINS, MOST_GRAINS, Model
 

@@ -18,8 +18,8 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from .digits import DOUBLED, LARGEST, Array, aligned, carry, carry_scalar, divide
 from .lanes import LANES, compiled, inlined, load, occupied, plus_product, shuffled, spread, store, within
+from .limb import DOUBLED, LARGEST, Array, aligned, carry, carry_scalar, divide
 from .unrolled import (
     MOST_ORDER,
     MOST_ROWS,

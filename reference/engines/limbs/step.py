@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .digits import DIGIT_BITS, DOUBLED, INVERSE, RADIX, UNIT, Array, carry, carry_scalar, clear, divide
 from .lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
+from .limb import DIGIT_BITS, DOUBLED, INVERSE, RADIX, UNIT, Array, carry, carry_scalar, clear, divide
 from .series import PULL, SPIN, Line, Series
 
 GRAINS = 1024
@@ -39,7 +39,7 @@ class Model(NamedTuple):
         most: longest step in grains.
         line: the constants at m = GRAINS, in limbs + 1 rows, not doubled.
         powers: of m in them, lane by lane: one array of eight for each array of `line`.
-        along, across: lane by lane the matrix from these axes to east, north, up, for `dense.finish`.
+        along, across: lane by lane the matrix from these axes to east, north, up, for `dense_output.finish`.
     """
 
     limbs: int

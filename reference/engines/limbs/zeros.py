@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .dense import evaluate, shift_part, slope
-from .digits import DIGIT_BITS, DOUBLED, INVERSE, Array, carry_scalar
+from .dense_output import evaluate, shift_part, slope
 from .lanes import LANES, compiled, load, store
+from .limb import DIGIT_BITS, DOUBLED, INVERSE, Array, carry_scalar
 from .series import PULL, VM, VX, Counts, Line, M, Series, X, expand, room
 from .step import Model, leading
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 pytest.importorskip("numba")
 
 from small_scenes import make_scene
-from taylor_of_mechanics import Polynomial, taylor
+from taylor_of_model import Polynomial, taylor
 
 from reference.engines import limbs
 from reference.engines.plan import Plan

@@ -9,7 +9,7 @@ pytest.importorskip("numba")
 
 import numba
 
-from reference.engines.limbs.digits import DIGIT_BITS, LANES
+from reference.engines.limbs.limb import DIGIT_BITS, LANES
 from reference.engines.limbs.series import room
 from reference.engines.limbs.unrolled import MOST_ORDER, MOST_ROWS, PLANES, WIDTH, add_convolved
 

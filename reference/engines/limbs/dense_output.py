@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .digits import DOUBLED, RADIX, UNIT, Array, add_product, carry, carry_scalar, clear, divide
 from .lanes import LANES, compiled, load, occupied, plus_product, shuffled, spread, store
+from .limb import DOUBLED, RADIX, UNIT, Array, add_product, carry, carry_scalar, clear, divide
 from .series import VX, Line, M, Series, partner
 from .step import GRAINS, Model, lanewise
 

@@ -13,7 +13,7 @@ pytest.importorskip("numba")
 
 import numba
 
-from reference.engines.limbs.digits import (
+from reference.engines.limbs.limb import (
     DIGIT_BITS,
     LANES,
     add_product,

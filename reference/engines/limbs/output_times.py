@@ -8,7 +8,7 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from .digits import DIGIT_BITS, RADIX, UNIT, Array, fraction_bits
+from .limb import DIGIT_BITS, RADIX, UNIT, Array, fraction_bits
 
 Counts = npt.NDArray[np.int64]
 

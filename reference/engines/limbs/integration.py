@@ -18,12 +18,12 @@ from ...precision import NumberType
 from ...scene import Inputs
 from ..plan import Plan, Run
 from ..transits import AT_REST
-from .digits import DIGIT_BITS, Array, aligned, fraction_bits, joined
-from .expansion import Expansion
 from .lanes import LANES
+from .limb import DIGIT_BITS, Array, aligned, fraction_bits, joined
 from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Carried, Outputs, carried, march
+from .output_times import digits_of_doubles, digits_of_fractions
 from .problem import Problem, most_bits, problem
-from .times import digits_of_doubles, digits_of_fractions
+from .taylor_step import Expansion
 from .zeros import FOUND
 
 STEPS_PER_CALL = 1024

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...packing import WORD_BITS, Words
-from .digits import DIGIT_BITS, Array, fraction_bits
 from .lanes import LANES, entry
+from .limb import DIGIT_BITS, Array, fraction_bits
 from .series import PULL, M, W, X
 
 ROWS = np.array((X, M, W, PULL))
