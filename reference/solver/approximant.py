@@ -80,8 +80,8 @@ class Feed:
 
         bits = plan.number.prec + GUARD_BITS
 
-        def chain() -> Iterator[limbs.Expansion]:
-            self._done = yield from limbs.expand(plan, round(ORDER_PER_BIT * bits))
+        def chain() -> Iterator[limbs.LimbsTaylorStep]:
+            self._done = yield from limbs.taylor_steps(plan, round(ORDER_PER_BIT * bits))
 
         return pair(chain())
 

@@ -1,9 +1,9 @@
-"""Taylor coefficients from `mechanics` itself, in mpmath: a number type whose numbers are polynomials in time."""
+"""Taylor coefficients from the model's own equations, in mpmath: numbers that are polynomials in time."""
 
 from __future__ import annotations
 
-from reference.model import formulations as mechanics
 from reference.model.constants import constants, release, scaled
+from reference.model.formulations import FORMULATIONS
 from reference.precision import context
 
 
@@ -38,11 +38,11 @@ class Polynomial:
 
 
 def taylor(inputs, formulation, order, prec):
-    """Context, constants and the rows of coefficients of a formulation's variables at release."""
+    """Return a context, the constants, and the Taylor coefficients of a formulation's variables at release, in rows."""
     ctx = context(prec)
     k = constants(inputs, ctx)
     n, v = (scaled(vector, k.length) for vector in release(inputs, ctx))
-    model = mechanics.FORMULATIONS[formulation]
+    model = FORMULATIONS[formulation]
     rows = [[ctx.mpf(value)] for value in model.start(n, v, k, ctx)]
     for j in range(order):
         rates = model.derivatives([Polynomial(row) for row in rows], k, ctx)

@@ -1,11 +1,12 @@
-"""Many digits fast: an adaptive Taylor integrator in exact digits of radix 2**22, compiled; needs numba.
+"""The engine limbs: an adaptive Taylor integrator in compiled multiprecision, fast at 17 to 100 digits; needs numba.
 
-17 to 100 digits of a day for a hundredth of the time that a general integrator takes in a multiprecision type; the
-same bits on every machine. `run` fills a plan as `reference.engines.run.run` does; `states` gives double-double arrays.
+A number is held in limbs of radix 2**22 (GMP's word), each an integer in a double. A day with many digits takes a
+hundredth of the time of a general integrator in a multiprecision type, and the bits are the same on every machine.
+`run` fills a plan as `reference.engines.run.run` does; `taylor_steps` gives a proof the polynomials of each step.
 """
 
-from .integration import expand, limbs, run, states
 from .problem import most_bits
-from .taylor_step import Expansion
+from .run import run
+from .taylor_step import LimbsTaylorStep, taylor_steps
 
-__all__ = ["Expansion", "expand", "limbs", "most_bits", "run", "states"]
+__all__ = ["LimbsTaylorStep", "most_bits", "run", "taylor_steps"]

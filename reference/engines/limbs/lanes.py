@@ -1,7 +1,7 @@
-"""Eight doubles side by side, as a type that numba compiles to whatever vector registers a machine has.
+"""SIMD lanes: eight doubles side by side, as a numba type that compiles to any machine's vector registers.
 
-Products and sums here are exact by the caller's doing (`limb`), so that it makes no difference whether the
-compiler fuses them: the same bits come out with and without FMA, on every machine.
+The callers keep all sums and products exact (`limb`), so that it makes no difference whether the compiler fuses them:
+the same bits come out with and without FMA, on every machine.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from numba import types
 from numba.core import cgutils
 
 LANES = 8
-# what is compiled from this package, for functions kept on disk to close over: numba looks at their own file alone
+# a hash of all files of this folder, for cached functions to close over: numba itself looks at their own file alone
 SOURCES = "".join(sha256(path.read_bytes()).hexdigest() for path in sorted(Path(__file__).parent.glob("*.py")))
 _insert: Any = cgutils.get_or_insert_function
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -26,29 +26,29 @@ VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 FUSE = ("contract",)
 
 
-_extending: Any = numba.extending  # what it makes cannot be typed
-_OPTIONS = {"error_model": "numpy", "_nrt": False}  # without counting references: all arrays come from outside
+_extending: Any = numba.extending  # untyped
+_OPTIONS = {"error_model": "numpy", "_nrt": False}  # no reference counting: all arrays come from the caller
 
 
 def compiled(function: Function) -> Function:
-    """Compile with numba as a part of others; no option that lets arithmetic be rearranged."""
-    made: Function = _extending.register_jitable(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_OPTIONS)(function)
-    return made
+    """Compile with numba, to be called from compiled functions; no option lets arithmetic be rearranged."""
+    callee: Function = _extending.register_jitable(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_OPTIONS)(function)
+    return callee
 
 
 def inlined(function: Function) -> Function:
-    """Compile into its callers: for small parts of the innermost loops, whose arguments would cost more than they."""
-    made: Function = _extending.register_jitable(
+    """Compile into its callers: for small parts of innermost loops, where a call would cost more than the work."""
+    callee: Function = _extending.register_jitable(
         no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True, **_OPTIONS
     )(function)
-    return made
+    return callee
 
 
 def entry(function: Function) -> Function:
-    """Compile with numba, to be called from Python; the machine code is kept on disk."""
+    """Compile with numba, to be called from Python; the machine code is cached on disk."""
     compiler: Any = numba.njit
-    made: Function = compiler(cache=True, **_OPTIONS)(function)
-    return made
+    dispatcher: Function = compiler(cache=True, **_OPTIONS)(function)
+    return dispatcher
 
 
 _Type: Any = types.Type
@@ -63,29 +63,29 @@ Lanes: Any = _Lanes(name="Lanes")
 
 @_extending.register_model(_Lanes)
 class _Model(_extending.models.PrimitiveModel):  # type: ignore[misc]
-    def __init__(self, manager: Any, made: Any) -> None:
-        super().__init__(manager, made, VECTOR)
+    def __init__(self, manager: Any, lanes_type: Any) -> None:
+        super().__init__(manager, lanes_type, VECTOR)
 
 
 def instruction(generator: Any) -> Any:
-    """What a call compiles to; for a type checker a function of anything."""
+    """Register a generator of LLVM instructions as a compiled function; untyped for a type checker."""
     return _extending.intrinsic(generator)
 
 
 def address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
-    """Where eight elements of a flat array begin."""
+    """Return the pointer to eight elements of a flat array, from `index` on."""
     data = context.make_array(array_type)(context, builder, array).data
     return builder.bitcast(builder.gep(data, [index]), VECTOR.as_pointer())
 
 
 @instruction
 def load(_: Any, array: Any, index: Any) -> Any:
-    """Eight elements of a flat array from `index` on."""
+    """Return eight elements of a flat array from `index` on."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        made = builder.load(address(context, builder, signature.args[0], *given))
-        made.align = 8
-        return made
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        vector = builder.load(address(context, builder, signature.args[0], *arguments))
+        vector.align = 8
+        return vector
 
     return Lanes(array, types.intp), generate
 
@@ -94,9 +94,9 @@ def load(_: Any, array: Any, index: Any) -> Any:
 def store(_: Any, array: Any, index: Any, value: Any) -> Any:
     """Write eight elements of a flat array from `index` on."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        made = builder.store(given[2], address(context, builder, signature.args[0], *given[:2]))
-        made.align = 8
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        write = builder.store(arguments[2], address(context, builder, signature.args[0], *arguments[:2]))
+        write.align = 8
         return context.get_dummy_value()
 
     return types.void(array, types.intp, Lanes), generate
@@ -104,10 +104,10 @@ def store(_: Any, array: Any, index: Any, value: Any) -> Any:
 
 @instruction
 def spread(_: Any, value: Any) -> Any:
-    """The same double in every lane."""
+    """Return the same double in every lane."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        first = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), given[0], ir.Constant(ir.IntType(32), 0))
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        first = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), arguments[0], ir.Constant(ir.IntType(32), 0))
         return builder.shuffle_vector(
             first, ir.Constant(VECTOR, ir.Undefined), ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
         )
@@ -117,31 +117,31 @@ def spread(_: Any, value: Any) -> Any:
 
 @instruction
 def plus_product(_: Any, total: Any, a: Any, b: Any) -> Any:
-    """Total + a b in each lane."""
+    """Return total + a b in each lane."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        return builder.fadd(given[0], builder.fmul(given[1], given[2], flags=FUSE), flags=FUSE)
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.fadd(arguments[0], builder.fmul(arguments[1], arguments[2], flags=FUSE), flags=FUSE)
 
     return Lanes(Lanes, Lanes, Lanes), generate
 
 
 @instruction
 def nearest(_: Any, a: Any) -> Any:
-    """Each lane rounded to an integer."""
+    """Return each lane rounded to the nearest integer."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         name, kind = f"llvm.rint.v{LANES}f64", ir.FunctionType(VECTOR, [VECTOR])
-        return builder.call(_insert(builder.module, kind, name), given)
+        return builder.call(_insert(builder.module, kind, name), arguments)
 
     return Lanes(Lanes), generate
 
 
 @instruction
 def occupied(_: Any, a: Any) -> Any:
-    """True if any lane is not zero."""
+    """Return true if any lane is not zero."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        bits = builder.fcmp_unordered("!=", given[0], ir.Constant(VECTOR, [0.0] * LANES))
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        bits = builder.fcmp_unordered("!=", arguments[0], ir.Constant(VECTOR, [0.0] * LANES))
         whole = builder.bitcast(bits, ir.IntType(LANES))
         return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
 
@@ -150,25 +150,25 @@ def occupied(_: Any, a: Any) -> Any:
 
 @instruction
 def at_least(_: Any, a: Any, b: Any) -> Any:
-    """1 in each lane where a >= b, else 0."""
+    """Return 1 in each lane where a >= b, else 0."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-        return builder.uitofp(builder.fcmp_ordered(">=", *given), VECTOR)
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.uitofp(builder.fcmp_ordered(">=", *arguments), VECTOR)
 
     return Lanes(Lanes, Lanes), generate
 
 
 @instruction
 def within(_: Any, a: Any, bound: Any) -> Any:
-    """True if no lane is larger in size than a double, or not a number."""
+    """Return true if |a| <= bound in every lane; false if any lane is not a number."""
 
-    def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
         blank = ir.Constant(VECTOR, ir.Undefined)
-        first = builder.insert_element(blank, given[1], ir.Constant(ir.IntType(32), 0))
-        most = builder.shuffle_vector(first, blank, places)
-        low = builder.fcmp_ordered(">=", given[0], builder.fneg(most))
-        high = builder.fcmp_ordered("<=", given[0], most)
+        first = builder.insert_element(blank, arguments[1], ir.Constant(ir.IntType(32), 0))
+        largest = builder.shuffle_vector(first, blank, places)
+        low = builder.fcmp_ordered(">=", arguments[0], builder.fneg(largest))
+        high = builder.fcmp_ordered("<=", arguments[0], largest)
         whole = builder.bitcast(builder.and_(low, high), ir.IntType(LANES))
         return builder.icmp_unsigned("==", whole, ir.Constant(ir.IntType(LANES), (1 << LANES) - 1))
 
@@ -176,12 +176,12 @@ def within(_: Any, a: Any, bound: Any) -> Any:
 
 
 def shuffled(order: tuple[int, ...], name: str) -> Any:
-    """A compiled function that takes lane order[i] to lane i, and 0 where order[i] is negative."""
+    """Return a compiled function that takes lane order[i] to lane i; lane i becomes 0 where order[i] is negative."""
     places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [i if i >= 0 else LANES for i in order])
 
     def shuffle(_: Any, a: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            return builder.shuffle_vector(given[0], ir.Constant(VECTOR, [0.0] * LANES), places)
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return builder.shuffle_vector(arguments[0], ir.Constant(VECTOR, [0.0] * LANES), places)
 
         return Lanes(Lanes), generate
 
@@ -192,12 +192,12 @@ def shuffled(order: tuple[int, ...], name: str) -> Any:
 def _binary(operation: Any, name: str) -> None:
     @instruction
     def apply(_: Any, a: Any, b: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, given: Any) -> Any:
-            return getattr(builder, name)(*given)
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            return getattr(builder, name)(*arguments)
 
         return Lanes(Lanes, Lanes), generate
 
-    # numba takes the place of `apply` in a lambda for the signature; it wants no annotations here
+    # numba calls `choose` with the operands' types and reads the signature off the lambda; it wants no annotations here
     @_extending.overload(operation)
     def choose(a, b):  # type: ignore[no-untyped-def]
         if isinstance(a, _Lanes) and isinstance(b, _Lanes):

@@ -1,11 +1,11 @@
-"""Numbers as digits of radix 2**22, each digit an integer in a double: arithmetic that is exact by size alone.
+"""Numbers as limbs of radix 2**22, each an integer in a double: sums and products stay below 2**53, so are exact.
 
-A number is 2 Σ d[q] 2**(-22 (q + 1)) with whole digits |d[q]| <= 2**21, so of `limbs` digits it is an integer over
-2**(22 limbs - 1). A product of two digits is below 2**43, so a sum of a thousand of them is an exact double, in any
-order, fused or not. Only carrying to the last digit rounds. That replaces the error-free transformations of
-floating-point expansions: nothing hangs on how a compiler arranges additions.
+A number is 2 Σ d[q] 2**(-22 (q + 1)) with integer limbs |d[q]| <= 2**21, so with `limb_count` limbs it is an integer
+over 2**(22 limb_count - 1). A product of two limbs is below 2**43, so a sum of a thousand of them is an exact double,
+in any order, fused or not. Only carrying to the last limb rounds. Floating-point expansions need error-free
+transformations instead; here nothing depends on how a compiler arranges additions.
 
-Eight numbers lie side by side: digit q of all of them is one row of eight doubles.
+Eight numbers lie side by side: limb q of all of them is one row of eight doubles.
 """
 
 from __future__ import annotations
@@ -22,54 +22,54 @@ from .lanes import LANES, compiled, inlined, load, nearest, plus_product, spread
 
 Array = npt.NDArray[np.float64]
 
-DIGIT_BITS = 22
-RADIX = 2.0**DIGIT_BITS
-INVERSE = 2.0**-DIGIT_BITS
-UNIT = 2.0 ** (DIGIT_BITS - 1)  # the first digit of 1
-DOUBLED = 2.0  # of two numbers' digits p and q the product belongs to digit p + q + 1, twice
-LARGEST = 2.0 ** (DIGIT_BITS + 1)  # a first digit above this (the number 4) might spoil exactness
+LIMB_BITS = 22
+RADIX = 2.0**LIMB_BITS
+INVERSE = 2.0**-LIMB_BITS
+UNIT = 2.0 ** (LIMB_BITS - 1)  # the first limb of 1
+DOUBLED = 2.0  # the product of limbs p and q of two numbers counts twice in limb p + q + 1
+LARGEST = 2.0 ** (LIMB_BITS + 1)  # a first limb above this (the number 4) might spoil exactness
 MOST_LIMBS = 18  # with more, and the order that goes with them, sums could pass 2**53
 
 
-def fraction_bits(limbs: int) -> int:
-    """A number of so many digits is an integer over two to this power."""
-    return DIGIT_BITS * limbs - 1
+def fraction_bits(limb_count: int) -> int:
+    """Return b such that a number of `limb_count` limbs is an integer over 2**b."""
+    return LIMB_BITS * limb_count - 1
 
 
-def split(value: int, limbs: int) -> list[float]:
-    """The digits of an integer over 2**fraction_bits(limbs), first the highest."""
-    half, digits = 1 << (DIGIT_BITS - 1), []
-    for _ in range(limbs - 1):
-        digit = ((value + half) & (2 * half - 1)) - half
-        digits.append(float(digit))
-        value = (value - digit) >> DIGIT_BITS
-    return [float(value), *digits[::-1]]
+def split(value: int, limb_count: int) -> list[float]:
+    """Return the limbs of an integer over 2**fraction_bits(limb_count), highest first."""
+    half, limbs = 1 << (LIMB_BITS - 1), []
+    for _ in range(limb_count - 1):
+        limb = ((value + half) & (2 * half - 1)) - half
+        limbs.append(float(limb))
+        value = (value - limb) >> LIMB_BITS
+    return [float(value), *limbs[::-1]]
 
 
 def nearest_whole(value: Any, bits: int) -> int:
-    """An mpf or a rational times 2**bits, to the nearest integer."""
+    """Return an mpf or a rational times 2**bits, rounded to the nearest integer."""
     exact = value if isinstance(value, int | Fraction) else to_fraction(value)
     return round(exact * Fraction(2) ** bits)
 
 
-def rows_of(numbers: Sequence[Any], limbs: int) -> Array:
-    """Up to eight mpf or rationals side by side, shape (limbs * 8,)."""
-    made = np.zeros((limbs, LANES))
+def rows_of(numbers: Sequence[Any], limb_count: int) -> Array:
+    """Return up to eight mpf or rationals side by side, shape (limb_count * 8,)."""
+    rows = np.zeros((limb_count, LANES))
     for lane, number in enumerate(numbers):
-        made[:, lane] = split(nearest_whole(number, fraction_bits(limbs)), limbs)
-    return made.ravel()
+        rows[:, lane] = split(nearest_whole(number, fraction_bits(limb_count)), limb_count)
+    return rows.ravel()
 
 
-def joined(digits: Array) -> Any:
-    """Digits of shape (..., limbs) as integers over 2**fraction_bits(limbs), an object array of shape (...)."""
-    limbs = digits.shape[-1]
-    whole = digits.astype(np.int64)
-    if limbs % 2:
+def joined(limbs: Array) -> Any:
+    """Return limbs of shape (..., limb_count) as integers over 2**fraction_bits(limb_count): objects, shape (...)."""
+    limb_count = limbs.shape[-1]
+    whole = limbs.astype(np.int64)
+    if limb_count % 2:
         whole = np.concatenate([np.zeros_like(whole[..., :1]), whole], axis=-1)
-    pairs = ((whole[..., ::2] << DIGIT_BITS) + whole[..., 1::2]).astype(object)
+    pairs = ((whole[..., ::2] << LIMB_BITS) + whole[..., 1::2]).astype(object)
     total = pairs[..., 0]
     for place in range(1, pairs.shape[-1]):
-        total = (total << (2 * DIGIT_BITS)) + pairs[..., place]
+        total = (total << (2 * LIMB_BITS)) + pairs[..., place]
     return total
 
 
@@ -82,49 +82,94 @@ def clear(rows: Array, count: int) -> None:
 
 @inlined
 def carry(rows: Array, first: int, last: int) -> None:
-    """Bring the rows below `first` to digits, from the last upwards; exact."""
+    """Bring the rows below `first` into the range of limbs, from the last upwards; exact."""
     radix, inverse = spread(RADIX), spread(INVERSE)
-    digit = load(rows, LANES * last)
+    limb = load(rows, LANES * last)
     for r in range(last, first, -1):
-        over = nearest(digit * inverse)
-        store(rows, LANES * r, digit - over * radix)
-        digit = load(rows, LANES * (r - 1)) + over
-    store(rows, LANES * first, digit)
+        over = nearest(limb * inverse)
+        store(rows, LANES * r, limb - over * radix)
+        limb = load(rows, LANES * (r - 1)) + over
+    store(rows, LANES * first, limb)
 
 
 @inlined
 def divide(rows: Array, first: int, last: int, divisor: float) -> None:
-    """Divide by a whole number below 2**20, from `first` downwards; what is left at `last` is dropped."""
+    """Divide by an integer below 2**20, from row `first` downwards; the remainder at `last` is dropped."""
     radix, by, inverse = spread(RADIX), spread(divisor), spread(1.0 / divisor)
-    rest = spread(0.0)
+    remainder = spread(0.0)
     for r in range(first, last + 1):
-        digit = plus_product(load(rows, LANES * r), rest, radix)
-        quotient = nearest(digit * inverse)
-        rest = digit - quotient * by
+        limb = plus_product(load(rows, LANES * r), remainder, radix)
+        quotient = nearest(limb * inverse)
+        remainder = limb - quotient * by
         store(rows, LANES * r, quotient)
 
 
 @compiled
-def carry_scalar(digits: Array, last: int) -> None:
-    """Bring one number's digits below the first into range, from the last upwards."""
+def carry_scalar(limbs: Array, last: int) -> None:
+    """Bring one number's limbs below the first into range, from the last upwards."""
     for r in range(last, 0, -1):
-        over = np.rint(digits[r] * INVERSE)
-        digits[r] -= over * RADIX
-        digits[r - 1] += over
+        over = np.rint(limbs[r] * INVERSE)
+        limbs[r] -= over * RADIX
+        limbs[r - 1] += over
 
 
 @compiled
-def add_product(to: Array, a: Array, b: Array, start: int, limbs: int) -> None:
-    """Add a b lane by lane to rows 0 … limbs of `to`; digits of a are doubled, those of b before `start` are zero."""
-    for r in range(start + 1, limbs + 1):
+def add_product(to: Array, a: Array, b: Array, start: int, limb_count: int) -> None:
+    """Add a b in each lane to rows 0 … limb_count of `to`; a comes doubled, limbs of b before `start` are zero."""
+    for r in range(start + 1, limb_count + 1):
         total = load(to, LANES * r)
         for q in range(start, r):
             total = plus_product(total, load(a, LANES * (r - 1 - q)), load(b, LANES * q))
         store(to, LANES * r, total)
 
 
+@compiled
+def set_double(to: Array, value: float, limb_count: int) -> None:
+    """Set a number's limbs to a double."""
+    to[:] = 0.0
+    add_double(to, value, limb_count)
+
+
+@compiled
+def add_double(to: Array, value: float, limb_count: int) -> None:
+    """Add a double to a number's limbs."""
+    left = value * UNIT
+    for q in range(limb_count):
+        limb = np.rint(left)
+        to[q] += limb
+        left = (left - limb) * RADIX
+    carry_scalar(to, limb_count - 1)
+
+
+@compiled
+def sign_of(limbs: Array, limb_count: int) -> int:
+    """Return the sign of carried limbs: 1, 0 or -1."""
+    for q in range(limb_count):
+        if limbs[q] != 0.0:
+            return 1 if limbs[q] > 0.0 else -1
+    return 0
+
+
+@compiled
+def double_of(limbs: Array, limb_count: int) -> float:
+    """Return the approximate double value of carried limbs."""
+    value = 0.0
+    for q in range(limb_count - 1, -1, -1):
+        value = (value + limbs[q]) * INVERSE
+    return DOUBLED * value
+
+
+@compiled
+def double_of_lane(rows: Array, start: int, lane: int, limb_count: int) -> float:
+    """Return the approximate double value of one lane of rows from `start` on."""
+    value = 0.0
+    for q in range(limb_count - 1, -1, -1):
+        value = (value + rows[start + LANES * q + lane]) * INVERSE
+    return DOUBLED * value
+
+
 def aligned(count: int) -> Array:
-    """Zeros that start on a cache line: a row is one."""
-    made = np.zeros(count + LANES)
-    begin = -made.ctypes.data // made.itemsize % LANES
-    return made[begin : begin + count]
+    """Return zeros that start on a cache line, so that each row fills one."""
+    room = np.zeros(count + LANES)
+    start = -room.ctypes.data // room.itemsize % LANES
+    return room[start : start + count]

@@ -1,4 +1,4 @@
-"""Steps from release to the end, compiled: states at output times and zeros of xdot as they are passed."""
+"""The compiled loop of Taylor steps: states at the output times and zeros of xdot, written as steps pass them."""
 
 from __future__ import annotations
 
@@ -6,92 +6,108 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .dense_output import divide_place, evaluate, finish
+from .dense_output import divide_place, evaluate, to_cartesian
 from .lanes import LANES, SOURCES, compiled, entry, load, store
 from .limb import Array, aligned
-from .series import Counts, Line, Series, expand, room
-from .step import AIM, SLIP, Model, begin, end, next_length, reach, scale_line, settle
-from .zeros import FOUND, GRAZING, Search, bracket_zeros, polish, search_room, sign_leaving, sign_now
+from .polish import polish
+from .series import Counts, LinearTerms, Series, empty_series, taylor_coefficients
+from .step import (
+    LEAST_FACTOR,
+    SAFETY_FACTOR,
+    Model,
+    next_length,
+    order_zero,
+    project,
+    scale_terms,
+    step_size_factor,
+    sum_series,
+)
+from .xdot import sign_after_release, sign_of_xdot
+from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search
 
-GOOD, FULL, STUCK, DOUBTFUL = range(4)  # what a march says when it stops
+# why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
+GOOD, FULL, STUCK, DOUBTFUL = range(4)
 COLUMNS = 7  # x, y, z, vx, vy, vz, ax
-TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # of `Carried.counts`
+TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # in `MarchState.counts`
 
 
-class Carried(NamedTuple):
-    """What goes from step to step.
+class MarchState(NamedTuple):
+    """State carried between steps, and working arrays.
 
     Attributes:
-        now: the state, rows of x, m, w and V in the unit of time.
-        counts: time and step length in grains; how often over xdot vanishes at release; sign of xdot; steps;
-            output times passed; zeros written; the length that `line` was made for; the next step's.
-        s, line, rows, place: room for a step.
-        search: room for its zeros.
+        now: rows of n, in the axes x, m, w, and of V in the unit of time.
+        counts: time and step length in grains; multiplicity of the zero of xdot at release; sign of xdot; steps;
+            output times passed; zeros written; the step length that `line` is for; the next step's length.
+        s: the step's series.
+        line: its linear terms.
+        rows, place: working arrays: all lanes at some place in the step, and that place.
+        search: working arrays for the step's zeros.
     """
 
     now: Array
     counts: Counts
     s: Series
-    line: Line
+    line: LinearTerms
     rows: Array
     place: Array
     search: Search
 
 
 class Outputs(NamedTuple):
-    """Output times and what is found at them; zeros of xdot.
+    """Output times, the states at them, and zeros of xdot.
 
     Attributes:
-        whole, rest: times in grains, and digits of what is beyond the whole ones, shape (times * limbs,).
-        states: `limbs` rows per time, as `dense_output.finish` makes them.
+        whole, remainders: times in whole grains, and the limbs of the remainders, shape (times * limb_count,).
+        states: `limb_count` rows per time, as `dense_output.to_cartesian` writes them.
         moments: per zero the step's start and length in grains, and the crossing's sign.
-        places: per zero the digits of its place in the step.
-        met: `limbs` rows per zero.
-        steps: per step of a call its start and length in grains; may be shorter than the steps.
-        series: for as many steps the coefficients, (order + 1) * `limbs` rows.
+        places: per zero the limbs of its place in the step.
+        zero_states: `limb_count` rows per zero.
+        steps: start and length in grains of the first steps of a call, as many as there is room for.
+        series: the coefficients of as many steps, (order + 1) * `limb_count` rows each.
     """
 
     whole: Counts
-    rest: Array
+    remainders: Array
     states: Array
     moments: Counts
     places: Array
-    met: Array
+    zero_states: Array
     steps: Counts
     series: Array
 
 
-def carried(start: Array, first: int, multiplicity: int, order: int, limbs: int) -> Carried:
-    """At release."""
+def state_at_release(start: Array, first: int, multiplicity: int, order: int, limb_count: int) -> MarchState:
+    """Return the state carried between steps, initialised at the release."""
     counts = np.zeros(9, dtype=np.int64)
     counts[LENGTH], counts[MULTIPLICITY] = first, multiplicity
-    line = Line(*(aligned(LANES * (limbs + 2)) for _ in Line._fields))
-    rows = aligned(LANES * (limbs + 2))
+    terms = LinearTerms(*(aligned(LANES * (limb_count + 2)) for _ in LinearTerms._fields))
+    rows = aligned(LANES * (limb_count + 2))
     now = aligned(len(start))
     now[:] = start
-    return Carried(now, counts, room(order, limbs), line, rows, np.zeros(limbs + 2), search_room(order, limbs))
+    series, search = empty_series(order, limb_count), empty_search(order, limb_count)
+    return MarchState(now, counts, series, terms, rows, np.zeros(limb_count + 2), search)
 
 
 @compiled
-def _march(at: Carried, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
-    """Take up to `steps` steps, until the time in grains is `until` or later; says why it stopped."""
-    s, counts, limbs, order = at.s, at.counts, model.limbs, model.order
+def _march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
+    """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
+    s, counts, limb_count, order = state.s, state.counts, model.limb_count, model.order
     for i in range(steps):
-        if seek and counts[ZEROS] + FOUND > len(out.moments) // 3:
+        if seek and counts[ZEROS] + MOST_ZEROS > len(out.moments) // 3:
             return FULL
-        if not _series(at, model):
+        if not _step_coefficients(state, model):
             return STUCK
         m = counts[LENGTH]
-        end(at.rows, s, order, limbs)
+        sum_series(state.rows, s, order, limb_count)
         if seek and counts[STEPS] == 0:
-            counts[SIGN] = _first_sign(at, model)
-        settle(at.now, at.rows, s, m, limbs)
-        if seek and not _zeros(at, model, out):
+            counts[SIGN] = _first_sign(state, model)
+        project(state.now, state.rows, s, m, limb_count)
+        if seek and not _write_zeros(state, model, out):
             return DOUBTFUL
-        _outputs(at, model, out)
+        _write_outputs(state, model, out)
         if 2 * i < len(out.steps):
             out.steps[2 * i], out.steps[2 * i + 1] = counts[TIME], m
-            size = (order + 1) * limbs * LANES
+            size = (order + 1) * limb_count * LANES
             for j in range(0, size, LANES):
                 store(out.series, i * size + j, load(s.c, j))
         counts[TIME] += m
@@ -104,82 +120,82 @@ def _march(at: Carried, model: Model, out: Outputs, until: int, steps: int, seek
 
 
 @compiled
-def _first_sign(at: Carried, model: Model) -> int:
-    """The sign of xdot at release, or just after it."""
-    if at.counts[MULTIPLICITY] > 0:
-        return sign_leaving(at.s, at.counts[MULTIPLICITY], model.limbs)
-    return sign_now(at.now, model.line.turn, at.s, model.limbs)
+def _first_sign(state: MarchState, model: Model) -> int:
+    """Return the sign of xdot at release, or just after it."""
+    if state.counts[MULTIPLICITY] > 0:
+        return sign_after_release(state.s, state.counts[MULTIPLICITY], model.limb_count)
+    return sign_of_xdot(state.now, model.terms.turn, state.s, model.limb_count)
 
 
 @compiled
-def _series(at: Carried, model: Model) -> bool:
-    """The coefficients of the next step, made shorter until they end within it; False if no length will do."""
-    counts = at.counts
+def _step_coefficients(state: MarchState, model: Model) -> bool:
+    """Compute the coefficients of the next step, shortened until they decay enough; false if no length will do."""
+    counts = state.counts
     while True:
         m = counts[LENGTH]
         if m != counts[SCALED]:
-            scale_line(at.line, model, m)
+            scale_terms(state.line, model, m)
             counts[SCALED] = m
-        begin(at.s, at.line, at.now, m, model.limbs)
+        order_zero(state.s, state.line, state.now, m, model.limb_count)
         shorter = m // 2
-        if expand(at.s, at.line, model.order, model.limbs, model.drag):
-            part = reach(at.s, model.order, model.limbs, model.tolerance)
-            if part >= SLIP:
-                counts[NEXT] = next_length(m, part, model.most)
+        if taylor_coefficients(state.s, state.line, model.order, model.limb_count, model.drag):
+            factor = step_size_factor(state.s, model.order, model.limb_count, model.tolerance)
+            if factor >= LEAST_FACTOR:
+                counts[NEXT] = next_length(m, factor, model.longest)
                 return True
-            shorter = min(int(m * part * AIM), m - 1)
+            shorter = min(int(m * factor * SAFETY_FACTOR), m - 1)
         if shorter < 1:
             return False
         counts[LENGTH] = shorter
 
 
 @compiled
-def _outputs(at: Carried, model: Model, out: Outputs) -> None:
-    """States at the times that the step passes."""
-    counts, limbs = at.counts, model.limbs
-    begun, m = counts[TIME], counts[LENGTH]
-    while counts[ROWS] < len(out.whole) and out.whole[counts[ROWS]] < begun + m:
+def _write_outputs(state: MarchState, model: Model, out: Outputs) -> None:
+    """Write the states at the output times that the step passes."""
+    counts, limb_count = state.counts, model.limb_count
+    start, m = counts[TIME], counts[LENGTH]
+    while counts[ROWS] < len(out.whole) and out.whole[counts[ROWS]] < start + m:
         i = counts[ROWS]
-        at.place[:] = 0.0
-        for q in range(limbs):
-            at.place[q] = out.rest[i * limbs + q]
-        divide_place(at.place, out.whole[i] - begun, m, limbs)
-        evaluate(at.rows, at.s, at.place, model.order, limbs)
-        finish(out.states, i * limbs * LANES, at.rows, at.s, at.line, model, m)
+        state.place[:] = 0.0
+        for q in range(limb_count):
+            state.place[q] = out.remainders[i * limb_count + q]
+        divide_place(state.place, out.whole[i] - start, m, limb_count)
+        evaluate(state.rows, state.s, state.place, model.order, limb_count)
+        to_cartesian(out.states, i * limb_count * LANES, state.rows, state.s, state.line, model, m)
         counts[ROWS] += 1
 
 
 @compiled
-def _zeros(at: Carried, model: Model, out: Outputs) -> bool:
-    """Zeros of xdot on the step; False if they stay in doubt."""
-    counts, limbs, z, m = at.counts, model.limbs, at.search, at.counts[LENGTH]
-    after = sign_now(at.now, model.line.turn, at.s, limbs)
-    found = bracket_zeros(z, at.s, at.line, at.rows, counts[SIGN], after, counts[MULTIPLICITY], model)
-    if found == GRAZING:
+def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
+    """Write the zeros of xdot on the step; return false if they stay in doubt."""
+    counts, limb_count, z, m = state.counts, model.limb_count, state.search, state.counts[LENGTH]
+    after = sign_of_xdot(state.now, model.terms.turn, state.s, limb_count)
+    count = bracket_zeros(z, state.s, state.line, state.rows, counts[SIGN], after, counts[MULTIPLICITY], model)
+    if count == GRAZING:
         return False
-    for i in range(found):
-        if not polish(z, i, at.s, at.line, at.rows, model):
+    for i in range(count):
+        if not polish(z, i, state.s, state.line, state.rows, model):
             return False
         n = counts[ZEROS]
-        for q in range(limbs):
-            out.places[n * limbs + q] = z.place[q]
-        finish(out.met, n * limbs * LANES, at.rows, at.s, at.line, model, m)
-        out.moments[3 * n], out.moments[3 * n + 1], out.moments[3 * n + 2] = counts[TIME], m, z.way[i]
+        for q in range(limb_count):
+            out.places[n * limb_count + q] = z.place[q]
+        to_cartesian(out.zero_states, n * limb_count * LANES, state.rows, state.s, state.line, model, m)
+        out.moments[3 * n], out.moments[3 * n + 1], out.moments[3 * n + 2] = counts[TIME], m, z.direction[i]
         counts[ZEROS] += 1
     counts[SIGN] = after
     return True
 
 
 def _entry(sources: str) -> Any:
-    """What Python calls.
+    """Return the function that Python calls, cached on disk for these sources.
 
-    numba's cache on disk looks at the file of the function that is called, not at those that it calls; but what a
-    function closes over is part of its key.
+    numba's cache looks at the file of the function that is called, not at those that it calls; but whatever a function
+    closes over is part of its key.
     """
 
     @entry
-    def march(at: Carried, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
-        return _march(at, model, out, until, steps, seek) if sources else STUCK
+    def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
+        return _march(state, model, out, until, steps, seek) if sources else STUCK
 
     return march
 

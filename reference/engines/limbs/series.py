@@ -1,13 +1,13 @@
-"""Taylor coefficients of the pendulum in digits, order by order.
+"""Taylor coefficients of the pendulum's n, V, tension and spin in limbs, by recurrence, order by order.
 
-In axes of the Earth, w along its axis, x east, m towards the axis' far side, with V = n' + Ω × n and time in steps
-(h is in every constant below, coefficients come multiplied with h**k):
+The formulation is `inertial`, V = n' + Ω × n, in axes of the Earth: w along its axis, x east, m towards the axis' far
+side. Time is in steps (h is in every constant below, and coefficients are multiplied by h**k):
 
     n' = V - Ω × n,    V' = A - Ω × V - λ n - γ n',    λ' = 3 A·V - A·(Ω × n) - 2 γ (λ - A·n - ω j),
     j' = A_m x - γ (j - ω (1 - w²)),
 
 where λ = V·V + n·A is the pull of the cord and j = (n × V)_w. All but λ n (and w², with drag) is linear. Coefficient
-k is small as h**k, its leading digits are zero and are not touched, so that high orders cost little. The lanes are
+k is small as h**k, its leading limbs are zero and are not touched, so that high orders cost little. The lanes are
 x, m, w, Vx, Vm, Vw, λ, j.
 """
 
@@ -34,11 +34,11 @@ from .unrolled import (
 )
 
 X, M, W, VX, VM, VW, PULL, SPIN = range(LANES)
-AXIAL_SQUARE = 3  # the fourth of the sums
+AXIAL_SQUARE = 3  # index of w² among the sums
 
 Counts = npt.NDArray[np.int64]
 
-# to lane i goes lane order[i]; -1 stands for nothing
+# lane i takes the value of lane order[i], or 0 where that is -1
 _velocity = shuffled((VX, VM, VW, -1, -1, -1, -1, -1), "_velocity")
 partner = shuffled(PARTNER, "partner")
 to_speeds = shuffled(TO_SPEEDS, "to_speeds")
@@ -51,15 +51,15 @@ _pull_across = shuffled((-1, -1, -1, -1, -1, -1, 1, -1), "_pull_across")
 _pull_spin = shuffled((-1, -1, -1, -1, -1, -1, 7, -1), "_pull_spin")
 
 
-class Line(NamedTuple):
-    """Constants of the linear terms, doubled digits in rows, one per lane; made for one step length.
+class LinearTerms(NamedTuple):
+    """Constants of the linear terms for one step length: one per lane, its limbs doubled, in rows.
 
     Attributes:
         turn: ω, -ω, -A_m ω, ω, -ω, 3 A_w, 3 A_m, A_m, times `partner` of the coefficients.
         drag: γω, -γω, 2γ A_w, -γ, -γ, -γ, -2γ, -γ, times the coefficients.
         drag_pull: lanes m and j: 2γ A_m, 2γω.
         drag_axial: lane 0: -γω, times w².
-        steady: what does not depend on the state: A, and γω for j; not doubled.
+        steady: the constant terms: A, and γω for j; not doubled.
     """
 
     turn: Array
@@ -70,17 +70,17 @@ class Line(NamedTuple):
 
 
 class Series(NamedTuple):
-    """Coefficients of one step and room to work in.
+    """Coefficients of one step, and working arrays.
 
     Attributes:
-        c: coefficients, (order + 1) blocks of `limbs` rows.
-        first: per order its first digit that is not zero.
-        planes: digit q of x, m, w, λ, each with all orders in a row.
-        used: per digit the number of orders in which it may be other than zero.
-        sums: digit r of λ x, λ m, λ w and w², each with all orders in a row, not carried.
-        factors: the digits of x, m, w, λ of one order, doubled, each a row of eight times the same.
+        c: coefficients, (order + 1) blocks of `limb_count` rows.
+        first: per order its first limb that is not zero.
+        planes: limb q of x, m, w, λ, each with all orders in a row.
+        used: per limb the number of orders in which it may be other than zero.
+        sums: limb r of λ x, λ m, λ w and w², each with all orders in a row, not carried.
+        factors: the limbs of x, m, w, λ of one order, doubled, each repeated in all eight lanes of a row.
         twice: order 0, doubled.
-        total, partners, other, scalar: rows to work in.
+        total, partners, other, scalar: working arrays.
     """
 
     c: Array
@@ -96,17 +96,17 @@ class Series(NamedTuple):
     scalar: Array
 
 
-def room(order: int, limbs: int) -> Series:
-    """Empty arrays for a series of an order, MOST_ORDER at most."""
+def empty_series(order: int, limb_count: int) -> Series:
+    """Return empty arrays for a series of an order, at most MOST_ORDER."""
     if order > MOST_ORDER:
         raise ValueError(f"a series of order {order}, more than {MOST_ORDER}")
-    rows = LANES * (limbs + 2)
+    rows = LANES * (limb_count + 2)
     return Series(
-        c=aligned((order + 1) * limbs * LANES),
+        c=aligned((order + 1) * limb_count * LANES),
         first=np.zeros(order + 1, dtype=np.int64),
-        planes=aligned(limbs * PLANES * WIDTH),
-        used=np.zeros(limbs, dtype=np.int64),
-        sums=aligned((limbs + 1) * PLANES * WIDTH),
+        planes=aligned(limb_count * PLANES * WIDTH),
+        used=np.zeros(limb_count, dtype=np.int64),
+        sums=aligned((limb_count + 1) * PLANES * WIDTH),
         factors=aligned(PLANES * rows),
         twice=aligned(rows),
         total=aligned(rows),
@@ -117,80 +117,80 @@ def room(order: int, limbs: int) -> Series:
 
 
 @compiled
-def expand(s: Series, line: Line, order: int, limbs: int, drag: bool) -> bool:
-    """Fill the coefficients from those of order 0; False if one is too large for exact arithmetic.
+def taylor_coefficients(s: Series, terms: LinearTerms, order: int, limb_count: int, drag: bool) -> bool:
+    """Fill the coefficients from those of order 0; return false if one is too large for exact arithmetic.
 
-    Of λ n only the products with order 0 are wanted at once; the others of an order are added to the sums while the
+    Of λ n only the products with order 0 are needed at once; the others of an order are added to the sums while the
     processor waits for the divisions of the next.
     """
-    _empty(s, order, limbs, drag)
-    if not _looked_at(s.c, s.first, 0, 0, limbs):
+    _clear_sums(s, order, limb_count, drag)
+    if not _note_first_limb(s.c, s.first, 0, 0, limb_count):
         return False
     for k in range(order):
         first = s.first[k]
-        _derive(s, line, k, first, limbs)
+        _set_derivative(s, terms, k, first, limb_count)
         if drag:
-            _slow(s, line, k, first, limbs)
+            _add_drag(s, terms, k, first, limb_count)
         low = 0
-        while low < limbs and not occupied(load(s.total, LANES * low)):
+        while low < limb_count and not occupied(load(s.total, LANES * low)):
             low += 1
-        divide(s.total, low, limbs, k + 1.0)
+        divide(s.total, low, limb_count, k + 1.0)
         low = max(low - 1, 0)
-        carry(s.total, low, limbs)
-        block = (k + 1) * limbs * LANES
-        for q in range(limbs):
+        carry(s.total, low, limb_count)
+        block = (k + 1) * limb_count * LANES
+        for q in range(limb_count):
             store(s.c, block + LANES * q, load(s.total, LANES * q))
-        if not _looked_at(s.c, s.first, k + 1, low, limbs):
+        if not _note_first_limb(s.c, s.first, k + 1, low, limb_count):
             return False
-        _convolve(s, k, order, limbs, drag)
+        _add_products(s, k, order, limb_count, drag)
         if 2 * k < order:
             # last, as a vector that is loaded just after a part of it was stored must wait
-            _double(s, k, first, limbs, drag)
-            _enter(s, k, first, limbs)
+            _add_squares(s, k, first, limb_count, drag)
+            _copy_to_planes(s, k, first, limb_count)
     return True
 
 
 @inlined
-def _empty(s: Series, order: int, limbs: int, drag: bool) -> None:
+def _clear_sums(s: Series, order: int, limb_count: int, drag: bool) -> None:
     zero = spread(0.0)
-    for row in range(0, limbs * PLANES * WIDTH, WIDTH):
+    for row in range(0, limb_count * PLANES * WIDTH, WIDTH):
         for i in range(0, order // 2 + LANES, LANES):
             store(s.planes, row + i, zero)
-    for digit in range(0, (limbs + 1) * PLANES * WIDTH, PLANES * WIDTH):
-        for row in range(digit, digit + (PLANES if drag else 3) * WIDTH, WIDTH):
+    for limb in range(0, (limb_count + 1) * PLANES * WIDTH, PLANES * WIDTH):
+        for row in range(limb, limb + (PLANES if drag else 3) * WIDTH, WIDTH):
             for i in range(0, order + LANES, LANES):
                 store(s.sums, row + i, zero)
-    for q in range(limbs):
+    for q in range(limb_count):
         s.used[q] = 0
 
 
 @inlined
-def _looked_at(c: Array, firsts: Counts, k: int, low: int, limbs: int) -> bool:
-    """Note the first digit of order k, from `low` on; False if a number is too large."""
-    block, first = k * limbs * LANES, low
-    while first < limbs and not occupied(load(c, block + LANES * first)):
+def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int) -> bool:
+    """Note the first limb of order k that is not zero, from `low` on; return false if a number is too large."""
+    block, first = k * limb_count * LANES, low
+    while first < limb_count and not occupied(load(c, block + LANES * first)):
         first += 1
     firsts[k] = first
     return first > 0 or within(load(c, block), LARGEST)
 
 
 @inlined
-def _derive(s: Series, line: Line, k: int, first: int, limbs: int) -> None:
-    """The derivative's coefficient of order k in `total`, not carried; all but drag."""
-    c, block, turn, total = s.c, k * limbs * LANES, line.turn, s.total
-    for r in range(limbs + 1):
+def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
+    """Write the derivative's coefficient of order k, drag left out, to `total`; not carried."""
+    c, block, turn, total = s.c, k * limb_count * LANES, terms.turn, s.total
+    for r in range(limb_count + 1):
         value = spread(0.0) - column(s.sums, r * PLANES * WIDTH + k)
-        if first <= r < limbs:
+        if first <= r < limb_count:
             value = value + _velocity(load(c, block + LANES * r))
         if k == 0:
-            value = value + load(line.steady, LANES * r)
+            value = value + load(terms.steady, LANES * r)
         store(total, LANES * r, value)
     if k == 1:
-        for q in range(limbs):
+        for q in range(limb_count):
             v = load(c, LANES * q)
             store(s.twice, LANES * q, v + v)
     zeroth = s.twice if k else c
-    for r in range(first + 1 + MOST_ROWS, limbs + 1):
+    for r in range(first + 1 + MOST_ROWS, limb_count + 1):
         turned, pulled = spread(0.0), spread(0.0)
         for q in range(first, r):
             v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
@@ -199,39 +199,39 @@ def _derive(s: Series, line: Line, k: int, first: int, limbs: int) -> None:
             pulled = plus_product(pulled, spread(zeroth[p + PULL]), v)
         value = _turned(turned) + (_pull_axial(turned) + _pull_turned(turned)) - to_speeds(pulled)
         store(total, LANES * r, load(total, LANES * r) + value)
-    rows = min(limbs - first, MOST_ROWS)
+    rows = min(limb_count - first, MOST_ROWS)
     add_linear(rows, c, block + LANES * first, zeroth, 0, turn, 0, total, LANES * (first + 1))
 
 
 @compiled
-def _slow(s: Series, line: Line, k: int, first: int, limbs: int) -> None:
+def _add_drag(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
     """Add the terms of drag to `total`."""
-    c, block, start, stride = s.c, k * limbs * LANES, AXIAL_SQUARE * WIDTH + k, PLANES * WIDTH
+    c, block, start, stride = s.c, k * limb_count * LANES, AXIAL_SQUARE * WIDTH + k, PLANES * WIDTH
     weight = 2.0 * DOUBLED if k else DOUBLED
-    for r in range(limbs + 1):
+    for r in range(limb_count + 1):
         square = s.sums[start + r * stride]
         for q in range(first, r):
             square += weight * c[block + LANES * q + W] * c[LANES * (r - 1 - q) + W]
         s.scalar[r] = square
-    carry_scalar(s.scalar, limbs)
-    for r in range(1, limbs + 1):
+    carry_scalar(s.scalar, limb_count)
+    for r in range(1, limb_count + 1):
         slowed, pulled, axial = spread(0.0), spread(0.0), 0.0
         for q in range(first, r):
             v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
-            slowed = plus_product(slowed, load(line.drag, p), v)
-            pulled = plus_product(pulled, load(line.drag_pull, p), v)
+            slowed = plus_product(slowed, load(terms.drag, p), v)
+            pulled = plus_product(pulled, load(terms.drag_pull, p), v)
         for q in range(r):
-            axial += line.drag_axial[LANES * (r - 1 - q)] * s.scalar[q]
+            axial += terms.drag_axial[LANES * (r - 1 - q)] * s.scalar[q]
         value = load(s.total, LANES * r) + _dragged(slowed) + _dragged_aside(slowed)
         store(s.total, LANES * r, value + (_pull_across(pulled) + _pull_spin(pulled)))
         s.total[LANES * r + SPIN] += axial
 
 
 @inlined
-def _double(s: Series, k: int, first: int, limbs: int, drag: bool) -> None:
+def _add_squares(s: Series, k: int, first: int, limb_count: int, drag: bool) -> None:
     """Add the products of a coefficient with itself, or of λ and n of one order, to the sums of order 2 k."""
-    c, sums, block = s.c, s.sums, k * limbs * LANES
-    for r in range(2 * first + 1, limbs + 1):
+    c, sums, block = s.c, s.sums, k * limb_count * LANES
+    for r in range(2 * first + 1, limb_count + 1):
         total, square = spread(0.0), 0.0
         for q in range(first, r - first):
             a, b = block + LANES * q, block + LANES * (r - 1 - q)
@@ -247,23 +247,23 @@ def _double(s: Series, k: int, first: int, limbs: int, drag: bool) -> None:
 
 
 @inlined
-def _convolve(s: Series, k: int, order: int, limbs: int, drag: bool) -> None:
-    """Add to the sums all products of order k with lower ones."""
+def _add_products(s: Series, k: int, order: int, limb_count: int, drag: bool) -> None:
+    """Add to the sums all products of order k with lower orders."""
     c, planes, sums, factors, first, stride = s.c, s.planes, s.sums, s.factors, s.first[k], PLANES * WIDTH
-    for p in range(first, limbs):
-        digit, row = LANES * (k * limbs + p), PLANES * LANES * p
-        store(factors, row, spread(DOUBLED * c[digit + X]))
-        store(factors, row + LANES, spread(DOUBLED * c[digit + M]))
-        store(factors, row + 2 * LANES, spread(DOUBLED * c[digit + W]))
-        store(factors, row + 3 * LANES, spread(DOUBLED * c[digit + PULL]))
+    for p in range(first, limb_count):
+        limb, row = LANES * (k * limb_count + p), PLANES * LANES * p
+        store(factors, row, spread(DOUBLED * c[limb + X]))
+        store(factors, row + LANES, spread(DOUBLED * c[limb + M]))
+        store(factors, row + 2 * LANES, spread(DOUBLED * c[limb + W]))
+        store(factors, row + 3 * LANES, spread(DOUBLED * c[limb + PULL]))
     highest = 0
     for j in range(0, max(min(k, order - k), 1), LANES):
-        while j > 0 and highest < limbs and s.used[highest] <= j:
+        while j > 0 and highest < limb_count and s.used[highest] <= j:
             highest += 1
         r, at = first + highest + 1, k + j
         if drag:
-            _convolve_square(planes, factors, sums, first, highest, limbs, j, at)
-        rows = limbs + 1 - r
+            _add_axial_squares(planes, factors, sums, first, highest, limb_count, j, at)
+        rows = limb_count + 1 - r
         while rows > MOST_ROWS:
             rows -= 2
             _two_rows(planes, factors, sums, first, highest, r + rows, j, at)
@@ -282,7 +282,7 @@ def _two_rows(
     j: int,
     at: int,
 ) -> None:
-    """Rows r and r + 1 of the sums: each digit that is loaded serves both."""
+    """Add the products to rows r and r + 1 of the sums: each limb that is loaded serves both."""
     stride, factor = PLANES * WIDTH, PLANES * LANES * first
     row, plane = r * stride + at, (r - first) * stride + j
     below = row + stride
@@ -314,11 +314,11 @@ def _two_rows(
 
 
 @compiled
-def _convolve_square(
-    planes: Array, factors: Array, sums: Array, first: int, highest: int, limbs: int, j: int, at: int
+def _add_axial_squares(
+    planes: Array, factors: Array, sums: Array, first: int, highest: int, limb_count: int, j: int, at: int
 ) -> None:
-    """The part of `_convolve` for w²."""
-    for r in range(first + highest + 1, limbs + 1):
+    """Do the part of `_add_products` for w²."""
+    for r in range(first + highest + 1, limb_count + 1):
         row = (r * PLANES + AXIAL_SQUARE) * WIDTH + at
         square = load(sums, row)
         for p in range(first, r - highest):
@@ -328,11 +328,11 @@ def _convolve_square(
 
 
 @inlined
-def _enter(s: Series, k: int, first: int, limbs: int) -> None:
-    """Copy x, m, w, λ of order k to the planes, from where higher orders take them."""
+def _copy_to_planes(s: Series, k: int, first: int, limb_count: int) -> None:
+    """Copy x, m, w, λ of order k to the planes, for the products with higher orders."""
     c, planes = s.c, s.planes
-    for q in range(first, limbs):
-        at, plane = LANES * (k * limbs + q), q * PLANES * WIDTH + k
+    for q in range(first, limb_count):
+        at, plane = LANES * (k * limb_count + q), q * PLANES * WIDTH + k
         planes[plane] = c[at + X]
         planes[plane + WIDTH] = c[at + M]
         planes[plane + 2 * WIDTH] = c[at + W]

@@ -1,4 +1,4 @@
-"""Digits: exact products and sums, whatever the compiler fuses or rearranges; a canary for its options."""
+"""Limbs: exact products and sums, whatever the compiler fuses or rearranges; a canary for its options."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ pytest.importorskip("numba")
 
 import numba
 
+from reference.engines.limbs.lanes import LANES
 from reference.engines.limbs.limb import (
-    DIGIT_BITS,
-    LANES,
+    LIMB_BITS,
     add_product,
     aligned,
     carry,
@@ -28,18 +28,18 @@ from reference.engines.limbs.limb import (
 )
 from reference.precision import context
 
-LIMBS = 7
+LIMB_COUNT = 7
 
 
 def compiled_with(**options):
     """A multiplication and a division of eight numbers at once, compiled under other options than the package's."""
 
     @numba.njit(error_model="numpy", **options)
-    def multiply_and_divide(to, a, b, limbs, divisor):
-        add_product(to, a, b, 0, limbs)
-        carry(to, 0, limbs)
-        divide(to, 0, limbs, divisor)
-        carry(to, 0, limbs)
+    def multiply_and_divide(to, a, b, limb_count, divisor):
+        add_product(to, a, b, 0, limb_count)
+        carry(to, 0, limb_count)
+        divide(to, 0, limb_count, divisor)
+        carry(to, 0, limb_count)
 
     return multiply_and_divide
 
@@ -49,24 +49,24 @@ careless = compiled_with(fastmath=True)
 
 
 def product_over(a, b, divisor, run):
-    rows_a, rows_b, to = rows_of(a, LIMBS), rows_of(b, LIMBS), aligned(LANES * (LIMBS + 2))
-    run(to, 2.0 * rows_a, rows_b, LIMBS, float(divisor))
-    return joined(to[: LANES * LIMBS].reshape(LIMBS, LANES).T)
+    rows_a, rows_b, to = rows_of(a, LIMB_COUNT), rows_of(b, LIMB_COUNT), aligned(LANES * (LIMB_COUNT + 2))
+    run(to, 2.0 * rows_a, rows_b, LIMB_COUNT, float(divisor))
+    return joined(to[: LANES * LIMB_COUNT].reshape(LIMB_COUNT, LANES).T)
 
 
 numbers = st.lists(st.fractions(min_value=-1, max_value=1, max_denominator=10**50), min_size=8, max_size=8)
 
 
-@given(st.integers(min_value=-(2 ** fraction_bits(LIMBS)), max_value=2 ** fraction_bits(LIMBS)))
-def test_an_integer_comes_back_from_its_digits(value):
-    digits = split(value, LIMBS)
-    assert all(abs(d) <= 2 ** (DIGIT_BITS - 1) for d in digits)
-    assert joined(np.array(digits)) == value
+@given(st.integers(min_value=-(2 ** fraction_bits(LIMB_COUNT)), max_value=2 ** fraction_bits(LIMB_COUNT)))
+def test_an_integer_comes_back_from_its_limbs(value):
+    limbs = split(value, LIMB_COUNT)
+    assert all(abs(d) <= 2 ** (LIMB_BITS - 1) for d in limbs)
+    assert joined(np.array(limbs)) == value
 
 
 @given(numbers, numbers, st.integers(min_value=1, max_value=4096))
-def test_a_product_and_a_quotient_are_off_by_less_than_the_last_digits(a, b, divisor):
-    one = 2 ** fraction_bits(LIMBS)
+def test_a_product_and_a_quotient_are_off_by_less_than_the_last_limbs(a, b, divisor):
+    one = 2 ** fraction_bits(LIMB_COUNT)
     for got, x, y in zip(product_over(a, b, divisor, usual), a, b, strict=True):
         assert abs(got - Fraction(round(x * one) * round(y * one), divisor * one)) < 4
 
@@ -76,17 +76,17 @@ def test_canary_a_compiler_that_may_rearrange_and_fuse_gives_the_same_bits(a, b,
     assert (product_over(a, b, divisor, usual) == product_over(a, b, divisor, careless)).all()
 
 
-def test_canary_the_largest_digits_there_can_be_are_multiplied_exactly():
-    limbs, largest = 18, 2.0 ** (DIGIT_BITS - 1)
-    rows, to = np.full(LANES * limbs, largest), aligned(LANES * (limbs + 2))
-    exact = numba.njit(error_model="numpy")(lambda to, a, b, limbs: add_product(to, a, b, 0, limbs))
-    for _ in range(56):  # as many orders as can meet where all digits are there
-        exact(to, 2.0 * rows, rows, limbs)
-    for r in range(1, limbs + 1):
+def test_canary_the_largest_limbs_there_can_be_are_multiplied_exactly():
+    limb_count, largest = 18, 2.0 ** (LIMB_BITS - 1)
+    rows, to = np.full(LANES * limb_count, largest), aligned(LANES * (limb_count + 2))
+    exact = numba.njit(error_model="numpy")(lambda to, a, b, limb_count: add_product(to, a, b, 0, limb_count))
+    for _ in range(56):  # as many orders as can meet where all limbs are used
+        exact(to, 2.0 * rows, rows, limb_count)
+    for r in range(1, limb_count + 1):
         assert int(to[LANES * r]) == 56 * r * 2 * int(largest) ** 2
 
 
-def test_a_number_is_rounded_once_on_its_way_to_digits():
+def test_a_number_is_rounded_once_on_its_way_to_limbs():
     ctx = context(400)
     third = ctx.mpf(1) / 3
     assert nearest_whole(third, 100) == round(Fraction(2**100, 3))

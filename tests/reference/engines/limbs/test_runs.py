@@ -1,4 +1,4 @@
-"""Whole runs in digits beside heyoka's `real` at more bits: every scene that may be nasty, grid and transits."""
+"""Whole runs in limbs beside heyoka's `real` at more bits: every scene that may be nasty, grid and transits."""
 
 from __future__ import annotations
 
@@ -13,13 +13,15 @@ import pytest
 
 pytest.importorskip("numba")
 
+from limbs_states import states
 from small_scenes import make_scene
 
-from reference.engines import limbs
+from reference.engines.limbs import most_bits
+from reference.engines.limbs import run as run_in_limbs
 from reference.engines.plan import Plan
 from reference.engines.run import run
 from reference.errors import InputError, IntegrationError
-from reference.precision import real
+from reference.precision import limbs, real
 from reference.table import disagreement, largest_of
 
 PARIS = {"release": {"x": "0.3", "y": "0.4"}}
@@ -61,7 +63,7 @@ FLOOR_BITS = 6
 def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
     scene, prec = make_scene(**SCENES[name]), int(digits * 3.33) + 4
     times = tuple(t / 10 for t in TIMES) if name in FAST else TIMES
-    ours = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(prec), times, transits=True))
+    ours = run_in_limbs(Plan(scene.exact, "momentum", limbs(prec), times, transits=True))
     same, finer = (
         run(Plan(scene.exact, "momentum", real(bits), times, transits=transits))
         for bits, transits in ((prec, False), (prec + 40, True))
@@ -88,7 +90,7 @@ def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
 def test_an_hour_of_paris_keeps_32_digits_and_all_transits():
     scene = make_scene(**PARIS)
     times = tuple(Fraction(60 * k) for k in range(61))
-    ours = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), times, transits=True))
+    ours = run_in_limbs(Plan(scene.exact, "momentum", limbs(113), times, transits=True))
     theirs = run(Plan(scene.exact, "momentum", real(144), times, transits=True))
     assert max(disagreement(ours.grid, ours.bits, theirs.grid, theirs.bits)[:3]) < Fraction(1, 10**34)
     assert ours.directions == theirs.directions
@@ -105,8 +107,8 @@ def test_a_quarter_period_is_that_of_the_elliptic_integral():
     ctx.dps = 60
     quarter = ctx.sqrt(ctx.mpf(2) / ctx.mpf("9.81")) * ctx.ellipk(ctx.sinpi(ctx.mpf(75) / 180) ** 2)
     time = Fraction(int(ctx.floor(quarter * 2**190)), 2**190)
-    ran = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(160), (Fraction(0), time), transits=False))
-    x, y, z = (ctx.mpf(value) / 2**ran.bits for value in ran.grid[1][:3])
+    result = run_in_limbs(Plan(scene.exact, "momentum", limbs(160), (Fraction(0), time), transits=False))
+    x, y, z = (ctx.mpf(value) / 2**result.bits for value in result.grid[1][:3])
     assert abs(x) < 1e-44
     assert y == 0
     assert abs(z + 2) < 1e-44
@@ -114,24 +116,24 @@ def test_a_quarter_period_is_that_of_the_elliptic_integral():
 
 def test_xdot_identically_zero_gives_no_transits():
     scene = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.5"})
-    ran = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), TIMES, transits=True))
-    assert ran.zeros is None
-    assert all(row[0] == 0 for row in ran.grid)
+    result = run_in_limbs(Plan(scene.exact, "momentum", limbs(113), TIMES, transits=True))
+    assert result.zeros is None
+    assert all(row[0] == 0 for row in result.grid)
 
 
 def test_a_transit_after_the_last_time_is_not_reported():
     scene = make_scene(**PARIS)
-    every = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), TIMES, transits=True))
+    every = run_in_limbs(Plan(scene.exact, "momentum", limbs(113), TIMES, transits=True))
     third = Fraction(every.zeros[2][0], 2**every.bits)
     for end, count in ((third - Fraction(1, 10**9), 2), (third + Fraction(1, 10**9), 3)):
-        cut = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), (Fraction(0), end), transits=True))
+        cut = run_in_limbs(Plan(scene.exact, "momentum", limbs(113), (Fraction(0), end), transits=True))
         assert len(cut.zeros) == count
 
 
 def test_more_bits_than_there_can_be_are_refused():
     scene = make_scene(**PARIS)
     with pytest.raises(InputError, match="heyoka"):
-        limbs.run(Plan(scene.exact, "momentum", limbs.limbs(limbs.most_bits() + 1), TIMES, transits=False))
+        run_in_limbs(Plan(scene.exact, "momentum", limbs(most_bits() + 1), TIMES, transits=False))
 
 
 def test_a_transit_that_only_grazes_is_refused():
@@ -140,25 +142,25 @@ def test_a_transit_that_only_grazes_is_refused():
         site={"latitude": "90", "rotation_rate": "1e-300"}, release={"x": "0", "y": "0.5"}, pendulum={"length": "2"}
     )
     with pytest.raises(IntegrationError):
-        limbs.run(Plan(scene.exact, "momentum", limbs.limbs(113), TIMES, transits=True))
+        run_in_limbs(Plan(scene.exact, "momentum", limbs(113), TIMES, transits=True))
 
 
 def test_the_report_says_how_far_a_run_is():
-    seen = []
+    reports = []
     times = tuple(Fraction(3000 * k) for k in range(5))
-    limbs.run(Plan(make_scene(**PARIS).exact, "momentum", limbs.limbs(80), times, transits=False), seen.append)
-    assert seen == sorted(seen)
-    assert 0 < seen[0] < seen[-1] < 12000
+    run_in_limbs(Plan(make_scene(**PARIS).exact, "momentum", limbs(80), times, transits=False), reports.append)
+    assert reports == sorted(reports)
+    assert 0 < reports[0] < reports[-1] < 12000
 
 
 def test_states_are_double_doubles_of_a_finer_run():
     scene = make_scene(**PARIS)
     moments = np.linspace(0, 3600, 1001)
-    high, low = limbs.states(scene.exact, moments)
+    high, low = states(scene.exact, moments)
     assert high.shape == low.shape == (1001, 6)
     assert (np.abs(low) <= np.spacing(np.abs(high))).all()
     times = tuple(Fraction(float(t)) for t in moments)
-    fine = limbs.run(Plan(scene.exact, "momentum", limbs.limbs(150), times, transits=False))
+    fine = run_in_limbs(Plan(scene.exact, "momentum", limbs(150), times, transits=False))
     for i in range(0, 1001, 10):
         for j in range(6):
             exact = Fraction(float(high[i, j])) + Fraction(float(low[i, j]))
@@ -168,17 +170,18 @@ def test_states_are_double_doubles_of_a_finer_run():
 @pytest.mark.parametrize("times", [[], [1.0, 1.0], [-1.0, 2.0], [0.0, float("nan")], [[1.0]]])
 def test_times_that_are_no_increasing_list_are_refused(times):
     with pytest.raises(InputError, match="times"):
-        limbs.states(make_scene(**PARIS).exact, times)
+        states(make_scene(**PARIS).exact, times)
 
 
 SHORT = """
 from fractions import Fraction
 from reference import load_scene
-from reference.engines import limbs
+from reference.engines.limbs import run as run_in_limbs
 from reference.engines.plan import Plan
+from reference.precision import limbs
 times = tuple(Fraction(7 * k, 5) for k in range(40))
-ran = limbs.run(Plan(load_scene("paris").exact, "momentum", limbs.limbs(113), times, transits=True))
-print((ran.grid, ran.zeros, ran.steps))
+result = run_in_limbs(Plan(load_scene("paris").exact, "momentum", limbs(113), times, transits=True))
+print((result.grid, result.zeros, result.steps))
 """
 
 
@@ -186,6 +189,6 @@ print((ran.grid, ran.zeros, ran.steps))
 def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, capsys):
     plain = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(tmp_path)}
     command = [sys.executable, "-c", SHORT]
-    there = subprocess.run(command, env={**os.environ, **plain}, capture_output=True, text=True, check=True)
+    generic = subprocess.run(command, env={**os.environ, **plain}, capture_output=True, text=True, check=True)
     exec(SHORT, {})
-    assert capsys.readouterr().out == there.stdout
+    assert capsys.readouterr().out == generic.stdout

@@ -1,4 +1,4 @@
-"""The recurrence in digits is the model of `mechanics`, coefficient by coefficient."""
+"""The recurrence in limbs is the model of `formulations`, coefficient by coefficient."""
 
 from __future__ import annotations
 
@@ -13,32 +13,33 @@ pytest.importorskip("numba")
 from small_scenes import make_scene
 from taylor_of_model import Polynomial, taylor
 
-from reference.engines import limbs
+from reference.engines.limbs import taylor_steps
 from reference.engines.plan import Plan
 from reference.model.force import tension
 from reference.model.formulations import FORMULATIONS
+from reference.precision import limbs
 
 BITS = 150
 ORDER = 30  # of the comparison; the series goes further
-LAST_PLACES = 64  # units of the last digit: a coefficient is divided once an order
+LAST_PLACES = 64  # units of the last limb: a coefficient is divided once an order
 
 
-def first_expansion(scene):
-    plan = Plan(scene.exact, "momentum", limbs.limbs(BITS), (Fraction(0),), transits=False)
-    return next(limbs.expand(plan))
+def first_step(scene):
+    plan = Plan(scene.exact, "momentum", limbs(BITS), (Fraction(0),), transits=False)
+    return next(taylor_steps(plan))
 
 
 def assert_same_coefficients(scene, formulation="momentum"):
-    found = first_expansion(scene)
+    step = first_step(scene)
     ctx, k, rows = taylor(scene.exact, formulation, ORDER, 3 * BITS)
     n, v = FORMULATIONS[formulation].cartesian([Polynomial(row) for row in rows], k, ctx)
     sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
     expected = [n[0], sin * n[1] - cos * n[2], cos * n[1] + sin * n[2], tension(n, v, k)]
-    h = ctx.mpf(found.h.numerator) / found.h.denominator
-    for row, mine, polynomial in zip(("x", "m", "w", "pull"), found.coefficients, expected, strict=True):
+    h = ctx.mpf(step.h.numerator) / step.h.denominator
+    for row, row_of_step, polynomial in zip(("x", "m", "w", "pull"), step.coefficients, expected, strict=True):
         for j, coefficient in enumerate(polynomial.coefficients):
-            exact = coefficient * h ** (j + (2 if row == "pull" else 0)) * 2**found.bits
-            assert abs(mine[j] - exact) < LAST_PLACES, (row, j)
+            exact = coefficient * h ** (j + (2 if row == "pull" else 0)) * 2**step.bits
+            assert abs(row_of_step[j] - exact) < LAST_PLACES, (row, j)
 
 
 @pytest.mark.parametrize("formulation", ["momentum", "space", "spin"])

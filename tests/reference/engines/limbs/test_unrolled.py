@@ -1,4 +1,4 @@
-"""What is written out digit by digit is the sum of products that it stands for, exactly."""
+"""The unrolled sums equal the sums of products that they stand for, exactly."""
 
 from __future__ import annotations
 
@@ -9,28 +9,29 @@ pytest.importorskip("numba")
 
 import numba
 
-from reference.engines.limbs.limb import DIGIT_BITS, LANES
-from reference.engines.limbs.series import room
+from reference.engines.limbs.lanes import LANES
+from reference.engines.limbs.limb import LIMB_BITS
+from reference.engines.limbs.series import empty_series
 from reference.engines.limbs.unrolled import MOST_ORDER, MOST_ROWS, PLANES, WIDTH, add_convolved
 
-LARGEST = 2 ** (DIGIT_BITS - 1)
+LARGEST = 2 ** (LIMB_BITS - 1)
 
 
-def digits(shape, seed):
-    made = np.random.default_rng(seed).integers(-LARGEST, LARGEST + 1, size=shape)
-    made.flat[::7] = LARGEST
-    return made
+def random_limbs(shape, seed):
+    limbs = np.random.default_rng(seed).integers(-LARGEST, LARGEST + 1, size=shape)
+    limbs.flat[::7] = LARGEST
+    return limbs
 
 
 @pytest.mark.parametrize("fastmath", [False, True])
 @pytest.mark.parametrize("rows", range(MOST_ROWS + 1))
-def test_convolved_rows_are_exact_sums_of_all_pairs_of_digits(rows, fastmath):
+def test_convolved_rows_are_exact_sums_of_all_pairs_of_limbs(rows, fastmath):
     @numba.njit(fastmath=fastmath, error_model="numpy")
     def run(rows, planes, factors, sums):
         add_convolved(rows, planes, 0, factors, 0, sums, 3)
 
-    planes, sums = digits((MOST_ROWS, PLANES, WIDTH), 1), digits((MOST_ROWS, PLANES, WIDTH), 2)
-    factors = np.repeat(2 * digits((MOST_ROWS, PLANES, 1), 3), LANES, axis=2)
+    planes, sums = random_limbs((MOST_ROWS, PLANES, WIDTH), 1), random_limbs((MOST_ROWS, PLANES, WIDTH), 2)
+    factors = np.repeat(2 * random_limbs((MOST_ROWS, PLANES, 1), 3), LANES, axis=2)
     expected, order = sums.copy(), slice(3, 3 + LANES)
     for r in range(rows):
         for p in range(r + 1):
@@ -44,4 +45,4 @@ def test_convolved_rows_are_exact_sums_of_all_pairs_of_digits(rows, fastmath):
 
 def test_a_series_of_too_high_an_order_is_refused():
     with pytest.raises(ValueError, match="order"):
-        room(MOST_ORDER + 1, 3)
+        empty_series(MOST_ORDER + 1, 3)

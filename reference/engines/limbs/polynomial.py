@@ -1,0 +1,100 @@
+"""A polynomial in double precision: its character on an interval, a crossing of zero, an extremum."""
+
+from __future__ import annotations
+
+from .lanes import compiled
+from .limb import Array
+
+HALVINGS = 60  # more than a double has bits
+
+# of a polynomial on an interval: without a zero; monotone; convex or concave; none of these can be told
+FREE, MONOTONE, CONVEX, UNDECIDED = range(4)
+
+
+@compiled
+def recentre(g: Array, f: Array, size: int, low: float, high: float) -> None:
+    """Write to g the polynomial f in u, where -1 <= u <= 1 leads from `low` to `high`."""
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    for k in range(size):
+        g[k] = f[k]
+    for i in range(size - 1):
+        for k in range(size - 2, i - 1, -1):
+            g[k] += middle * g[k + 1]
+    power = 1.0
+    for k in range(size):
+        g[k] *= power
+        power *= half
+
+
+@compiled
+def classify(f: Array, size: int, middle: float, half: float, noise: float) -> tuple[int, float, float]:
+    """Return the polynomial's character within `half` of the middle; its value and half its second derivative there."""
+    high = middle + half
+    value = slope = bend = 0.0
+    total = slopes = bends = third = 0.0  # bounds from the coefficients' sizes, to the third derivative
+    for k in range(size - 1, -1, -1):
+        bend, slope, value = bend * middle + slope, slope * middle + value, value * middle + f[k]
+        third, bends, slopes = third * high + bends, bends * high + slopes, slopes * high + total
+        total = total * high + abs(f[k])
+    third *= half
+    kind = UNDECIDED
+    if abs(value) > half * (abs(slope) + half * (abs(bend) + third)) + noise:
+        kind = FREE
+    elif abs(slope) > half * (2.0 * abs(bend) + 3.0 * third) + size * noise:
+        kind = MONOTONE
+    elif abs(bend) > 3.0 * third + size * size * noise:
+        kind = CONVEX
+    return kind, value, bend
+
+
+@compiled
+def value_at(g: Array, size: int, u: float) -> float:
+    """Return the polynomial's value."""
+    value = 0.0
+    for k in range(size - 1, -1, -1):
+        value = value * u + g[k]
+    return value
+
+
+@compiled
+def slope_at(g: Array, size: int, u: float) -> float:
+    """Return the polynomial's derivative."""
+    value = 0.0
+    for k in range(size - 1, 0, -1):
+        value = value * u + k * g[k]
+    return value
+
+
+@compiled
+def crossing(g: Array, size: int, low: float, high: float, before: int) -> float:
+    """Return where the polynomial changes sign between `low` and `high`: Newton's method, safeguarded by bisection."""
+    u = 0.5 * (low + high)
+    for _ in range(HALVINGS):
+        value = slope = 0.0
+        for k in range(size - 1, -1, -1):
+            slope, value = slope * u + value, value * u + g[k]
+        if (value > 0.0) == (before > 0):
+            low = u
+        else:
+            high = u
+        new = u - value / slope if slope != 0.0 else u
+        if not low < new < high:
+            new = 0.5 * (low + high)
+        if abs(new - u) < 2.0**-52:
+            return new
+        u = new
+    return u
+
+
+@compiled
+def extremum(g: Array, size: int) -> float:
+    """Return where the slope of a convex or concave polynomial changes sign on -1 <= u <= 1, or the nearer end."""
+    low, high = -1.0, 1.0
+    rising = slope_at(g, size, 1.0) > 0.0
+    for _ in range(HALVINGS):
+        u = 0.5 * (low + high)
+        if (slope_at(g, size, u) > 0.0) == rising:
+            high = u
+        else:
+            low = u
+    return high

@@ -1,0 +1,89 @@
+"""Run a plan in limbs: integrate it, and give states, transits and least tension in SI units as a `Run`."""
+
+from __future__ import annotations
+
+import time
+from bisect import bisect_right
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ...model.force import tension
+from ..plan import Plan, Report, Run
+from .integration import Integration, integration_of
+from .limb import fraction_bits
+from .march import COLUMNS, STEPS
+from .problem import LimbProblem
+
+SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
+PRODUCTS, PRODUCTS_WITH_DRAG = 9, 25  # per coefficient: three or four convolutions, the others by constants
+
+
+def run(plan: Plan, report: Report | None = None) -> Run:
+    """Integrate a plan in limbs: `plan.number` is `limbs(prec)`; the formulation is that of `series`.
+
+    Args:
+        plan: what to run; times increasing from 0 on.
+        report: called with the simulated time in s.
+
+    Raises:
+        InputError: more bits than limbs can hold.
+        IntegrationError: zeros of xdot stay in doubt, or no step is short enough. No numbers then.
+    """
+    integration = integration_of(plan)
+    cpu_start = time.process_time()
+    integration.finish(report)
+    return result(integration, plan, cpu_start)
+
+
+def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
+    """Return what an integration computed, in SI units; `cpu_start` is `time.process_time()` when its steps began."""
+    problem, bits = integration.problem, fraction_bits(integration.problem.model.limb_count)
+    si_bits = bits + SPARE_BITS
+    table = integration.table(integration.out.states, len(plan.times))
+    grid = list(zip(*_si(table, plan.inputs.length, problem.unit, bits, si_bits), strict=True))
+    zeros, signs = _transits(integration, plan, bits, si_bits) if integration.seek else (None, [])
+    return Run(
+        plan=plan,
+        bits=si_bits,
+        grid=grid,
+        zeros=zeros,
+        directions=signs,
+        order=problem.model.order,
+        steps=int(integration.state.counts[STEPS]),
+        terms=PRODUCTS_WITH_DRAG if problem.model.drag else PRODUCTS,
+        tension=_least_tension(problem, grid, si_bits),
+        compile_s=integration.compile_s,
+        cpu_s=time.process_time() - cpu_start,
+    )
+
+
+def _si(table: Any, length: Fraction, unit: Fraction, bits: int, si_bits: int) -> list[Any]:
+    """Return columns of integers over 2**bits, in l and the unit of time, as integers over 2**si_bits in SI units."""
+    return [_scaled(table[:, i], length / unit ** (i // 3) * 2 ** (si_bits - bits)) for i in range(COLUMNS)]
+
+
+def _scaled(column: Any, factor: Fraction) -> Any:
+    """Return integers times a factor, rounded down."""
+    product = column * factor.numerator
+    return product if factor.denominator == 1 else product // factor.denominator
+
+
+def _transits(integration: Integration, plan: Plan, bits: int, si_bits: int) -> tuple[list[tuple[int, ...]], list[int]]:
+    """Return the zeros up to the last output time, t first, and the signs of the crossings."""
+    problem = integration.problem
+    times, table, signs = integration.zeros()
+    count = bisect_right(times, int(plan.times[-1] / problem.grain * 2**bits))
+    moments = _scaled(times[:count], problem.grain * 2 ** (si_bits - bits))
+    columns = _si(table[:count], plan.inputs.length, problem.unit, bits, si_bits)
+    return list(zip(moments, *columns, strict=True)), signs[:count]
+
+
+def _least_tension(problem: LimbProblem, grid: Sequence[tuple[int, ...]], si_bits: int) -> float:
+    """Return the least pull of the cord over l on the grid, in 1/s², in binary64."""
+    k = problem.k.converted(float)
+    unit = float(problem.k.length) * 2.0**si_bits
+    x, y, z, vx, vy, vz = (np.array([row[i] / unit for row in grid]) for i in range(6))
+    return float(np.min(tension((x, y, z), (vx, vy, vz), k)))

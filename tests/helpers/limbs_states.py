@@ -1,0 +1,95 @@
+"""States of a run in limbs at many times, as unevaluated sums of two doubles: a finer truth for arrays."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import numpy.typing as npt
+
+from reference.engines.limbs.integration import Integration
+from reference.engines.limbs.lanes import LANES
+from reference.engines.limbs.limb import LIMB_BITS, RADIX, UNIT, Array
+from reference.engines.limbs.problem import limb_problem
+from reference.errors import InputError
+from reference.scene import Inputs
+
+STATES_BITS = 93  # the precision that five limbs hold of a swing of half a metre below 67 m
+
+
+def states(inputs: Inputs, times: npt.ArrayLike) -> tuple[Array, Array]:
+    """Return positions and velocities at many times, as unevaluated sums of two doubles.
+
+    Args:
+        inputs: exact numbers of a scene (`Scene.exact`).
+        times: in s, not negative, increasing, shape (rows,); each double is taken exactly.
+
+    Returns:
+        High and low parts, each of shape (rows, 6): x, y, z in m, vx, vy, vz in m/s. For a day of the Paris scene
+        they are off by less than 1e-28 m; an estimate, not a bound.
+
+    Raises:
+        InputError: times are negative, not finite or not increasing.
+        IntegrationError: no step is short enough.
+    """
+    moments = np.ascontiguousarray(times, dtype=np.float64)
+    if moments.ndim != 1 or not len(moments) or not np.isfinite(moments).all():
+        raise InputError("times", moments.shape, "a list of finite numbers, at least one")
+    if moments[0] < 0 or (np.diff(moments) <= 0).any():
+        raise InputError("times", "a list that decreases or is negative", "increasing numbers from 0 on")
+    problem = limb_problem(inputs, STATES_BITS)
+    limb_count = problem.model.limb_count
+    whole, remainders = limbs_of_doubles(moments, float(problem.grain), limb_count)
+    integration = Integration(problem, whole, remainders, seek=False)
+    integration.finish(None)
+    rows = integration.out.states.reshape(len(whole), limb_count, LANES)[:, :, :6]
+    high, low = _two_doubles(rows, limb_count)
+    length = inputs.length
+    factors = [length / problem.unit**power for power in (0, 1)]
+    parts = [(float(f), float(f - Fraction(float(f)))) for f in factors]
+    top = np.array([parts[i // 3][0] for i in range(6)])
+    bottom = np.array([parts[i // 3][1] for i in range(6)])
+    return _product(high, low, top, bottom)
+
+
+def limbs_of_doubles(times: Array, grain: float, limb_count: int) -> tuple[npt.NDArray[np.int64], Array]:
+    """Return times in s as whole grains and the limbs of the remainders; exact, as the grain is a power of two."""
+    scaled = times / grain
+    whole = np.floor(scaled)
+    left = (scaled - whole) * UNIT
+    limbs = np.zeros((len(times), limb_count))
+    for q in range(limb_count):
+        limbs[:, q] = np.rint(left)
+        left = (left - limbs[:, q]) * RADIX
+    return whole.astype(np.int64), limbs.ravel()
+
+
+def _two_doubles(rows: Array, limb_count: int) -> tuple[Array, Array]:
+    """Return limbs of shape (rows, limb_count, columns) as double-doubles."""
+    weight = 2.0 ** (1 - LIMB_BITS * np.arange(1, limb_count + 1))
+    high, low = np.zeros_like(rows[:, 0]), np.zeros_like(rows[:, 0])
+    for q in range(0, limb_count, 2):  # two limbs are one exact double
+        pair = rows[:, q] * weight[q] + (rows[:, q + 1] * weight[q + 1] if q + 1 < limb_count else 0.0)
+        high, error = _sum(high, pair)
+        low = low + error
+    return _sum(high, low)
+
+
+def _sum(a: Array, b: Array) -> tuple[Array, Array]:
+    total = a + b
+    other = total - a
+    return total, (a - (total - other)) + (b - other)
+
+
+def _product(high: Array, low: Array, top: Array, bottom: Array) -> tuple[Array, Array]:
+    """Return the product of double-doubles, by Dekker's splitting."""
+    product = high * top
+    a, b = _halves(high), _halves(top)
+    error = ((a[0] * b[0] - product) + a[0] * b[1] + a[1] * b[0]) + a[1] * b[1]
+    return _sum(product, error + (high * bottom + low * top))
+
+
+def _halves(a: Array) -> tuple[Array, Array]:
+    large = a * 134217729.0
+    high = large - (large - a)
+    return high, a - high
