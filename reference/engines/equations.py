@@ -1,4 +1,4 @@
-"""Which terms a scene has: what is compiled, what is left out, and why."""
+"""The compiled equations of a scene as text, and the terms that are left out of them, with the reason."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from ..precision import context
 from ..scene import Scene
 from .heyoka.system import equations_text
 
-_PREC = 128  # only exact zeros matter here
+_PREC = 128  # bits; only exact zeros matter here
 
 
 def lines_and_left_out(scene: Scene, formulation: str) -> tuple[list[str], list[str]]:
-    """The compiled lines "name' = …", and a sentence for each group of terms that the scene does not need."""
+    """Return the compiled lines "name' = …", and a sentence for each group of terms that the scene does not need."""
     ctx = context(_PREC)
     k = constants(scene.exact, ctx)
     inputs, left_out = scene.exact, []

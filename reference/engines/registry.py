@@ -1,4 +1,4 @@
-"""Which integrator runs: heyoka in any type, or `limbs`, a hundred times faster beyond long double; needs numba."""
+"""Which engine and number type a run takes: heyoka in any type, or limbs, many times faster beyond long double."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from ..precision import LONG_DOUBLE, NumberType, cheapest_type, limbs
 HEYOKA, LIMBS, AUTO = "heyoka", "limbs", "auto"
 
 
-def chosen(engine: str | None) -> str:
-    """The engine that a word stands for: heyoka or limbs; the fastest that is installed if None or "auto".
+def engine_named(engine: str | None) -> str:
+    """Return "heyoka" or "limbs"; for None or "auto" the faster one that is installed (limbs needs numba).
 
     Raises:
         InputError: no such engine, or numba is not installed.
@@ -28,7 +28,7 @@ def chosen(engine: str | None) -> str:
 
 
 def fastest(prec: int, engine: str) -> tuple[str, NumberType]:
-    """Formulation and number type of the cheapest run that has `prec` bits."""
+    """Return formulation and number type of the cheapest run that has `prec` bits."""
     if engine == LIMBS and prec > LONG_DOUBLE.prec:
         from .limbs import most_bits
 
@@ -38,5 +38,5 @@ def fastest(prec: int, engine: str) -> tuple[str, NumberType]:
 
 
 def engine_of(number: str) -> str:
-    """The engine of a run whose number type was written as `number`."""
+    """Return the engine of a run whose number type was written as `number`."""
     return LIMBS if number.startswith(LIMBS) else HEYOKA

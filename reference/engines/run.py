@@ -1,4 +1,4 @@
-"""One run: a scene in one formulation and one number type; and two runs side by side on two cores."""
+"""One run: a scene integrated in one formulation and one number type, with its transits if wanted."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from .plan import Plan, Report, Run
 from .transits import march, quiet_start
 
 if TYPE_CHECKING:
-    from .heyoka import stepper as taylor
+    from .heyoka import stepper as heyoka
 
-SPARE_BITS = 80  # fixed-point values carry this much below the run's epsilon, for amplitudes far below l
+SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
 
 
 def start_of(inputs: Inputs, number: NumberType) -> tuple[Any, Constants, Vector, Vector]:
-    """A context finer than `number`, and in it the constants, n = r/l and v = r'/l at t = 0."""
+    """Return a context finer than `number`, and in it the constants, n = r/l and v = r'/l at t = 0."""
     ctx = context(number.prec + GUARD_BITS)
     k = constants(inputs, ctx)
     position, velocity = release(inputs, ctx)
@@ -33,69 +33,70 @@ def start_of(inputs: Inputs, number: NumberType) -> tuple[Any, Constants, Vector
     return ctx, k, n, v
 
 
-def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[taylor.Stepper], None] | None = None) -> Run:
+def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[heyoka.Stepper], None] | None = None) -> Run:
     """Integrate a plan.
 
     Args:
-        plan: what to run.
+        plan: the run to do.
         report: called with the simulated time reached, in s.
-        look_ahead: called before the first step; leaves the stepper as it was, or raises.
+        look_ahead: called before the first step, to refuse a run that would take too long; it leaves the stepper as it
+            was, or raises. It is not called for limbs.
 
     Raises:
         IntegrationError: the integrator warned or stopped, or transits contradict each other.
     """
     if plan.number.name == "limbs":
-        from . import limbs  # and numba as long
+        from . import limbs  # imports numba
 
         return limbs.run(plan, report)
-    from .heyoka import stepper as taylor  # heyoka takes 0.2 s to import and is not needed to check or show a scene
+    from .heyoka import stepper as heyoka  # takes 0.2 s to import, and is not needed to check or show a scene
 
     ctx, k, n, v = start_of(plan.inputs, plan.number)
     model = FORMULATIONS[plan.formulation]
     watching = plan.transits and not xdot_vanishes(n, v, k)
-    stepper = taylor.Stepper(model, k, n, v, ctx, plan.number, events=watching)
+    stepper = heyoka.Stepper(model, k, n, v, ctx, plan.number, events=watching)
     times = [stepper.numbers.of(t) for t in plan.times]
     if look_ahead is not None:
         look_ahead(stepper)
-    found: list[taylor.Zero] = []
+    zeros: list[heyoka.Zero] = []
     with watched_log() as watch:
         multiplicity = zero_at_release(n, v)
         quiet = quiet_start(stepper, multiplicity) if watching and multiplicity else None
-        begun = time.process_time()
+        started = time.process_time()
         if watching:
-            states, found = march(stepper, times, watch, quiet, report)
+            states, zeros = march(stepper, times, watch, quiet, report)
         else:
             states = stepper.propagate(times, report)
             if watch.fresh():
                 raise IntegrationError("heyoka wrote a warning to its log during a run without events.")
-    return result(plan, stepper, states, found if watching else None, begun)
+    return result(plan, stepper, states, zeros if watching else None, started)
 
 
-def result(plan: Plan, stepper: taylor.Stepper, states: Any, zeros: list[taylor.Zero] | None, begun: float) -> Run:
-    """The states and zeros of a stepper that has reached the end, in SI units.
+def result(plan: Plan, stepper: heyoka.Stepper, states: Any, zeros: list[heyoka.Zero] | None, started: float) -> Run:
+    """Return the states and zeros of a stepper that has reached the end, in SI units.
 
     Args:
-        plan: what was to be run.
+        plan: the plan that was run.
         stepper: after its last step.
         states: at the plan's times, shape (times, variables).
         zeros: of xdot; None if not looked for.
-        begun: `time.process_time()` when the steps began.
+        started: `time.process_time()` when the steps began.
     """
-    from .heyoka import stepper as taylor
+    from .heyoka import stepper as heyoka
 
-    bits, dtype = plan.number.prec + SPARE_BITS, stepper.numbers.dtype
-    met = taylor.cartesian(stepper, np.array([zero.state for zero in zeros or ()], dtype=dtype), bits).rows
-    moments = stepper.numbers.fixed(np.array([zero.t for zero in zeros or ()], dtype=dtype), bits)
+    bits, dtype = plan.number.prec + SMALL_SWING_BITS, stepper.numbers.dtype
+    rows = heyoka.cartesian(stepper, np.array([zero.state for zero in zeros or ()], dtype=dtype), bits).rows
+    times = stepper.numbers.fixed(np.array([zero.t for zero in zeros or ()], dtype=dtype), bits)
     return Run(
         plan=plan,
         bits=bits,
-        grid=taylor.cartesian(stepper, states, bits).rows,
-        zeros=None if zeros is None else [(t, *row) for t, row in zip(moments, met, strict=True)],
+        grid=heyoka.cartesian(stepper, states, bits).rows,
+        zeros=None if zeros is None else [(t, *row) for t, row in zip(times, rows, strict=True)],
         directions=[zero.direction for zero in zeros or ()],
         order=stepper.order,
         steps=stepper.steps,
         terms=stepper.terms,
-        tension=taylor.least_tension(stepper, states),
+        tension=heyoka.least_tension(stepper, states),
         compile_s=stepper.compile_s,
-        cpu_s=time.process_time() - begun,
+        cpu_s=time.process_time() - started,
     )

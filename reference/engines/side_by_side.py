@@ -1,4 +1,4 @@
-"""Two runs at the same time, in two processes where the machine has two cores and the work is worth it."""
+"""Two runs at the same time, one in a child process if the machine has two cores and the work is worth it."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ..process import Emit, Worker
 from .plan import Plan, Report, Run
 from .run import run
 
-REPORT_S = 0.2  # how often the second process says how far it is
-WORTH_A_PROCESS = 4.0  # estimated CPU seconds from which a second process pays for its start
+REPORT_S = 0.2  # seconds between two reports of progress from the child
+WORTH_A_PROCESS = 4.0  # estimated CPU seconds from which a child pays for its start
 
 
 def run_both(first: Plan, second: Plan, expected_s: float, report: Report | None = None) -> tuple[Run, Run]:
-    """Two runs, at the same time in two processes if the machine has two cores and the work is worth it.
+    """Do two runs, at the same time if the machine has two cores and the work is worth a child process.
 
     Args:
         first: runs in this process.
@@ -26,45 +26,46 @@ def run_both(first: Plan, second: Plan, expected_s: float, report: Report | None
         report: called with the simulated time, the mean of both.
     """
     if (os.cpu_count() or 1) < 2 or expected_s < WORTH_A_PROCESS:
-        one = run(first, report and (lambda t: report(t / 2)))
+        first_run = run(first, report and (lambda t: report(t / 2)))
         end = float(first.times[-1])
-        return one, run(second, report and (lambda t: report((end + t) / 2)))
-    worker = Worker(_second, second)
-    came: list[Any] = [0.0]
+        return first_run, run(second, report and (lambda t: report((end + t) / 2)))
+    worker = Worker(_run_in_child, second)
+    messages: list[Any] = [0.0]
     try:
-        reader = threading.Thread(target=_collect, args=(worker, came), daemon=True)
+        reader = threading.Thread(target=_collect, args=(worker, messages), daemon=True)
         reader.start()
-        one = run(first, report and (lambda t: report((t + _reached(came)) / 2)))
+        first_run = run(first, report and (lambda t: report((t + _time_reached(messages)) / 2)))
         while reader.is_alive():
             reader.join(0.2)
             if report is not None:
-                report((float(first.times[-1]) + _reached(came)) / 2)
+                report((float(first.times[-1]) + _time_reached(messages)) / 2)
     finally:
         worker.stop()
-    if not isinstance(came[-1], Run):
-        raise came[-1]
-    return one, came[-1]
+    if not isinstance(messages[-1], Run):
+        raise messages[-1]
+    return first_run, messages[-1]
 
 
-def _collect(worker: Worker, came: list[Any]) -> None:
+def _collect(worker: Worker, messages: list[Any]) -> None:
+    """Append the child's messages as they arrive: times reached, and at last its run or its error."""
     try:
         for item in worker:
-            came.append(item)
+            messages.append(item)
     except (FoucaultError, OSError, ValueError) as error:  # the last two: the pipe was closed by an interrupt
-        came.append(error)
+        messages.append(error)
 
 
-def _reached(came: list[Any]) -> float:
-    return next((item for item in reversed(came) if isinstance(item, float)), 0.0)
+def _time_reached(messages: list[Any]) -> float:
+    return next((item for item in reversed(messages) if isinstance(item, float)), 0.0)
 
 
-def _second(emit: Emit, plan: Plan) -> None:
-    shown = time.monotonic()
+def _run_in_child(emit: Emit, plan: Plan) -> None:
+    last_report = time.monotonic()
 
     def report(t: float) -> None:
-        nonlocal shown
-        if time.monotonic() - shown > REPORT_S:
-            shown = time.monotonic()
+        nonlocal last_report
+        if time.monotonic() - last_report > REPORT_S:
+            last_report = time.monotonic()
             emit(t)
 
     emit(run(plan, report))

@@ -1,6 +1,6 @@
-"""Trajectories in one run, unconfirmed: any system written in the model's generic style, and the model itself.
+"""Trajectories as binary64 from a single run that nothing confirms: of any autonomous system, and of the model.
 
-What this gives is as good as its number type, no better: `solver.solve` is the way to digits that are known.
+They are as good as their number type and tolerance, no better: `solver.solve` gives digits whose error is known.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def integrate(
 
     Args:
         variables: names of the state's variables.
-        derivatives: `derivatives(state, functions)` gives their rates; `functions` offers sqrt, sin, cos.
+        derivatives: `derivatives(state, functions)` returns their rates; `functions` offers sqrt, sin, cos.
         start: the state at t = 0; mpf, Fraction or float.
         times: increasing, from 0, in s.
         number: type to compute in.
@@ -40,13 +40,13 @@ def integrate(
         The states as binary64, shape (times, variables).
 
     Raises:
-        IntegrationError: no success; no numbers then.
+        IntegrationError: heyoka stops before the last time, or a state is not finite.
     """
     from .heyoka.propagator import Propagator
 
-    flow = Propagator(variables, derivatives, number, tolerance=tolerance)
-    of = flow.numbers.of
-    states = flow.from_zero([of(_exact(v)) for v in start], [of(_exact(t)) for t in times])
+    propagator = Propagator(variables, derivatives, number, tolerance=tolerance)
+    of = propagator.numbers.of
+    states = propagator.from_zero([of(_exact(v)) for v in start], [of(_exact(t)) for t in times])
     return np.asarray(states.astype(float))
 
 
@@ -59,15 +59,15 @@ def trajectory(
     tolerance: float | None = None,
     alter: Callable[[Constants], Constants] | None = None,
 ) -> Array:
-    """One run of the model.
+    """Integrate a scene in one run.
 
     Args:
-        scene: whose exact inputs are used.
+        scene: its exact inputs are used.
         times: increasing, from 0, in s.
-        formulation: a word of `mechanics.FORMULATIONS`.
+        formulation: a name of `model.formulations.FORMULATIONS`.
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
-        alter: changes the model's constants, to ask what a program with another model would find.
+        alter: changes the model's constants, to see the motion that a program with another model would compute.
 
     Returns:
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
@@ -83,9 +83,9 @@ def trajectory(
     model = FORMULATIONS[formulation]
     numbers = Numbers(number)
     rounded = k.converted(numbers.of)
-    flow = Propagator(model.variables, rates(model, rounded), number, tolerance=tolerance)
+    propagator = Propagator(model.variables, rates(model, rounded), number, tolerance=tolerance)
     start = [numbers.of(value) for value in model.start(n, v, k, ctx)]
-    states = flow.from_zero(start, [numbers.of(_exact(t)) for t in times])
+    states = propagator.from_zero(start, [numbers.of(_exact(t)) for t in times])
     columns = tuple(np.ascontiguousarray(states.T))
     position, velocity = model.cartesian(columns, rounded, np)
     rows = np.array([np.broadcast_to(part * rounded.length, len(states)) for part in (*position, *velocity)])
@@ -93,5 +93,5 @@ def trajectory(
 
 
 def _exact(value: Any) -> Any:
-    """Floats become the fractions they are; mpf, Fraction and int stay."""
+    """Return a float as the fraction it is; mpf, Fraction and int as they are."""
     return Fraction(*value.as_integer_ratio()) if isinstance(value, float | np.floating) else value

@@ -1,13 +1,21 @@
-"""Transits: every zero of xdot with t > 0, in order, none lost, none doubled.
+"""Transits by heyoka: guards around its event detection, so that no zero of xdot is lost and none counted twice.
 
-heyoka's event detection finds them on each step's polynomial. Here stand the guards, because it can
-lose a root within about 2**-prec of a step's left edge and says so only in its log:
+heyoka finds the zeros on the polynomial of each step, but it can lose one within about 2**-prec of the left edge of the
+step, and only a line in its log says so. If, for example, xdot is +0.3 mm/s at the start of a step and -0.2 mm/s at its
+end, there is a crossing in between, and if heyoka reports none, it has lost one.
 
-- a step whose log shows a line is taken again with its left edge moved;
-- each step's crossings must alternate and lead from the sign of xdot at its start to that at its end;
-- where |xdot| dips without a crossing (the close pair near the north-south passage), the bottom of
-  the dip is looked at;
-- the zero at t = 0 of a release at rest is left out with a first step that holds no other zero.
+Signs alone do not show everything. If xdot is +0.3 mm/s and falling at the start, and +0.2 mm/s and rising at the end,
+it has a minimum in between. That may be +0.1 mm/s, with no transit, or -0.1 mm/s, with two close together, as happens
+when the swing plane passes through north-south. To tell them apart, xdot is evaluated at the minimum.
+
+So a step is taken again, with its left edge moved, unless
+
+- heyoka wrote nothing to its log during it,
+- the crossings in it alternate, and lead from the sign of xdot at its start to the sign at its end,
+- xdot keeps its sign at a minimum of |xdot| inside it, if it has no crossing.
+
+If xdot is zero at the release, that zero at t = 0 is no transit: a first step leaves it out, so short that it holds no
+other.
 """
 
 from __future__ import annotations
@@ -25,21 +33,24 @@ if TYPE_CHECKING:
     from .heyoka.log import Watch
     from .heyoka.stepper import Stepper, Zero
 
-MAX_LOOKS = 6  # steps are retaken this often before a run is given up
-SHORTER = Fraction(79, 128)  # retaken steps are cut by this: no simple ratio, so that no edge returns
-DIP_BISECTIONS = 60
+MAX_RETRIES = 6  # how often steps are taken again before the run is given up
+SHORTER = Fraction(79, 128)  # a step taken again is cut by this factor: no simple ratio, so that no edge returns
+MINIMUM_BISECTIONS = 60  # the minimum of |xdot| is found to this many bits of a step
 AT_REST = "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
 
 
-class _Doubt(Exception):
-    """The zeros of a step contradict each other."""
+class _Contradiction(Exception):
+    """The zeros of a step contradict each other, or heyoka wrote to its log."""
 
 
 def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
-    """A time δ in s with no zero of xdot in (0, δ], for a run whose first variable is x over l.
+    """Return a time δ in s such that xdot has no zero in (0, δ], for a run whose first variable is x over l.
 
-    With xdot = t^m (b_m + b_{m+1} t + …), |b_m| > 2 Σ |b_k| δ^(k-m) leaves no root; the factor 2
-    covers what the polynomial leaves out.
+    Let xdot = t^m (b_m + b_{m+1} t + …) with m = `multiplicity`. If |b_m| > Σ |b_k| δ^(k-m), summed over k > m, no
+    other root lies up to δ. The sum is taken over the polynomial only, and twice, to cover the terms beyond its order.
+
+    Raises:
+        IntegrationError: there is no such δ down to the working precision.
     """
     coefficients, h = stepper.coefficients()
     scaled: list[Any] = [abs((k + 1) * a * h**k) for k, a in enumerate(coefficients[0][1:])]
@@ -61,13 +72,13 @@ def march(
     quiet: Fraction | None = None,
     report: Callable[[float], None] | None = None,
 ) -> tuple[Any, list[Zero]]:
-    """Step to the last of `times`; returns states of shape (times, variables) and the zeros of xdot.
+    """Step to the last of `times`; return the states, shape (times, variables), and the zeros of xdot.
 
     Args:
         stepper: at t = 0, with events.
         times: increasing, from 0, numbers of the run's type.
         watch: heyoka's log.
-        quiet: first step, known to hold no zero but the one at t = 0.
+        quiet: length in s of a first step that holds no zero but the one at t = 0.
         report: called with the simulated time after each step.
 
     Raises:
@@ -85,30 +96,30 @@ def march(
         stepper.advance(min(stepper.numbers.of(quiet), end))
         collect()
         watch.fresh()
-    before: deque[tuple[Any, int, int]] = deque(maxlen=2)
-    looks, look = 0, stepper.look(stepper.state)
+    last_starts: deque[tuple[Any, int, int]] = deque(maxlen=2)  # of the last two steps
+    retries, at_start = 0, stepper.xdot_and_xddot(stepper.state)
     limit = end - stepper.time
     while stepper.time < end:
-        before.append((stepper.mark(), len(states), len(zeros)))
+        last_starts.append((stepper.mark(), len(states), len(zeros)))
         stepper.advance(limit)
         try:
-            found, look = _examined(stepper, before[-1][0][0], look, watch)
-        except _Doubt as doubt:
-            looks += 1
-            if looks > MAX_LOOKS:
+            zeros_of_step, at_start = _checked_zeros(stepper, last_starts[-1][0][0], at_start, watch)
+        except _Contradiction as contradiction:
+            retries += 1
+            if retries > MAX_RETRIES:
                 raise IntegrationError(
-                    f"zeros of xdot near t = {float(stepper.time)} s: {doubt}.",
+                    f"zeros of xdot near t = {float(stepper.time)} s: {contradiction}.",
                     AT_REST,
                 ) from None
-            limit = (stepper.time - before[-1][0][0]) * stepper.numbers.of(SHORTER**looks)
-            mark, kept_states, kept_zeros = before[0]
+            limit = (stepper.time - last_starts[-1][0][0]) * stepper.numbers.of(SHORTER**retries)
+            mark, state_count, zero_count = last_starts[0]
             stepper.back(mark)
-            del states[kept_states:], zeros[kept_zeros:]
-            before.clear()
-            look = stepper.look(stepper.state)
+            del states[state_count:], zeros[zero_count:]
+            last_starts.clear()
+            at_start = stepper.xdot_and_xddot(stepper.state)
             continue
-        zeros += found
-        looks = looks if limit < end - before[-1][0][0] else 0
+        zeros += zeros_of_step
+        retries = retries if limit < end - last_starts[-1][0][0] else 0
         collect()
         limit = end - stepper.time
         if report is not None:
@@ -116,35 +127,45 @@ def march(
     return np.array(states, dtype=stepper.numbers.dtype), zeros
 
 
-def _examined(
-    stepper: Stepper, began: Any, look: tuple[float, float], watch: Watch
+def _checked_zeros(
+    stepper: Stepper, t_start: Any, at_start: tuple[float, float], watch: Watch
 ) -> tuple[list[Zero], tuple[float, float]]:
-    """The step's zeros and the look at its end, if they agree with one another."""
+    """Return the zeros of the last step, checked, and xdot and xddot at its end.
+
+    Args:
+        stepper: after the step.
+        t_start: where the step began.
+        at_start: xdot and xddot there.
+        watch: heyoka's log.
+
+    Raises:
+        _Contradiction: a guard fails.
+    """
     if watch.fresh():
-        raise _Doubt("heyoka's root finder gave up")
-    found = sorted(stepper.found, key=lambda zero: zero.t)
-    later = stepper.look(stepper.state)
-    sign = np.sign(look[0])
-    for zero in found:
+        raise _Contradiction("heyoka's root finder gave up")
+    zeros = sorted(stepper.zeros, key=lambda zero: zero.t)
+    at_end = stepper.xdot_and_xddot(stepper.state)
+    sign = np.sign(at_start[0])
+    for zero in zeros:
         if zero.direction != -sign:
-            raise _Doubt("two crossings in a row have the same direction")
+            raise _Contradiction("two crossings in a row have the same direction")
         sign = -sign
-    if sign == 0 or sign != np.sign(later[0]):
-        raise _Doubt("the sign of xdot at the step's ends does not fit the crossings between")
-    dips = look[0] * look[1] < 0 < later[0] * later[1]
-    if not found and dips and _bottom(stepper, began) * sign <= 0:
-        raise _Doubt("xdot crosses zero twice and neither was found")
-    return found, later
+    if sign == 0 or sign != np.sign(at_end[0]):
+        raise _Contradiction("the sign of xdot at the step's ends does not fit the crossings between")
+    has_minimum = at_start[0] * at_start[1] < 0 < at_end[0] * at_end[1]
+    if not zeros and has_minimum and _xdot_at_minimum(stepper, t_start) * sign <= 0:
+        raise _Contradiction("xdot crosses zero twice and neither was found")
+    return zeros, at_end
 
 
-def _bottom(stepper: Stepper, began: Any) -> float:
-    """The value of xdot where |xdot| is least inside the last step, by bisection of its slope."""
-    low, high = began, stepper.time
-    rising = stepper.look(stepper.sample(high))[1] > 0
-    for _ in range(DIP_BISECTIONS):
+def _xdot_at_minimum(stepper: Stepper, t_start: Any) -> float:
+    """Return xdot where |xdot| has its minimum inside the last step, by bisection for xddot = 0."""
+    low, high = t_start, stepper.time
+    rising = stepper.xdot_and_xddot(stepper.sample(high))[1] > 0
+    for _ in range(MINIMUM_BISECTIONS):
         middle = (low + high) / 2
-        if (stepper.look(stepper.sample(middle))[1] > 0) == rising:
+        if (stepper.xdot_and_xddot(stepper.sample(middle))[1] > 0) == rising:
             high = middle
         else:
             low = middle
-    return stepper.look(stepper.sample(high))[0]
+    return stepper.xdot_and_xddot(stepper.sample(high))[0]

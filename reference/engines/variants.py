@@ -1,4 +1,4 @@
-"""Trajectories in double for other inputs or constants than a scene's: the model compiled once, every constant open."""
+"""Many trajectories in double with changed inputs or constants: the model compiled once, constants as parameters."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from ..model.formulations import FORMULATIONS
 from ..precision import DOUBLE, GUARD_BITS, Array, context
 from ..scene import Inputs
 
-MAX_STEPS = 3_000_000  # of a variant: a guess that is stiffer than the scene is not followed for ever
+MAX_STEPS = 3_000_000  # of one run, so that a variant much stiffer than the scene comes to an end
 
 
 class Variants:
-    """The model compiled once with every constant open, in double: what other inputs or constants would give.
+    """The model in double, compiled once with every constant as a parameter, for runs with other inputs or constants.
 
-    `spin` is used because it takes each term of the force by itself (a change to one leaves the others alone)
-    and stays on the sphere at every angle.
+    `spin` is used because it takes each term of the force by itself, so that a change to one leaves the others alone,
+    and because it is neutral off the sphere at every angle.
     """
 
     _MODEL = FORMULATIONS["spin"]
@@ -29,10 +29,10 @@ class Variants:
         from .heyoka.propagator import Propagator
 
         self._ctx = context(DOUBLE.prec + GUARD_BITS)
-        self._flow = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=9)
+        self._propagator = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=9)
 
     def states(self, inputs: Inputs, times: Array, alter: Callable[[Constants], Constants] | None = None) -> Array:
-        """One run.
+        """Return the states of one run.
 
         Args:
             inputs: the exact inputs of a scene, or changed ones.
@@ -44,7 +44,7 @@ class Variants:
 
         Raises:
             InputError: the release is beyond the cord's reach.
-            IntegrationError: no success; no numbers then.
+            IntegrationError: heyoka stops before the last time, or a state is not finite.
         """
         if inputs.position is not None and inputs.position[0] ** 2 + inputs.position[1] ** 2 >= inputs.length**2:
             raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
@@ -52,8 +52,8 @@ class Variants:
         n, v = (scaled(vector, k.length) for vector in release(inputs, self._ctx))
         k = (k if alter is None else alter(k)).converted(float)
         start = [float(value) for value in self._MODEL.start(n, v, k, self._ctx)]
-        open_ = [float(value) for value in (*k.turn[1:], *k.pull[1:], *k.centrifugal, k.drag)]
-        rows = self._flow.from_zero(start, times, open_, MAX_STEPS)
+        parameters = [float(value) for value in (*k.turn[1:], *k.pull[1:], *k.centrifugal, k.drag)]
+        rows = self._propagator.from_zero(start, times, parameters, MAX_STEPS)
         n_rows, spin = rows[:, :3], rows[:, 3:]
         return np.hstack([n_rows, np.cross(spin, n_rows)]) * float(k.length)
 

@@ -1,1 +1,9 @@
-"""The equations of motion, written once: constants of a scene, force, formulations, what vanishes."""
+"""The model of the Foucault pendulum: its equations of motion, written once for every number type.
+
+- `constants`: the constants of the equations, and the release, from a scene's exact inputs.
+- `earth`: how far the suspension is from the Earth's axis.
+- `algebra`: sums and products that leave out exact zeros.
+- `force`: force, tension of the cord, acceleration, the invariant h and the rest position.
+- `formulations`: seven ways to write the motion as a first-order system.
+- `vanishing`: whether xdot is exactly zero, always or at the release.
+"""

@@ -1,6 +1,6 @@
-"""Sums and products of numbers of any type (mpf, binary64, heyoka expression) that leave out what is exactly zero.
+"""Arithmetic for numbers of any type (mpf, binary64, heyoka expression) that leaves exact zeros out.
 
-An exact zero is the int 0; it drops out of every sum and product here, so the system of a scene holds only the
+An exact zero is the int 0. It drops out of every sum and product here, so the equations of a scene hold only the
 terms that the scene has.
 """
 
@@ -18,17 +18,17 @@ class Functions(Protocol):
     """Elementary functions of a number type: an mpmath context, or the module heyoka."""
 
     def sqrt(self, x: Any, /) -> Any:
-        """Square root."""
+        """Return the square root."""
 
     def sin(self, x: Any, /) -> Any:
-        """Sine."""
+        """Return the sine."""
 
     def cos(self, x: Any, /) -> Any:
-        """Cosine."""
+        """Return the cosine."""
 
 
 def product(*factors: Any) -> Any:
-    """The product, or the int 0 if any factor is exactly zero."""
+    """Return the product, or the int 0 if any factor is exactly zero."""
     result, started = 0, False
     for factor in factors:
         if is_zero(factor):
@@ -38,7 +38,7 @@ def product(*factors: Any) -> Any:
 
 
 def plus(*terms: Any) -> Any:
-    """The sum of the terms that are not exactly zero."""
+    """Return the sum of the terms that are not exactly zero."""
     total: Any = 0
     for term in terms:
         if not is_zero(term):
@@ -47,12 +47,12 @@ def plus(*terms: Any) -> Any:
 
 
 def minus(a: Any, b: Any) -> Any:
-    """The difference, leaving out what is exactly zero."""
+    """Return the difference, leaving out an exact zero."""
     return a if is_zero(b) else (-b if is_zero(a) else a - b)
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """Vector product."""
+    """Return the vector product."""
     return (
         minus(product(a[1], b[2]), product(a[2], b[1])),
         minus(product(a[2], b[0]), product(a[0], b[2])),
@@ -61,20 +61,20 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 
 def dot(a: Vector, b: Vector) -> Any:
-    """Scalar product."""
+    """Return the scalar product."""
     return plus(*(product(p, q) for p, q in zip(a, b, strict=True)))
 
 
 def scale(k: Any, a: Vector) -> Vector:
-    """The vector k a."""
+    """Return the vector k a."""
     return (product(k, a[0]), product(k, a[1]), product(k, a[2]))
 
 
 def add(a: Vector, b: Vector) -> Vector:
-    """The vector a + b."""
+    """Return the vector a + b."""
     return (plus(a[0], b[0]), plus(a[1], b[1]), plus(a[2], b[2]))
 
 
 def subtract(a: Vector, b: Vector) -> Vector:
-    """The vector a - b."""
+    """Return the vector a - b."""
     return (minus(a[0], b[0]), minus(a[1], b[1]), minus(a[2], b[2]))

@@ -1,8 +1,8 @@
-"""From a scene's exact inputs to the model's constants and its start, at any precision.
+"""The constants of the equations, and the release (position and velocity), from a scene's exact inputs.
 
-Constants are folded here, in high precision, and rounded once: what a double run loses by adding
-gravity and centrifugal terms in double would be its floor. A constant that is zero by the exact
-inputs (a pole, the equator, no rotation, no drag) is the int 0, and mechanics drops it.
+Constants are combined here in high precision and rounded once: a run that added gravity and the centrifugal force in
+double would carry that rounding error to its end. A constant that is zero by the exact inputs (at a pole, on the
+equator, without rotation, without drag) is the int 0, and its terms drop out of the equations (`algebra`).
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ Vector = tuple[Any, Any, Any]
 
 @dataclass(frozen=True)
 class Constants:
-    """What the equations of motion need; every entry a number of one type, or the int 0.
+    """The constants of the equations of motion; all are numbers of one type, or the int 0.
 
     Attributes:
         length: cord length l in m.
@@ -47,25 +47,25 @@ class Constants:
     cos: Any
 
     def converted(self, convert: Callable[[Any], Any]) -> Constants:
-        """The same constants in another number type; exact zeros stay the int 0."""
+        """Return the same constants in another number type; exact zeros stay the int 0."""
 
         def one(value: Any) -> Any:
             return value if is_zero(value) else convert(value)
 
-        changed = {
+        entries = {
             name: tuple(map(one, value)) if isinstance(value, tuple) else one(value)
             for name, value in vars(self).items()
         }
-        return replace(self, **changed)
+        return replace(self, **entries)
 
 
 def is_zero(value: Any) -> bool:
-    """True for the int 0, which stands for an exact zero."""
+    """Return whether a value is the int 0, which stands for an exact zero."""
     return isinstance(value, int) and value == 0
 
 
 def constants(inputs: Inputs, ctx: Any) -> Constants:
-    """The constants of a scene, folded in the precision of the mpmath context `ctx`."""
+    """Return the constants of a scene, combined in the precision of the mpmath context `ctx`."""
 
     def number(value: Any) -> Any:
         return 0 if value == 0 else value
@@ -95,7 +95,7 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
 
 
 def release(inputs: Inputs, ctx: Any) -> tuple[Vector, Vector]:
-    """Position in m and velocity in m/s at t = 0: Mathar (7), (10), or x, y completed to the sphere."""
+    """Return position in m and velocity in m/s at t = 0: Mathar (7), (10), or x, y, vx, vy completed to the sphere."""
     length = to_mpf(inputs.length, ctx)
     if inputs.position is not None:
         x, y, vx, vy = (to_mpf(value, ctx) for value in inputs.position)
@@ -115,5 +115,5 @@ def release(inputs: Inputs, ctx: Any) -> tuple[Vector, Vector]:
 
 
 def scaled(vector: Vector, length: Any) -> Vector:
-    """A position or velocity divided by the cord length."""
+    """Return a position or velocity divided by the cord length."""
     return (vector[0] / length, vector[1] / length, vector[2] / length)

@@ -1,4 +1,4 @@
-"""The ellipsoid: how far the suspension is from the Earth's axis."""
+"""The Earth's ellipsoid: how far the suspension is from the axis of rotation."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import Any
 
 
 def axis_distance(equatorial_radius: Any, flattening: Any, altitude: Any, sin: Any, cos: Any, sqrt: Any) -> Any:
-    """Distance R = (N + h) cos(latitude) of the suspension from the axis, in m: Mathar (2), (3).
+    """Return the distance R = (N + h) cos(latitude) of the suspension from the axis, in m: Mathar (2), (3).
 
     Args:
         equatorial_radius: semi-major axis in m.

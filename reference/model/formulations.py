@@ -1,4 +1,4 @@
-"""The seven formulations: ways to write the same motion as a first-order system, each usable for a run."""
+"""Seven first-order formulations of the motion: momentum, inertial, space, spin, plane, angles, lagrangian."""
 
 from __future__ import annotations
 
@@ -10,43 +10,47 @@ from .force import acceleration, force
 
 
 class Formulation(Protocol):
-    """One way to write the same system as a first-order system, usable for a run."""
+    """One way to write the equations of motion as a first-order system, which an engine can integrate."""
 
     @property
     def name(self) -> str:
-        """The word for it on the command line."""
+        """Its name, as in `FORMULATIONS`."""
 
     @property
     def variables(self) -> tuple[str, ...]:
         """Names of the state's variables, in order."""
 
     def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
-        """State of a bob at n = r/l with velocity v = r'/l."""
+        """Return the state of a bob at n = r/l with velocity v = r'/l."""
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
-        """N and n' of a state."""
+        """Return n and n' of a state."""
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
-        """Time derivative of a state, in the order of `variables`."""
+        """Return the time derivative of a state, in the order of `variables`."""
 
 
 class Momentum:
-    """H = n × (n' + Ω × n): n' = (H - Ω) × n, H' = n × c + H × Ω - γ n × n'; quadratic, neutral off the sphere."""
+    """H = n × (n' + Ω × n): n' = (H - Ω) × n, H' = n × c + H × Ω - γ n × n'.
+
+    Quadratic, and neutral off the sphere: |n| and n·H are conserved also where |n| is not 1, so an error in them does
+    not grow.
+    """
 
     name = "momentum"
     variables = ("nx", "ny", "nz", "Hx", "Hy", "Hz")
 
     def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
-        """State of a bob at n with velocity v."""
+        """Return the state of a bob at n with velocity v."""
         return (*n, *cross(n, add(v, cross(k.turn, n))))
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
-        """N and (H - Ω) × n."""
+        """Return n and (H - Ω) × n."""
         n, momentum = _halves(state)
         return n, cross(subtract(momentum, k.turn), n)
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
-        """Lines of the class's docstring."""
+        """Return n' and H' as in the class's docstring."""
         n, momentum = _halves(state)
         _, v = self.cartesian(state, k, functions)
         torque = subtract(add(cross(n, k.pull), cross(momentum, k.turn)), scale(k.drag, cross(n, v)))
@@ -54,45 +58,49 @@ class Momentum:
 
 
 class Inertial:
-    """V = n' + Ω × n: n' = V - Ω × n, V' = c - Ω × V - n (V·V + n·c) - γ n'; off the sphere only while a step lasts."""
+    """V = n' + Ω × n: n' = V - Ω × n, V' = c - Ω × V - n (V·V + n·c) - γ n'.
+
+    Rounding leaves the sphere as in `space`, and so do heyoka's runs; only limbs puts n back on the sphere after every
+    step (a projection).
+    """
 
     name = "inertial"
     variables = ("nx", "ny", "nz", "Vx", "Vy", "Vz")
 
     def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
-        """State of a bob at n with velocity v."""
+        """Return the state of a bob at n with velocity v."""
         return (*n, *add(v, cross(k.turn, n)))
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
-        """N and V - Ω × n."""
-        n, whole = _halves(state)
-        return n, subtract(whole, cross(k.turn, n))
+        """Return n and V - Ω × n."""
+        n, inertial = _halves(state)
+        return n, subtract(inertial, cross(k.turn, n))
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
-        """Lines of the class's docstring."""
-        n, whole = _halves(state)
+        """Return n' and V' as in the class's docstring."""
+        n, inertial = _halves(state)
         _, v = self.cartesian(state, k, functions)
-        pull = plus(dot(whole, whole), dot(n, k.pull))
-        steady = subtract(k.pull, cross(k.turn, whole))
-        return (*v, *subtract(subtract(steady, scale(pull, n)), scale(k.drag, v)))
+        tension = plus(dot(inertial, inertial), dot(n, k.pull))
+        free = subtract(k.pull, cross(k.turn, inertial))
+        return (*v, *subtract(subtract(free, scale(tension, n)), scale(k.drag, v)))
 
 
 class Space:
-    """n'' = F - n (v·v + n·F): polynomial, but rounding leaves the sphere wherever the cord is pushed."""
+    """n'' = F - n (v·v + n·F): polynomial, but rounding leaves the sphere where the rod is pushed."""
 
     name = "space"
     variables = ("nx", "ny", "nz", "vx", "vy", "vz")
 
     def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
-        """State of a bob at n with velocity v."""
+        """Return the state of a bob at n with velocity v."""
         return (*n, *v)
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
-        """The state itself."""
+        """Return the two halves of the state, which are n and v."""
         return _halves(state)
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
-        """V and the acceleration."""
+        """Return v and the acceleration."""
         n, v = _halves(state)
         return (*v, *acceleration(n, v, k))
 
@@ -104,16 +112,16 @@ class Spin:
     variables = ("nx", "ny", "nz", "wx", "wy", "wz")
 
     def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
-        """State of a bob at n with velocity v."""
+        """Return the state of a bob at n with velocity v."""
         return (*n, *cross(n, v))
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
-        """N and w × n."""
+        """Return n and w × n."""
         n, spin = _halves(state)
         return n, cross(spin, n)
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
-        """Lines of the class's docstring."""
+        """Return n' and w' as in the class's docstring."""
         n, v = self.cartesian(state, k, functions)
         return (*v, *cross(n, force(n, v, k)))
 
@@ -125,19 +133,19 @@ class Plane:
     variables = ("x", "y", "vx", "vy")
 
     def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
-        """State of a bob below the suspension."""
+        """Return the state of a bob below the suspension."""
         if not n[2] < 0:
             raise ValueError("the plane formulation holds below the suspension only")
         return (n[0], n[1], v[0], v[1])
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
-        """The third components from |n| = 1 and n·v = 0."""
+        """Return n and n', their third components from |n| = 1 and n·v = 0."""
         x, y, vx, vy = state
         depth = functions.sqrt(1 - x * x - y * y)
         return (x, y, -depth), (vx, vy, (x * vx + y * vy) / depth)
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
-        """(43), with β of (33)-(35), (39)-(41) divided by |z|³ and the constant terms folded into c."""
+        """Return (43), with β of (33)-(35), (39)-(41) divided by |z|³ and the constant terms gathered in c."""
         x, y, vx, vy = state
         _, north, up = k.turn
         _, yy, yz, zz = k.centrifugal
@@ -168,7 +176,7 @@ class Angles:
     variables = ("phi", "lambda", "phi_rate", "lambda_rate")
 
     def start(self, n: Vector, v: Vector, k: Constants, functions: Any) -> State:
-        """State of a bob off the vertical; `functions` needs atan2 and sqrt."""
+        """Return the state of a bob off the vertical; `functions` needs atan2 and sqrt."""
         square = n[0] * n[0] + n[1] * n[1]
         if not square > 0:
             raise ValueError("the angles formulation has no azimuth on the vertical")
@@ -181,7 +189,7 @@ class Angles:
         )
 
     def cartesian(self, state: State, k: Constants, functions: Functions) -> tuple[Vector, Vector]:
-        """(7) and (10) over l."""
+        """Return n and n' by (7) and (10), over l."""
         phi, azimuth, phi_rate, azimuth_rate = state
         sp, cp = functions.sin(phi), functions.cos(phi)
         sl, cl = functions.sin(azimuth), functions.cos(azimuth)
@@ -189,7 +197,7 @@ class Angles:
         return (sp * cl, sp * sl, -cp), v
 
     def derivatives(self, state: State, k: Constants, functions: Functions) -> State:
-        """(24) and (26) solved for the second derivatives; R Ω² and g folded into c."""
+        """Return (24) and (26) solved for the second derivatives, with R Ω² and g gathered in c."""
         phi, azimuth, phi_rate, azimuth_rate = state
         sp, cp = functions.sin(phi), functions.cos(phi)
         sl, cl = functions.sin(azimuth), functions.cos(azimuth)
@@ -213,12 +221,15 @@ class Angles:
 
 
 class Lagrangian(Angles):
-    """The system that `heyoka.lagrangian()` derives from L = K - V, Mathar (16)-(21), in the angles of (7)."""
+    """The system that `heyoka.lagrangian()` derives from L, kinetic minus potential energy: Mathar (16)-(21).
+
+    The angles are those of (7). `derivatives` is that of `Angles`, which gives the same rates; runs integrate heyoka's.
+    """
 
     name = "lagrangian"
 
     def lagrangian(self, state: State, k: Constants, functions: Functions) -> Any:
-        """L / (m l²) = (α0 + α1 Ω + α2 Ω²)/2 + (g/l) cos φ, with α of (17)-(19)."""
+        """Return L / (m l²) = (α0 + α1 Ω + α2 Ω²)/2 + (g/l) cos φ, with α of (17)-(19)."""
         phi, azimuth, phi_rate, azimuth_rate = state
         sp, cp = functions.sin(phi), functions.cos(phi)
         sl, cl = functions.sin(azimuth), functions.cos(azimuth)
@@ -234,8 +245,8 @@ class Lagrangian(Angles):
         return plus(kinetic, product(k.gravity, cp))
 
 
-_ALL: tuple[Formulation, ...] = (Momentum(), Inertial(), Space(), Spin(), Plane(), Angles(), Lagrangian())
-FORMULATIONS: dict[str, Formulation] = {made.name: made for made in _ALL}
+_INSTANCES: tuple[Formulation, ...] = (Momentum(), Inertial(), Space(), Spin(), Plane(), Angles(), Lagrangian())
+FORMULATIONS: dict[str, Formulation] = {formulation.name: formulation for formulation in _INSTANCES}
 
 
 def _halves(state: State) -> tuple[Vector, Vector]:

@@ -1,1 +1,9 @@
-"""From a scene to numbers with bounds: pilot runs, the choice of precision, confirmation, proof, sensitivity."""
+"""From a scene to numbers with bounds: how many bits it needs, runs that agree or a proof, rounding, sensitivity.
+
+- `solve`: the entry: from a scene to a `Solution`, at every level.
+- `solution`: the result: tables with bounds, and the runs they came from.
+- `pilot`: pilot runs, which measure how rounding errors grow; `reach`: the limits of a run.
+- `enclosed`: the level enclosed; `approximant`: the run whose Taylor polynomials its proof takes.
+- `rounding`: decimals of every printed column, and whether a proof decides each digit.
+- `sensitivity`: response of a trajectory to each input; `digits_lost`: how many digits that costs.
+"""

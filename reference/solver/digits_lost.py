@@ -1,4 +1,4 @@
-"""How many digits the flow of a scene costs between release and end, from runs with perturbed inputs."""
+"""Digits lost between release and end, because the motion magnifies errors of its inputs; from perturbed runs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 import operator
 from dataclasses import replace
 from fractions import Fraction
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from ..engines.plan import Plan
 from ..engines.run import run
@@ -17,60 +17,61 @@ from ..table import disagreement
 from .pilot import Pilot, run_pilot
 from .reach import MAX_PREC
 
-if TYPE_CHECKING:
-    pass
-
 Quadruple = tuple[Fraction, Fraction, Fraction, Fraction]
-PARTED = Fraction(1, 64)  # twins further apart than this, against the column's size, no longer measure a slope
+DIVERGED = Fraction(1, 64)  # a change above this part of a column's size is no longer proportional to the perturbation
 
 
 def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], pilot: Pilot | None = None) -> float:
-    """Decimal digits that the flow costs: n digits of every result take n + this many digits of the inputs.
+    """Return the decimal digits that the motion costs: n digits of every result need n + this many in the inputs.
 
-    Twin runs whose inputs differ by a relative 2**-26, once in the release and once in all the constants, drift
-    apart. What counts is the column that suffers most, its change over its largest number; an input that is zero or
-    a latitude where a term vanishes is taken as exact. Where the twins part company wholly, finer ones are sent.
+    Three runs are compared: the scene's own, one with a perturbed release, and one with perturbed constants. At a
+    precision of p bits the perturbation is a relative 2**-(p // 2). The column that changes most counts, its change
+    over its largest number. An input that is zero, or a latitude where a term vanishes, is taken as exact. If the
+    perturbed runs diverge, they are repeated at a higher precision.
 
     Args:
         inputs: the exact inputs of a scene.
         times: increasing, from 0, in s.
-        pilot: as measured over `times`, to save two runs.
+        pilot: the result of `run_pilot` for the same inputs and times, to save two runs.
 
     Raises:
-        UnreachableError: as `run_pilot`.
+        UnreachableError: as `run_pilot`, or the perturbed runs diverge at every precision.
     """
     pilot = pilot or run_pilot(inputs, times)
     number = DOUBLE if pilot.prec <= DOUBLE.prec else real(2 * LONG_DOUBLE.prec)
     while number.prec <= MAX_PREC:
         nudge = Fraction(1, 2 ** (number.prec // 2))
-        base, *twins = (
+        base, *perturbed = (
             run(Plan(each, "momentum", number, times, transits=False))
-            for each in (inputs, _other_release(inputs, nudge), _other_constants(inputs, nudge))
+            for each in (inputs, _perturbed_release(inputs, nudge), _perturbed_constants(inputs, nudge))
         )
-        parted = [disagreement(base.grid, base.bits, twin.grid, twin.bits) for twin in twins]
+        changes = [disagreement(base.grid, base.bits, other.grid, other.bits) for other in perturbed]
         sizes = pilot.sizes
-        worst = max(change[i] / size for change in parted for i, size in enumerate(sizes) if size)
-        if worst <= PARTED:
+        worst = max(change[i] / size for change in changes for i, size in enumerate(sizes) if size)
+        if worst <= DIVERGED:
             ratio = worst / nudge
             return max(0.0, math.log10(ratio.numerator) - math.log10(ratio.denominator)) if ratio else 0.0
         number = LONG_DOUBLE if number is DOUBLE else real(2 * number.prec)
-    raise UnreachableError(f"Twins part company wholly even at {MAX_PREC} bits.", "Ask for a shorter run: run.t_end.")
+    raise UnreachableError(
+        f"Even at {MAX_PREC} bits perturbed runs diverge completely, so the sensitivity cannot be measured.",
+        "Ask for a shorter run: run.t_end.",
+    )
 
 
-def _other_release(inputs: Inputs, nudge: Fraction) -> Inputs:
-    """Each number of the release by its own factor; position and angle inwards, so that they stay on the sphere."""
+def _perturbed_release(inputs: Inputs, nudge: Fraction) -> Inputs:
+    """Change each number of the release by a factor; x, y and the angle get smaller, to stay on the sphere."""
     factors = (1 - nudge, 1 - nudge / 2, 1 + nudge, 1 - nudge)
 
-    def changed(numbers: Quadruple | None) -> Quadruple | None:
+    def perturbed(numbers: Quadruple | None) -> Quadruple | None:
         return numbers and cast("Quadruple", tuple(map(operator.mul, numbers, factors)))
 
-    return replace(inputs, position=changed(inputs.position), angles=changed(inputs.angles))
+    return replace(inputs, position=perturbed(inputs.position), angles=perturbed(inputs.angles))
 
 
-def _other_constants(inputs: Inputs, nudge: Fraction) -> Inputs:
-    """Each constant by a factor, those of the swing's frequency in opposite directions."""
+def _perturbed_constants(inputs: Inputs, nudge: Fraction) -> Inputs:
+    """Change each constant by a factor, length and gravity, which set the swing's frequency, in opposite directions."""
     up, down = ("length", "rotation_rate", "altitude", "flattening"), ("gravity", "equatorial_radius", "drag")
-    changed = {name: getattr(inputs, name) * (1 + nudge) for name in up}
-    changed |= {name: getattr(inputs, name) * (1 - nudge) for name in down}
+    values = {name: getattr(inputs, name) * (1 + nudge) for name in up}
+    values |= {name: getattr(inputs, name) * (1 - nudge) for name in down}
     latitude = inputs.latitude * (1 - nudge) if inputs.latitude % 90 else inputs.latitude
-    return replace(inputs, latitude=latitude, **changed)
+    return replace(inputs, latitude=latitude, **values)

@@ -1,7 +1,7 @@
-"""The level `enclosed`: balls that contain the truth, turned into digits; runs are held against them.
+"""The level `enclosed`: from enclosing balls to printed digits, cross-checked against independent runs.
 
-The candidate is a run of heyoka or in limbs, so the proof is one about that run; a second run with heyoka's event
-detection, in the cheapest type that serves, has to find the same transits.
+The approximant is a run by heyoka or limbs, whose states must lie in the balls; a second run with heyoka's event
+detection, in the cheapest type that serves, must find the same transits.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from ..errors import InputError, IntegrationError, UnreachableError
 from ..precision import cheapest_type
 from ..scene import Scene
 from ..table import Table, bits_in
-from .approximant import GUARD_BITS, Feed
+from .approximant import COEFFICIENT_BITS, Feed
 from .pilot import Pilot, run_pilot
 from .rounding import UndecidedRounding, check_decided, grid_decimals
-from .solution import GRID_COLUMNS, TRANSIT_COLUMNS, CrossCheck, Proof, Solution, Source
+from .solution import GRID_COLUMNS, TRANSIT_COLUMNS, XDOT, CrossCheck, Proof, Solution, Source
 
-ROUNDING_BITS = 20  # balls are this much smaller than the last digit: among 1e5 numbers few ties, mostly none
-ROUNDING_TRIES = 3
-FINER = 2**16  # factor of the next try
-USUAL_DIGITS, FINER_DIGITS = 9, 27  # what the run with event detection is asked for, at first and on a second try
-ROUNDING_SLACK = 12  # bits that evaluating a run's polynomial may lose, by which it may miss its ball
-SCALE_BITS = 64  # of the tables' integers, below the smallest ball
+ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
+ROUNDING_TRIES = 3  # radii that are tried before giving up
+FINER = 2**16  # the next radius is smaller by this factor
+USUAL_DIGITS, FINER_DIGITS = 9, 27  # of the run with event detection, at first and on a second try
+EVALUATION_BITS = 12  # bits that a run may lose when its polynomial is evaluated, so that it misses its ball
+TABLE_BITS = 64  # the tables' integers carry this many bits more than the proof, so that rounding costs nothing
 
 
 def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:
@@ -35,8 +35,8 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, repor
 
     Raises:
         InputError: python-flint is not installed.
-        UnreachableError: balls small enough cannot be had; says what was reached.
-        IntegrationError: the run lies outside the enclosure.
+        UnreachableError: no balls are small enough; it tells the radius that was reached.
+        IntegrationError: a run lies outside the enclosure, or finds other transits.
     """
     try:
         from .. import enclosure
@@ -51,26 +51,26 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, repor
 
     try:
         for _ in range(ROUNDING_TRIES):
-            proved = enclosure.enclose(
+            enclosed = enclosure.enclose(
                 scene.exact,
                 times,
                 radius=radius,
                 transits=scene.run.transits,
-                approximant=lambda bits: feed(bits - GUARD_BITS),
+                approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
                 workers=feed.workers,
                 progress=report and _scaled(report, span),
             )
             try:
-                solution = _solution(scene, times, proved, feed.finished(), pilot)
+                solution = _solution(scene, times, enclosed, feed.finished(), pilot)
                 check_decided(solution)
             except UndecidedRounding as undecided:
-                radius, said = radius / FINER, str(undecided)
+                radius, reason = radius / FINER, str(undecided)
             else:
                 return solution
     finally:
         feed.stop()
     raise UnreachableError(
-        f"{said} Balls of {float(radius * FINER):.1e} m were tried.",
+        f"{reason} Balls of {float(radius * FINER):.1e} m were tried.",
         "A number may lie exactly between two decimals: ask for one digit more.",
     )
 
@@ -80,44 +80,48 @@ def _scaled(report: Report, span: float) -> Callable[[float], None]:
 
 
 def _usual_unit(pilot: Pilot, digits: int) -> Fraction:
-    """The last digit of the middle position and velocity columns; smaller ones, like vz, have smaller balls."""
+    """Return the unit of the last digit of the middle position or velocity column; smaller ones have smaller balls."""
     decimals = grid_decimals(pilot.largest, pilot.errors, digits)
     return Fraction(1, 10 ** max(sorted(decimals[:3])[1], sorted(decimals[3:])[1]))
 
 
-def _solution(scene: Scene, times: tuple[Fraction, ...], proved: Any, feed: Run, pilot: Pilot) -> Solution:
-    bits = proved.bits + SCALE_BITS
-    grid = _table(GRID_COLUMNS, proved.states, bits)
-    gaps = _checked_states(grid, times, feed)
-    checks = [replace(CrossCheck.of(feed, gaps, None), cpu_s=0.0)]  # the run itself, not one more
-    sure: list[Any] = []
-    unsure: list[Any] = []
-    for transit in proved.transits or ():
-        (sure if transit.kind == "one" else unsure).append(transit)
-    met = None
-    if proved.transits is not None:
-        met = _table(TRANSIT_COLUMNS, [(z.t, z.x, z.y, z.z, z.vy, z.ax) for z in sure], bits)
-        checks.append(_transit_check(scene, times, grid, met, [z.direction for z in sure], pilot, bool(unsure)))
+def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approximant: Run, pilot: Pilot) -> Solution:
+    bits = enclosed.bits + TABLE_BITS
+    grid = _table(GRID_COLUMNS, enclosed.states, bits)
+    gaps = _checked_states(grid, times, approximant)
+    checks = [replace(CrossCheck.of(approximant, gaps, None), cpu_s=0.0)]  # no further run, so no further cost
+    decided: list[Any] = []
+    undecided: list[Any] = []
+    for transit in enclosed.transits or ():
+        (decided if transit.kind == "one" else undecided).append(transit)
+    transits = None
+    if enclosed.transits is not None:
+        transits = _table(TRANSIT_COLUMNS, [(z.t, z.x, z.y, z.z, z.vy, z.ax) for z in decided], bits)
+        checks.append(
+            _transit_check(scene, times, grid, transits, [z.direction for z in decided], pilot, bool(undecided))
+        )
     size = max(pilot.largest[:3])
     proof = Proof(
-        method=proved.method,
-        prec=proved.bits,
-        order=proved.order,
-        steps=proved.steps,
-        position_radius=proved.position_radius,
-        velocity_radius=proved.velocity_radius,
-        transit_radius=None if met is None else max(met.bound("t"), default=None),
-        agreement_bits=-bits_in(max(gaps[:3]) / size) if any(gaps[:3]) else feed.plan.number.prec,
-        cpu_s={part: float(spent) for part, spent in vars(proved.cpu_s).items()},
+        method=enclosed.method,
+        prec=enclosed.bits,
+        order=enclosed.order,
+        steps=enclosed.steps,
+        position_radius=enclosed.position_radius,
+        velocity_radius=enclosed.velocity_radius,
+        transit_radius=None if transits is None else max(transits.bound("t"), default=None),
+        agreement_bits=-bits_in(max(gaps[:3]) / size) if any(gaps[:3]) else approximant.plan.number.prec,
+        cpu_s={part: float(seconds) for part, seconds in vars(enclosed.cpu_s).items()},
     )
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
-    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in unsure)
-    directions = [z.direction for z in sure]
-    return Solution(scene, times, grid, met, directions, Source.of(feed), tuple(checks), pilot.cpu_s, proof, possible)
+    possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)
+    directions = [z.direction for z in decided]
+    return Solution(
+        scene, times, grid, transits, directions, Source.of(approximant), tuple(checks), pilot.cpu_s, proof, possible
+    )
 
 
 def _table(columns: tuple[str, ...], rows: Sequence[Sequence[Any]], bits: int) -> Table:
-    """Middles and half-widths of intervals, as integers; rounded outwards."""
+    """Return the middles and half-widths of intervals as a table, rounded outwards."""
     values, errors = [], []
     for row in rows:
         lows = [(x.low.numerator << bits) // x.low.denominator for x in row]
@@ -128,17 +132,17 @@ def _table(columns: tuple[str, ...], rows: Sequence[Sequence[Any]], bits: int) -
     return Table(columns, bits, values, errors)
 
 
-def _checked_states(grid: Table, times: tuple[Fraction, ...], feed: Run) -> tuple[Fraction, ...]:
-    """How far the run's states are from the middles of the balls, per column, in m and m/s.
+def _checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> tuple[Fraction, ...]:
+    """Return how far the run's states are from the middles of the balls, at most, per column, in m and m/s.
 
     Raises:
         IntegrationError: one lies outside its ball by more than the rounding of its evaluation.
     """
-    rounding = max(grid.largest()) / 2 ** (feed.plan.number.prec - ROUNDING_SLACK)
+    rounding = max(grid.largest()) / 2 ** (approximant.plan.number.prec - EVALUATION_BITS)
     gaps = [Fraction(0)] * len(GRID_COLUMNS)
-    for t, row, middles, errors in zip(times, feed.grid, grid.values, grid.errors, strict=True):
+    for t, row, middles, errors in zip(times, approximant.grid, grid.values, grid.errors, strict=True):
         for i, name in enumerate(GRID_COLUMNS):
-            gap = abs(Fraction(row[i], 2**feed.bits) - Fraction(middles[i], 2**grid.bits))
+            gap = abs(Fraction(row[i], 2**approximant.bits) - Fraction(middles[i], 2**grid.bits))
             gaps[i] = max(gaps[i], gap)
             if gap > Fraction(errors[i], 2**grid.bits) + rounding:
                 raise IntegrationError(f"the run is outside the enclosure at t = {float(t)} s in {name}.")
@@ -149,51 +153,57 @@ def _transit_check(
     scene: Scene,
     times: tuple[Fraction, ...],
     grid: Table,
-    met: Table,
+    transits: Table,
     directions: list[int],
     pilot: Pilot,
-    undecided: bool,
+    any_undecided: bool,
 ) -> CrossCheck:
-    """Heyoka's event detection must find the enclosed transits, no other (unless some are undecided), where they are.
+    """Check that heyoka's event detection finds the enclosed transits, and no others unless some are undecided.
 
     Raises:
-        IntegrationError: naming the transit on which they part.
+        IntegrationError: it does not; names the first transit that differs.
     """
 
-    def seen_with(digits: int) -> Run:
+    def run_with_events(digits: int) -> Run:
         number = cheapest_type(pilot.bits_for(digits, times[-1], checked=False))
         return run(Plan(scene.exact, "momentum", number, times, transits=True))
 
-    seen = seen_with(USUAL_DIGITS)
+    event_run = run_with_events(USUAL_DIGITS)
     try:
-        gaps = _matched(seen, met, directions, pilot, undecided)
-    except IntegrationError:  # where the flow blurs its transits
-        seen = seen_with(FINER_DIGITS)
-        gaps = _matched(seen, met, directions, pilot, undecided)
-    state = [max(column) for column in zip(*_gaps(grid, seen), strict=True)]
-    return CrossCheck.of(seen, state, gaps)
+        gaps = _transit_gaps(event_run, transits, directions, pilot, any_undecided)
+    except IntegrationError:  # the motion magnifies errors too much for so few digits
+        event_run = run_with_events(FINER_DIGITS)
+        gaps = _transit_gaps(event_run, transits, directions, pilot, any_undecided)
+    state = [max(column) for column in zip(*_state_gaps(grid, event_run), strict=True)]
+    return CrossCheck.of(event_run, state, gaps)
 
 
-def _matched(seen: Run, met: Table, directions: list[int], pilot: Pilot, undecided: bool) -> list[tuple[Fraction, ...]]:
-    """How far the transits that a run found are from the enclosed ones, in s."""
-    found = [(Fraction(row[0], 2**seen.bits), way) for row, way in zip(seen.zeros or (), seen.directions, strict=True)]
-    if len(found) != len(directions) and not undecided:
-        raise IntegrationError(f"heyoka finds {len(found)} transits, the enclosure {len(directions)}.")
-    prec = seen.plan.number.prec
-    late, rounding = pilot.estimates(prec)[3], seen.plan.times[-1] / 2 ** (prec - ROUNDING_SLACK)
-    nearest = iter(found)
+def _transit_gaps(
+    event_run: Run, transits: Table, directions: list[int], pilot: Pilot, any_undecided: bool
+) -> list[tuple[Fraction, ...]]:
+    """Return how far the transits that a run found are from the enclosed ones, in s."""
+    detected = [
+        (Fraction(row[0], 2**event_run.bits), sign)
+        for row, sign in zip(event_run.zeros or (), event_run.directions, strict=True)
+    ]
+    if len(detected) != len(directions) and not any_undecided:
+        raise IntegrationError(f"heyoka finds {len(detected)} transits, the enclosure {len(directions)}.")
+    prec = event_run.plan.number.prec
+    xdot_error, rounding = pilot.estimates(prec)[XDOT], event_run.plan.times[-1] / 2 ** (prec - EVALUATION_BITS)
+    remaining = iter(detected)
     gaps: list[tuple[Fraction, ...]] = []
-    for k, (t, ax, way) in enumerate(zip(met.exact("t"), met.exact("ax"), directions, strict=True), 1):
-        allowed = late / abs(ax) + rounding
-        gap = next((abs(t - moment) for moment, sign in nearest if sign == way and abs(t - moment) <= allowed), None)
+    for k, (t, ax, direction) in enumerate(zip(transits.exact("t"), transits.exact("ax"), directions, strict=True), 1):
+        allowed = xdot_error / abs(ax) + rounding
+        gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= allowed), None)
         if gap is None:
             raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {float(t)} s.")
         gaps.append((gap,))
     return gaps
 
 
-def _gaps(grid: Table, seen: Run) -> list[tuple[Fraction, ...]]:
+def _state_gaps(grid: Table, other: Run) -> list[tuple[Fraction, ...]]:
+    """Return how far a run's states are from the middles of the balls, per time and column."""
     return [
-        tuple(abs(Fraction(a, 2**grid.bits) - Fraction(b, 2**seen.bits)) for a, b in zip(middles, row, strict=False))
-        for middles, row in zip(grid.values, seen.grid, strict=True)
+        tuple(abs(Fraction(a, 2**grid.bits) - Fraction(b, 2**other.bits)) for a, b in zip(middles, row, strict=False))
+        for middles, row in zip(grid.values, other.grid, strict=True)
     ]

@@ -1,4 +1,4 @@
-"""What is out of reach: the most bits and steps of a run, and how fast its first steps get on (stiff scenes)."""
+"""Limits of a run: most bits and steps, and the pace of its first steps, by which stiff scenes are refused at once."""
 
 from __future__ import annotations
 
@@ -14,52 +14,59 @@ from ..scene import Inputs
 if TYPE_CHECKING:
     from ..engines.heyoka.stepper import Stepper
 
-MAX_PREC = 8192
+MAX_PREC = 8192  # bits; a run that needs more is refused
 MAX_STEPS = 1 << 24  # at 160 bits or less: a year of Paris, three CPU hours
-LOOK_STEPS = 1 << 16  # of which this many show the pace
-SETTLED = 10  # with drag the pace may change until so many of its times have passed
+PACE_STEPS = 1 << 16  # steps over which the pace is measured, once or, with drag, again and again
+SETTLED = 10  # with drag γ the pace may change until t = SETTLED/γ
 
 
 def effort(steps: int, prec: int) -> int:
-    """Steps at 160 bits that take as long: a step's cost grows with the cube of the bits."""
+    """Return the number of steps at 160 bits that cost as much; a step's cost grows with the cube of the bits."""
     return steps * max(1, prec // 32) ** 3 // 125
 
 
 def check_pace(inputs: Inputs, end: Fraction, stepper: Stepper) -> None:
-    """Look how fast the first steps get on, and leave the stepper where it was.
+    """Measure the pace of the first steps, and put the stepper back where it was.
+
+    Args:
+        inputs: the exact inputs of a scene.
+        end: end of the run in s.
+        stepper: at the release.
 
     Raises:
-        UnreachableError: at that pace it takes more than `MAX_STEPS` steps to the end, in s.
+        UnreachableError: at that pace the run takes more than `MAX_STEPS` steps.
     """
-    start, span, taken, reached = stepper.mark(), float(end), 0, 0.0
-    while reached < span:
-        steps, begun = stepper.race(stepper.numbers.of(end), LOOK_STEPS), reached
-        taken, reached = taken + steps, float(stepper.time)
-        pace = steps / (reached - begun) if reached > begun else math.inf
-        needed = taken + (span - reached) * pace
+    start, span, total, t = stepper.mark(), float(end), 0, 0.0
+    while t < span:
+        steps, t_before = stepper.propagate_steps(stepper.numbers.of(end), PACE_STEPS), t
+        total, t = total + steps, float(stepper.time)
+        pace = steps / (t - t_before) if t > t_before else math.inf
+        needed = total + (span - t) * pace
         if needed <= MAX_STEPS:
             break
-        if taken >= MAX_STEPS or inputs.drag * Fraction(reached) >= SETTLED or not inputs.drag:
-            raise UnreachableError(_why_so_many(inputs, needed, pace), _until(reached + (MAX_STEPS - taken) / pace))
+        if total >= MAX_STEPS or inputs.drag * Fraction(t) >= SETTLED or not inputs.drag:
+            raise UnreachableError(_reason(inputs, needed, pace), _advice(t + (MAX_STEPS - total) / pace))
     stepper.back(start)
 
 
-def _why_so_many(inputs: Inputs, needed: float, pace: float) -> str:
-    """The reason, in rates: drag alone makes a scene stiff, for the cord's own frequencies are all of one size."""
+def _reason(inputs: Inputs, needed: float, pace: float) -> str:
+    """Return why the run takes so many steps; only drag makes it stiff, for the swing's rates are all of one size."""
     altogether = f"{needed:.1e} steps, and at most {MAX_STEPS:.1e} are taken."
     ctx = context(LONG_DOUBLE.prec)
     k = constants(inputs, ctx)
     swing = float(ctx.norm(k.pull)) ** 0.5
     if 2 * swing >= k.drag:
-        return f"The run takes {pace:.1e} steps a second, altogether {altogether}"
+        return f"The run takes {pace:.1e} steps per simulated second, altogether {altogether}"
     fast = float(k.drag) * (1 + math.sqrt(1 - (2 * swing / float(k.drag)) ** 2)) / 2
     slow = swing**2 / fast
-    then = f"the bob creeps at {slow:.1e}/s, rates {fast / slow:.1e} times apart" if slow else "nothing moves any more"
+    then = "nothing moves any more"
+    if slow:
+        then = f"the bob relaxes at {slow:.1e}/s; the rates differ by a factor of {fast / slow:.1e}"
     return (
-        f"Stiff: drag takes the speed away at {fast:.1e}/s and then {then}. "
-        f"An explicit method's steps are held to the faster rate: {altogether}"
+        f"Stiff: drag takes the speed away at {fast:.1e}/s, and after that {then}. "
+        f"An explicit method's steps are limited by the faster rate: {altogether}"
     )
 
 
-def _until(t: float) -> str:
+def _advice(t: float) -> str:
     return f"Ask for a shorter run (run.t_end up to about {0.95 * t:.2g}) or less drag."

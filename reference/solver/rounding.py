@@ -14,10 +14,10 @@ NOISE = 8  # a column whose largest number is within this many times its error i
 
 
 def grid_decimals(largest: Sequence[Fraction], errors: Sequence[Fraction], digits: int) -> list[int]:
-    """Digits after the point of x, y, z, vx, vy, vz, from each column's largest number and error.
+    """Return the digits after the point of x, y, z, vx, vy, vz, from each column's largest number and error.
 
-    A column that is nothing but error takes the digits of the largest column of its kind: a coordinate
-    that vanishes by symmetry comes out of a run as rounding noise, and noise has no significant digits.
+    A column that is nothing but error takes the digits of the largest column of its kind: a coordinate that vanishes by
+    symmetry comes out of a run as rounding noise, and noise has no significant digits.
     """
     resolved = [size if size > NOISE * error else Fraction(0) for size, error in zip(largest, errors, strict=True)]
     of_kind = [max(resolved[:3])] * 3 + [max(resolved[3:])] * 3
@@ -25,13 +25,13 @@ def grid_decimals(largest: Sequence[Fraction], errors: Sequence[Fraction], digit
 
 
 def transit_decimals(of_grid: Sequence[int], t: Fraction, ax: Fraction, digits: int) -> list[int]:
-    """Digits after the point of t, x, y, z, vy, ax: states as in the grid, t and ax by their own largest number."""
+    """Return the digits after the point of t, x, y, z, vy, ax: states as in the grid, t and ax by their own size."""
     x, y, z, _, vy, _ = of_grid
     return [decimals_for(t, digits), x, y, z, vy, decimals_for(ax, digits)]
 
 
 def exact_decimals(values: tuple[Fraction, ...]) -> int:
-    """Digits after the point that print terminating decimals exactly."""
+    """Return the digits after the point that print terminating decimals exactly."""
     digits = 0
     for value in values:
         while (value * 10**digits).denominator != 1:
@@ -40,18 +40,18 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
 
 
 def decimals_of(solution: Solution) -> tuple[dict[str, int], dict[str, int]]:
-    """Digits after the point of the columns of the grid and of the transits (empty without transits)."""
-    grid, met, digits = solution.grid, solution.transits, solution.scene.run.digits
+    """Return the digits after the point of the columns of the grid and of the transits (empty without transits)."""
+    grid, transits, digits = solution.grid, solution.transits, solution.scene.run.digits
     of_grid = grid_decimals(grid.largest(), grid.largest_bounds(), digits)
     named = dict(zip(grid.columns, of_grid, strict=True))
-    if met is None:
+    if transits is None:
         return named, {}
-    t, *_, ax = met.largest()
-    return named, dict(zip(met.columns, transit_decimals(of_grid, t, ax, digits), strict=True))
+    t, *_, ax = transits.largest()
+    return named, dict(zip(transits.columns, transit_decimals(of_grid, t, ax, digits), strict=True))
 
 
 def printed_grid(solution: Solution) -> list[tuple[str, ...]]:
-    """The rows of the grid, without their times, as text.
+    """Return the rows of the grid, without their times, as text.
 
     Raises:
         UndecidedRounding: a proven interval does not decide a digit.
@@ -60,7 +60,7 @@ def printed_grid(solution: Solution) -> list[tuple[str, ...]]:
 
 
 def printed_transits(solution: Solution) -> list[tuple[str, ...]]:
-    """The rows of the transits as text, without number, direction and bound; raises as `printed_grid`."""
+    """Return the rows of the transits as text, without number, direction and bound; raise as `printed_grid`."""
     if solution.transits is None:
         return []
     return _printed(solution.transits, decimals_of(solution)[1], solution.level == "enclosed")
@@ -73,7 +73,7 @@ def check_decided(solution: Solution) -> None:
 
 
 def _printed(table: Table, decimals: dict[str, int], proven: bool) -> list[tuple[str, ...]]:
-    """Every number rounded to its column's digits; where it is proven, both ends of its interval must round alike."""
+    """Round every number to its column's digits; if it is proven, both ends of its interval must round alike."""
     units = [10 ** decimals[name] for name in table.columns]
     rows = []
     for values, errors in zip(table.values, table.errors, strict=True):
@@ -91,7 +91,7 @@ def _printed(table: Table, decimals: dict[str, int], proven: bool) -> list[tuple
 
 
 def _nearest(value: int, bits: int) -> int:
-    """The integer nearest to value / 2**bits (ties upwards)."""
+    """Return the integer nearest to value / 2**bits (ties upwards)."""
     return (value + (1 << bits >> 1)) >> bits
 
 

@@ -1,7 +1,7 @@
-"""How the trajectory answers to its inputs: first-order variational equations, integrated with the model.
+"""Sensitivity of a trajectory to each input: first-order variational equations, integrated with the model.
 
-The equations of `momentum` are varied along one direction of their constants and start (Ω, c, γ, n, H) at a
-time; what these owe to a scene's inputs (length, latitude, …) comes by the chain rule, differenced in many digits.
+The equations of `momentum` are varied along one direction of their constants and start (Ω, c, γ, n, H) at a time. How
+these depend on a scene's inputs (length, latitude, …) comes in by the chain rule, from differences in 320 bits.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from ..scene import Inputs, Scene
 _SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
 _POSITION = ("x", "y", "vx", "vy")
 _ANGLES = ("angle", "azimuth", "angle_rate", "azimuth_rate")
-_PREC = 320
+_PREC = 320  # bits
 _NUDGE = Fraction(1, 1 << 100)  # central differences in 320 bits: exact to about 2**-200
-_TOLERANCE = 1e-11  # of the tangents; their use is to three digits
+_TOLERANCE = 1e-11  # of the variational equations, whose results are used to three digits
 _MODEL = FORMULATIONS["momentum"]
 _CONSTANTS = 5  # Ωy, Ωz, cy, cz, γ
 
@@ -34,7 +34,7 @@ class Sensitivity:
     """First-order response of a scene's trajectory to each of its inputs.
 
     Args:
-        scene: whose inputs are varied.
+        scene: its inputs are varied.
         times: increasing, from 0, in s.
     """
 
@@ -45,45 +45,45 @@ class Sensitivity:
     def values(self) -> dict[str, Fraction]:
         """Each input's exact value, by its name in the scene file, such as "site.gravity"."""
         inputs = self.scene.exact
-        given = {"pendulum.length": inputs.length, "pendulum.drag": inputs.drag}
-        given |= {f"site.{name}": getattr(inputs, name) for name in _SITE}
+        values = {"pendulum.length": inputs.length, "pendulum.drag": inputs.drag}
+        values |= {f"site.{name}": getattr(inputs, name) for name in _SITE}
         if inputs.flattening:
-            given["site.inverse_flattening"] = 1 / inputs.flattening
+            values["site.inverse_flattening"] = 1 / inputs.flattening
         names, numbers = (_POSITION, inputs.position) if inputs.position is not None else (_ANGLES, inputs.angles)
         assert numbers is not None
-        return given | {f"release.{name}": value for name, value in zip(names, numbers, strict=True)}
+        return values | {f"release.{name}": value for name, value in zip(names, numbers, strict=True)}
 
     def derivative(self, name: str) -> Array:
-        """Derivatives of x, y, z (m) and vx, vy, vz (m/s) with respect to one input, shape (times, 6).
+        """Return the derivatives of x, y, z (m) and vx, vy, vz (m/s) with respect to one input, shape (times, 6).
 
         Per SI unit of the input (degrees for angles); relative error about 1e-9.
         """
         return self._along(self._slope(name))
 
     def rounding(self) -> Array:
-        """How far the rounding of every input to binary64 moves the trajectory, shape (times, 6)."""
-        off = {name: Fraction(float(value)) - value for name, value in self.values.items()}
-        slopes = [float(change) * self._slope(name) for name, change in off.items() if change]
+        """Return how far rounding every input to binary64 moves the trajectory, shape (times, 6)."""
+        changes = {name: Fraction(float(value)) - value for name, value in self.values.items()}
+        slopes = [float(change) * self._slope(name) for name, change in changes.items() if change]
         return self._along(np.sum(slopes, axis=0)) if slopes else np.zeros((len(self.times), 6))
 
     def _slope(self, name: str) -> Array:
-        """Derivative of start, constants and length with respect to one input."""
+        """Return the derivative of start, constants and length with respect to one input."""
         ctx, inputs, value = self._ctx, self.scene.exact, self.values[name]
         nudge = _NUDGE * max(abs(value), Fraction(1))
         ahead, behind = (_parts(with_value(inputs, name, value + side * nudge), ctx) for side in (1, -1))
         return np.array([float(to_fraction(p - q) / (2 * nudge)) for p, q in zip(ahead, behind, strict=True)])
 
     def _along(self, slope: Array) -> Array:
-        """The response to a change of start, constants and length."""
+        """Return the response to a change of start, constants and length."""
         size = len(_MODEL.variables)
         base = np.array([float(part) for part in _parts(self.scene.exact, self._ctx)])
         start, turn, length = base[:size], np.array([0.0, *base[size : size + 2]]), base[-1]
-        strength = max(1.0, float(np.abs(slope).max()))  # the tangent is kept near 1, for the step control
-        held = [0.0, *base[size:-1], *(slope[size:-1] / strength)]
-        rows = self._flow.from_zero([*start, *(slope[:size] / strength)], self.times, held)
-        n, momentum, dn, spun = np.split(rows, 4, axis=1)
-        dn, spun = strength * dn, strength * spun - np.array([0.0, *slope[size : size + 2]])
-        v, dv = np.cross(momentum - turn, n), np.cross(spun, n) + np.cross(momentum - turn, dn)
+        strength = max(1.0, float(np.abs(slope).max()))  # keeps the derivative near 1, for the step size
+        parameters = [0.0, *base[size:-1], *(slope[size:-1] / strength)]
+        rows = self._propagator.from_zero([*start, *(slope[:size] / strength)], self.times, parameters)
+        n, momentum, dn, dmomentum = np.split(rows, 4, axis=1)
+        dn, dspin = strength * dn, strength * dmomentum - np.array([0.0, *slope[size : size + 2]])
+        v, dv = np.cross(momentum - turn, n), np.cross(dspin, n) + np.cross(momentum - turn, dn)
         return np.hstack([slope[-1] * n + length * dn, slope[-1] * v + length * dv])
 
     @cached_property
@@ -91,7 +91,7 @@ class Sensitivity:
         return context(_PREC)
 
     @cached_property
-    def _flow(self) -> Any:
+    def _propagator(self) -> Any:
         from ..engines.heyoka.propagator import Propagator
 
         count = 1 + 2 * _CONSTANTS
@@ -99,33 +99,33 @@ class Sensitivity:
 
 
 def _rates(state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
-    """`momentum` with all its constants open, also those that a scene sets to zero, plus ε times a direction."""
-    epsilon, held, direction = parameters[0], parameters[1 : 1 + _CONSTANTS], parameters[1 + _CONSTANTS :]
-    turn_y, turn_z, pull_y, pull_z, drag = (c + epsilon * d for c, d in zip(held, direction, strict=True))
+    """Return the rates of `momentum` with constants c + ε d as parameters, also those that are zero in the scene."""
+    epsilon, values, direction = parameters[0], parameters[1 : 1 + _CONSTANTS], parameters[1 + _CONSTANTS :]
+    turn_y, turn_z, pull_y, pull_z, drag = (c + epsilon * d for c, d in zip(values, direction, strict=True))
     k = Constants(1, (0, turn_y, turn_z), (0, pull_y, pull_z), (0, 0, 0, 0), drag, 0, 0, 0, 0, 0)
     return _MODEL.derivatives(state, k, functions)
 
 
 def _parts(inputs: Inputs, ctx: Any) -> list[Any]:
-    """Start (n, H), constants (Ωy, Ωz, cy, cz, γ) and length that follow from the inputs."""
+    """Return start (n, H), constants (Ωy, Ωz, cy, cz, γ) and length that follow from the inputs."""
     k = constants(inputs, ctx)
     n, v = (scaled(vector, k.length) for vector in release(inputs, ctx))
     return [ctx.mpf(part) for part in (*_MODEL.start(n, v, k, ctx), *k.turn[1:], *k.pull[1:], k.drag, k.length)]
 
 
 def with_value(inputs: Inputs, name: str, value: Fraction) -> Inputs:
-    """The inputs with one of `Sensitivity.values` replaced; no check, so that a mistake can be asked about."""
+    """Return the inputs with one of `Sensitivity.values` replaced, unchecked, so that a mistaken value can be tried."""
     section, key = name.split(".")
-    changed: dict[str, Any] = {key: value}
+    fields: dict[str, Any] = {key: value}
     if key == "inverse_flattening":
-        changed = {"flattening": 1 / value}
+        fields = {"flattening": 1 / value}
     elif section == "release":
         names, kind = (_POSITION, "position") if key in _POSITION else (_ANGLES, "angles")
         numbers = [value if other == key else old for other, old in zip(names, getattr(inputs, kind), strict=True)]
-        changed = {kind: tuple(numbers)}
-    return replace(inputs, **changed)
+        fields = {kind: tuple(numbers)}
+    return replace(inputs, **fields)
 
 
 def sensitivity(scene: Scene, times: Sequence[float] | Array) -> Sensitivity:
-    """The response of a scene's trajectory to its inputs, at increasing times from 0 in s."""
+    """Return the response of a scene's trajectory to its inputs, at increasing times from 0 in s."""
     return Sensitivity(scene, tuple(float(t) for t in times))

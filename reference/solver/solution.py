@@ -1,4 +1,4 @@
-"""What a solved scene is: tables of exact numbers, each with a bound, and where they came from."""
+"""A solved scene: tables of exact numbers, each with a bound, and the runs or the proof that they come from."""
 
 from __future__ import annotations
 
@@ -16,11 +16,13 @@ from ..table import Table
 
 GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
+STATE = slice(len(GRID_COLUMNS))  # these columns in a row of a run's grid, which ends with ax
+XDOT = GRID_COLUMNS.index("vx")
 
 
 @dataclass(frozen=True)
 class CrossCheck:
-    """A second run and its largest disagreement with the published one, in m, m/s and s."""
+    """A run that checks the published numbers, and its largest disagreement with them, in m, m/s and s."""
 
     formulation: str
     number: str
@@ -35,7 +37,7 @@ class CrossCheck:
     def of(
         cls, witness: Run, grid_gap: Sequence[Fraction], zero_gap: Sequence[tuple[Fraction, ...]] | None
     ) -> CrossCheck:
-        """From a run and its differences per grid column and per transit."""
+        """Build from a run and its differences, per grid column and per transit."""
         return cls(
             formulation=witness.plan.formulation,
             number=str(witness.plan.number),
@@ -61,13 +63,13 @@ class Source:
 
     @classmethod
     def of(cls, run: Run) -> Source:
-        """From a run."""
+        """Build from a run."""
         return cls(run.plan.formulation, str(run.plan.number), run.order, run.steps, run.cpu_s, run.compile_s)
 
 
 @dataclass(frozen=True)
 class Proof:
-    """An enclosure's method and size, its largest radii in m, m/s and s, and heyoka's agreement with it."""
+    """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it."""
 
     method: str
     prec: int
@@ -88,14 +90,14 @@ class Solution:
         scene: the scene as solved.
         times: grid times in s, exact.
         grid: x, y, z in m and vx, vy, vz in m/s at those times.
-        transits: t in s, x, y, z in m, vy in m/s, ax in m/s² of every zero of xdot; None if not asked
-            for, or if xdot is identically zero.
+        transits: t in s, x, y, z in m, vy in m/s, ax in m/s² of every zero of xdot; None if not asked for, or if
+            xdot is identically zero.
         directions: +1 where xdot goes from - to +, per transit.
         run: the run that the numbers come from.
         checks: runs that agree with it.
-        pilot_s: CPU seconds of the runs that the precision was chosen from.
+        pilot_s: CPU seconds of the pilot runs, which the precision was chosen from.
         proof: the enclosure, at the level enclosed.
-        possible: intervals in s, with a parity, that may hold transits no enclosure decides.
+        possible: intervals in s, each with a parity, that may hold transits which the proof could not decide.
 
     `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,).
     """
@@ -113,7 +115,7 @@ class Solution:
 
     @property
     def level(self) -> Level:
-        """How far the numbers can be trusted: one of `scene.LEVELS`."""
+        """Level of trust in the numbers: one of `scene.LEVELS`."""
         return self.scene.run.level
 
     @property
@@ -122,7 +124,7 @@ class Solution:
         return np.array([float(t) for t in self.times])
 
     def __getattr__(self, name: str) -> Any:
-        """A grid column by name."""
+        """Return a grid column by name."""
         if name in ("x", "y", "z", "vx", "vy", "vz"):
             return self.grid.array(name)
         raise AttributeError(name)

@@ -1,9 +1,9 @@
-"""From a scene to numbers with bounds: choose the precision, run, confirm, compare, raise, repeat.
+"""Solve a scene to the digits and level asked for: choose a precision, run twice, raise it until both agree.
 
-A double run beside a long double run measures what rounding does to this scene over its whole span;
-from that follow the bits that the digits asked for need. Two runs then have to agree to a quarter of
-the last digit printed, in every column: for `self_consistent` at two precisions and tolerances, for
-`confirmed` in another formulation as well. What is published comes from the finer run.
+Pilot runs measure how rounding errors grow on the scene over its whole span; from that follow the bits that the digits
+need. Two runs then have to agree to a quarter of the last printed digit in every column: for `self_consistent` at two
+precisions and tolerances, for `confirmed` in another formulation as well. The published numbers are those of the finer
+run. For `computed` there is one run only, and for `enclosed` a proof (`enclosed`).
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any
 
 from ..engines import registry as engines
 from ..engines.plan import Plan, Report, Run
@@ -25,18 +24,18 @@ from ..table import Table, bits_in, disagreement, largest_of
 from .pilot import MARGIN_BITS, Pilot, run_pilot
 from .reach import MAX_PREC, MAX_STEPS, effort
 from .rounding import grid_decimals, transit_decimals
-from .solution import GRID_COLUMNS, TRANSIT_COLUMNS, CrossCheck, Solution, Source
+from .solution import GRID_COLUMNS, STATE, TRANSIT_COLUMNS, CrossCheck, Solution, Source
 
-FINER_BITS = 16  # how much finer the published run is than the one it is compared with
-ROUND_TO_BITS = 8  # precisions are multiples of this, so that a jitter of the pilot does not show
-AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last digit printed
-MAX_RAISES = 6
+FINER_BITS = 16  # bits that the published run has more than the one it is compared with
+ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
+AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
+MAX_RAISES = 6  # pairs of runs before giving up
 
-_OF_ZERO = (0, 1, 2, 3, 5, 7)  # of t, x, y, z, vx, vy, vz, ax
+_ZERO_TO_TRANSIT = (0, 1, 2, 3, 5, 7)  # columns t, x, y, z, vy, ax of a run's zeros (t, x, y, z, vx, vy, vz, ax)
 
 
 def confirming_formulation(pilot: Pilot) -> str:
-    """`space` where the cord always pulls; `spin`, neutral at every angle, where a rod would be pushed."""
+    """Return `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod is pushed."""
     return "space" if pilot.tension > 0 else "spin"
 
 
@@ -50,16 +49,16 @@ def solve(
     engine: str | None = None,
     report: Report | None = None,
 ) -> Solution:
-    """Solve a scene to the digits and the level asked (the scene's own where not given).
+    """Solve a scene to the digits and the level asked for (the scene's own by default).
 
     Args:
-        scene: what to solve.
+        scene: the scene to solve.
         digits: significant decimal digits of the largest number in each column.
         level: one of `scene.LEVELS`.
         t_end: end of the run in s, as a decimal string.
         transits: whether to find every zero of xdot.
-        engine: "heyoka", "limbs" (many digits fast, needs numba), or None for limbs where it is installed. At the level
-            confirmed the run that confirms is always heyoka's.
+        engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for limbs where numba is installed. At the
+            level confirmed the run that confirms is always heyoka's.
         report: called with the simulated time reached, in s.
 
     Returns:
@@ -67,42 +66,44 @@ def solve(
 
     Raises:
         InputError: a field of the scene is wrong.
-        UnreachableError: the level or the digits cannot be had; no numbers then.
+        UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
-    wanted = {"digits": digits, "level": level, "t_end": t_end, "transits": transits}
-    scene = scene.with_values(f"run.{key}={value}" for key, value in wanted.items() if value is not None)
-    inputs, asked = scene.exact, scene.run
+    requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits}
+    scene = scene.with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
+    inputs, settings = scene.exact, scene.run
     times = tuple(inputs.grid)
-    engine = engines.chosen(engine)
-    if asked.level == "enclosed":
+    engine = engines.engine_named(engine)
+    if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
 
         return solve_enclosed(scene, times, engine, report)
     pilot = run_pilot(inputs, times)
-    if asked.level == "computed":
+    if settings.level == "computed":
         return _computed(scene, times, pilot, engine, report)
     return _agreed(scene, times, pilot, engine, report)
 
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
+    """Solve by a single run, whose errors are estimated from the pilot's."""
     prec = pilot.bits_for(scene.run.digits, _span(scene), checked=False)
     _check_reach(pilot, prec, scene.run.digits)
     formulation, number = engines.fastest(_rounded(prec) if prec > LONG_DOUBLE.prec else prec, engine)
-    done = run(Plan(scene.exact, formulation, number, times, scene.run.transits), report)
-    return _assemble(scene, times, done, pilot.estimates(number.prec), None, (), pilot)
+    single = run(Plan(scene.exact, formulation, number, times, scene.run.transits), report)
+    return _assemble(scene, times, single, pilot.estimates(number.prec), None, (), pilot)
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
+    """Solve by two runs, at a precision that is raised until they agree."""
     confirmed = scene.run.level == "confirmed"
-    other = confirming_formulation(pilot)
+    confirming = confirming_formulation(pilot)
     prec = _rounded(max(pilot.bits_for(scene.run.digits, _span(scene), checked=True), LONG_DOUBLE.prec))
     _check_reach(pilot, prec, scene.run.digits)
-    before: Fraction | None = None
+    last_gap: Fraction | None = None
     for _ in range(MAX_RAISES):
         formulation, number = engines.fastest(prec + FINER_BITS, engine)
         fine = Plan(scene.exact, formulation, number, times, scene.run.transits)
-        checking = (other, real(prec)) if confirmed else engines.fastest(prec, engine)
-        coarse = replace(fine, formulation=checking[0], number=checking[1])
+        formulation, number = (confirming, real(prec)) if confirmed else engines.fastest(prec, engine)
+        coarse = replace(fine, formulation=formulation, number=number)
         published, witness = run_both(fine, coarse, _expected_s(pilot, fine), report)
         missing, grid_gap, zero_gap = _missing_bits(published, witness, scene.run.digits)
         if not missing:
@@ -110,13 +111,13 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
             check = CrossCheck.of(witness, grid_gap, zero_gap)
             zero_errors = None if zero_gap is None else [tuple(2 * gap for gap in row) for row in zero_gap]
             return _assemble(scene, times, published, errors, zero_errors, (check,), pilot)
-        if before is not None and max(grid_gap) >= before > 0:
-            raise UnreachableError("Two formulations disagree, and a higher precision does not bring them together.")
-        before = max(grid_gap)
-        raised = _rounded(prec + missing)
-        if _out_of_reach(pilot, raised):
+        if last_gap is not None and max(grid_gap) >= last_gap > 0:
+            raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
+        last_gap = max(grid_gap)
+        next_prec = _rounded(prec + missing)
+        if _out_of_reach(pilot, next_prec):
             break
-        prec = raised
+        prec = next_prec
     raise UnreachableError(
         f"Two runs up to {prec} bits do not agree to {scene.run.digits} digits.",
         "Ask for fewer digits or a shorter run; a transit that only grazes xdot = 0 cannot be decided this way.",
@@ -136,25 +137,27 @@ def _check_reach(pilot: Pilot, prec: int, digits: int) -> None:
 
 
 def _span(scene: Scene) -> Fraction | None:
+    """Return the time in s over which transits are wanted."""
     return scene.exact.t_end if scene.run.transits else None
 
 
 def _rounded(prec: int) -> int:
+    """Round a precision up to a multiple of `ROUND_TO_BITS`."""
     return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
 
 
 def _expected_s(pilot: Pilot, plan: Plan) -> float:
-    """CPU seconds of a `real` run, from the pilot's steps: 0.6 ms a step at 160 bits, growing with the square."""
+    """Estimate the CPU seconds of heyoka's run from the pilot's steps: 0.6 ms a step at 160 bits, growing as bits²."""
     return 0.0 if plan.number.name == "limbs" else pilot.steps * 6e-4 * (plan.number.prec / 160) ** 2
 
 
 def _missing_bits(
     published: Run, witness: Run, digits: int
 ) -> tuple[int, tuple[Fraction, ...], list[tuple[Fraction, ...]] | None]:
-    """Bits that two runs lack to agree to a quarter of the last digit, and by how much they differ."""
-    gaps = disagreement(published.grid, published.bits, witness.grid, witness.bits)[:6]
-    decimals = grid_decimals(largest_of(published.grid, published.bits)[:6], gaps, digits)
-    missing = _lacking(gaps, decimals)
+    """Return the bits that two runs lack to agree to a quarter of the last digit, and how far apart they are."""
+    gaps = disagreement(published.grid, published.bits, witness.grid, witness.bits)[STATE]
+    decimals = grid_decimals(largest_of(published.grid, published.bits)[STATE], gaps, digits)
+    missing = _bits_lacking(gaps, decimals)
     if published.zeros is None or witness.zeros is None:
         return missing, gaps, None
     if published.directions != witness.directions:
@@ -162,15 +165,16 @@ def _missing_bits(
     if not published.zeros:
         return missing, gaps, []
     rows = [
-        tuple(disagreement([a], published.bits, [b], witness.bits)[i] for i in _OF_ZERO)
+        tuple(disagreement([a], published.bits, [b], witness.bits)[i] for i in _ZERO_TO_TRANSIT)
         for a, b in zip(published.zeros, witness.zeros, strict=True)
     ]
-    sizes = largest_of(published.zeros, published.bits)
+    t, *_, ax = largest_of(published.zeros, published.bits)
     worst = tuple(map(max, zip(*rows, strict=True)))
-    return max(missing, _lacking(worst, transit_decimals(decimals, sizes[0], sizes[-1], digits))), gaps, rows
+    return max(missing, _bits_lacking(worst, transit_decimals(decimals, t, ax, digits))), gaps, rows
 
 
-def _lacking(gaps: Sequence[Fraction], decimals: Sequence[int]) -> int:
+def _bits_lacking(gaps: Sequence[Fraction], decimals: Sequence[int]) -> int:
+    """Return the bits, with a margin, by which a gap exceeds `AGREEMENT` units of its last digit; 0 if none does."""
     lacking = 0
     for gap, places in zip(gaps, decimals, strict=True):
         ratio = gap * 10**places
@@ -182,33 +186,39 @@ def _lacking(gaps: Sequence[Fraction], decimals: Sequence[int]) -> int:
 def _assemble(
     scene: Scene,
     times: tuple[Fraction, ...],
-    done: Run,
+    published: Run,
     errors: tuple[Fraction, ...],
     zero_errors: list[tuple[Fraction, ...]] | None,
     checks: tuple[CrossCheck, ...],
     pilot: Pilot,
 ) -> Solution:
-    """A run with the bounds known for it as a `Solution`."""
+    """Return a run with its bounds as a `Solution`."""
 
     def fixed(values: Sequence[Fraction]) -> tuple[int, ...]:
-        return tuple(math.ceil(value * 2**done.bits) for value in values)
+        return tuple(math.ceil(value * 2**published.bits) for value in values)
 
-    grid = Table(GRID_COLUMNS, done.bits, [row[:6] for row in done.grid], [fixed(errors)] * len(done.grid))
-    met: Table | None = None
-    if done.zeros is not None:
-        rows = [tuple(row[i] for i in _OF_ZERO) for row in done.zeros]
-        spread = [
-            _zero_errors(row, done.bits, errors, zero_errors[i] if zero_errors else None) for i, row in enumerate(rows)
+    states = [row[STATE] for row in published.grid]
+    grid = Table(GRID_COLUMNS, published.bits, states, [fixed(errors)] * len(states))
+    transits: Table | None = None
+    if published.zeros is not None:
+        rows = [tuple(row[i] for i in _ZERO_TO_TRANSIT) for row in published.zeros]
+        row_errors = [
+            _transit_errors(row, published.bits, errors, zero_errors[i] if zero_errors else None)
+            for i, row in enumerate(rows)
         ]
-        met = Table(TRANSIT_COLUMNS, done.bits, rows, [fixed(row) for row in spread])
-    return Solution(scene, times, grid, met, done.directions, Source.of(done), checks, pilot.cpu_s)
+        transits = Table(TRANSIT_COLUMNS, published.bits, rows, [fixed(row) for row in row_errors])
+    return Solution(scene, times, grid, transits, published.directions, Source.of(published), checks, pilot.cpu_s)
 
 
-def _zero_errors(
+def _transit_errors(
     row: tuple[int, ...], bits: int, errors: tuple[Fraction, ...], measured: tuple[Fraction, ...] | None
 ) -> tuple[Fraction, ...]:
-    """Errors of a transit: its time is the error of xdot over |ax|, and never less than two runs differ."""
-    ax = abs(Fraction(row[5], 2**bits))
-    late = errors[3] / ax if ax else Fraction(10) ** 9
-    expected: tuple[Any, ...] = (late, errors[0], *errors[1:3], errors[4], errors[3])
+    """Return the errors of a transit, none less than the two runs differ.
+
+    That of its time is the error of xdot over |ax|; that of ax is taken to be as large as that of vx.
+    """
+    x, y, z, vx, vy, _ = errors
+    ax = abs(Fraction(row[TRANSIT_COLUMNS.index("ax")], 2**bits))
+    t = vx / ax if ax else Fraction(10) ** 9  # where xdot only grazes zero, the time is as good as unknown
+    expected = (t, x, y, z, vy, vx)
     return tuple(map(max, expected, measured)) if measured else expected

@@ -1,6 +1,12 @@
-"""The only door to heyoka, the Taylor integrator that compiles the equations of a scene.
+"""heyoka, the Taylor integrator that compiles the equations of a scene: everything that uses it stands in this folder.
 
 heyoka's traps are dealt with here: constants enter in the run's own precision and never as Python floats; log lines,
 its only sign of a lost root, are caught; outcome codes are checked; arrays of `real` leak without the custom memory
 handler; the disk cache never hits beyond 128 bits and is switched off for `real`.
+
+- `numbers`: its number types, and exact conversions.
+- `system`: a formulation as its expressions.
+- `stepper`: one scene, step by step, with events, dense output and Taylor coefficients.
+- `propagator`: any system without events, in one call.
+- `log`: its log, captured.
 """

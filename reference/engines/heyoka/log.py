@@ -1,4 +1,4 @@
-"""heyoka's log, which goes to the process's stdout: its only sign that an event may be lost."""
+"""heyoka's log, captured from the process's stdout: the only sign that an event may be lost."""
 
 from __future__ import annotations
 
@@ -12,21 +12,26 @@ from typing import Any
 
 @dataclass
 class Watch:
-    """What heyoka wrote to its log: its only sign that an event may be lost."""
+    """The captured log: heyoka writes a line where an event may be lost.
+
+    Attributes:
+        handle: the file that stdout is redirected to.
+        size_before: its size at the last call of `fresh`, in bytes.
+    """
 
     handle: Any
-    seen: int = 0
+    size_before: int = 0
 
     def fresh(self) -> bool:
-        """True if a line came since the last look."""
+        """Return whether anything was written since the last call."""
         size = os.fstat(self.handle.fileno()).st_size
-        changed, self.seen = size > self.seen, size
+        changed, self.size_before = size > self.size_before, size
         return changed
 
 
 @contextmanager
 def watched_log() -> Iterator[Watch]:
-    """Redirect the process's stdout, where heyoka logs, into a file; what others wrote is passed on."""
+    """Redirect the process's stdout, where heyoka logs, into a file; lines of others are passed on at the end."""
     saved = os.dup(1)
     with tempfile.TemporaryFile() as handle:
         os.dup2(handle.fileno(), 1)

@@ -1,7 +1,7 @@
 """heyoka's number types, and exact conversions to and from them.
 
-Every module of this folder that imports heyoka imports this one, so that its memory handler is installed: without it
-arrays of `real` leak.
+The modules that make heyoka's arrays, `stepper` and `propagator`, import this one, so that its memory handler is
+installed: without it arrays of `real` leak.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Numbers:
         self._twos: dict[int, Any] = {}
 
     def of(self, value: Any) -> Any:
-        """An mpf, int or Fraction as the nearest number of the type."""
+        """Return the number of the type that is nearest to an mpf, int or Fraction."""
         if isinstance(value, int | Fraction):
             top, bottom = value.numerator, value.denominator
         else:
@@ -46,18 +46,18 @@ class Numbers:
         return np.ldexp(np.longdouble(high) + np.longdouble(rounded - high), shift)
 
     def power_of_two(self, exponent: int) -> Any:
-        """2**exponent, exactly."""
+        """Return 2**exponent, exactly."""
         if exponent not in self._twos:
             self._twos[exponent] = self.of(Fraction(2) ** exponent)
         return self._twos[exponent]
 
     def fixed(self, values: Any, bits: int) -> list[int]:
-        """Each number of an array times 2**bits as an integer (cut off below one)."""
+        """Return each number of an array as an integer over 2**bits, cut off towards zero."""
         return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
 
 
 def _rounded(top: int, bottom: int, prec: int) -> tuple[int, int]:
-    """An integer m of at most `prec` bits and e with m 2**e nearest to top/bottom."""
+    """Return an integer m of at most `prec` bits and an e with m 2**e nearest to top/bottom."""
     if top == 0:
         return 0, 0
     shift = abs(top).bit_length() - bottom.bit_length() - prec

@@ -1,4 +1,4 @@
-"""heyoka's integrator of any autonomous system, without events, with parameters or variational equations."""
+"""heyoka's integrator of any autonomous system: no events, but parameters and variational equations."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .system import as_pairs
 
 
 class Propagator:
-    """Any autonomous system, given generically, in heyoka: what the model's own `Stepper` is not needed for.
+    """A plain propagator for systems without events: any autonomous system, written for any number type.
 
     Args:
         variables: names of the state's variables.
@@ -25,7 +25,7 @@ class Propagator:
             `functions` offers sqrt, sin, cos.
         number: type to compute in.
         tolerance: relative error of a step; the type's epsilon if None.
-        parameters: how many parameters there are.
+        parameters: number of parameters.
         varied: whether the derivative of the state with respect to the first parameter is integrated as well, by
             the first-order variational equations.
     """
@@ -42,29 +42,29 @@ class Propagator:
     ) -> None:
         self.numbers = Numbers(number)
         state = [hy.expression(name) for name in variables]
-        known = ([hy.par[i] for i in range(parameters)],) if parameters else ()
-        system: Any = as_pairs(state, derivatives(tuple(state), hy, *known))
+        extra = ([hy.par[i] for i in range(parameters)],) if parameters else ()
+        system: Any = as_pairs(state, derivatives(tuple(state), hy, *extra))
         if varied:
             system = hy.var_ode_sys(system, [hy.par[0]], order=1)
         keywords = dict(self.numbers.keywords)
         if tolerance is not None:
             keywords["tol"] = self.numbers.of(Fraction(tolerance))
         hy.llvm_state.set_diskcache_enabled(number.name != "real")
-        begun = time.process_time()
-        idle = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)
-        self._ta: Any = hy.taylor_adaptive(system, idle, fp_type=self.numbers.type, **keywords)
-        self.compile_s = time.process_time() - begun
+        started = time.process_time()
+        zeros = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)
+        self._ta: Any = hy.taylor_adaptive(system, zeros, fp_type=self.numbers.type, **keywords)
+        self.compile_s = time.process_time() - started
         self.steps = 0
 
     def from_zero(self, start: Sequence[Any], times: Any, parameters: Sequence[Any] = (), max_steps: int = 0) -> Any:
-        """States at increasing times (the first is 0), shape (times, variables).
+        """Return the states at increasing times (the first is 0), shape (times, variables).
 
-        Where varied, `start` holds the state and then its derivative with respect to the first parameter, and so
-        does each row.
+        With variational equations, `start` holds the state and then its derivative with respect to the first
+        parameter, and so does each row.
 
         Raises:
-            IntegrationError: heyoka says anything but success, a state is not finite, or `max_steps` (0: any number)
-                do not suffice.
+            IntegrationError: heyoka stops before the last time, also because `max_steps` (0: any number) do not
+                suffice, or a state is not finite.
         """
         ta = self._ta
         ta.time = self.numbers.of(0)

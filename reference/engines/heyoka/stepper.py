@@ -19,13 +19,13 @@ from ...precision import NumberType
 from .numbers import Numbers
 from .system import System
 
-STEPS_PER_LOOK = 64  # how often a run reports its progress
-TIME_BITS = 64  # a step's exact times are read with so many bits below twice the precision
+STEPS_PER_REPORT = 64  # steps between two reports of progress
+TIME_BITS = 64  # a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
 
 
 @dataclass(frozen=True)
 class Zero:
-    """A zero of xdot that heyoka found: time, sign of the crossing, state; numbers of the run's type."""
+    """A zero of xdot found by heyoka: time, sign of the crossing, state; in numbers of the run's type."""
 
     t: Any
     direction: int
@@ -33,7 +33,7 @@ class Zero:
 
 
 @dataclass(frozen=True)
-class Polynomials:
+class HeyokaTaylorStep:
     """Taylor polynomials of one step of `momentum`: n and h H as polynomials of s = (time - t)/h.
 
     Attributes:
@@ -50,19 +50,19 @@ class Polynomials:
 
     @property
     def coefficients(self) -> tuple[list[int], ...]:
-        """Six rows of integers, lowest order first; made when asked for, which costs a sixth of a step."""
+        """Six rows of integers, lowest order first; computed at every access, which costs a sixth of a step."""
         return tuple([int(c) for c in row] for row in self.scaled)
 
     def log2_largest(self, order: int) -> int:
-        """The power of two above the coefficients of an order."""
+        """Return the power of two above the coefficients of an order."""
         return max(abs(int(c)).bit_length() for c in self.scaled[:, order]) - self.bits
 
 
 class Stepper:
-    """heyoka's integrator, one step at a time, with the events of the last step and dense output.
+    """heyoka's integrator of a scene, one step at a time, with dense output and the zeros of xdot in each step.
 
     Args:
-        formulation: which equations.
+        formulation: the formulation to integrate.
         constants: the model's constants in an mpmath context finer than the run.
         n: release position over l, in the same context.
         v: release velocity over l.
@@ -84,30 +84,30 @@ class Stepper:
     ) -> None:
         self.number, self.numbers, self.formulation = number, Numbers(number), formulation
         self.constants = constants.converted(self.numbers.of)
-        self.found: list[Zero] = []
+        self.zeros: list[Zero] = []
         self.steps = 0
         system = System.build(formulation, self.constants)
         self._variables = [name for name, _ in system.equations]
         keywords = dict(self.numbers.keywords)
         if events:
-            found = self.found  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
+            zeros = self.zeros  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
 
-            def note(integrator: Any, t: Any, direction: int) -> None:
+            def record(integrator: Any, t: Any, direction: int) -> None:
                 integrator.update_d_output(t)
-                found.append(Zero(t, int(direction), integrator.d_output.copy()))
+                zeros.append(Zero(t, int(direction), integrator.d_output.copy()))
 
-            made = hy.nt_event(system.xdot, callback=note, fp_type=self.numbers.type)
-            keywords["nt_events"] = [made]
+            event = hy.nt_event(system.xdot, callback=record, fp_type=self.numbers.type)
+            keywords["nt_events"] = [event]
         start = [self.numbers.of(value) for value in formulation.start(n, v, constants, ctx)]
         hy.llvm_state.set_diskcache_enabled(number.name != "real")
-        begun = time.process_time()
+        started = time.process_time()
         self._ta: Any = hy.taylor_adaptive(
             system.equations, np.array(start, dtype=self.numbers.dtype), fp_type=self.numbers.type, **keywords
         )
         if events:
-            looks = [system.xdot, system.xddot]
-            self._look = hy.cfunc(looks, self._variables, fp_type=self.numbers.type, **self.numbers.keywords)
-        self.compile_s = time.process_time() - begun
+            outputs = [system.xdot, system.xddot]
+            self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **self.numbers.keywords)
+        self.compile_s = time.process_time() - started
         self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)
 
@@ -122,15 +122,16 @@ class Stepper:
         return self._ta.state.copy()
 
     def advance(self, limit: Any) -> None:
-        """One step, at most `limit` seconds long; its zeros of xdot are in `found` then.
+        """Take one step, at most `limit` seconds long; `zeros` then holds the zeros of xdot in it.
 
         Raises:
-            IntegrationError: heyoka says anything but success.
+            IntegrationError: heyoka reports a failure, or the state is not finite.
         """
-        self.found.clear()
-        self._checked(self._ta.step(limit)[0])
+        self.zeros.clear()
+        self._count_step(self._ta.step(limit)[0])
 
-    def _checked(self, outcome: Any) -> None:
+    def _count_step(self, outcome: Any) -> None:
+        """Count a step, or raise if it failed."""
         if outcome not in (hy.taylor_outcome.success, hy.taylor_outcome.time_limit):
             raise IntegrationError(f"heyoka stopped at t = {float(self.time)} s with outcome {outcome}.")
         if not np.isfinite(self._ta.state.astype(float)).all():
@@ -138,43 +139,46 @@ class Stepper:
         self.steps += 1
 
     def sample(self, t: Any) -> Any:
-        """State at a time within the last step (a copy)."""
+        """Return the state at a time within the last step (a copy), by dense output."""
         self._ta.update_d_output(t)
         return self._ta.d_output.copy()
 
     def mark(self) -> tuple[Any, Any]:
-        """Where the run is, for `back`."""
+        """Return the time and state reached, for `back`."""
         return self._ta.time, self._ta.state.copy()
 
     def back(self, mark: tuple[Any, Any]) -> None:
-        """Return to a mark, forgetting the events found since."""
+        """Return to a mark, and forget the zeros found since."""
         self._ta.time, self._ta.state[:] = mark
-        self.found.clear()
+        self.zeros.clear()
 
-    def look(self, state: Any) -> tuple[float, float]:
-        """Velocity and acceleration over l of the x coordinate (with events), in binary64 but with the right signs."""
-        xdot, xddot = self._look(state)
+    def xdot_and_xddot(self, state: Any) -> tuple[float, float]:
+        """Return xdot and xddot over l at a state, as binary64 with the right signs; only with events."""
+        xdot, xddot = self._outputs(state)
         return float(xdot), float(xddot)
 
     def coefficients(self) -> tuple[Any, Any]:
-        """Taylor coefficients at t = 0 of every variable (shape (variables, order + 1)), and a step h; stays at 0."""
+        """Return the Taylor coefficients of every variable, shape (variables, order + 1), and heyoka's step size.
+
+        The stepper goes back to where it was.
+        """
         start = self.mark()
         _, h = self._ta.step(write_tc=True)
-        taken = np.array(self._ta.tc)
+        coefficients = np.array(self._ta.tc)
         self.back(start)
-        return taken, h
+        return coefficients, h
 
-    def expand(self, limit: Any, bits: int) -> Polynomials:
-        """One step, at most `limit` seconds long, with its Taylor polynomials; stays exact in time."""
-        begun = self._exact_time()
-        self._checked(self._ta.step(limit, True)[0])
-        h = self._exact_time() - begun
+    def expand(self, limit: Any, bits: int) -> HeyokaTaylorStep:
+        """Take one step, at most `limit` seconds long, and return its Taylor polynomials, with its times exact."""
+        t = self._exact_time()
+        self._count_step(self._ta.step(limit, True)[0])
+        h = self._exact_time() - t
         if (h, bits) != self._powers[0]:
             self._powers = ((h, bits), self._row_powers(h, bits))
-        return Polynomials(begun, h, bits, self._ta.tc * self._powers[1])
+        return HeyokaTaylorStep(t, h, bits, self._ta.tc * self._powers[1])
 
     def _row_powers(self, h: Fraction, bits: int) -> Any:
-        """h**k 2**bits for the coefficients of n and h**(k+1) 2**bits for those of H, shape (6, order + 1)."""
+        """Return h**k 2**bits for the coefficients of n and h**(k+1) 2**bits for those of H, shape (6, order + 1)."""
         step, powers = self.numbers.of(h), [self.numbers.power_of_two(bits)]
         for _ in range(self.order + 1):
             powers.append(powers[-1] * step)
@@ -185,8 +189,12 @@ class Stepper:
         bits = 2 * self.number.prec + TIME_BITS
         return Fraction(sum(self.numbers.fixed(np.array(self._ta.dtime), bits)), 1 << bits)
 
-    def race(self, end: Any, steps: int) -> int:
-        """Go on towards `end` without output or checks, at most so many steps; how many were taken."""
+    def propagate_steps(self, end: Any, steps: int) -> int:
+        """Propagate towards `end` without output or checks; return the number of steps taken, at most `steps`.
+
+        Raises:
+            IntegrationError: heyoka reports a failure.
+        """
         outcome, _, _, taken, _, _ = self._ta.propagate_until(end, max_steps=steps)
         if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
             raise IntegrationError(
@@ -195,20 +203,20 @@ class Stepper:
         return int(taken)
 
     def propagate(self, times: Sequence[Any], report: Callable[[float], None] | None = None) -> Any:
-        """States at increasing times (the first is the present), shape (times, variables), without events."""
+        """Return the states at increasing times from the one reached, shape (times, variables); not with events."""
         if len(times) == 1:
             return self._ta.state.copy()[None, :]
         count = 0
 
-        def called(integrator: Any) -> bool:
+        def progress(integrator: Any) -> bool:
             nonlocal count
             count += 1
-            if report is not None and count % STEPS_PER_LOOK == 0:
+            if report is not None and count % STEPS_PER_REPORT == 0:
                 report(float(integrator.time))
             return True
 
         grid = np.array(times, dtype=self.numbers.dtype)
-        keywords = {} if report is None else {"callback": called}
+        keywords = {} if report is None else {"callback": progress}
         outcome, _, _, steps, _, states = self._ta.propagate_grid(grid, **keywords)
         self.steps += int(steps)
         if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
@@ -220,7 +228,7 @@ class Stepper:
 
 @dataclass(frozen=True)
 class Samples:
-    """States in cartesian coordinates, as integers over 2**bits: exact values of what a run computed.
+    """Cartesian states of a run, exactly as it computed them, as integers over 2**bits.
 
     Attributes:
         rows: per time x, y, z (m), vx, vy, vz (m/s) and ax (m/s²).
@@ -231,7 +239,7 @@ class Samples:
 
 
 def cartesian(stepper: Stepper, states: Any, bits: int) -> Samples:
-    """x, y, z, vx, vy, vz, ax of states of shape (rows, variables), in SI units."""
+    """Return x, y, z, vx, vy, vz, ax in SI units, from states of shape (rows, variables)."""
     if len(states) == 0:
         return Samples(bits, [])
     columns = tuple(np.ascontiguousarray(states.T))
@@ -243,7 +251,7 @@ def cartesian(stepper: Stepper, states: Any, bits: int) -> Samples:
 
 
 def least_tension(stepper: Stepper, states: Any) -> float:
-    """The least pull of the cord, v·v + n·F in 1/s², over states of shape (rows, variables)."""
+    """Return the least tension of the cord, v·v + n·F in 1/s², over states of shape (rows, variables)."""
     columns = tuple(np.ascontiguousarray(states.T))
     n, v = stepper.formulation.cartesian(columns, stepper.constants, np)
     pull = tension(n, v, stepper.constants)

@@ -1,4 +1,4 @@
-"""A formulation as heyoka's expressions: what is compiled, and the same as text."""
+"""A formulation as heyoka expressions, ready to be compiled, and the same equations as text."""
 
 from __future__ import annotations
 
@@ -16,7 +16,15 @@ from ...model.formulations import Formulation, Lagrangian
 
 @dataclass(frozen=True)
 class System:
-    """Equations of motion as heyoka expressions, with the constants they were built from."""
+    """Equations of motion as heyoka expressions.
+
+    Attributes:
+        formulation: the formulation they were built from.
+        constants: the constants in them.
+        equations: pairs of a variable and its rate.
+        xdot: velocity of the x coordinate, over l.
+        xddot: its acceleration, over l.
+    """
 
     formulation: Formulation
     constants: Constants
@@ -26,7 +34,7 @@ class System:
 
     @classmethod
     def build(cls, formulation: Formulation, constants: Constants) -> System:
-        """Expressions of a formulation; `constants` are numbers of the run's type, or variables."""
+        """Build the expressions of a formulation; `constants` are numbers of the run's type, or variables."""
         state = hy.make_vars(*formulation.variables)
         n, v = formulation.cartesian(state, constants, hy)
         equations = as_pairs(state, rates(formulation, constants)(state, hy))
@@ -34,19 +42,19 @@ class System:
 
 
 def rates(formulation: Formulation, constants: Constants) -> Callable[[Any, Any], Sequence[Any]]:
-    """A formulation's derivatives as a function of state and functions."""
+    """Return a formulation's derivatives as a function of the state and the elementary functions."""
     if isinstance(formulation, Lagrangian):
         return lambda state, _: _euler_lagrange(formulation, state, constants)
     return lambda state, functions: formulation.derivatives(state, constants, functions)
 
 
 def as_pairs(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]]:
-    """Pairs as heyoka wants them, also where a rate is the int 0."""
+    """Return the pairs (variable, rate) that heyoka takes; a rate that is the int 0 becomes an expression."""
     return [(name, rate + hy.expression(0.0)) for name, rate in zip(state, rates, strict=True)]
 
 
 def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -> list[Any]:
-    """Heyoka's equations of L; linear drag, with Rayleigh function γ α0/2, adds -γ q' to each q'' whatever q is."""
+    """Return heyoka's equations of L; linear drag, Rayleigh function γ α0/2, adds -γ q' to each q'' whatever q is."""
     derived = hy.lagrangian(formulation.lagrangian(state, constants, hy), list(state[:2]), list(state[2:]))
     rates = {str(name): rate for name, rate in derived}
     for velocity in state[2:]:
@@ -55,7 +63,7 @@ def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -
 
 
 def equations_text(formulation: Formulation, constants: Constants) -> list[str]:
-    """The lines "name' = …" that are compiled, constants by name and exact zeros left out."""
+    """Return the lines "name' = …" that are compiled, constants by name and exact zeros left out."""
     names: dict[str, Any] = {
         "turn": ("", "Omega_y", "Omega_z"),
         "pull": ("", "c_y", "c_z"),

@@ -22,24 +22,24 @@ from reference.precision import DOUBLE, LONG_DOUBLE, real
 
 
 def bare_heyoka(scene, number, t_end, first_step=None):
-    """What heyoka alone reports: times of xdot = 0 in (or at) 0 … t_end; its log is left on stdout."""
+    """Times of xdot = 0 in (or at) 0 … t_end as heyoka alone reports them; its log is left on stdout."""
     from reference.model.formulations import FORMULATIONS
 
     ctx, k, n, v = start_of(scene.exact, number)
     numbers, model = Numbers(number), FORMULATIONS["momentum"]
     system = System.build(model, k.converted(numbers.of))
-    found: list[float] = []
-    event = hy.nt_event(system.xdot, callback=lambda _, t, __: found.append(float(t)), fp_type=numbers.type)
+    times: list[float] = []
+    event = hy.nt_event(system.xdot, callback=lambda _, t, __: times.append(float(t)), fp_type=numbers.type)
     start = np.array([numbers.of(part) for part in model.start(n, v, k, ctx)], dtype=numbers.dtype)
-    made = hy.taylor_adaptive(system.equations, start, nt_events=[event], fp_type=numbers.type, **numbers.keywords)
+    alone = hy.taylor_adaptive(system.equations, start, nt_events=[event], fp_type=numbers.type, **numbers.keywords)
     if first_step is not None:
-        made.step(first_step)
-    made.propagate_until(numbers.of(t_end))
-    return found
+        alone.step(first_step)
+    alone.propagate_until(numbers.of(t_end))
+    return times
 
 
 def guarded(scene, number, t_end=60, stepper=None):
-    """What the guards make of it: the zeros, and how many steps it took."""
+    """The zeros of xdot that pass the guards."""
     stepper = stepper or stepper_of(scene, number, events=True)
     with watched_log() as watch:
         quiet = quiet_start(stepper, zero_at_release(*start_of(scene.exact, number)[2:]))
@@ -139,9 +139,9 @@ class LosesEvents(Stepper):
 
     def advance(self, limit):
         super().advance(limit)
-        if self.lost == 0 and self.found and float(self.time) > self.when:
-            self.lost = len(self.found)
-            del self.found[self.forget]
+        if self.lost == 0 and self.zeros and float(self.time) > self.when:
+            self.lost = len(self.zeros)
+            del self.zeros[self.forget]
 
 
 def losing(scene, number, kind=LosesEvents):
@@ -167,7 +167,7 @@ def close_pair_scene():
 
 
 def test_guard_a_close_pair_lost_together_is_found_again():
-    """|xdot| dips through zero and back inside one step; both events vanish; only the dip shows."""
+    """xdot passes through zero and back inside one step; both events are lost; only the minimum of |xdot| shows."""
     scene = close_pair_scene()
     plain = guarded_moving(scene, stepper_of(scene, DOUBLE, events=True))
     gaps = np.diff([float(zero.t) for zero in plain])
@@ -176,9 +176,9 @@ def test_guard_a_close_pair_lost_together_is_found_again():
     class LosesPair(LosesEvents):
         def advance(self, limit):
             Stepper.advance(self, limit)
-            if self.lost == 0 and len(self.found) == 2:
+            if self.lost == 0 and len(self.zeros) == 2:
                 self.lost = 2
-                self.found.clear()
+                self.zeros.clear()
 
     stepper = losing(scene, DOUBLE, LosesPair)
     again = guarded_moving(scene, stepper)
@@ -195,7 +195,7 @@ def test_events_that_contradict_each_other_for_good_stop_the_run(paris):
     class NeverSees(LosesEvents):
         def advance(self, limit):
             Stepper.advance(self, limit)
-            self.found.clear()
+            self.zeros.clear()
 
     with pytest.raises(IntegrationError, match="zeros of xdot near t = "):
         guarded(paris, DOUBLE, 60, losing(paris, DOUBLE, NeverSees))
@@ -236,7 +236,7 @@ def test_the_order_of_the_zero_at_the_release_follows_from_the_inputs(release, m
 
 @pytest.mark.parametrize("number", [DOUBLE, real(160)], ids=str)
 def test_a_release_at_rest_in_the_meridian_has_its_first_transit_where_the_proof_has_it(number):
-    """facts/enclosure.md H 6: y0 = 0.5 m, first transit 8.2266590196580988 s, no spurious one at 0."""
+    """y0 = 0.5 m: the first transit is proved to be at 8.2266590196580988 s; there must be no spurious one at 0."""
     scene = make_scene(release={"x": "0", "y": "0.5"})
     done = run(Plan(scene.exact, "momentum", number, (Fraction(0), Fraction(60)), transits=True))
     first = Fraction(done.zeros[0][0], 2**done.bits)
@@ -244,7 +244,7 @@ def test_a_release_at_rest_in_the_meridian_has_its_first_transit_where_the_proof
 
 
 def test_a_moving_release_may_have_a_transit_in_its_first_step():
-    """facts/enclosure.md H 6: xdot(0) = 0.067 m/s, first transit 1.38290078 s."""
+    """xdot(0) = 0.067 m/s: the first transit is proved to be at 1.38290078 s."""
     scene = make_scene(release={"x": "0.3", "y": "0.4", "vx": "0.067"})
     done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
     assert abs(done.zeros[0][0] / 2**done.bits - 1.38290078) < 1e-8

@@ -313,9 +313,9 @@ def test_retrograde_is_the_mirror_image_and_the_south_pole_turns_like_it() -> No
 # Transits, and what is refused -------------------------------------------------------------------------------------
 def test_a_swing_in_the_meridian_plane_has_no_transits_and_the_separatrix_one() -> None:
     assert solve(changed("meridian_plane", t_end="5", level="confirmed")).transits is None
-    met = solve(changed("separatrix", level="confirmed")).transits
-    assert met is not None
-    (t,) = met.exact("t")
+    transits = solve(changed("separatrix", level="confirmed")).transits
+    assert transits is not None
+    (t,) = transits.exact("t")
     assert abs(number(t) - MP.asinh(1) / 3) < 1e-28  # where the rod is level
 
 
@@ -327,7 +327,7 @@ def test_a_swing_in_the_meridian_plane_has_no_transits_and_the_separatrix_one() 
             "Stiff: drag takes the speed away at 1.0e+06/s",
         ),
         (["separatrix", "--t-end", "2400", "--set", "run.grid_step=10"], "Rounding grows so fast"),
-        (["paris_30d", "--t-end", "1e12", "--set", "run.grid_step=1e9"], "steps a second"),
+        (["paris_30d", "--t-end", "1e12", "--set", "run.grid_step=1e9"], "steps per simulated second"),
         (["hard", "--set", "pendulum.drag=1e300"], "too far apart for double"),
     ],
     ids=["stiff", "sensitive", "long", "out of range"],

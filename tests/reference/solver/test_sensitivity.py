@@ -43,17 +43,17 @@ def inputs_of(name):
 
 @pytest.mark.parametrize(("scene", "name"), [(s, n) for s in SCENES for n in inputs_of(s)])
 def test_a_derivative_is_the_limit_of_differences(scene, name):
-    made = sensitivity(SCENES[scene], TIMES)
-    value, nudge = made.values[name], Fraction(NUDGES.get(name, "1e-6"))
+    response = sensitivity(SCENES[scene], TIMES)
+    value, nudge = response.values[name], Fraction(NUDGES.get(name, "1e-6"))
     ahead, behind = (
         trajectory(Changed(with_value(SCENES[scene].exact, name, value + side * nudge)), TIMES, number=LONG_DOUBLE)
         for side in (1, -1)
     )
     expected = (ahead - behind) / (2 * float(nudge))
-    found = made.derivative(name)
+    derivative = response.derivative(name)
     # the states came back as doubles: their rounding over the nudge, and a third-order term, are what differences lose
     noise = np.abs(ahead).max(axis=0) * 2.0**-52 / float(nudge)
-    assert np.all(np.abs(found - expected).max(axis=0) <= 1e-5 * np.abs(expected).max() + noise)
+    assert np.all(np.abs(derivative - expected).max(axis=0) <= 1e-5 * np.abs(expected).max() + noise)
 
 
 def test_the_rounding_of_the_inputs_is_the_difference_of_the_two_golden_datasets():
@@ -67,7 +67,7 @@ def test_the_rounding_of_the_inputs_is_the_difference_of_the_two_golden_datasets
         expected = np.array([differences[k] for k in rows])
         scale = np.abs(moved[:, :3] if i < 3 else moved[:, 3:]).max()
         assert np.abs(moved[:, i] - expected).max() < 1e-5 * scale
-    assert 1e-13 < np.abs(moved[:, :3]).max() < 1e-12  # facts/peers.md: 5e-13 m over the day
+    assert 1e-13 < np.abs(moved[:, :3]).max() < 1e-12  # rounding the inputs of Paris moves the bob by 5e-13 m in a day
 
 
 def test_inputs_that_are_doubles_already_move_nothing():

@@ -167,7 +167,7 @@ def test_runs_that_find_different_transits_do_not_agree(monkeypatch, paris):
 
 
 def test_a_scene_that_loses_every_digit_of_double_is_measured_with_more(monkeypatch):
-    """Released 1e-14 degrees from the top: the double and long double runs part company wholly."""
+    """Released 1e-12 degrees from the top: the runs in double and long double diverge completely."""
     scene = make_scene(
         pendulum={"length": "1"},
         site={"rotation_rate": "0"},
@@ -218,7 +218,7 @@ def test_an_error_in_the_second_process_arrives_in_the_first(paris):
 
 
 def test_the_readings_differ_by_what_rounding_the_inputs_does(paris):
-    """facts/peers.md: rounding the inputs to binary64 alone moves the bob by 5e-13 m over the day."""
+    """Rounding the inputs of Paris to binary64 alone moves the bob by 5e-13 m in a day."""
     ends = [
         reference.solve(paris.with_values([f"inputs={reading}"]), digits=11, level="computed", transits=False).x[-1]
         for reading in ("decimal", "binary64")
