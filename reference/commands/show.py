@@ -9,6 +9,8 @@ import typer
 from ..scene import Scene, flag_meanings, load_scene
 from .terminal import AsJson, Assignments, SceneWord, emit
 
+DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
+
 
 def command(
     scene_word: SceneWord,
@@ -71,7 +73,7 @@ def _derived(scene: Scene) -> dict[str, str]:
     from ..model.force import rest_position
     from ..precision import context
 
-    ctx = context(96)
+    ctx = context(DERIVED_PREC)
     k = constants(scene.exact, ctx)
 
     def text(value: Any) -> str:

@@ -18,6 +18,8 @@ from .read import changed_files, read_manifest, read_table, scene_of
 from .sheets import GRID_HEADER, TRANSITS_HEADER, WORDS, Sheet, binary64_sheet
 
 MAX_PROBLEMS = 20  # sentences returned at most
+INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
+TOLERANCE_PREC = 64  # bits of the allowed drift of h, which has one per cent in hand
 _NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
@@ -114,8 +116,7 @@ def _invariant(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -
 
 def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
     """Return h of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
-    # 96 guard bits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
-    ctx = context(bits_of(scene.run.digits) + 96)
+    ctx = context(bits_of(scene.run.digits) + INVARIANT_BITS)
     k = constants(scene.exact, ctx)
 
     def h_of(row: tuple[str, ...]) -> Fraction:
@@ -129,7 +130,7 @@ def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
 
 def invariant_tolerance(scene: Scene, manifest: Manifest, grid: Sheet) -> Fraction:
     """Return the largest change of h between two rows that the bounds on position and velocity allow, in m²/s²."""
-    ctx = context(64)
+    ctx = context(TOLERANCE_PREC)
     k = constants(scene.exact, ctx)
     length = scene.exact.length
     dr, dv = _bounds(manifest)

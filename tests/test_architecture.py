@@ -1,0 +1,43 @@
+"""docs/architecture.md: the budget of bits is complete and true, and every folder stands in the tree."""
+
+from __future__ import annotations
+
+import ast
+import re
+
+from places import ROOT
+from structure import PACKAGES, sources
+
+PAGE = (ROOT / "docs/architecture.md").read_text(encoding="utf-8")
+
+
+def constants_of_bits() -> dict[tuple[str, str], int]:
+    """Return the value of every constant of `reference` that is named …_BITS, by name and file."""
+    values = {}
+    for path in (path for path in sources(ROOT) if "reference" in path.relative_to(ROOT).parts):
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
+                name = node.targets[0].id
+                if name.endswith("_BITS"):
+                    values[name, path.relative_to(ROOT).as_posix()] = ast.literal_eval(node.value)
+    return values
+
+
+def test_every_spare_bit_stands_in_the_budget_with_its_value():
+    rows = re.findall(r"^\| `(\w+)` \| `([\w/.]+)` \| (\d+) \| .+ \|$", PAGE, re.M)
+    budget = {(name, path): int(bits) for name, path, bits in rows}
+    (line,) = re.findall(r"^Sizes and whole precisions, not spare: (.+)\.$", PAGE, re.M)
+    sizes = set(re.findall(r"`(\w+)`", line))
+    assert len(budget) == len(rows) >= 20
+    assert budget == {key: bits for key, bits in constants_of_bits().items() if key[0] not in sizes}
+
+
+def test_every_folder_and_file_below_a_package_stands_in_the_tree():
+    tree = PAGE.partition("## The tree")[2].partition("\n## ")[0]
+    for package in PACKAGES:
+        folder = ROOT / package
+        for path in folder.iterdir():
+            if path.suffix == ".py" and path.stem != "__init__":
+                assert f"`{package}/{path.name}`" in tree, path
+            elif (path / "__init__.py").is_file():
+                assert f"`{package}/{path.name}/`" in tree, path
