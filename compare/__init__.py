@@ -1,4 +1,4 @@
-"""Judges of others: score a program's output, study error against run time, look for what breaks.
+"""Compare results with the reference: score a program's output, study error against run time, test stability.
 
 >>> import compare
 >>> score = compare.assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
@@ -28,7 +28,7 @@ _LAZY = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import what is used when it is used."""
+    """Import a public name where it is first used."""
     if name not in _LAZY:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f".{_LAZY[name]}", __name__), name)

@@ -1,4 +1,4 @@
-"""The pytest fixture `assert_agrees`; pytest finds it by the entry point of the installed package."""
+"""The pytest fixture `assert_agrees`, which pytest finds by the entry point of the installed package."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 @pytest.fixture(name="assert_agrees")
 def assert_agrees_fixture() -> Callable[..., Score]:
-    """`compare.assert_agrees`, imported when a test asks for it."""
+    """Assert that a trajectory agrees with the truth of a scene: `compare.assert_agrees`, imported at first use."""
     from .testing import assert_agrees
 
     return assert_agrees

@@ -1,4 +1,4 @@
-"""The truth that a candidate is held against: a golden dataset, shipped or solved now, at the candidate's times."""
+"""The truth at a candidate's times: from a golden dataset that ships, or that is solved now and cached."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from reference.scene import data_root
 
 from . import cache
 
-DIGITS = 22  # of a dataset solved only to judge programs in double
-MADE = b"dense 3"  # changes with what `reference.dataset.dense` gives, so that older entries are made again
-FINE = 2.0**-110  # how near the truth is evaluated for candidates with more digits than a double
+DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
+DENSE_FORMAT = b"dense 3"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
+FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 
 Report = Callable[[float], None]
 
@@ -37,15 +37,15 @@ def golden_of(
     until: float | None = None,
     level: str = "confirmed",
 ) -> Golden:
-    """The dataset that solves a scene: the one that ships, or one that is solved now and kept in the cache.
+    """Return a dataset that solves a scene: one that ships, or one that is solved now and kept in the cache.
 
     Args:
-        scene: whose problem, reading and span are wanted.
-        digits: what is wanted at least; transits are found if the scene asks for them.
-        announce: told when a scene has to be solved.
+        scene: the problem, with its reading of the inputs, its span, and whether transits are needed.
+        digits: decimal digits needed at least.
+        announce: called with a message when the scene has to be solved.
         report: called with the simulated time reached, in s.
-        until: a new dataset need not go further than the first grid time from here on, in s.
-        level: of a new dataset.
+        until: end of the span that is needed, in s: a new dataset stops at the first grid time from there on.
+        level: level of trust of a new dataset.
 
     Raises:
         UnreachableError: the scene cannot be solved to the digits.
@@ -54,21 +54,21 @@ def golden_of(
         golden = _loaded(folder)
         if solves(golden, scene) and golden.manifest.digits >= digits:
             return golden
-    wanted = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
-    name = f"{scene.id}-{_problem(wanted)}"
-    path = cache.found("golden", name)
+    problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
+    name = f"{scene.id}-{_hash_of_problem(problem)}"
+    path = cache.entry_path("golden", name)
     if path is not None:
         try:
             return _loaded(path)
         except (DatasetError, InputError):
-            shutil.rmtree(path, ignore_errors=True)  # damaged: solved again
-    return _loaded(_solved(wanted, name, announce, report))
+            shutil.rmtree(path, ignore_errors=True)  # damaged: it is solved again
+    return _loaded(_solved(problem, name, announce, report))
 
 
 def _loaded(folder: Path) -> Golden:
-    """A dataset, checked and read again only if one of its files has been touched since this process read it."""
-    found = (path.stat() for path in [folder, *sorted(folder.iterdir())]) if folder.is_dir() else ()
-    return _read(folder, tuple((one.st_ino, one.st_size, one.st_mtime_ns, one.st_ctime_ns) for one in found))
+    """Load a dataset; it is checked and read again only if a file has been touched since this process read it."""
+    stats = (path.stat() for path in [folder, *sorted(folder.iterdir())]) if folder.is_dir() else ()
+    return _read(folder, tuple((stat.st_ino, stat.st_size, stat.st_mtime_ns, stat.st_ctime_ns) for stat in stats))
 
 
 @lru_cache(maxsize=4)
@@ -77,7 +77,7 @@ def _read(folder: Path, _: tuple[tuple[int, ...], ...]) -> Golden:
 
 
 def _shortened(scene: Scene, until: float | None) -> Scene:
-    """The scene up to the first grid time that is not before `until`."""
+    """Return the scene up to the first grid time that is not before `until`."""
     if until is None:
         return scene
     rows = max(1, math.ceil(Fraction(until) / Fraction(scene.run.grid_step)))
@@ -96,22 +96,22 @@ def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, rep
     return write(solve(scene, report=report), folder / name)
 
 
-def _problem(scene: Scene) -> str:
-    """A word for what is solved; names, titles and flags are no part of it."""
+def _hash_of_problem(scene: Scene) -> str:
+    """Return a hash of the problem that is solved; names, titles and flags do not count."""
     document = scene.model_dump(mode="json")
     problem = {key: document[key] for key in ("inputs", "pendulum", "site", "release", "run")}
     return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
 
 
 def shipped(scene: Scene) -> list[Path]:
-    """Folders of the datasets that come with the project and may solve the scene."""
+    """Return the folders of the datasets that ship with the project and may solve the scene."""
     reading = "" if scene.inputs == "decimal" else ".binary64"
     folder = data_root() / "golden" / f"{scene.id}{reading}"
     return [folder] if folder.is_dir() else []
 
 
 def solves(golden: Golden, scene: Scene) -> bool:
-    """True if a dataset is of the scene's problem, reading included, and spans its time and its transits."""
+    """Return True if a dataset has the scene's inputs and their reading, its span, and transits if it asks for any."""
     other = golden.scene
     same = all(getattr(other, part) == getattr(scene, part) for part in ("inputs", "pendulum", "site", "release"))
     spans = other.exact.t_end >= scene.exact.t_end
@@ -119,16 +119,16 @@ def solves(golden: Golden, scene: Scene) -> bool:
 
 
 def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
-    """The truth at a candidate's times, kept for the next candidate with the same times."""
-    recipe: Any = hashlib.sha256(MADE + (golden.path / "manifest.json").read_bytes())
+    """Return the truth at a candidate's times; it is cached for the next candidate with the same times."""
+    recipe: Any = hashlib.sha256(DENSE_FORMAT + (golden.path / "manifest.json").read_bytes())
     recipe.update(np.ascontiguousarray(times).tobytes() + repr(within).encode())
 
     def make(path: Path) -> None:
-        found = dense(golden, times, within)
+        truth = dense(golden, times, within)
         with path.open("wb") as stream:
-            np.savez(stream, t=found.t, states=found.states, low=found.low, bound_m=found.bound_m, number=found.number)
+            np.savez(stream, t=truth.t, states=truth.states, low=truth.low, bound_m=truth.bound_m, number=truth.number)
 
-    return cache.kept("dense", f"{recipe.hexdigest()[:32]}.npz", make, _read_dense)
+    return cache.load_or_make("dense", f"{recipe.hexdigest()[:32]}.npz", make, _read_dense)
 
 
 def _read_dense(path: Path) -> Dense:

@@ -1,1 +1,1 @@
-"""Candidates as they come: a program's output in one of its formats, or the program itself."""
+"""Read the candidates that are judged: a program's output in any of the formats, or the program itself, run here."""

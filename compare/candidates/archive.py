@@ -1,4 +1,4 @@
-"""Reads a candidate from NumPy's .npz: t, x, y and any of z, vx, vy, vz, all of one length; `transits` beside them."""
+"""Read a candidate from a NumPy archive (.npz): arrays t, x, y and any of z, vx, vy, vz, transits."""
 
 from __future__ import annotations
 
@@ -15,30 +15,32 @@ from .candidate import COLUMNS, Candidate, candidate_of
 from .lines import CHUNK, MAX_BYTES
 from .transit_times import checked_transits
 
-MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read: two million rows of long doubles
+MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read, unpacked: two million rows of long doubles
 _KEYS = ("t", *COLUMNS, "transits")
 _MEMBERS = {member for key in _KEYS for member in (key, f"{key}.npy")}
 _EXPECTED = "arrays t, x, y and, if there, z, vx, vy, vz, transits"
 
 
 def read_archive(stream: BinaryIO, head: bytes, name: str) -> Candidate:
-    """A candidate from the bytes of an .npz archive, of which `head` was read before.
+    """Read a candidate from the bytes of an .npz archive, of which `head` has been read already.
 
     Raises:
-        InputError: too large, damaged, without t, x, y, or with arrays that are not of real numbers.
+        InputError: the archive is too large or damaged, lacks t, x or y, or an array is not of real numbers.
     """
     with tempfile.TemporaryFile() as spool:
         _bounded(stream, head, spool, name)
-        kept = {key: _real(array, f"{name}: {key}") for key, array in _arrays(spool, name).items()}
-    if "t" not in kept:
-        raise InputError(name, f"arrays {', '.join(kept) or 'of other names'}", "an array t", f"Wanted: {_EXPECTED}.")
-    zeros = kept.pop("transits", None)
-    found = None if zeros is None else checked_transits(np.asarray(zeros, dtype=np.float64), f"{name}: transits")
-    return candidate_of(name, kept, found)
+        columns = {key: _real(array, f"{name}: {key}") for key, array in _arrays(spool, name).items()}
+    if "t" not in columns:
+        raise InputError(
+            name, f"arrays {', '.join(columns) or 'of other names'}", "an array t", f"Wanted: {_EXPECTED}."
+        )
+    times = columns.pop("transits", None)
+    transits = None if times is None else checked_transits(np.asarray(times, dtype=np.float64), f"{name}: transits")
+    return candidate_of(name, columns, transits)
 
 
 def _bounded(stream: BinaryIO, head: bytes, spool: BinaryIO, name: str) -> None:
-    """Copy the stream to a file, in which a zip archive can be read from its end."""
+    """Copy the stream to a file, up to a limit: a zip archive is read from its end."""
     total, data = 0, head
     while data:
         total += len(data)
@@ -57,7 +59,7 @@ def _arrays(data: BinaryIO, name: str) -> dict[str, object]:
             data.seek(0)
             with np.load(data, allow_pickle=False) as arrays:
                 return {key: arrays[key] for key in _KEYS if key in arrays.files}
-    except Exception as error:  # zipfile and numpy raise half a dozen kinds at a damaged archive
+    except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
         raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
     raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")
 

@@ -1,4 +1,4 @@
-"""A trajectory to be judged: arrays that were checked, wherever they came from."""
+"""A candidate: a trajectory to be judged, held as checked NumPy arrays wherever it comes from."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from reference import InputError
 from reference.precision import Array
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
-LARGEST = 1e100  # beyond this the run has blown up, and squares are near the end of the doubles
+LARGEST = 1e100  # a larger number means that the run has blown up; below, squares cannot overflow
 HEADER_ADVICE = "The first line names the columns, separated by commas: t, x, y and, if there, z, vx, vy, vz."
 
 
@@ -20,12 +20,12 @@ class Candidate:
     """A trajectory to be judged.
 
     Attributes:
-        name: where it came from.
+        name: the file or program that it came from.
         t: times in s, shape (rows,), strictly increasing, from 0 on.
         columns: x, y and any of z, vx, vy, vz in m and m/s, each of shape (rows,).
-        low: what the doubles of t and `columns` lack against more precise numbers; empty if nothing.
-        transits: times of xdot = 0 that came with it, or None.
-        notes: what a reader ought to know.
+        low: low parts of t and `columns`, for numbers with more digits than a double: the number is double + low part.
+        transits: times of xdot = 0 in s that came with it, or None.
+        notes: remarks that a reader ought to know.
     """
 
     name: str
@@ -42,26 +42,26 @@ class Candidate:
 
     @classmethod
     def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
-        """From arrays, after checking them.
+        """Check the arrays and make a candidate of them.
 
         Raises:
-            InputError: a missing column, unequal lengths, a number that is not finite, times that do not increase.
+            InputError: a column is missing, lengths differ, a number is not finite, or times do not increase.
         """
-        for wanted in ("x", "y"):
-            if wanted not in columns:
-                raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {wanted}", HEADER_ADVICE)
+        for required in ("x", "y"):
+            if required not in columns:
+                raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {required}", HEADER_ADVICE)
         for word, column in (("t", t), *columns.items()):
             if column.ndim != 1 or len(column) != t.size:
                 expected = "a one-dimensional array" + ("" if word == "t" else f" of {t.size} numbers, as t")
                 raise InputError(f"{name}: {word}", f"shape {column.shape}", expected)
-            strange = ~(np.abs(column) <= LARGEST)  # NaN as well
-            if strange.any():
-                row = int(np.argmax(strange))
+            invalid = ~(np.abs(column) <= LARGEST)  # true for NaN as well
+            if invalid.any():
+                row = int(np.argmax(invalid))
                 raise InputError(
                     f"{name}: {word}",
                     f"{column[row]} in row {row + 1}",
                     f"a finite number below {LARGEST:g} in size",
-                    "The run failed there: score the rows before it, or mend it.",
+                    "The run failed there: score the rows before it, or correct it.",
                 )
         if not len(t):
             raise InputError(name, "no rows", "at least one row", "Is the output empty?")
@@ -80,17 +80,17 @@ class Candidate:
 
 
 def candidate_of(name: str, arrays: Mapping[str, Array], transits: Array | None = None) -> Candidate:
-    """From arrays of real numbers by name, t among them; what long doubles have beyond doubles is kept.
+    """Make a candidate of named arrays of real numbers, t among them; long doubles keep their digits in `low`.
 
     Raises:
-        InputError: as `Candidate.of`.
+        InputError: as in `Candidate.of`.
     """
     near = {key: np.asarray(array, dtype=np.float64) for key, array in arrays.items()}
     low = {}
     for key, array in arrays.items():
         if array.dtype.itemsize > 8 and np.isfinite(near[key]).all():
-            spare = np.asarray(array - near[key].astype(array.dtype), dtype=np.float64)
-            if spare.any():
-                low[key] = spare
+            remainder = np.asarray(array - near[key].astype(array.dtype), dtype=np.float64)
+            if remainder.any():
+                low[key] = remainder
     columns = {key: near[key] for key in COLUMNS if key in near}
     return Candidate.of(name, near["t"], columns, low=low, transits=transits)

@@ -1,4 +1,4 @@
-"""Runs somebody's program: bounded in time and output, killed whole, timed by CPU and wall clock."""
+"""Run somebody's program (--run): limited in time and output, killed with its descendants, timed (CPU and wall)."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ from reference import InputError, Scene
 from reference.model.constants import release
 from reference.precision import context
 
-from .family import Family
 from .lines import MAX_BYTES
+from .process_tree import ProcessTree
 
 TIMEOUT_S = 600.0
 REPEATS = 3
-LONG_S = 20.0  # a program that takes longer than this is timed once, by the run that is scored
+LONG_S = 20.0  # a program that takes longer than this, in s, is timed once, by the run that is scored
 _TAIL = 400  # characters of stderr that a message quotes
 _PLACEHOLDER = re.compile(r"\{(\{\w+\})\}|\{(\w+)\}")  # {{word}} stands for {word} itself
 
 
 @dataclass(frozen=True)
 class Timing:
-    """What a program took.
+    """Run time of a program.
 
     Attributes:
         cpu_s: median CPU seconds of the repeats, children included.
         wall_s: median wall-clock seconds.
-        runs: how many runs that is the median of.
+        runs: number of runs of which these are the medians.
         spread: largest minus smallest CPU time, over the median.
-        warm: whether a run before them, whose output is scored, warmed up.
+        warm: whether the run whose output is scored came before them, as a warm-up.
     """
 
     cpu_s: float
@@ -50,27 +50,27 @@ class Timing:
 
 
 def placeholders(scene: Scene) -> dict[str, str]:
-    """The words in braces that a command may use, with the scene's values: as written there, or 17 digits."""
+    """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
     ctx = context(120)
     position, velocity = release(scene.exact, ctx)
     words = {
         name: repr(float(value))
         for name, value in zip(("x0", "y0", "z0", "vx0", "vy0", "vz0"), (*position, *velocity), strict=True)
     }
-    given = scene.release.model_dump(exclude_none=True)
-    words |= {f"{name}0": text for name, text in given.items() if f"{name}0" in words}
-    words |= {name: given.get(name, "0") for name in ("angle", "azimuth", "angle_rate", "azimuth_rate")}
+    fields = scene.release.model_dump(exclude_none=True)
+    words |= {f"{name}0": text for name, text in fields.items() if f"{name}0" in words}
+    words |= {name: fields.get(name, "0") for name in ("angle", "azimuth", "angle_rate", "azimuth_rate")}
     words |= scene.pendulum.model_dump() | scene.site.model_dump()
     return words | {"t_end": scene.run.t_end, "grid_step": scene.run.grid_step}
 
 
 def arguments(command: str, scene: Scene) -> list[str]:
-    """The command's words with the placeholders filled in; no shell is between.
+    """Split a command into words and fill in the placeholders; no shell interprets it.
 
     Raises:
-        InputError: an unknown placeholder, unbalanced quotes, or nothing.
+        InputError: a placeholder is unknown, quotes are unbalanced, or the command is empty.
     """
-    known = placeholders(scene)
+    values = placeholders(scene)
     try:
         words = shlex.split(command)
     except ValueError as error:
@@ -81,10 +81,10 @@ def arguments(command: str, scene: Scene) -> list[str]:
     def value(match: re.Match[str]) -> str:
         if match[1]:
             return match[1]
-        if match[2] not in known:
-            words = ", ".join(f"{{{word}}}" for word in known)
+        if match[2] not in values:
+            words = ", ".join(f"{{{word}}}" for word in values)
             raise InputError("--run", match[0], f"one of {words}", f"Write {{{match[0]}}} for {match[0]} itself.")
-        return known[match[2]]
+        return values[match[2]]
 
     return [_PLACEHOLDER.sub(value, word) for word in words]
 
@@ -92,12 +92,12 @@ def arguments(command: str, scene: Scene) -> list[str]:
 def run_program(
     words: list[str], timeout_s: float = TIMEOUT_S, max_bytes: int = MAX_BYTES
 ) -> tuple[BinaryIO, float, float]:
-    """Run a program once; returns what it wrote to stdout (a file at its start), CPU and wall seconds.
+    """Run a program once and return its stdout (an open file, at its start), CPU seconds and wall seconds.
 
     Raises:
-        InputError: it cannot be started, fails, takes too long or writes too much; nothing of it runs on then.
+        InputError: it cannot be started, fails, takes too long or writes too much; no process of it is left running.
     """
-    begun, family = time.monotonic(), Family()
+    start, tree = time.monotonic(), ProcessTree()
     with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as stack:
         output = stack.enter_context(tempfile.TemporaryFile())
         try:
@@ -106,7 +106,7 @@ def run_program(
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=errors,
-                env=family.environment,
+                env=tree.environment,
                 start_new_session=True,
             )
         except OSError as error:
@@ -122,8 +122,8 @@ def run_program(
             raise
         finally:
             limits.end()
-            wall = time.monotonic() - begun
-            family.end(process.pid)  # what it left running in the background
+            wall = time.monotonic() - start
+            tree.end(process.pid)  # processes that it left running in the background
         tail = _tail(errors)
         if limits.reason:
             raise InputError("--run", shlex.join(words), limits.reason, tail)
@@ -135,7 +135,7 @@ def run_program(
 
 
 class _Limits:
-    """Watches a process and kills its group where it goes beyond its time or its output."""
+    """Watch a process and kill its group if it exceeds its time or its output."""
 
     def __init__(
         self, process: subprocess.Popen[bytes], output: BinaryIO, errors: BinaryIO, timeout_s: float, max_bytes: int
@@ -148,7 +148,7 @@ class _Limits:
         self._thread.start()
 
     def end(self) -> None:
-        """Stop watching; when this returns nobody looks at the files any more."""
+        """Stop watching; after this the files are no longer used here."""
         self.over.set()
         self._thread.join()
 
@@ -170,7 +170,7 @@ class _Limits:
 
 @contextlib.contextmanager
 def _terminable() -> Iterator[None]:
-    """Turn a SIGTERM or SIGHUP into an exception, so that the program does not outlive this process."""
+    """Turn SIGTERM and SIGHUP into an exception, so that the program does not outlive this process."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -201,7 +201,7 @@ def timed(
     repeats: int = REPEATS,
     report: Callable[[int], None] | None = None,
 ) -> tuple[BinaryIO, Timing]:
-    """Run a program once as a warm-up, whose output is returned, and `repeats` times for the clock."""
+    """Run a program once as a warm-up, whose output is returned, and `repeats` more times to measure its run time."""
     output, cpu, wall = run_program(words, timeout_s)
     if wall > LONG_S or repeats == 0:
         return output, Timing(cpu, wall, 1, 0.0, warm=False)
@@ -209,10 +209,10 @@ def timed(
     for i in range(repeats):
         if report is not None:
             report(i)
-        again, *took = run_program(words, timeout_s)
-        again.close()
-        runs.append(took)
-    cpus = [took[0] for took in runs]
+        repeated, *seconds = run_program(words, timeout_s)
+        repeated.close()
+        runs.append(seconds)
+    cpus = [seconds[0] for seconds in runs]
     median = statistics.median(cpus)
     spread = (max(cpus) - min(cpus)) / median if median else 0.0
-    return output, Timing(median, statistics.median(took[1] for took in runs), len(runs), spread)
+    return output, Timing(median, statistics.median(seconds[1] for seconds in runs), len(runs), spread)

@@ -1,4 +1,4 @@
-"""Lines of text out of a stream of bytes, chunk by chunk: bounded in bytes and in the length of a line."""
+"""Split a stream of bytes into lines of text, chunk by chunk, with limits on bytes, lines and line length."""
 
 from __future__ import annotations
 
@@ -9,23 +9,23 @@ from reference import InputError
 
 MAX_BYTES = 1 << 30
 MAX_LINE = 1 << 16
-MAX_LINES = 4_000_000  # comments and empty ones included
+MAX_LINES = 4_000_000  # comments and empty lines included
 CHUNK = 1 << 22
 _BINARY = "Binary data is read from .npz only."
 
 
 def chunks(stream: BinaryIO, name: str, head: bytes = b"") -> Iterator[tuple[list[str], bool]]:
-    """Lists of whole lines, and whether the last of them ended with a newline.
+    """Yield lists of complete lines, each with a flag: whether the last line ended with a newline.
 
     Args:
-        stream: of bytes in UTF-8.
-        name: what messages call it.
-        head: bytes that were read from it before.
+        stream: bytes in UTF-8.
+        name: the stream's name in messages.
+        head: bytes that have been read from it already.
 
     Raises:
-        InputError: too many bytes or lines, a line without end, or bytes that are not text.
+        InputError: there are too many bytes or lines, a line is too long, or the bytes are not text.
     """
-    left, total, count = head, len(head), 0
+    remainder, total, count = head, len(head), 0
     while data := stream.read(CHUNK):
         total += len(data)
         if total > MAX_BYTES:
@@ -33,14 +33,14 @@ def chunks(stream: BinaryIO, name: str, head: bytes = b"") -> Iterator[tuple[lis
         count += data.count(b"\n")
         if count > MAX_LINES:
             raise InputError(name, f"more than {MAX_LINES} lines", f"at most {MAX_LINES}", "Thin the output out.")
-        left += data
-        whole, newline, left = left.rpartition(b"\n")
+        remainder += data
+        complete, newline, remainder = remainder.rpartition(b"\n")
         if newline:
-            yield _decoded(whole, name), True
-        if len(left) > MAX_LINE:
+            yield _decoded(complete, name), True
+        if len(remainder) > MAX_LINE:
             raise InputError(name, f"a line of more than {MAX_LINE} bytes", "lines of numbers", "Is it text?")
-    if left.strip():
-        yield _decoded(left, name), False
+    if remainder.strip():
+        yield _decoded(remainder, name), False
 
 
 def _decoded(data: bytes, name: str) -> list[str]:
@@ -53,7 +53,7 @@ def _decoded(data: bytes, name: str) -> list[str]:
 
 
 def is_number(text: str) -> bool:
-    """True for what C and Fortran print as a number (with NaN and inf), and for nothing that only Python reads."""
+    """Return True for a number as C and Fortran print it (NaN and inf too), not for forms that only Python reads."""
     if "_" in text or not text.isascii():
         return False
     try:

@@ -1,6 +1,6 @@
-"""Reads a candidate: CSV with named columns, the output of the paper's program, or NumPy's .npz; file or stream.
+"""Read a candidate from a file or a stream: the first bytes tell text (CSV, foucPend's output) from a NumPy archive.
 
-Whatever comes is bounded: bytes, rows and the length of a line. What is wrong is said with its line.
+The number of bytes and rows and the length of a line are limited. Errors name the line.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def read(source: str | Path) -> Candidate:
     """Read a candidate from a file, or from standard input if `source` is "-".
 
     Raises:
-        InputError: what is wrong, and in which line.
+        InputError: the candidate cannot be read; the message names the line.
     """
     if str(source) == "-":
         return read_stream(sys.stdin.buffer, "standard input")
@@ -38,6 +38,6 @@ def read(source: str | Path) -> Candidate:
 
 
 def read_stream(stream: BinaryIO, name: str) -> Candidate:
-    """Read a candidate from a stream of bytes, whichever of the formats it is in."""
+    """Read a candidate from a stream of bytes in any of the formats."""
     head = stream.read(4)
     return read_archive(stream, head, name) if head.startswith(b"PK") else Text(name).read(stream, head)

@@ -1,4 +1,4 @@
-"""The commands that judge: score, study, stability, pend, paper. Results on stdout, progress on stderr."""
+"""Commands that compare results with the datasets: score, study, stability, pend, paper (progress on stderr)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the commands share: words of options, folders of results, and bars of progress on stderr."""
+"""Shared parts of the commands: comma-separated options, result folders, progress bars on stderr."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Counted = Callable[[int, int, str], None]
 
 
 def listed(text: str | None, field: str, known: Iterable[str]) -> list[str] | None:
-    """The words of a comma-separated option, each of them known."""
+    """Split a comma-separated option into words; refuse a word that is not known."""
     if text is None:
         return None
     words = [word.strip() for word in text.split(",") if word.strip()]
@@ -26,37 +26,39 @@ def listed(text: str | None, field: str, known: Iterable[str]) -> list[str] | No
 
 
 def numbers(text: str, field: str) -> list[float]:
-    """The numbers of a comma-separated option, all positive."""
+    """Split a comma-separated option into positive numbers."""
     try:
-        found = [float(word) for word in text.split(",")]
+        values = [float(word) for word in text.split(",")]
     except ValueError:
-        found = []
-    if not found or not all(0 < value < float("inf") for value in found):
+        values = []
+    if not values or not all(0 < value < float("inf") for value in values):
         raise InputError(field, text, "positive numbers", "Separate several with commas.")
-    return found
+    return values
 
 
 def inside(folder: Path | None, name: str) -> Path | None:
-    """A file of a folder of results, where there is one."""
+    """Return the path of a file in a folder of results; None if there is no folder."""
     return None if folder is None else folder / name
 
 
 @contextmanager
 def counting(label: str) -> Iterator[Counted]:
-    """A bar on stderr where it is a terminal: told how many are done, how many there are, and what is done now."""
+    """Show a progress bar if stderr is a terminal; yield its update(completed, total, current item)."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield lambda done, total, now: None
+        yield lambda completed, total, item: None
         return
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task(label, total=None)
-        yield lambda done, total, now: bar.update(task, completed=done, total=total, description=f"{label}: {now}")
+        yield lambda completed, total, item: bar.update(
+            task, completed=completed, total=total, description=f"{label}: {item}"
+        )
 
 
 def announce(text: str) -> None:
-    """Say what takes long."""
+    """Print a message on stderr before work that takes long."""
     typer.echo(text, err=True)

@@ -1,4 +1,4 @@
-"""`foucault paper`: the seeds' numbers and figures again, with a verdict on each."""
+"""`foucault paper`: recompute the source papers' formulas, numbers and figures, with a verdict on each."""
 
 from __future__ import annotations
 
@@ -14,18 +14,21 @@ from .options import counting
 
 def command(
     out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Write a page with figures (extra plot), CSV and JSON.")
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="Write a page with figures, CSV and JSON into this folder (extra plot)."
+        ),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Recompute every formula and number of the papers and judge it; with --out draw the figures again too."""
+    """Recompute and judge every formula and number of the source papers; with --out, draw the figures again too."""
     from ..papers import build, rows
     from ..papers.page import document
 
     with counting("judging") as count:
 
-        def report(place: str, done: int, total: int) -> None:
-            count(done, total, place)
+        def report(place: str, completed: int, total: int) -> None:
+            count(completed, total, place)
 
         judged = rows(report) if out is None else build(out, report)
     if as_json:

@@ -1,4 +1,4 @@
-"""`foucault score`: one or more candidates against the truth."""
+"""`foucault score`: judge one or more candidates against the truth of a scene."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 MAX_REPEATS = 1000
 
 
-class Inputs(StrEnum):
-    """How the scene's numbers are read."""
+class InputsReading(StrEnum):
+    """Reading of the scene's numbers: as decimals, as the nearest doubles, or chosen by the candidate's precision."""
 
     auto = "auto"
     decimal = "decimal"
@@ -33,33 +33,49 @@ class Inputs(StrEnum):
 def command(
     scene_word: SceneWord,
     candidates: Annotated[
-        list[str] | None, typer.Argument(metavar="[CANDIDATE]...", help="CSV, foucPend output or .npz; - is stdin.")
+        list[str] | None,
+        typer.Argument(metavar="[CANDIDATE]...", help="Files to score: CSV, foucPend's output or .npz; - is stdin."),
     ] = None,
     transits: Annotated[
-        str | None, typer.Option("--transits", metavar="FILE", help="CSV with a column t: times of xdot = 0.")
+        str | None,
+        typer.Option(
+            "--transits", metavar="FILE", help="Score transits too: a CSV file with times of xdot = 0 in its column t."
+        ),
     ] = None,
     run: Annotated[
-        str | None, typer.Option("--run", metavar="'COMMAND'", help="Run this program and score what it prints.")
+        str | None, typer.Option("--run", metavar="'COMMAND'", help="Run this program and score its output.")
     ] = None,
     approximation: Annotated[
-        str | None, typer.Option("--approximation", metavar="ID", help="Score one of the seeds' approximations.")
+        str | None,
+        typer.Option("--approximation", metavar="ID", help="Score one of the source papers' approximations."),
     ] = None,
     tolerance: Annotated[
-        float | None, typer.Option("--tolerance", metavar="M", help="Largest position error allowed, in m.")
+        float | None,
+        typer.Option(
+            "--tolerance", metavar="M", help="Allow position errors up to this, in m (default: 1e-6 of the amplitude)."
+        ),
     ] = None,
-    inputs: Annotated[Inputs, typer.Option("--inputs", help="How the scene's numbers are read.")] = Inputs.auto,
+    inputs: Annotated[
+        InputsReading, typer.Option("--inputs", help="Read the scene's numbers as decimals or as doubles.")
+    ] = InputsReading.auto,
     plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE", help="Error against time: svg, png, pdf.")
+        Path | None, typer.Option("--plot", metavar="FILE", help="Draw error against time: .svg, .png or .pdf.")
     ] = None,
-    timeout: Annotated[float, typer.Option("--timeout", metavar="S", help="Limit for --run.")] = 600.0,
-    repeats: Annotated[int, typer.Option("--repeats", help="Timed runs of --run after a warm-up.")] = 3,
-    no_diagnosis: Annotated[bool, typer.Option("--no-diagnosis", help="Do not look for the reason.")] = False,
+    timeout: Annotated[
+        float, typer.Option("--timeout", metavar="S", help="Stop the program of --run after this many seconds.")
+    ] = 600.0,
+    repeats: Annotated[
+        int, typer.Option("--repeats", help="Time the program of --run this often after a warm-up.")
+    ] = 3,
+    no_diagnosis: Annotated[
+        bool, typer.Option("--no-diagnosis", help="Do not look for the reason of an error.")
+    ] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
-    """Score a program's output against the truth; exit status 0 agrees, 1 disagrees.
+    """Score a program's output against the truth; exit status 0: agrees, 1: disagrees.
 
-    --run fills in {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
+    --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
     {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate} {azimuth_rate}
     {t_end} {grid_step}.
     """
@@ -83,57 +99,57 @@ def command(
     from ..candidates.read import read, read_transits
     from ..score.judge import score as judge
 
-    zeros = None if transits is None else read_transits(transits)
-    found: list[tuple[Candidate, Timing | None]] = [(read(name), None) for name in candidates or ()]
+    transit_times = None if transits is None else read_transits(transits)
+    timed_candidates: list[tuple[Candidate, Timing | None]] = [(read(name), None) for name in candidates or ()]
     if run is not None:
-        found.append(_run(run, scene, timeout, repeats))
+        timed_candidates.append(_run(run, scene, timeout, repeats))
     if approximation is not None:
         from ..approximations.as_candidate import candidate_of
 
-        found.append((candidate_of(approximation, scene), None))
-    made = []
-    for candidate, timing in found:
+        timed_candidates.append((candidate_of(approximation, scene), None))
+    scores = []
+    for candidate, timing in timed_candidates:
         with progress(f"solve {scene.id}", float(scene.run.t_end)) as report:
-            result = judge(
+            score = judge(
                 candidate,
                 scene,
-                transits=zeros,
+                transits=transit_times,
                 tolerance=tolerance,
                 inputs=inputs.value,
                 explain=not no_diagnosis,
                 announce=announce,
                 report=report,
             )
-        made.append(replace(result, timing=timing))
+        scores.append(replace(score, timing=timing))
     if plot is not None:
         from ..score.picture import error_picture
 
-        error_picture(made, plot)
-    _print(made, as_json)
-    if not all(result.agrees for result in made):
+        error_picture(scores, plot)
+    _print(scores, as_json)
+    if not all(score.agrees for score in scores):
         raise typer.Exit(1)
 
 
 def _run(words: str, scene: Scene, timeout: float, repeats: int) -> tuple[Candidate, Timing]:
-    """What a program printed, and what it took."""
+    """Run a program and return the candidate that it prints, and its run time."""
     from ..candidates.external import arguments, timed
     from ..candidates.read import read_stream
 
-    output, took = timed(arguments(words, scene), timeout, repeats)
+    output, timing = timed(arguments(words, scene), timeout, repeats)
     with output:
-        return read_stream(output, "the program"), took
+        return read_stream(output, "the program"), timing
 
 
-def _print(made: list[Score], as_json: bool) -> None:
+def _print(scores: list[Score], as_json: bool) -> None:
     from ..score.document import document
     from ..score.verdict import lines
 
     if as_json:
-        documents = [document(result) for result in made]
-        verdict = "agrees" if all(result.agrees for result in made) else "disagrees"
-        rows = {"scene": made[0].scene.id, "verdict": verdict, "rows": documents}
+        documents = [document(score) for score in scores]
+        verdict = "agrees" if all(score.agrees for score in scores) else "disagrees"
+        rows = {"scene": scores[0].scene.id, "verdict": verdict, "rows": documents}
         emit(documents[0] if len(documents) == 1 else rows)
         return
-    for result in made:
-        for line in lines(result):
+    for score in scores:
+        for line in lines(score):
             typer.echo(line)

@@ -1,4 +1,4 @@
-"""`foucault stability`: every method on stiff and extreme scenes."""
+"""`foucault stability`: run every method on stiff and extreme scenes."""
 
 from __future__ import annotations
 
@@ -15,17 +15,21 @@ from .options import counting, inside, listed
 
 def command(
     scenes: Annotated[
-        str | None, typer.Option("--scenes", metavar="A,B,…", help="Ids; all with flags by default.")
+        str | None, typer.Option("--scenes", metavar="A,B,…", help="Ids of scenes; by default all that have flags.")
     ] = None,
-    methods: Annotated[str | None, typer.Option("--methods", metavar="A,B,…", help="Ids; all by default.")] = None,
-    limit: Annotated[float, typer.Option("--limit", metavar="S", help="CPU seconds of one run.")] = 3.0,
+    methods: Annotated[
+        str | None, typer.Option("--methods", metavar="A,B,…", help="Ids of methods; by default all.")
+    ] = None,
+    limit: Annotated[float, typer.Option("--limit", metavar="S", help="Allow one run this many CPU seconds.")] = 3.0,
     long: Annotated[
-        bool, typer.Option("--long", help="Also the growth of errors over 30 days (minutes more).")
+        bool, typer.Option("--long", help="Also measure how errors grow over 30 days (takes minutes more).")
     ] = False,
-    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="CSV, JSON and an HTML page.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Write CSV, JSON and an HTML page into this folder.")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Every method on stiff and extreme scenes: digits kept, or how it failed; resumes with the same --out."""
+    """Run every method on stiff and extreme scenes: digits kept, or the way it failed; resumes with the same --out."""
     from ..methods import METHODS
     from ..report import stability as stability_report
     from ..report.folder import PAGE, check_folder
@@ -40,15 +44,15 @@ def command(
         check_folder(out, stability_report.FILES)
     single_thread()
     chosen = listed(scenes, "--scenes", scene_ids()) or default_scenes()
-    wanted = listed(methods, "--methods", METHODS)
+    requested = listed(methods, "--methods", METHODS)
     with counting("stability") as report:
-        cells = measure(chosen, wanted, limit_s=limit, journal_path=inside(out, "cells.jsonl"), report=report)
-        runs = over_thirty_days(wanted, journal_path=inside(out, "long.jsonl"), report=report) if long else []
-    made = stability_report.document(cells, runs, machine())
+        cells = measure(chosen, requested, limit_s=limit, journal_path=inside(out, "cells.jsonl"), report=report)
+        runs = over_thirty_days(requested, journal_path=inside(out, "long.jsonl"), report=report) if long else []
+    document = stability_report.document(cells, runs, machine())
     if out is not None:
-        stability_report.write(made, cells, runs, out)
+        stability_report.write(document, cells, runs, out)
     if as_json:
-        emit(made)
+        emit(document)
         return
     typer.echo(stability_report.text_table(cells, runs))
     if out is not None:

@@ -1,4 +1,4 @@
-"""`foucault study`: error against run time, of methods or of approximations."""
+"""`foucault study`: measure error against run time, of methods or of approximations."""
 
 from __future__ import annotations
 
@@ -15,29 +15,40 @@ from .options import announce, counting, inside, listed, numbers
 
 def command(
     scene_word: SceneWord,
-    methods: Annotated[str | None, typer.Option("--methods", metavar="A,B,…", help="Ids; all by default.")] = None,
+    methods: Annotated[
+        str | None, typer.Option("--methods", metavar="A,B,…", help="Ids of methods; by default all.")
+    ] = None,
     precisions: Annotated[
-        str | None, typer.Option("--precisions", metavar="53,113,…", help="Bits: time against achieved digits.")
+        str | None,
+        typer.Option(
+            "--precisions", metavar="53,113,…", help="Bits: measure run time against digits at these precisions."
+        ),
     ] = None,
     approximations: Annotated[
-        bool, typer.Option("--approximations", help="The seeds' approximations instead: where each stops being good.")
+        bool,
+        typer.Option(
+            "--approximations", help="Study the source papers' approximations instead: where each stops being good."
+        ),
     ] = False,
     run: Annotated[
-        list[str] | None, typer.Option("--run", metavar="'COMMAND'", help="A program of yours; {setting} is its step.")
+        list[str] | None,
+        typer.Option("--run", metavar="'COMMAND'", help="Study your program too; {setting} is its step."),
     ] = None,
     settings: Annotated[
-        str, typer.Option("--settings", metavar="0.1,0.01,…", help="What {setting} of --run takes.")
+        str, typer.Option("--settings", metavar="0.1,0.01,…", help="Values of {setting} in --run.")
     ] = "0.1,0.01",
-    t_end: Annotated[str | None, typer.Option("--t-end", metavar="S", help="End of the span in s.")] = None,
-    limit: Annotated[float, typer.Option("--limit", metavar="S", help="CPU seconds of one run.")] = 8.0,
+    t_end: Annotated[str | None, typer.Option("--t-end", metavar="S", help="End of the run in s.")] = None,
+    limit: Annotated[float, typer.Option("--limit", metavar="S", help="Allow one run this many CPU seconds.")] = 8.0,
     no_formulations: Annotated[
-        bool, typer.Option("--no-formulations", help="Leave the comparison of formulations out.")
+        bool, typer.Option("--no-formulations", help="Leave out the comparison of formulations.")
     ] = False,
-    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="CSV, JSON and an HTML page.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", metavar="DIR", help="Write CSV, JSON and an HTML page into this folder.")
+    ] = None,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
-    """Report error against run time: every method over its settings, in one run; resumes with the same --out."""
+    """Measure error against run time of every method over its settings; resumes with the same --out."""
     changes = [*(set_ or ()), *([] if t_end is None else [f"run.t_end={t_end}"])]
     scene = load_scene(scene_word, changes)
     if not 0 < limit < float("inf"):
@@ -62,10 +73,10 @@ def command(
         bits = bits_of(precisions)
         items = precision_items(bits)
         problem, digits = precision_scene(scene, bits, whole=t_end is not None)
-    for command in run or ():
-        items += [(f"{EXTERNAL}{command}", "momentum", setting) for setting in numbers(settings, "--settings")]
+    for program in run or ():
+        items += [(f"{EXTERNAL}{program}", "momentum", setting) for setting in numbers(settings, "--settings")]
     with counting(scene.id) as report:
-        found = measure(
+        study = measure(
             problem,
             items=items,
             limit_s=limit,
@@ -74,25 +85,25 @@ def command(
             report=report,
             announce=announce,
         )
-    _shown(found.document(), out, as_json)
+    _report(study.document(), out, as_json)
 
 
 def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
     from ..report import approximations as approximation_report
     from ..report.folder import PAGE
 
-    made = approximation_report.document(scene)
+    document = approximation_report.document(scene)
     if out is not None:
-        approximation_report.write(scene, made, out)
+        approximation_report.write(scene, document, out)
     if as_json:
-        emit(made)
+        emit(document)
         return
-    typer.echo(approximation_report.text_table(made))
+    typer.echo(approximation_report.text_table(document))
     if out is not None:
         typer.echo(f"{out / PAGE}: the report")
 
 
-def _shown(document: dict[str, Any], out: Path | None, as_json: bool) -> None:
+def _report(document: dict[str, Any], out: Path | None, as_json: bool) -> None:
     from ..report.study import text_table, write_report
 
     if out is not None:

@@ -1,1 +1,1 @@
-"""What a verdict is made of: swing plane and phase, transits, the likely mistake, words, JSON and a picture."""
+"""Score a candidate: errors, swing plane and phase, transits, the likely mistake; as text, JSON and a picture."""

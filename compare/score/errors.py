@@ -1,7 +1,7 @@
-"""Error measures of a trajectory against the truth, as the field counts them.
+"""Measure a candidate's errors against the truth, following the IVP test set's conventions.
 
-Errors are differences of numbers that may agree to more digits than a double holds: both sides come as a
-double and what it lacks, and the difference is taken of both.
+Candidate and truth may agree to more digits than a double holds: both come as a double and its low part, and both
+parts are subtracted.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from ..rhs.constants import constants_in_double
 from ..studies.power_of_time import power_of_time
 from .swing_plane import EllipseErrors, ellipse_errors
 
-ENVELOPES = 40  # parts of the run whose largest error makes the curve that growth is fitted to
+ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
 
 
 @dataclass(frozen=True)
@@ -33,11 +33,11 @@ class Errors:
     Attributes:
         t: times in s, shape (rows,).
         components: candidate minus truth per column that the candidate has, in m or m/s.
-        position: distance from the truth in m over the position columns that it has, shape (rows,).
+        position: distance from the truth in m over the position columns that the candidate has, shape (rows,).
         truth: at those times.
-        bound_m: how far the truth itself may be off.
-        amplitude_m: the truth's largest distance from the vertical, the scale of the digits.
-        speed_m_s: the truth's largest speed, the scale of the digits of velocities.
+        bound_m: bound of the truth's own error, in m.
+        amplitude_m: the truth's largest distance from the vertical in m, the scale of the digits.
+        speed_m_s: the truth's largest speed in m/s, the scale of the digits of velocities.
     """
 
     t: Array = field(repr=False)
@@ -50,31 +50,31 @@ class Errors:
 
     @property
     def max_m(self) -> float:
-        """The largest position error in m."""
+        """Largest position error in m."""
         return float(self.position.max())
 
     @property
     def rms_m(self) -> float:
-        """The root mean square of the position errors in m."""
+        """Root mean square of the position errors in m."""
         top = self.max_m
         return top * math.sqrt(float(np.mean((self.position / top) ** 2))) if top else 0.0
 
     @property
     def end_m(self) -> float:
-        """The position error at the last row in m."""
+        """Position error at the last row in m."""
         return float(self.position[-1])
 
     @property
     def digits(self) -> float:
-        """-log10 of the largest position error of the run over the amplitude; never beyond the truth's bound."""
+        """-log10 of the largest position error over the amplitude; an error below the truth's bound counts as it."""
         return -math.log10(max(self.max_m, self.bound_m) / self.amplitude_m)
 
     @property
     def scd(self) -> float | None:
         """Significant correct digits: -log10 of the largest relative error of any component at the end.
 
-        As in the Test Set for IVP Solvers (Mazzia and Magherini); components whose truth is 0, as far as it
-        is known, are left out.
+        As in the Test Set for IVP Solvers (Mazzia and Magherini); a component whose truth is 0 within its bound is
+        left out.
         """
         return self._digits_at_the_end(0.0, 0.0)
 
@@ -82,13 +82,13 @@ class Errors:
     def mescd(self) -> float | None:
         """Mixed error significant correct digits: -log10 of max |error| / (a + |truth|) over components at the end.
 
-        As in the Test Set for IVP Solvers, where a is atol/rtol; here it is the amplitude, for velocities the
+        As in the Test Set for IVP Solvers, where a is atol/rtol; here a is the amplitude, and for velocities the
         largest speed.
         """
         return self._digits_at_the_end(self.amplitude_m, self.speed_m_s)
 
     def _digits_at_the_end(self, of_position: float, of_velocity: float) -> float | None:
-        found = []
+        ratios = []
         for i, name in enumerate(COLUMNS):
             known = self.bound_m * (1.0 if i < 3 else self.speed_m_s / self.amplitude_m)
             truth = abs(float(self.truth.states[-1, i]))
@@ -97,8 +97,8 @@ class Errors:
                 continue
             error = max(abs(float(self.components[name][-1])), known)
             if error:
-                found.append(error / size)
-        return -math.log10(max(found)) if found else None
+                ratios.append(error / size)
+        return -math.log10(max(ratios)) if ratios else None
 
     @property
     def worst(self) -> tuple[int, str]:
@@ -111,14 +111,14 @@ class Errors:
 
     @property
     def growth_exponent(self) -> float | None:
-        """The exponent p of error ∝ t^p, of what is above the truth's bound; None if too few rows."""
-        kept = (self.t > 0) & (self.position > self.bound_m)
-        if kept.sum() < 4 or self.t[kept][-1] < 4 * self.t[kept][0]:
+        """Exponent p of error ∝ t^p, fitted to the errors above the truth's bound; None if there are too few rows."""
+        above = (self.t > 0) & (self.position > self.bound_m)
+        if above.sum() < 4 or self.t[above][-1] < 4 * self.t[above][0]:
             return None
-        return power_of_time(self.t[kept], self.position[kept], ENVELOPES)
+        return power_of_time(self.t[above], self.position[above], ENVELOPES)
 
     def ellipse(self, rest: tuple[float, float]) -> EllipseErrors:
-        """Turn of the swing plane and delay; `rest` is x, y of the rest position in m."""
+        """Fit the turn of the swing plane and the delay; `rest` is x, y of the rest position in m."""
         error = np.column_stack([self.components["x"], self.components["y"]])
         return ellipse_errors(self.t, self.truth.states, error, rest)
 
@@ -127,49 +127,50 @@ def errors_of(candidate: Candidate, truth: Dense, golden: Golden) -> Errors:
     """Subtract the truth, evaluated at the candidate's times, from the candidate.
 
     Args:
-        candidate: with a double and what it lacks per number.
-        truth: at its times.
-        golden: where the truth comes from; the scales are those of its whole grid, whatever the candidate's rows.
+        candidate: the trajectory, each number a double and its low part.
+        truth: at the candidate's times.
+        golden: the dataset of the truth; the scales are those of its whole grid, whatever the candidate's rows.
     """
-    late = candidate.low.get("t")
-    rates = None if late is None else _rates(truth.states, constants_in_double(golden.scene.exact))
+    t_low = candidate.low.get("t")
+    rates = None if t_low is None else _rates(truth.states, constants_in_double(golden.scene.exact))
     components = {}
     for i, name in enumerate(COLUMNS):
         if name not in candidate.columns:
             continue
         difference = (candidate.columns[name] - truth.states[:, i]) - truth.low[:, i]
         difference = difference + candidate.low[name] if name in candidate.low else difference
-        components[name] = difference if late is None or rates is None else difference - rates[:, i] * late
+        # the truth is known at the double t; the candidate's row belongs to t + t_low
+        components[name] = difference if t_low is None or rates is None else difference - rates[:, i] * t_low
     position = np.sqrt(sum(components[name] ** 2 for name in ("x", "y", "z") if name in components))
-    aside = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
-    amplitude = max(float(part.max()) for part in aside) or float(golden.scene.exact.length)
-    moving = [np.column_stack([golden.vx, golden.vy, golden.vz]), truth.states[:, 3:]]
-    speed = max(float(np.sqrt((part**2).sum(axis=1)).max()) for part in moving)
+    distances = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
+    amplitude = max(float(part.max()) for part in distances) or float(golden.scene.exact.length)
+    velocities = [np.column_stack([golden.vx, golden.vy, golden.vz]), truth.states[:, 3:]]
+    speed = max(float(np.sqrt((part**2).sum(axis=1)).max()) for part in velocities)
     return Errors(candidate.t, components, np.asarray(position), truth, truth.bound_m, amplitude, speed)
 
 
 def _rates(states: Array, k: Constants) -> Array:
-    """Velocity and acceleration, shape (rows, 6), in m/s and m/s²."""
+    """Return velocity and acceleration, shape (rows, 6), in m/s and m/s²."""
     n, v = (tuple(part.T / k.length) for part in (states[:, :3], states[:, 3:]))
-    bent = acceleration(n, v, k)
-    return np.hstack([states[:, 3:], np.column_stack(bent) * k.length])
+    accelerations = acceleration(n, v, k)
+    return np.hstack([states[:, 3:], np.column_stack(accelerations) * k.length])
 
 
 def drifts(candidate: Candidate, scene: Scene | Inputs) -> dict[str, float]:
-    """Largest change of h (m²/s²) from the first row, where there are velocities and no drag, and of |r| - l (m)."""
+    """Return the largest |h - h(first row)| (m²/s²; needs velocities and no drag) and the largest ||r| - l| (m)."""
     inputs = scene.exact if isinstance(scene, Scene) else scene
-    found: dict[str, float] = {}
-    have = candidate.columns
+    largest: dict[str, float] = {}
+    columns = candidate.columns
     k = constants_in_double(inputs)
-    if "z" not in have:
-        return found
-    n = tuple(have[name] / k.length for name in ("x", "y", "z"))
+    if "z" not in columns:
+        return largest
+    n = tuple(columns[name] / k.length for name in ("x", "y", "z"))
     square = n[0] ** 2 + n[1] ** 2 + n[2] ** 2
-    found["length_m"] = float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())
-    if all(name in have for name in ("vx", "vy", "vz")) and not inputs.drag:
-        v = tuple(have[name] / k.length for name in ("vx", "vy", "vz"))
-        # R²Ω²/2 is constant and a million times larger than what varies: it is left out, not cancelled
-        near = replace(k, axis_distance=0)
-        h = invariant(n, v, near) - k.rate**2 * k.axis_distance * (k.cos * n[2] - k.sin * n[1]) * k.length**2
-        found["h_m2_s2"] = float(np.abs(h - h[0]).max())
-    return found
+    largest["length_m"] = float(np.abs((square - 1) / (np.sqrt(square) + 1) * k.length).max())
+    if all(name in columns for name in ("vx", "vy", "vz")) and not inputs.drag:
+        v = tuple(columns[name] / k.length for name in ("vx", "vy", "vz"))
+        # the constant R²Ω²/2 is a million times larger than the terms that vary: leaving it out saves their digits
+        on_axis = replace(k, axis_distance=0)
+        h = invariant(n, v, on_axis) - k.rate**2 * k.axis_distance * (k.cos * n[2] - k.sin * n[1]) * k.length**2
+        largest["h_m2_s2"] = float(np.abs(h - h[0]).max())
+    return largest

@@ -1,4 +1,4 @@
-"""The oracle's verdict on a candidate: how far off, to how many digits, where worst, and why."""
+"""Judge a candidate against the truth: `score()` returns a `Score` with errors, verdict and diagnosis."""
 
 from __future__ import annotations
 
@@ -23,27 +23,27 @@ from .input_floor import input_floor
 from .swing_plane import EllipseErrors
 from .transits import TransitErrors, transit_errors
 
-TOLERANCE = 1e-6  # of the amplitude, where no tolerance is given
+TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 
 
 @dataclass(frozen=True)
 class Score:
-    """What the oracle says of a candidate.
+    """The judgement of a candidate.
 
     Attributes:
-        candidate: what was judged.
-        scene: in the reading that it was judged in.
-        why_inputs: why in that reading.
+        candidate: the trajectory that was judged.
+        scene: the problem, its inputs read as decimals or as doubles.
+        why_inputs: the reason for that reading.
         golden: the dataset that the truth comes from.
         errors: at the candidate's times.
-        tolerance_m: largest position error allowed.
+        tolerance_m: largest position error allowed, in m.
         ellipse: turn of the swing plane and delay.
-        drifts: of h and of |r| - l, where the candidate has the columns.
-        transits: how its transits compare, or None.
-        timing: what the program took, or None.
-        diagnosis: what explains the error, or None.
+        drifts: of h and of |r| - l, if the candidate has the columns.
+        transits: errors of its transits, or None.
+        timing: run time of the program, or None.
+        diagnosis: the likely reason for the error, or None.
         looked: whether a diagnosis was looked for.
-        notes: what a reader ought to know besides.
+        notes: remarks that a reader ought to know.
     """
 
     candidate: Candidate
@@ -62,35 +62,35 @@ class Score:
 
     @cached_property
     def input_floor_m(self) -> float:
-        """How far the rounding of the inputs to binary64 alone moves the bob in m; computed when it is asked for."""
+        """Distance in m by which rounding the inputs to binary64 moves the bob; computed at the first use."""
         return input_floor(self.scene, float(self.candidate.t[-1]))
 
     @property
     def allowed_m(self) -> float:
-        """The tolerance and what the reference itself may be off by: it never judges finer than its own bound."""
+        """Tolerance plus the reference's own bound, in m: nothing is judged more finely than the reference is known."""
         return self.tolerance_m + self.errors.bound_m
 
     @property
     def off_path(self) -> bool:
-        """True if a position is off by more than is allowed."""
+        """True if the largest position error is above `allowed_m`."""
         return self.errors.max_m > self.allowed_m
 
     @property
     def agrees(self) -> bool:
-        """True if every position and every transit is within what is allowed, and no transit is missed or extra."""
-        found = self.transits
+        """True if no error of a position or a transit is above `allowed_m`, and no transit is missed or extra."""
+        transits = self.transits
         return not self.off_path and (
-            found is None or not (found.missed or found.extra or found.max_conditioned_m > self.allowed_m)
+            transits is None or not (transits.missed or transits.extra or transits.max_conditioned_m > self.allowed_m)
         )
 
     @property
     def verdict(self) -> str:
-        """The word of the contract."""
+        """'agrees' or 'disagrees', as in the JSON document."""
         return "agrees" if self.agrees else "disagrees"
 
     @property
     def at_bound(self) -> bool:
-        """True if the error is not above what the reference itself may be off by."""
+        """True if the largest error is at or below the reference's own bound."""
         return self.errors.max_m <= self.errors.bound_m
 
 
@@ -105,49 +105,50 @@ def score(
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
 ) -> Score:
-    """Hold a candidate against the truth of a scene.
+    """Judge a candidate against the truth of a scene.
 
     Args:
-        candidate: its trajectory, at times of its own.
-        scene: the problem it claims to solve.
-        transits: times of its zeros of xdot in s; those that came with the trajectory if None.
-        tolerance: largest position error allowed in m; `TOLERANCE` times the amplitude if None.
+        candidate: the trajectory, at its own times.
+        scene: the problem that it claims to solve.
+        transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
+        tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
-        explain: whether to look for the reason where it disagrees.
-        announce: told what takes long.
-        report: called with the simulated time reached, in s, where the scene has to be solved.
+        explain: whether to look for the reason if a position is off.
+        announce: called with a message before the scene is solved, which takes long.
+        report: called with the simulated time reached, in s, while the scene is solved.
 
     Raises:
-        InputError: a time of the candidate is outside the scene's span, or a tolerance that is not positive.
+        InputError: a time of the candidate is outside the scene's span, or the tolerance is not positive.
         UnreachableError: the scene cannot be solved.
     """
     if tolerance is not None and not 0 < tolerance < math.inf:
         raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
-    read_as, why = _reading(candidate, scene, inputs)
+    problem, why = _reading(candidate, scene, inputs)
     digits, until = scene.run.digits if candidate.extended else DIGITS, float(candidate.t[-1])
-    golden = golden_of(read_as, digits, announce, report, until)
+    golden = golden_of(problem, digits, announce, report, until)
     errors = errors_of(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
     allowed = TOLERANCE * errors.amplitude_m if tolerance is None else tolerance
     times = candidate.transits if transits is None else transits
     unjudged = None if times is None else _unjudged(golden)
-    made = Score(
+    result = Score(
         candidate=candidate,
-        scene=read_as,
+        scene=problem,
         why_inputs=why,
         golden=golden,
         errors=errors,
         tolerance_m=allowed,
         ellipse=errors.ellipse(_rest(scene)),
-        drifts=drifts(candidate, read_as),
+        drifts=drifts(candidate, problem),
         transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
         notes=candidate.notes + ((unjudged,) if unjudged else ()),
     )
-    if explain and made.off_path:
-        return replace(made, diagnosis=diagnose(candidate, errors, read_as), looked=True)
-    return made
+    if explain and result.off_path:
+        return replace(result, diagnosis=diagnose(candidate, errors, problem), looked=True)
+    return result
 
 
 def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, str]:
+    """Return the scene with its inputs read as decimals or as doubles, and the reason for the choice."""
     if inputs != "auto":
         return scene.with_values([f"inputs={inputs}"]), "as asked"
     if scene.inputs == "binary64":
@@ -160,6 +161,7 @@ def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, st
 
 
 def _rest(scene: Scene) -> tuple[float, float]:
+    """Return x and y of the rest position in m; (0, 0) if every point is one."""
     ctx = context(80)
     k = constants(scene.exact, ctx)
     try:
@@ -170,20 +172,19 @@ def _rest(scene: Scene) -> tuple[float, float]:
 
 
 def _unjudged(golden: Golden) -> str | None:
-    """Why the candidate's transits cannot be judged, or None."""
-    said = golden.manifest.transits
-    if said == "not asked for":
+    """Return the reason why the candidate's transits cannot be judged, or None."""
+    transits = golden.manifest.transits
+    if transits == "not asked for":
         return "the scene asks for no transits (run.transits): the candidate's were not judged"
-    return f"{said}: the candidate's transits were not judged" if said == "xdot is identically zero" else None
+    return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None
 
 
 def _transits(times: Array, golden: Golden, errors: Errors, tolerance_m: float) -> TransitErrors:
     k = constants_in_double(golden.scene.exact)
     omega = max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), errors.speed_m_s / k.length)
     end = float(golden.scene.exact.t_end)
-    judged = times[
-        (times > 0) & (times <= end)
-    ]  # a release at rest is no transit, nor is what the truth has not reached
+    # a release at rest is no transit, and beyond its end the truth is not known
+    judged = times[(times > 0) & (times <= end)]
     for interval in golden.manifest.possible:
         judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
     truth = golden.transits

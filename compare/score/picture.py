@@ -1,4 +1,4 @@
-"""Pictures of scores (matplotlib, extra `plot`)."""
+"""Draw the position error of scored candidates against time (matplotlib, extra `plot`)."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ SUFFIXES = (".svg", ".png", ".pdf")
 
 
 def check_target(path: Path) -> None:
-    """Refuse a picture that could not be written, before anything is computed.
+    """Check, before anything is computed, that the picture can be written.
 
     Raises:
-        InputError: no matplotlib, an ending that is no picture's, or no folder to write to.
+        InputError: matplotlib is missing, the suffix is no picture's, or there is no such folder.
     """
     pyplot("--plot")
     if path.suffix.lower() not in SUFFIXES:
@@ -31,7 +31,7 @@ def check_target(path: Path) -> None:
 
 
 def error_picture(scores: Sequence[Score], path: Path) -> None:
-    """Position error of each candidate against time, with the reference's bound as a band."""
+    """Draw each candidate's position error against time, with the reference's bound as a band."""
     plt = pyplot("--plot")
     with plt.rc_context(SAME_BYTES):
         figure, axes = plt.subplots(figsize=(8, 4.5), layout="constrained")
@@ -41,14 +41,14 @@ def error_picture(scores: Sequence[Score], path: Path) -> None:
 
 
 def _draw(axes: Any, scores: Sequence[Score]) -> None:
-    bound = max(made.errors.bound_m for made in scores)
-    top = max([10 * bound, *(made.errors.max_m for made in scores)])
-    for i, made in enumerate(scores):
-        t, error = _thinned(made.errors.t, np.maximum(made.errors.position, bound / 30))
+    bound = max(score.errors.bound_m for score in scores)
+    top = max([10 * bound, *(score.errors.max_m for score in scores)])
+    for i, score in enumerate(scores):
+        t, error = _thinned(score.errors.t, np.maximum(score.errors.position, bound / 30))
         style = {"color": COLOURS[i % len(COLOURS)], "linestyle": STYLES[i % len(STYLES)], "linewidth": 1.2}
-        axes.plot(t, error, label=Path(made.candidate.name).name, **style)
+        axes.plot(t, error, label=Path(score.candidate.name).name, **style)
     axes.axhspan(bound / 30, bound, color="0.85", label=f"bound of the reference, {bound:.1e} m")
-    tolerance = min(made.tolerance_m for made in scores)
+    tolerance = min(score.tolerance_m for score in scores)
     if tolerance < 100 * top:
         axes.axhline(
             tolerance, color="0.4", linewidth=0.8, linestyle=(0, (1, 2)), label=f"tolerance, {tolerance:.1e} m"
@@ -60,7 +60,7 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
 
 
 def _thinned(t: Any, error: Any, points: int = 2000) -> tuple[Any, Any]:
-    """The largest error in each of many equal parts: what the eye would see of more."""
+    """Return at most `points` points: the largest error in each of as many equal parts, all that a picture resolves."""
     if len(t) <= points:
         return t, error
     edges = np.linspace(0, len(t), points + 1).astype(int)[:-1]

@@ -1,4 +1,4 @@
-"""`assert_agrees` in others' tests: silent where a trajectory is right, and telling where it is not."""
+"""`assert_agrees` and its pytest fixture: silent if a trajectory is right, with an exact message if it is not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the truth comes from: what ships, or what is solved once and kept; never half, and never lost to bad luck."""
+"""Where the truth comes from: a dataset that ships, or one that is solved once and cached; never an incomplete one."""
 
 from __future__ import annotations
 
@@ -94,8 +94,8 @@ def test_a_cache_that_cannot_be_written_costs_time_only(place, tmp_path, monkeyp
     scene = make_scene(f"mine_{place}", pendulum={"length": "5"}, run=RUN)
     golden = golden_of(scene, announce=said.append)
     assert "cannot be written" in said[0]
-    found = truth_at(golden, np.array([0.0, 1.5]))
-    assert found.states[0, 0] == 0.3
+    truth = truth_at(golden, np.array([0.0, 1.5]))
+    assert truth.states[0, 0] == 0.3
     assert blocked.read_text() == "in the way"
 
 
@@ -105,7 +105,7 @@ def test_the_truth_is_evaluated_once_for_the_same_times(monkeypatch):
     first = truth_at(golden, times)
     monkeypatch.setattr("compare.truth.dense", None)
     again = truth_at(golden, times)
-    for name in ("t", "states", "rest"):
+    for name in ("t", "states", "low"):
         assert np.array_equal(getattr(first, name), getattr(again, name))
     assert (first.bound_m, first.number) == (again.bound_m, again.number)
 
@@ -126,14 +126,14 @@ def test_what_fails_leaves_nothing_behind(own_cache):
         raise RuntimeError
 
     with pytest.raises(RuntimeError):
-        cache.kept("kind", "name", fails, Path.read_text)
+        cache.load_or_make("kind", "name", fails, Path.read_text)
     assert list((own_cache / "kind").iterdir()) == []
 
 
 def test_old_entries_go(own_cache, monkeypatch):
     monkeypatch.setattr(cache, "KEEP", 3)
     for i in range(6):
-        cache.kept("kind", str(i), lambda path, i=i: path.write_text(str(i)), Path.read_text)
+        cache.load_or_make("kind", str(i), lambda path, i=i: path.write_text(str(i)), Path.read_text)
         os.utime(own_cache / "kind" / str(i), (i, i))
     assert sorted(path.name for path in (own_cache / "kind").iterdir()) == ["3", "4", "5"]
 

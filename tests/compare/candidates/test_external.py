@@ -1,4 +1,4 @@
-"""Somebody's program: its words are filled in, its time and output are bounded, and nothing of it stays behind."""
+"""Run somebody's program: placeholders are filled in, time and output are limited, and no process is left running."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from places import ROOT
 from small_scenes import make_scene
 
 from compare.candidates.external import arguments, placeholders, run_program, timed
-from compare.candidates.family import MARK
+from compare.candidates.process_tree import MARK
 from reference import InputError
 
 
@@ -116,7 +116,7 @@ def test_a_signal_is_a_failure_too():
         run_program(python("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)"))
 
 
-FAMILY = """
+PARENT = """
 import subprocess, sys, time
 child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
 open(sys.argv[1], "w").write(str(child.pid))
@@ -124,13 +124,13 @@ open(sys.argv[1], "w").write(str(child.pid))
 """
 
 
-def family(tmp_path, then):
+def parent(tmp_path, then):
     note = tmp_path / "pid"
-    return [sys.executable, "-c", FAMILY.format(then=then), str(note)], note
+    return [sys.executable, "-c", PARENT.format(then=then), str(note)], note
 
 
 def test_a_timeout_ends_the_program_and_its_children(tmp_path):
-    words, note = family(tmp_path, "time.sleep(60)")
+    words, note = parent(tmp_path, "time.sleep(60)")
     begun = time.monotonic()
     with pytest.raises(InputError, match=r"ends within 1\.5 s \(--timeout\)"):
         run_program(words, timeout_s=1.5)
@@ -139,7 +139,7 @@ def test_a_timeout_ends_the_program_and_its_children(tmp_path):
 
 
 def test_what_a_program_leaves_running_is_ended(tmp_path):
-    words, note = family(tmp_path, "print('done')")
+    words, note = parent(tmp_path, "print('done')")
     output, _, _ = run_program(words)
     output.close()
     assert ends_within(int(note.read_text()), 5)
@@ -222,7 +222,7 @@ def test_a_single_run_says_that_nothing_warmed_it_up():
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
-    words, note = family(tmp_path, "time.sleep(60)")
+    words, note = parent(tmp_path, "time.sleep(60)")
     command = [sys.executable, "-m", "foucault", "score", "paris", "--run", shlex.join(words)]
     with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE) as process:
         for _ in range(200):

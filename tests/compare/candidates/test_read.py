@@ -1,4 +1,4 @@
-"""Reading candidates: every format gives the same numbers, and whatever else comes gets a message in bounded memory."""
+"""Read candidates: every format gives the same numbers, and anything else gets a message, in bounded memory."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A C program with mistakes to order, run as a user would run it, over a whole day."""
+"""Diagnosis: a C program with chosen mistakes is run as a user would run it, over a whole day."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def scored(program: Path, fault: str, *options: str) -> tuple[int, dict[str, Any
 def test_the_full_equations_agree_and_need_no_diagnosis(program: Path) -> None:
     status, said = scored(program, "none")
     assert (status, said["verdict"], said["diagnosis"]) == (0, "agrees", None)
-    assert 1e-9 < said["max_error_m"] < 1e-6  # facts/peers.md: 3e-8 m for RK4 at 0.01 s
+    assert 1e-9 < said["max_error_m"] < 1e-6  # 3e-8 m for RK4 at 0.01 s
     assert said["timing"]["cpu_s"] > 0
 
 
@@ -102,7 +102,7 @@ def test_a_random_fault_gets_no_diagnosis(program: Path) -> None:
 
 
 def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int = 400) -> Score:
-    """A candidate that solves the scene with another input, and prints so many decimals."""
+    """Score a candidate that solves the scene with another input and prints `decimals` decimals."""
     read_as = scene.with_values(["inputs=binary64"])
     times = np.linspace(0.0, float(scene.run.t_end), rows)
     states = Variants().states(with_value(read_as.exact, name, Fraction(value)), times).round(decimals)
@@ -143,7 +143,7 @@ def test_named_mistakes_that_are_the_same_at_this_site_are_both_named() -> None:
     said = diagnose(candidate, errors, read_as)
     assert said is not None
     assert (said.id, said.also[0]) == ("vertical_only", "no_coriolis")
-    assert "leaves the Coriolis force out" in said.text
+    assert "leaves out the Coriolis force" in said.text
 
 
 def test_above_the_horizontal_no_approximation_of_small_swings_is_tried() -> None:

@@ -1,4 +1,4 @@
-"""The input floor: what rounding the inputs to doubles does, once per scene, and read off for any end."""
+"""The input floor: how far rounding the inputs to doubles moves the bob, computed once per scene, for any end."""
 
 from __future__ import annotations
 

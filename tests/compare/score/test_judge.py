@@ -1,4 +1,4 @@
-"""`foucault score` as a user meets it: verdict, exit status, JSON, pictures, and what is said of bad input."""
+"""`foucault score` as a user meets it: verdict, exit status, JSON, pictures, and messages about bad input."""
 
 from __future__ import annotations
 
@@ -101,7 +101,7 @@ def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(
     assert said["max_error_m"] < 1e-16 * 100
     assert said["transits"]["matched"] == 10514
     assert said["reference"]["level"] == golden.manifest.level
-    assert 4e-13 < said["input_floor_m"] < 6e-13  # facts/peers.md
+    assert 4e-13 < said["input_floor_m"] < 6e-13  # rounding the inputs of Paris moves the bob by 5e-13 m in a day
 
 
 def test_the_table_says_the_same_in_words(foucault, good):
@@ -149,9 +149,9 @@ def test_a_reference_is_never_judged_finer_than_its_own_bound(foucault, tmp_path
     """Golden rows to 40 digits are held as pairs of doubles, to 3e-30 m: below that nobody is blamed."""
     lines = (load("paris").path / "grid.csv").read_text().splitlines()[:6]
     for i, line in enumerate(lines[1:], 1):
-        t, x, rest = line.split(",", 2)
+        t, x, others = line.split(",", 2)
         with localcontext(Context(prec=60)):
-            lines[i] = f"{t},{Decimal(x) + Decimal(error)},{rest}"
+            lines[i] = f"{t},{Decimal(x) + Decimal(error)},{others}"
     path = tmp_path / "close.csv"
     path.write_text("\n".join([*lines, ""]))
     status, out, _ = foucault("score", "paris", path, "--tolerance", "1e-60", "--json", "--no-diagnosis")

@@ -1,4 +1,4 @@
-"""The swing plane and the phase: a turn and a delay that were put in are found again."""
+"""Swing plane and phase: the turn and the delay that a candidate was given are found again."""
 
 from __future__ import annotations
 

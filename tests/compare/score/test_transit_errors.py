@@ -1,4 +1,4 @@
-"""Transits of a candidate against the truth's: matched, missed, extra, shifted, and what nobody can decide."""
+"""Transits of a candidate against the truth's: matched, missed, extra, shifted, and undecided ones."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def test_the_truth_matches_itself():
     assert (made.matched, made.missed, made.extra, made.max_error_s) == (20, [], [], 0.0)
 
 
-def test_errors_are_weighed_by_the_acceleration():
+def test_errors_are_weighted_by_the_acceleration():
     off = np.linspace(-1e-3, 1e-3, 20)
     made = against(TRUTH + off)
     assert np.allclose(made.errors_s, off, atol=1e-12)
