@@ -21,7 +21,10 @@ def command(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Recompute and judge every formula and number of the source papers; with --out, draw the figures again too."""
+    """Judge every formula of the source papers.
+
+    Every formula and number is computed again; with --out the figures are drawn again too.
+    """
     from ..papers import build, rows
     from ..papers.page import document
 

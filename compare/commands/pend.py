@@ -44,7 +44,10 @@ def command(
     ] = None,
     exact: Annotated[bool, typer.Option("--exact", help="Print the same lines from the reference.")] = False,
 ) -> None:
-    """Run the paper's program foucPend: print snapshots and transits, integrated at a fixed step."""
+    """Run the paper's program foucPend.
+
+    It integrates at a fixed step and prints snapshots and transits.
+    """
     from ..foucpend import Options, lines
 
     typed = {

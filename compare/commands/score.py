@@ -73,7 +73,9 @@ def command(
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
-    """Score a program's output against the truth; exit status 0: agrees, 1: disagrees.
+    """Score a program's output against the truth.
+
+    Exit status 0: agrees, 1: disagrees.
 
     --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
     {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate} {azimuth_rate}

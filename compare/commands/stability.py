@@ -29,7 +29,10 @@ def command(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run every method on stiff and extreme scenes: digits kept, or the way it failed; resumes with the same --out."""
+    """Run every method on the nasty scenes.
+
+    For each: digits kept, or the way it failed; with the same --out a study resumes.
+    """
     from ..methods import METHODS
     from ..report import stability as stability_report
     from ..report.folder import PAGE, check_folder

@@ -48,7 +48,10 @@ def command(
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
-    """Measure error against run time of every method over its settings; resumes with the same --out."""
+    """Measure error against run time.
+
+    Every method is run over its settings; with the same --out a study resumes.
+    """
     changes = [*(set_ or ()), *([] if t_end is None else [f"run.t_end={t_end}"])]
     scene = load_scene(scene_word, changes)
     if not 0 < limit < float("inf"):
