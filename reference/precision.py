@@ -1,4 +1,4 @@
-"""Number types and precision: bits, decimal digits, exact conversions and rounding, mpmath contexts.
+"""Number types and precision: bits, guard bits, decimal digits, exact conversions and rounding, mpmath contexts.
 
 Precision is always an argument: every mpmath context made here is a new one, and the global one is never touched.
 """

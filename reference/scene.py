@@ -347,7 +347,7 @@ def scene_ids() -> list[str]:
 
 
 def flag_meanings() -> dict[str, str]:
-    """Return why a scene with a flag is nasty: a sentence for each flag, from `data/flags.toml`."""
+    """Return why a scene with a flag is difficult: a sentence for each flag, from `data/flags.toml`."""
     return {flag: str(text) for flag, text in tomllib.loads((data_root() / "flags.toml").read_text("utf-8")).items()}
 
 

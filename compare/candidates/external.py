@@ -1,4 +1,7 @@
-"""Run somebody's program (--run): limited in time and output, killed with its descendants, timed (CPU and wall)."""
+"""Run somebody's program (--run): limited in time and output, killed with its descendants, timed (CPU and wall).
+
+The limit on its output is that on any candidate's text (`lines.MAX_BYTES`).
+"""
 
 from __future__ import annotations
 

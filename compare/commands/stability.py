@@ -29,7 +29,7 @@ def command(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run every method on the nasty scenes.
+    """Run every method on the difficult scenes.
 
     For each: digits kept, or the way it failed; with the same --out a study resumes.
     """

@@ -1,4 +1,4 @@
-"""Run a list of measurements in a child process: a hang or crash loses only that item."""
+"""Run a list of measurements in a child process: a hang (killed after `patience_s`) or a crash loses only that item."""
 
 from __future__ import annotations
 

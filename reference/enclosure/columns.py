@@ -1,4 +1,4 @@
-"""TRUSTED. The error bound for large angles: six columns carry the error, Theorem N bounds the remainder (Theorem E).
+"""TRUSTED. The error bound for large angles: a matrix of six columns carries it; Theorems E and N.
 
 The columns are proposals: integers over 2^FINE, so they are exact whatever floats they were rounded from.
 """

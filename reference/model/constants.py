@@ -65,7 +65,7 @@ def is_zero(value: Any) -> bool:
 
 
 def constants(inputs: Inputs, ctx: Any) -> Constants:
-    """Return the constants of a scene, combined in the precision of the mpmath context `ctx`."""
+    """Return the constants of a scene, in the precision of `ctx`: a run's own and `precision.GUARD_BITS` more."""
 
     def number(value: Any) -> Any:
         return 0 if value == 0 else value

@@ -16,8 +16,9 @@ NOISE = 8  # a column whose largest number is within this many times its error i
 def grid_decimals(largest: Sequence[Fraction], errors: Sequence[Fraction], digits: int) -> list[int]:
     """Return the digits after the point of x, y, z, vx, vy, vz, from each column's largest number and error.
 
-    A column that is nothing but error takes the digits of the largest column of its kind: a coordinate that vanishes by
-    symmetry comes out of a run as rounding noise, and noise has no significant digits.
+    The largest number of a column gets `digits` significant digits (`precision.decimals_for`). A column that is nothing
+    but error takes the digits of the largest column of its kind: a coordinate that vanishes by symmetry comes out of a
+    run as rounding noise, and noise has no significant digits.
     """
     resolved = [size if size > NOISE * error else Fraction(0) for size, error in zip(largest, errors, strict=True)]
     of_kind = [max(resolved[:3])] * 3 + [max(resolved[3:])] * 3

@@ -1,4 +1,4 @@
-"""Output times counted in grains: an integer, and limbs for the remaining part of a grain."""
+"""Output times counted in grains, a power of two in s: an integer, and limbs for the remaining part of a grain."""
 
 from __future__ import annotations
 
