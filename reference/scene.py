@@ -100,7 +100,7 @@ class Pendulum(_Table):
 
 
 class Site(_Table):
-    """Where the suspension stands (degrees, m), gravity (m/s²) and the turning Earth (rad/s)."""
+    """Where the suspension stands (degrees, m), gravity (m/s²) and the Earth's rotation rate (rad/s)."""
 
     latitude: Annotated[Number, _within("-90", "90")] = "48.846111"
     altitude: Number = "0"
@@ -111,7 +111,7 @@ class Site(_Table):
 
 
 class Release(_Table):
-    """Either x, y (m, below the suspension) with vx, vy (m/s), or angles and their rates (degrees)."""
+    """Either x, y (m, below the suspension) with vx, vy (m/s), or angles (degrees) and their rates (degrees/s)."""
 
     x: Number | None = None
     y: Number | None = None

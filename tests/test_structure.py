@@ -11,6 +11,8 @@ import pytest
 import structure
 from places import ROOT
 
+from reference import load_scene
+
 SOURCES = structure.sources(ROOT)
 
 # top first; a room imports from lower floors only
@@ -121,6 +123,6 @@ def test_every_file_begins_with_a_line_that_says_what_it_holds(path):
 
 
 def test_every_scene_has_its_own_file_named_by_its_id():
-    names = sorted(path.stem for path in (ROOT / "data/scenes").glob("*.toml"))
-    assert names
-    assert len(names) == len(set(names))
+    paths = sorted((ROOT / "data/scenes").glob("*.toml"))
+    assert paths
+    assert [load_scene(path).id for path in paths] == [path.stem for path in paths]

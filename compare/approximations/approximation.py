@@ -20,11 +20,11 @@ class Order:
     """A statement of theory, error proportional to `against` ** `power`, which `studies.approximation_orders` tests.
 
     Attributes:
-        against: quantity that is varied: the displacement from the point of rest in m, Ω in rad/s, or the length in m.
+        against: quantity that is varied: the displacement from the rest position in m, Ω in rad/s, or the length in m.
         power: the exponent; None where the approximation is exact and only rounding errors remain.
         values: values of `against` at which the error is measured.
         setting: `section.key=value` replacements that make this error the largest one.
-        amplitude: fixed displacement from the point of rest in m, released at rest; None: as the scene says.
+        amplitude: fixed displacement from the rest position in m, released at rest; None: as the scene says.
     """
 
     against: Against
@@ -86,7 +86,7 @@ class Motion(Approximation):
 
     Attributes:
         path: `path(scene, times)`, the motion without checks of scene and times; see `trajectory`.
-        rest: `rest(scene)`, the point (x, y, z) in m about which it swings; None: the full model's point of rest.
+        rest: `rest(scene)`, the point (x, y, z) in m about which it swings; None: the full model's rest position.
     """
 
     path: Callable[[Scene, Array], Array]

@@ -82,7 +82,7 @@ class Case:
 
     @cached_property
     def rest(self) -> Vector:
-        """Direction n of the full model's point of rest, Mathar (46).
+        """Direction n of the full model's rest position, Mathar (46).
 
         Raises:
             UnreachableError: there is none, or the iteration does not converge.
@@ -90,7 +90,7 @@ class Case:
         try:
             return rest_position(self.k, self.ctx)
         except (ValueError, ZeroDivisionError):
-            raise UnreachableError("the scene has no point of rest to swing about.") from None
+            raise UnreachableError("the scene has no rest position to swing about.") from None
 
     @cached_property
     def apparent_latitude(self) -> Any:
@@ -144,7 +144,7 @@ def below(scene: Scene) -> str | None:
     """Return a reason to refuse a scene with drag or a release that is not below the suspension, or None."""
     angles = scene.exact.angles
     if angles is not None and angles[0] >= 90:
-        return "It holds below the suspension only: give release.angle below 90"
+        return "The formula holds below the suspension only: give release.angle below 90"
     return without_drag(scene)
 
 

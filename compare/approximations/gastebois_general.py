@@ -27,7 +27,7 @@ def uniform(k: Constants) -> Constants:
 
 
 def hanging(scene: Scene) -> Any:
-    """Return his point of rest in m, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
+    """Return his rest position in m, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
     case = Case.of(scene)
     return (0, -case.length * case.ctx.sin(case.tilt), -case.length * case.ctx.cos(case.tilt))
 

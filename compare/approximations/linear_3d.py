@@ -1,7 +1,7 @@
-"""The full system linearised about its point of rest and solved exactly: the best that a small-angle model can do.
+"""The full system linearised about its rest position and solved exactly: the best that a small-angle model can do.
 
 Let δ be the displacement at right angles to the plumb line (east, north), Ω_n the component of Ω along the plumb line,
-T the pull of the cord at the point of rest and C the centrifugal gradient, all over l. Then
+T the pull of the cord at the rest position and C the centrifugal gradient, all over l. Then
     δ1'' = -a δ1 + 2 Ω_n δ2',   δ2'' = -b δ2 - 2 Ω_n δ1',   a = T - C11, b = T - C22.
 In p = (√a δ1, √b δ2, δ1', δ2') this is p' = S p with S skew: i S is hermitian, so its eigenvectors are orthonormal
 and the solution stays accurate where two frequencies coincide.
@@ -23,7 +23,7 @@ from .case import Case, PlumbAxes, below, hung
 
 
 def plumb_line(case: Case) -> tuple[PlumbAxes, Vector]:
-    """Return the plumb line's axes and its direction n at the full model's point of rest, Mathar (46)."""
+    """Return the plumb line's axes and its direction n at the full model's rest position, Mathar (46)."""
     _, y, z = case.rest
     return PlumbAxes(case.ctx.mpf(y), -z), (0, y, z)
 
@@ -67,17 +67,17 @@ def _refused(scene: Scene) -> str | None:
     try:
         a, b, _ = stiffness(case)
     except UnreachableError:
-        return "There is no point of rest to swing about: give site.gravity above 0"
-    return None if a > 0 and b > 0 else "Its point of rest is not a minimum of the potential"
+        return "There is no rest position to swing about: give site.gravity above 0"
+    return None if a > 0 and b > 0 else "Its rest position is not a minimum of the potential"
 
 
 APPROXIMATIONS = (
     Motion(
         id="linear_3d",
-        title="the full system, linearised about its point of rest, with every centrifugal term",
+        title="the full system, linearised about its rest position, with every centrifugal term",
         where="linearisation of Mathar (43) at (46); 'exact for the linear system' in the third source paper",
-        domain="small amplitudes about the point of rest, any rotation; exact at all times as the amplitude goes to 0",
-        drops="second and higher powers of the displacement from the point of rest",
+        domain="small amplitudes about the rest position, any rotation; exact at all times as the amplitude goes to 0",
+        drops="second and higher powers of the displacement from the rest position",
         orders=(
             Order("amplitude", 2, (0.1, 0.2, 0.4, 0.8), ("site.equatorial_radius=0", "site.rotation_rate=0.02")),
             Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",)),

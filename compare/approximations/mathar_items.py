@@ -27,7 +27,7 @@ VARIANT = "variant of item 1"
 Item = int | str
 
 _STILL = ("site.rotation_rate=0",)
-_ON_AXIS = ("site.equatorial_radius=0",)  # R = 0: the point of rest stays below the suspension
+_ON_AXIS = ("site.equatorial_radius=0",)  # R = 0: the rest position stays below the suspension
 _AMPLITUDES = (0.5, 1.0, 2.0, 4.0)
 _RATES = (1e-5, 2e-5, 4e-5, 8e-5)
 
@@ -141,7 +141,7 @@ APPROXIMATIONS = (
         "mathar_item_1",
         (1,),
         "Mathar's equations without the terms in Ω²",
-        "β of (35), (41): centrifugal force, tilt of the plumb line; RΩ²/g = 3e-3 of gravity, not Ω² = 5e-9 as printed",
+        "β of (35), (41): centrifugal force, tilt of the plumb line; RΩ² is 3e-3 of g, not Ω² = 5e-9 as printed",
         "any amplitude below the suspension; slow rotation",
         (_SQUARE_IN_RATE,),
     ),

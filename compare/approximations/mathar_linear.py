@@ -23,7 +23,7 @@ _ABOUT_REST = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_ra
 
 
 def slow_down(case: Case) -> Any:
-    """Return 2K/π, the period over the harmonic one; K has the modulus sin(φ0/2), φ0 counted from the point of rest."""
+    """Return 2K/π, the period over the harmonic one; K has the modulus sin(φ0/2), φ0 counted from the rest position."""
     cosine = dot(case.position, case.rest) / case.length
     return 2 * case.ctx.ellipk((1 - cosine) / 2) / case.ctx.pi
 
@@ -86,7 +86,7 @@ APPROXIMATIONS = (
     ),
     Motion(
         id="linear_recentred",
-        title="harmonic pendulum on a turntable, about the point of rest",
+        title="harmonic pendulum on a turntable, about the rest position",
         where="Mathar (51)-(52) with g' of (48), about the point of section V",
         domain="small amplitudes; an hour",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the anharmonic slow-down",
@@ -96,7 +96,7 @@ APPROXIMATIONS = (
     ),
     Motion(
         id="linear_anharmonic",
-        title="harmonic pendulum on a turntable, about the point of rest, with the slow-down of the plane pendulum",
+        title="harmonic pendulum on a turntable, about the rest position, with the slow-down of the plane pendulum",
         where="Mathar section VII, fifth frequency: 2K(sin(φ0/2))/π, where 4K is printed",
         domain="amplitudes of some degrees, released at rest; a day",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the overtones of the swing",

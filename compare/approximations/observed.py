@@ -1,6 +1,6 @@
 """Quantities that an observer reads off a motion: the swing plane, its precession period, and the frequency.
 
-A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its point of rest. Let
+A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its rest position. Let
 Z = X + iY be the displacement in the plane at right angles to the plumb line (X east, Y north), Z' its rate on the
 ground, Ω_n the component of Ω along the plumb line, and ω the frequency. In axes that do not turn, position and
 velocity over ω are Z and S = (Z' + i Ω_n Z)/ω, and the major axis of the ellipse has the direction
@@ -31,10 +31,10 @@ _ROUND = 1e-6  # an ellipse with |Z² + S²| below this part of |Z|² + |S|² is
 
 @dataclass(frozen=True)
 class Gauge:
-    """A point of rest and the linear oscillator about it, by which the swing plane and the apsides are measured.
+    """A rest position and the linear oscillator about it, by which the swing plane and the apsides are measured.
 
     Attributes:
-        rest: unit vector from the suspension to the point of rest.
+        rest: unit vector from the suspension to the rest position.
         length: l in m.
         omega: ω in rad/s.
         turn: Ω_n in rad/s.
@@ -47,19 +47,19 @@ class Gauge:
 
     @classmethod
     def of(cls, scene: Scene, rest: Any = None) -> Gauge:
-        """Return the gauge of a scene about `rest` in m, or about the scene's own point of rest.
+        """Return the gauge of a scene about `rest` in m, or about the scene's own rest position.
 
-        ω follows from the pull of the cord at the scene's point of rest.
+        ω follows from the pull of the cord at the scene's rest position.
 
         Raises:
-            UnreachableError: there is no point of rest, or nothing pulls the bob back to it.
+            UnreachableError: there is no rest position, or nothing pulls the bob back to it.
         """
         case = Case.of(scene)
         hanging = case.rest
         turn = -case.ctx.mpf(case.k.turn[1]) * hanging[1] - case.ctx.mpf(case.k.turn[2]) * hanging[2]
         square = tension(hanging, (0, 0, 0), case.k) + turn**2
         if not square > 0:
-            raise UnreachableError("nothing pulls the bob back to its point of rest: there is no swing to measure.")
+            raise UnreachableError("nothing pulls the bob back to its rest position: there is no swing to measure.")
         centre = hanging if rest is None else tuple(part / case.length for part in rest)
         return cls(
             (float(centre[0]), float(centre[1]), float(centre[2])),
@@ -87,7 +87,7 @@ class Gauge:
         return np.where(np.abs(square) > _ROUND * size, np.angle(square) / 2, np.nan)
 
     def apsides(self, times: Array, rows: Array) -> tuple[Array, Array]:
-        """Return times in s and azimuths in rad (unwrapped modulo π) of the largest distances from the point of rest.
+        """Return times in s and azimuths in rad (unwrapped modulo π) of the largest distances from the rest position.
 
         Args:
             times: evenly spaced in s, about PER_SWING in a period.
@@ -131,7 +131,7 @@ def frequency(scene: Scene, swings: int = 50) -> float:
     _, times, rows = _sampled_motion(scene, (swings + 1) * gauge.period)
     apsides, _ = gauge.apsides(times, rows)
     if len(apsides) < 3:
-        raise UnreachableError("the bob does not swing: it has no largest distances from its point of rest.")
+        raise UnreachableError("the bob does not swing: it has no largest distances from its rest position.")
     return float((len(apsides) - 1) / (2 * (apsides[-1] - apsides[0])))
 
 

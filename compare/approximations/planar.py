@@ -61,7 +61,7 @@ def _path(scene: Scene, times: Array) -> Array:
 
 def _refused(scene: Scene) -> str | None:
     if not scene.exact.at_rest:
-        return "It is for a release at rest: leave out the velocity"
+        return "The formula is for a release at rest: leave out the velocity"
     if scene.exact.angles is not None and scene.exact.angles[0] == 180:
         return "The bob stands upright: give release.angle below 180"
     return without_drag(scene) or under_gravity(scene)

@@ -1,6 +1,6 @@
-"""Angle in rad from the vertical to the point of rest: Mathar section V, equation, series and triangle of forces.
+"""Angle in rad from the vertical to the rest position: Mathar section V, equation, series and triangle of forces.
 
-The angle is positive to the south, so that y = -l sin of the angle at the point of rest, in either hemisphere.
+The angle is positive to the south, so that y = -l sin of the angle at the rest position, in either hemisphere.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ def _not_at_a_pole(scene: Scene) -> str | None:
 def _quantity(
     word: str, title: str, where: str, drops: str, orders: tuple[Order, ...], formula: Any, **more: Any
 ) -> Any:
-    """Declare one formula for the angle of the point of rest; `more` are further fields."""
+    """Declare one formula for the angle of the rest position; `more` are further fields."""
     return Quantity(
         id=word,
         title=title,
@@ -98,7 +98,7 @@ _FAST, _SMALL_BODY = (4e-3, 8e-3, 1.6e-2), ("site.equatorial_radius=300",)  # wh
 _NAMES = ("Ω²", "Ω⁴", "Ω⁶")
 _EQUATION = _quantity(
     "rest_equation",
-    "point of rest by the equation of forces",
+    "rest position by the equation of forces",
     "Mathar (46); (45) is the same in y",
     "nothing",
     (Order("rotation_rate", None, _RATES), Order("length", None, (1, 67, 10000))),
@@ -111,7 +111,7 @@ _EQUATION = _quantity(
 _SERIES = tuple(
     _quantity(
         f"rest_series_{terms}",
-        f"point of rest by the series up to {_NAMES[terms - 1]}",
+        f"rest position by the series up to {_NAMES[terms - 1]}",
         f"Mathar (47) up to {_NAMES[terms - 1]}",
         f"Ω to the power {2 * terms + 2} and beyond",
         (Order("rotation_rate", 2 * terms + 2, _RATES), Order("rotation_rate", 2 * terms + 2, _FAST, _SMALL_BODY)),
@@ -122,7 +122,7 @@ _SERIES = tuple(
 )
 _TRIANGLE = _quantity(
     "rest_triangle",
-    "point of rest by the triangle of forces",
+    "rest position by the triangle of forces",
     "Mathar (48)-(50)",
     "the cord: N + h stands for N + h - l, the distance of the bob",
     (Order("rotation_rate", 2, _RATES), Order("length", 1, (10, 20, 40, 80))),

@@ -1,4 +1,4 @@
-"""`foucault stability`: run every method on stiff and extreme scenes."""
+"""`foucault stability`: run the methods on stiff and extreme scenes."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def command(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Run every method on the difficult scenes.
+    """Run methods on the difficult scenes.
 
     For each: digits kept, or the way it failed; with the same --out a study resumes.
     """

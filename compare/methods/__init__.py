@@ -29,7 +29,7 @@ __all__ = ["EXTERNAL", "METHODS", "Exact", "Method", "Outcome", "Problem", "Work
 
 EXTERNAL = "external: "  # begins the id of a method that is a command
 
-_HOMES = {
+_MODULES = {
     "rk4": ("rk4",),
     "rkng56": ("rkng56",),
     "rkng67": ("rkng67",),
@@ -44,7 +44,7 @@ _HOMES = {
     "diffrax": ("diffrax_dopri8",),
     "mpmath": ("mpmath_odefun",),
 }
-_HOME_OF = {name: home for home, inside in _HOMES.items() for name in inside}
+_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 
 
 class _Methods(Mapping[str, Method]):
@@ -55,20 +55,20 @@ class _Methods(Mapping[str, Method]):
             from .external import external
 
             return external(name.removeprefix(EXTERNAL), name=name)
-        if name not in _HOME_OF:
-            raise InputError("method", name, "a method's id", f"Known ids: {', '.join(_HOME_OF)}.")
-        home = import_module(f".{_HOME_OF[name]}", __name__)
-        declared: tuple[Method, ...] = getattr(home, "METHODS", None) or (home.METHOD,)
+        if name not in _MODULE_OF:
+            raise InputError("method", name, "a method's id", f"Known ids: {', '.join(_MODULE_OF)}.")
+        module = import_module(f".{_MODULE_OF[name]}", __name__)
+        declared: tuple[Method, ...] = getattr(module, "METHODS", None) or (module.METHOD,)
         return next(method for method in declared if method.id == name)
 
     def __contains__(self, name: object) -> bool:
-        return name in _HOME_OF
+        return name in _MODULE_OF
 
     def __iter__(self) -> Iterator[str]:
-        return iter(_HOME_OF)
+        return iter(_MODULE_OF)
 
     def __len__(self) -> int:
-        return len(_HOME_OF)
+        return len(_MODULE_OF)
 
 
 METHODS: Mapping[str, Method] = _Methods()

@@ -50,7 +50,7 @@ CAPTIONS = (
     Caption(
         7,
         "The difference in positions between the full theory and different approximations introduced in Section VI.",
-        "Without rotation the pendulum is half a swing out of phase; item 1 drops Ω², item 2 the outer diagonal.",
+        "Without rotation the pendulum is half a swing late; item 1 drops Ω², item 2 the off-diagonal elements.",
     ),
     Caption(
         8,

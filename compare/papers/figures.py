@@ -131,7 +131,7 @@ def figure_6(plt: Any) -> Any:
 
 
 def figure_7(plt: Any) -> Any:
-    """Draw x and y after 12000 s: full, without rotation, without the outer diagonal, without Ω²."""
+    """Draw x and y after 12000 s: full, without rotation, without the off-diagonal elements, without Ω²."""
     figure, panels = plt.subplots(2, 1, figsize=(WIDE, 1.35 * HIGH), sharex=True)
     times, full = window(12000, 20)
     no_rotation = load_scene("paris", ["site.rotation_rate=0"])

@@ -77,7 +77,7 @@ class Point:
 
     @cached_property
     def z(self) -> Any:
-        """Height of the bob below the suspension, negative."""
+        """Height of the bob relative to the suspension (negative)."""
         return -sqrt(self.length**2 - self.x**2 - self.y**2)
 
     @cached_property

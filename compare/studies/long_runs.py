@@ -143,9 +143,9 @@ def errors_over_time(emit: Emit, document: dict[str, Any], folder: Path, items: 
             continue
         try:
             work = method.prepare(Problem.of(scene, formulation, truth.times), setting)
-            begun = time.process_time()
+            started = time.process_time()
             outcome = work()
-            cpu_s = time.process_time() - begun
+            cpu_s = time.process_time() - started
         except FoucaultError as error:
             emit(LongRun(name, formulation, setting, "refused", str(error)))
             continue

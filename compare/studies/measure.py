@@ -68,10 +68,10 @@ class Bench:
     def _measured(self, base: Row, method: Method) -> Row:
         times = self.truth.times
         longest = max(2, int(np.searchsorted(times, method.longest_s or math.inf, side="right")))
-        begun = time.process_time()
+        started = time.process_time()
         probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
         probe = method.prepare(self._problem(base, probe_times), base.setting)
-        compile_s = time.process_time() - begun
+        compile_s = time.process_time() - started
         probe_outcome, probe_s = _timed(probe)
         base = replace(base, compile_s=compile_s)
         if probe_outcome.status != OK:
@@ -83,9 +83,9 @@ class Bench:
             rows = min(rows, max(LEAST_ROWS, int(self.limit_s / 4 / expected * len(times))))
         if rows <= len(probe_times):
             return self._finished(base, probe_outcome, [probe_s], probe_times)
-        begun = time.process_time()
+        started = time.process_time()
         work = method.prepare(self._problem(base, times[:rows]), base.setting)
-        base = replace(base, compile_s=compile_s + time.process_time() - begun)
+        base = replace(base, compile_s=compile_s + time.process_time() - started)
         outcome, cpu_s = _timed(work)
         if outcome.status != OK:
             return self._failed(base, outcome, cpu_s)
@@ -149,9 +149,9 @@ class Bench:
 
 
 def _timed(work: Any) -> tuple[Outcome, float]:
-    begun = time.process_time()
+    started = time.process_time()
     outcome = work()
-    spent = time.process_time() - begun
+    spent = time.process_time() - started
     return outcome, spent if outcome.cpu_s is None else outcome.cpu_s
 
 

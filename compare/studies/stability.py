@@ -111,7 +111,7 @@ def stability(
     journal_path: Path | None = None,
     report: Callable[[int, int, str], None] | None = None,
 ) -> list[Cell]:
-    """Run every method on every scene.
+    """Run the methods of `CELLS` on every scene.
 
     Args:
         scenes: ids.

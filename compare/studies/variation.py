@@ -56,16 +56,16 @@ def released(scene: Scene, east: float, north: float) -> Scene:
 
 def _displaced(scene: Scene, text: str) -> Scene:
     case = Case.of(scene)
-    north = case.ctx.mpf(case.rest[1]) * case.length
-    east, up = case.position[0], case.position[1] - north
-    present = case.ctx.hypot(east, up)
-    if not present:
+    rest_y = case.ctx.mpf(case.rest[1]) * case.length
+    east, north = case.position[0], case.position[1] - rest_y
+    amplitude = case.ctx.hypot(east, north)
+    if not amplitude:
         raise InputError(
             "release", f"x = {scene.release.x}, y = {scene.release.y}", "a release away from the rest position"
         )
-    ratio = case.ctx.mpf(text) / present
+    ratio = case.ctx.mpf(text) / amplitude
     velocity = tuple(part * ratio for part in case.velocity)
-    return _with_release(scene, _release(case, (east * ratio, north + up * ratio), velocity))
+    return _with_release(scene, _release(case, (east * ratio, rest_y + north * ratio), velocity))
 
 
 def _with_release(scene: Scene, release: dict[str, str]) -> Scene:

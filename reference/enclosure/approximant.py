@@ -99,8 +99,8 @@ class Turned:
         p, unit = [fmpz_poly(row) for row in (east, m, w)], fmpz(1) << bits
         turn, _, _, cm, cw = scaled(self.world, self.h, bits).whole
         V = [f.derivative() + g // unit for f, g in zip(p, (-turn * p[1], turn * p[0], fmpz_poly()), strict=True)]
-        pull = ((dot(V, V) + cm * p[1] + cw * p[2]) // unit).truncate(len(east))
-        return east, m, w, [int(c) for c in pull.coeffs()]
+        tension = ((dot(V, V) + cm * p[1] + cw * p[2]) // unit).truncate(len(east))
+        return east, m, w, [int(c) for c in tension.coeffs()]
 
 
 def turned(inputs: Any, chain: Iterable[TaylorCoefficients]) -> Iterator[Turned]:

@@ -28,10 +28,10 @@ class World:
             sin, cos, rate = arb.sin_pi_fmpq(turn), arb.cos_pi_fmpq(turn), ball(inputs.rotation_rate)
             f, self.length, self.drag = ball(inputs.flattening), ball(inputs.length), ball(inputs.drag)
             normal = ball(inputs.equatorial_radius) / (1 - f * (2 - f) * sin * sin).sqrt()
-            pull = rate * rate * (normal + ball(inputs.altitude)) * cos  # centrifugal, at the pivot
+            push = rate * rate * (normal + ball(inputs.altitude)) * cos  # centrifugal, at the pivot
             self.tilt = (arb(1), arb(0)) if rate.is_zero() else (sin, cos)
             self.omega = [arb(0), arb(0), rate]
-            weight = [arb(0), -sin * pull, cos * pull - ball(inputs.gravity)]
+            weight = [arb(0), -sin * push, cos * push - ball(inputs.gravity)]
             self.release = self._release(inputs)
             self.c, self.r, v = (self.turned(a, 1) for a in (times(1 / self.length, weight), *self.release))
             self.H = cross(self.r, add(v, cross(self.omega, self.r)))
@@ -90,7 +90,7 @@ class Piece:
         if not -1 <= step.low < step.high <= 1 or step.h <= 0:
             raise ArithmeticError("a step must lie in -1 <= s <= 1, where its sizes hold")
         self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)
-        *self.p, self.pull = map(fmpz_poly, step.coefficients)
+        *self.p, self.tension = map(fmpz_poly, step.coefficients)
         self.v, self.unit = [f.derivative() for f in self.p], fmpz(1) << step.bits
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
@@ -101,8 +101,8 @@ class Piece:
     def sizes(self) -> Sizes:
         """Return the defects and norms, from integers but for the radii of the constants (section 6)."""
         k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits
-        (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], self.pull - k.whole[1]
-        d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, self.pull), p, strict=True)]
+        (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], self.tension - k.whole[1]
+        d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, self.tension), p, strict=True)]
         d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
         d, tau = add(d, times(drag, v)) if drag else d, dot(p, p) - unit * unit
         with ctx.workprec(SHORT):

@@ -11,8 +11,8 @@ from ..errors import UnreachableError
 from .bound import World
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris
-COLUMN_MARGIN_BITS = 14  # lost besides with columns
-RADIUS_SHARE = 0.2  # part of the bits wanted by which one radius may grow before columns are cheaper
+COLUMN_MARGIN_BITS = 14  # lost besides where the error is carried in columns
+RADIUS_SHARE = 0.2  # share of the target bits that one radius may lose before columns are cheaper
 LEAST_BITS, MAX_BITS = 96, 2048
 
 

@@ -1,4 +1,4 @@
-"""Digits lost between release and end, because the motion magnifies errors of its inputs; from perturbed runs."""
+"""Digits lost between release and end, because the motion amplifies errors of its inputs; from perturbed runs."""
 
 from __future__ import annotations
 

@@ -171,7 +171,7 @@ def _transit_check(
     event_run = run_with_events(USUAL_DIGITS)
     try:
         gaps = _transit_gaps(event_run, transits, directions, pilot, any_undecided)
-    except IntegrationError:  # the motion magnifies errors too much for so few digits
+    except IntegrationError:  # the motion amplifies errors too much for so few digits
         event_run = run_with_events(FINER_DIGITS)
         gaps = _transit_gaps(event_run, transits, directions, pilot, any_undecided)
     state = [max(column) for column in zip(*_state_gaps(grid, event_run), strict=True)]

@@ -174,7 +174,7 @@ def _missing_bits(
 
 
 def _bits_lacking(gaps: Sequence[Fraction], decimals: Sequence[int]) -> int:
-    """Return the bits, with a margin, by which a gap exceeds `AGREEMENT` units of its last digit; 0 if none does."""
+    """Return the bits by which a gap exceeds one unit of its last digit, and a margin; 0 if all keep to `AGREEMENT`."""
     lacking = 0
     for gap, places in zip(gaps, decimals, strict=True):
         ratio = gap * 10**places

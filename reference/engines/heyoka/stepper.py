@@ -254,5 +254,4 @@ def least_tension(stepper: Stepper, states: Any) -> float:
     """Return the least tension of the cord, v·v + n·F in 1/s², over states of shape (rows, variables)."""
     columns = tuple(np.ascontiguousarray(states.T))
     n, v = stepper.formulation.cartesian(columns, stepper.constants, np)
-    pull = tension(n, v, stepper.constants)
-    return float(np.min(np.asarray(pull).astype(float)))
+    return float(np.min(np.asarray(tension(n, v, stepper.constants)).astype(float)))

@@ -13,7 +13,7 @@ _turning = shuffled((0, 1, -1, -1, -1, -1, -1, -1), "_turning")
 _rates = shuffled((3, 4, 5, -1, -1, -1, -1, -1), "_rates")
 _to_speeds = shuffled((-1, -1, -1, 0, 1, 2, -1, -1), "_to_speeds")
 _positions = shuffled((0, 1, 2, -1, -1, -1, -1, -1), "_positions")
-_pull_first = shuffled((6, -1, -1, -1, -1, -1, -1, -1), "_pull_first")
+_tension_first = shuffled((6, -1, -1, -1, -1, -1, -1, -1), "_tension_first")
 _exchanged = shuffled((-1, 2, 1, -1, 5, 4, -1, -1), "_exchanged")
 
 
@@ -107,7 +107,7 @@ def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
     for r in range(limb_count + 1):
         s.scalar[r] += total[LANES * r]
     for r in range(limb_count):
-        store(other, LANES * r, _pull_first(load(rows, LANES * r)))
+        store(other, LANES * r, _tension_first(load(rows, LANES * r)))
     lane_products(total, rows, other, limb_count)
     for r in range(limb_count + 1):
         s.scalar[r] -= total[LANES * r]

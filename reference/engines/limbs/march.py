@@ -37,9 +37,9 @@ class MarchState(NamedTuple):
     Attributes:
         now: rows of n, in the axes x, m, w, and of V in the unit of time.
         counts: time and step length in grains; multiplicity of the zero of xdot at release; sign of xdot; steps;
-            output times passed; zeros written; the step length that `line` is for; the next step's length.
+            output times passed; zeros written; the step length that `terms` is for; the next step's length.
         s: the step's series.
-        line: its linear terms.
+        terms: its linear terms.
         rows, place: working arrays: all lanes at some place in the step, and that place.
         search: working arrays for the step's zeros.
     """
@@ -47,7 +47,7 @@ class MarchState(NamedTuple):
     now: Array
     counts: Counts
     s: Series
-    line: LinearTerms
+    terms: LinearTerms
     rows: Array
     place: Array
     search: Search
@@ -134,11 +134,11 @@ def _step_coefficients(state: MarchState, model: Model) -> bool:
     while True:
         m = counts[LENGTH]
         if m != counts[SCALED]:
-            scale_terms(state.line, model, m)
+            scale_terms(state.terms, model, m)
             counts[SCALED] = m
-        order_zero(state.s, state.line, state.now, m, model.limb_count)
+        order_zero(state.s, state.terms, state.now, m, model.limb_count)
         shorter = m // 2
-        if taylor_coefficients(state.s, state.line, model.order, model.limb_count, model.drag):
+        if taylor_coefficients(state.s, state.terms, model.order, model.limb_count, model.drag):
             factor = step_size_factor(state.s, model.order, model.limb_count, model.tolerance)
             if factor >= LEAST_FACTOR:
                 counts[NEXT] = next_length(m, factor, model.longest)
@@ -161,7 +161,7 @@ def _write_outputs(state: MarchState, model: Model, out: Outputs) -> None:
             state.place[q] = out.remainders[i * limb_count + q]
         divide_place(state.place, out.whole[i] - start, m, limb_count)
         evaluate(state.rows, state.s, state.place, model.order, limb_count)
-        to_cartesian(out.states, i * limb_count * LANES, state.rows, state.s, state.line, model, m)
+        to_cartesian(out.states, i * limb_count * LANES, state.rows, state.s, state.terms, model, m)
         counts[ROWS] += 1
 
 
@@ -170,16 +170,16 @@ def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
     """Write the zeros of xdot on the step; return false if they stay in doubt."""
     counts, limb_count, z, m = state.counts, model.limb_count, state.search, state.counts[LENGTH]
     after = sign_of_xdot(state.now, model.terms.turn, state.s, limb_count)
-    count = bracket_zeros(z, state.s, state.line, state.rows, counts[SIGN], after, counts[MULTIPLICITY], model)
+    count = bracket_zeros(z, state.s, state.terms, state.rows, counts[SIGN], after, counts[MULTIPLICITY], model)
     if count == GRAZING:
         return False
     for i in range(count):
-        if not polish(z, i, state.s, state.line, state.rows, model):
+        if not polish(z, i, state.s, state.terms, state.rows, model):
             return False
         n = counts[ZEROS]
         for q in range(limb_count):
             out.places[n * limb_count + q] = z.place[q]
-        to_cartesian(out.zero_states, n * limb_count * LANES, state.rows, state.s, state.line, model, m)
+        to_cartesian(out.zero_states, n * limb_count * LANES, state.rows, state.s, state.terms, model, m)
         out.moments[3 * n], out.moments[3 * n + 1], out.moments[3 * n + 2] = counts[TIME], m, z.direction[i]
         counts[ZEROS] += 1
     counts[SIGN] = after

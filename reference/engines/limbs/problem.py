@@ -126,7 +126,7 @@ def _linear_terms(w: Any, am: Any, aw: Any, g: Any, limb_count: int) -> LinearTe
     return LinearTerms(
         turn=rows_of([w, -w, -am * w, w, -w, 3 * aw, 3 * am, am], limb_count),
         drag=rows_of([g * w, -g * w, 2 * g * aw, -g, -g, -g, -2 * g, -g], limb_count),
-        drag_pull=rows_of([0, 2 * g * am, 0, 0, 0, 0, 0, 2 * g * w], limb_count),
+        drag_tension=rows_of([0, 2 * g * am, 0, 0, 0, 0, 0, 2 * g * w], limb_count),
         drag_axial=rows_of([-g * w], limb_count),
         steady=rows_of([0, 0, 0, 0, am, aw, 0, g * w], limb_count),
     )

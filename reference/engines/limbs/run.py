@@ -22,7 +22,7 @@ PRODUCTS, PRODUCTS_WITH_DRAG = 9, 25  # per coefficient: three or four convoluti
 
 
 def run(plan: Plan, report: Report | None = None) -> Run:
-    """Integrate a plan in limbs: `plan.number` is `limbs(prec)`; the formulation is that of `series`.
+    """Integrate a plan in limbs: `plan.number` is `limbs(prec)`; the formulation is always `inertial`.
 
     Args:
         plan: what to run; times increasing from 0 on.
@@ -82,7 +82,7 @@ def _transits(integration: Integration, plan: Plan, bits: int, si_bits: int) -> 
 
 
 def _least_tension(problem: LimbProblem, grid: Sequence[tuple[int, ...]], si_bits: int) -> float:
-    """Return the least pull of the cord over l on the grid, in 1/s², in binary64."""
+    """Return the least tension of the cord over l on the grid, in 1/s², in binary64."""
     k = problem.k.converted(float)
     unit = float(problem.k.length) * 2.0**si_bits
     x, y, z, vx, vy, vz = (np.array([row[i] / unit for row in grid]) for i in range(6))

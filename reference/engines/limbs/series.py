@@ -3,10 +3,10 @@
 The formulation is `inertial`, V = n' + Ω × n, in axes of the Earth: w along its axis, x east, m towards the axis' far
 side. Time is in steps (h is in every constant below, and coefficients are multiplied by h**k):
 
-    n' = V - Ω × n,    V' = A - Ω × V - λ n - γ n',    λ' = 3 A·V - A·(Ω × n) - 2 γ (λ - A·n - ω j),
-    j' = A_m x - γ (j - ω (1 - w²)),
+    n' = V - Ω × n,    V' = c - Ω × V - λ n - γ n',    λ' = 3 c·V - c·(Ω × n) - 2 γ (λ - c·n - ω j),
+    j' = c_m x - γ (j - ω (1 - w²)),
 
-where λ = V·V + n·A is the pull of the cord and j = (n × V)_w. All but λ n (and w², with drag) is linear. Coefficient
+where λ = V·V + n·c is the tension of the cord and j = (n × V)_w. All but λ n (and w², with drag) is linear. Coefficient
 k is small as h**k, its leading limbs are zero and are not touched, so that high orders cost little. The lanes are
 x, m, w, Vx, Vm, Vw, λ, j.
 """
@@ -33,7 +33,7 @@ from .unrolled import (
     column,
 )
 
-X, M, W, VX, VM, VW, PULL, SPIN = range(LANES)
+X, M, W, VX, VM, VW, TENSION, SPIN = range(LANES)
 AXIAL_SQUARE = 3  # index of w² among the sums
 
 Counts = npt.NDArray[np.int64]
@@ -43,28 +43,28 @@ _velocity = shuffled((VX, VM, VW, -1, -1, -1, -1, -1), "_velocity")
 partner = shuffled(PARTNER, "partner")
 to_speeds = shuffled(TO_SPEEDS, "to_speeds")
 _turned = shuffled(TURNED[0], "_turned")
-_pull_axial = shuffled(TURNED[1], "_pull_axial")
-_pull_turned = shuffled(TURNED[2], "_pull_turned")
+_tension_axial = shuffled(TURNED[1], "_tension_axial")
+_tension_turned = shuffled(TURNED[2], "_tension_turned")
 _dragged = shuffled((-1, -1, -1, 3, 4, 5, 6, 7), "_dragged")
 _dragged_aside = shuffled((-1, -1, -1, 1, 0, -1, 2, -1), "_dragged_aside")
-_pull_across = shuffled((-1, -1, -1, -1, -1, -1, 1, -1), "_pull_across")
-_pull_spin = shuffled((-1, -1, -1, -1, -1, -1, 7, -1), "_pull_spin")
+_tension_across = shuffled((-1, -1, -1, -1, -1, -1, 1, -1), "_tension_across")
+_tension_spin = shuffled((-1, -1, -1, -1, -1, -1, 7, -1), "_tension_spin")
 
 
 class LinearTerms(NamedTuple):
     """Constants of the linear terms for one step length: one per lane, its limbs doubled, in rows.
 
     Attributes:
-        turn: ω, -ω, -A_m ω, ω, -ω, 3 A_w, 3 A_m, A_m, times `partner` of the coefficients.
+        turn: ω, -ω, -c_m ω, ω, -ω, 3 c_w, 3 c_m, c_m, times `partner` of the coefficients.
         drag: γω, -γω, 2γ A_w, -γ, -γ, -γ, -2γ, -γ, times the coefficients.
-        drag_pull: lanes m and j: 2γ A_m, 2γω.
+        drag_tension: lanes m and j: 2γ c_m, 2γω.
         drag_axial: lane 0: -γω, times w².
-        steady: the constant terms: A, and γω for j; not doubled.
+        steady: the constant terms: c, and γω for j; not doubled.
     """
 
     turn: Array
     drag: Array
-    drag_pull: Array
+    drag_tension: Array
     drag_axial: Array
     steady: Array
 
@@ -195,9 +195,9 @@ def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_coun
         for q in range(first, r):
             v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
             turned = plus_product(turned, load(turn, p), partner(v))
-            pulled = plus_product(pulled, spread(c[block + LANES * q + PULL]), load(zeroth, p))
-            pulled = plus_product(pulled, spread(zeroth[p + PULL]), v)
-        value = _turned(turned) + (_pull_axial(turned) + _pull_turned(turned)) - to_speeds(pulled)
+            pulled = plus_product(pulled, spread(c[block + LANES * q + TENSION]), load(zeroth, p))
+            pulled = plus_product(pulled, spread(zeroth[p + TENSION]), v)
+        value = _turned(turned) + (_tension_axial(turned) + _tension_turned(turned)) - to_speeds(pulled)
         store(total, LANES * r, load(total, LANES * r) + value)
     rows = min(limb_count - first, MOST_ROWS)
     add_linear(rows, c, block + LANES * first, zeroth, 0, turn, 0, total, LANES * (first + 1))
@@ -219,11 +219,11 @@ def _add_drag(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int
         for q in range(first, r):
             v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
             slowed = plus_product(slowed, load(terms.drag, p), v)
-            pulled = plus_product(pulled, load(terms.drag_pull, p), v)
+            pulled = plus_product(pulled, load(terms.drag_tension, p), v)
         for q in range(r):
             axial += terms.drag_axial[LANES * (r - 1 - q)] * s.scalar[q]
         value = load(s.total, LANES * r) + _dragged(slowed) + _dragged_aside(slowed)
-        store(s.total, LANES * r, value + (_pull_across(pulled) + _pull_spin(pulled)))
+        store(s.total, LANES * r, value + (_tension_across(pulled) + _tension_spin(pulled)))
         s.total[LANES * r + SPIN] += axial
 
 
@@ -235,7 +235,7 @@ def _add_squares(s: Series, k: int, first: int, limb_count: int, drag: bool) -> 
         total, square = spread(0.0), 0.0
         for q in range(first, r - first):
             a, b = block + LANES * q, block + LANES * (r - 1 - q)
-            total = plus_product(total, spread(c[a + PULL]), load(c, b))
+            total = plus_product(total, spread(c[a + TENSION]), load(c, b))
             if drag:
                 square += c[a + W] * c[b + W]
         store(s.other, 0, total * spread(DOUBLED))
@@ -255,7 +255,7 @@ def _add_products(s: Series, k: int, order: int, limb_count: int, drag: bool) ->
         store(factors, row, spread(DOUBLED * c[limb + X]))
         store(factors, row + LANES, spread(DOUBLED * c[limb + M]))
         store(factors, row + 2 * LANES, spread(DOUBLED * c[limb + W]))
-        store(factors, row + 3 * LANES, spread(DOUBLED * c[limb + PULL]))
+        store(factors, row + 3 * LANES, spread(DOUBLED * c[limb + TENSION]))
     highest = 0
     for j in range(0, max(min(k, order - k), 1), LANES):
         while j > 0 and highest < limb_count and s.used[highest] <= j:
@@ -289,21 +289,21 @@ def _two_rows(
     x, m, w = load(sums, row), load(sums, row + WIDTH), load(sums, row + 2 * WIDTH)
     x1, m1, w1 = load(sums, below), load(sums, below + WIDTH), load(sums, below + 2 * WIDTH)
     nx, nm, nw = load(planes, plane), load(planes, plane + WIDTH), load(planes, plane + 2 * WIDTH)
-    pull = load(planes, plane + 3 * WIDTH)
+    tension = load(planes, plane + 3 * WIDTH)
     for p in range(first, r - highest + 1):
         fx, fm, fw = load(factors, factor), load(factors, factor + LANES), load(factors, factor + 2 * LANES)
         f = load(factors, factor + 3 * LANES)
-        x1 = plus_product(plus_product(x1, f, nx), fx, pull)
-        m1 = plus_product(plus_product(m1, f, nm), fm, pull)
-        w1 = plus_product(plus_product(w1, f, nw), fw, pull)
+        x1 = plus_product(plus_product(x1, f, nx), fx, tension)
+        m1 = plus_product(plus_product(m1, f, nm), fm, tension)
+        w1 = plus_product(plus_product(w1, f, nw), fw, tension)
         if p == r - highest:
             break
         plane -= stride
         nx, nm, nw = load(planes, plane), load(planes, plane + WIDTH), load(planes, plane + 2 * WIDTH)
-        pull = load(planes, plane + 3 * WIDTH)
-        x = plus_product(plus_product(x, f, nx), fx, pull)
-        m = plus_product(plus_product(m, f, nm), fm, pull)
-        w = plus_product(plus_product(w, f, nw), fw, pull)
+        tension = load(planes, plane + 3 * WIDTH)
+        x = plus_product(plus_product(x, f, nx), fx, tension)
+        m = plus_product(plus_product(m, f, nm), fm, tension)
+        w = plus_product(plus_product(w, f, nw), fw, tension)
         factor += PLANES * LANES
     store(sums, row, x)
     store(sums, row + WIDTH, m)
@@ -336,5 +336,5 @@ def _copy_to_planes(s: Series, k: int, first: int, limb_count: int) -> None:
         planes[plane] = c[at + X]
         planes[plane + WIDTH] = c[at + M]
         planes[plane + 2 * WIDTH] = c[at + W]
-        planes[plane + 3 * WIDTH] = c[at + PULL]
+        planes[plane + 3 * WIDTH] = c[at + TENSION]
         s.used[q] = k + 1

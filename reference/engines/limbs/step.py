@@ -12,7 +12,7 @@ import numpy as np
 
 from .lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
 from .limb import DOUBLED, INVERSE, LIMB_BITS, RADIX, UNIT, Array, carry, carry_scalar, clear, divide, double_of_lane
-from .series import PULL, SPIN, LinearTerms, Series
+from .series import SPIN, TENSION, LinearTerms, Series
 
 GRAINS = 1024
 MOST_GRAINS = 4 * GRAINS
@@ -60,7 +60,7 @@ def scale_terms(to: LinearTerms, model: Model, m: int) -> None:
     _scale(to.steady, model.terms.steady, model.powers.steady, m, model.limb_count, 1.0)
     if model.drag:
         _scale(to.drag, model.terms.drag, model.powers.drag, m, model.limb_count, DOUBLED)
-        _scale(to.drag_pull, model.terms.drag_pull, model.powers.drag_pull, m, model.limb_count, DOUBLED)
+        _scale(to.drag_tension, model.terms.drag_tension, model.powers.drag_tension, m, model.limb_count, DOUBLED)
         _scale(to.drag_axial, model.terms.drag_axial, model.powers.drag_axial, m, model.limb_count, DOUBLED)
 
 
@@ -96,7 +96,7 @@ def lane_products(to: Array, a: Array, b: Array, limb_count: int) -> None:
 
 @compiled
 def order_zero(s: Series, terms: LinearTerms, now: Array, m: int, limb_count: int) -> None:
-    """Write the coefficients of order 0 from the state: n, h V, the pull λ = V·V + n·A and j."""
+    """Write the coefficients of order 0 from the state: n, h V, the tension λ = V·V + n·c and j."""
     speed = spread(SHIFT * m)
     clear(s.total, limb_count + 1)
     for r in range(limb_count):
@@ -113,7 +113,7 @@ def order_zero(s: Series, terms: LinearTerms, now: Array, m: int, limb_count: in
     for r in range(limb_count + 1):
         at = LANES * r
         s.scalar[r] += s.total[at + 3] + s.total[at + 4] + s.total[at + 5]
-    _set_lane(s, PULL, limb_count)
+    _set_lane(s, TENSION, limb_count)
     lane_products(s.total, s.c, s.other, limb_count)
     for r in range(limb_count + 1):
         s.scalar[r] = s.total[LANES * r] - s.total[LANES * r + 1]

@@ -16,10 +16,10 @@ from .integration import integration_of
 from .lanes import LANES, entry
 from .limb import LIMB_BITS, Array, fraction_bits
 from .run import result
-from .series import PULL, M, W, X
+from .series import TENSION, M, W, X
 
-ROWS = np.array((X, M, W, PULL))
-STEPS_PER_CALL = 64
+ROWS = np.array((X, M, W, TENSION))
+POLYNOMIALS_PER_CALL = 64
 FOR_EVER = 1 << 62  # in grains
 
 
@@ -59,15 +59,15 @@ def taylor_steps(plan: Plan, order: int | None = None) -> Generator[LimbsTaylorS
         plan: as for `run`.
         order: of the series; None for the one that is cheapest to compute.
     """
-    integration, ahead = integration_of(plan, STEPS_PER_CALL, order), False
+    integration, ahead = integration_of(plan, POLYNOMIALS_PER_CALL, order), False
     integration.until = FOR_EVER
     spent = 0.0
     grain, model, last = integration.problem.grain, integration.problem.model, plan.times[-1]
     while not ahead:
         cpu_start = time.process_time()
-        integration.advance(STEPS_PER_CALL)
+        integration.advance(POLYNOMIALS_PER_CALL)
         spent += time.process_time() - cpu_start
-        series = integration.out.series.reshape(STEPS_PER_CALL, -1).copy()
+        series = integration.out.series.reshape(POLYNOMIALS_PER_CALL, -1).copy()
         for (start, length), of_step in zip(integration.out.steps.reshape(-1, 2).tolist(), series, strict=True):
             t = start * grain
             yield LimbsTaylorStep(t, length * grain, model.limb_count, of_step)

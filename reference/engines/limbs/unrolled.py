@@ -15,17 +15,17 @@ from numba import types
 from .lanes import FUSE, LANES, VECTOR, Lanes, address, instruction
 
 MOST_ROWS = 8  # unrolled; loops do any others
-PLANES = 4  # x, m, w and the pull, each limb's coefficients one after another
+PLANES = 4  # x, m, w and the tension λ, each limb's coefficients one after another
 WIDTH = 35 * LANES  # from plane to plane, known to the compiler; an odd number of cache lines
 MOST_ORDER = WIDTH - 3 * LANES
-PULL = 3  # its index among the planes
+TENSION = 3  # its index among the planes
 
 # lane by lane the factor of `LinearTerms.turn`, m, x, x, Vm, Vx, Vw, Vm, x, and where the products go
 PARTNER = (1, 0, 0, 4, 3, 5, 4, 0)
 TURNED = ((0, 1, -1, 3, 4, -1, 6, 7), (-1, -1, -1, -1, -1, -1, 5, -1), (-1, -1, -1, -1, -1, -1, 2, -1))
 TO_SPEEDS = (-1, -1, -1, 0, 1, 2, -1, -1)
 
-_PULL_LANE = (6,) * LANES
+_TENSION_LANE = (6,) * LANES
 _WHOLE = ir.IntType(64)
 _ZERO = ir.Constant(VECTOR, [0.0] * LANES)
 
@@ -92,14 +92,14 @@ def _convolution(code: _Code, rows: int) -> None:
     planes, factors, sums = 0, 2, 4
     for top in range(-(rows % 2), rows, 2):
         pair = [r for r in (top, top + 1) if r >= 0]
-        totals = {(r, lane): code.get(sums, (r * PLANES + lane) * WIDTH) for r in pair for lane in range(PULL)}
+        totals = {(r, lane): code.get(sums, (r * PLANES + lane) * WIDTH) for r in pair for lane in range(TENSION)}
         for p in range(pair[-1] + 1):
             factor = [code.get(factors, (p * PLANES + lane) * LANES) for lane in range(PLANES)]
             for r in [r for r in pair if r >= p]:
                 limb = [code.get(planes, ((r - p) * PLANES + lane) * WIDTH) for lane in range(PLANES)]
-                for lane in range(PULL):
-                    totals[r, lane] = code.fused(totals[r, lane], factor[PULL], limb[lane])
-                    totals[r, lane] = code.fused(totals[r, lane], factor[lane], limb[PULL])
+                for lane in range(TENSION):
+                    totals[r, lane] = code.fused(totals[r, lane], factor[TENSION], limb[lane])
+                    totals[r, lane] = code.fused(totals[r, lane], factor[lane], limb[TENSION])
         for (r, lane), total in totals.items():
             code.put(sums, (r * PLANES + lane) * WIDTH, total)
 
@@ -120,16 +120,16 @@ def _linear(code: _Code, rows: int) -> None:
     """Write the code of `add_linear`."""
     c, n, turn, to = 0, 2, 4, 6
     limbs = [code.get(c, q * LANES) for q in range(rows)]
-    partners, pulls = ([code.shuffled(v, order) for v in limbs] for order in (PARTNER, _PULL_LANE))
+    partners, tensions = ([code.shuffled(v, order) for v in limbs] for order in (PARTNER, _TENSION_LANE))
     steady = [code.get(n, p * LANES) for p in range(rows)]
-    steady_pulls = [code.shuffled(v, _PULL_LANE) for v in steady]
+    steady_tensions = [code.shuffled(v, _TENSION_LANE) for v in steady]
     values = []
     for r in range(rows):
         turned = pulled = other = _ZERO
         for p in range(r + 1):
             turned = code.fused(turned, code.get(turn, p * LANES), partners[r - p])
-            pulled = code.fused(pulled, pulls[r - p], steady[p])
-            other = code.fused(other, steady_pulls[p], limbs[r - p])
+            pulled = code.fused(pulled, tensions[r - p], steady[p])
+            other = code.fused(other, steady_tensions[p], limbs[r - p])
         value = code.get(to, r * LANES)
         for order in TURNED:
             value = code.builder.fadd(value, code.shuffled(turned, order))
@@ -145,9 +145,9 @@ def column(_: Any, sums: Any, index: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
         vector = _ZERO
-        for i in range(PULL):
+        for i in range(TENSION):
             place = builder.gep(data, [builder.add(arguments[1], ir.Constant(_WHOLE, i * WIDTH))])
-            vector = builder.insert_element(vector, builder.load(place), ir.Constant(ir.IntType(32), PULL + i))
+            vector = builder.insert_element(vector, builder.load(place), ir.Constant(ir.IntType(32), TENSION + i))
         return vector
 
     return Lanes(sums, types.intp), generate

@@ -5,7 +5,7 @@ from __future__ import annotations
 from .dense_output import evaluate
 from .lanes import LANES, compiled
 from .limb import DOUBLED, Array, carry_scalar, double_of, double_of_lane, sign_of
-from .series import PULL, VM, VX, LinearTerms, M, Series, X
+from .series import TENSION, VM, VX, LinearTerms, M, Series, X
 from .step import Model
 
 
@@ -61,8 +61,8 @@ def xddot_of(rows: Array, xdot: float, terms: LinearTerms, model: Model) -> floa
     limb_count = model.limb_count
     turn = double_of_lane(terms.turn, 0, 0, limb_count) / DOUBLED
     x, vm = double_of_lane(rows, 0, X, limb_count), double_of_lane(rows, 0, VM, limb_count)
-    pull = double_of_lane(rows, 0, PULL, limb_count)
-    value = turn * (2.0 * vm - turn * x) - pull * x
+    tension = double_of_lane(rows, 0, TENSION, limb_count)
+    value = turn * (2.0 * vm - turn * x) - tension * x
     if model.drag:
         value += double_of_lane(terms.drag, 0, VX, limb_count) / DOUBLED * xdot
     return value

@@ -83,7 +83,7 @@ def test_at_the_pole_the_plane_comes_round_in_a_sidereal_day_and_the_drift():
 def test_what_does_not_swing_or_turn_is_refused():
     with pytest.raises(UnreachableError, match="does not turn"):
         precession_period(load_scene("equator"))
-    with pytest.raises(UnreachableError, match="point of rest"):
+    with pytest.raises(UnreachableError, match="rest position"):
         Gauge.of(PARIS.with_values(["site.gravity=0", "site.rotation_rate=0"]))
     fast = PARIS.with_values(["site.latitude=90", "site.rotation_rate=3", "release.x=0", "release.y=0"])
     with pytest.raises(UnreachableError):
