@@ -208,21 +208,32 @@ solution = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, 
 print("ready", flush=True)
 while True:
     write(solution, Path(sys.argv[1]))
+    print("written", flush=True)
 """
 
 
 def test_killed_at_any_of_twenty_moments_the_dataset_is_whole(tmp_path):
-    target = tmp_path / "paris"
-    for moment in range(20):
+    def killed_after(target: Path, seconds: float | None) -> float:
+        """Kill the writer so long after it began (None: once it has written); return how long it ran."""
         with subprocess.Popen(
             [sys.executable, "-c", WRITER, str(target)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
         ) as process:
             assert process.stdout is not None
-            process.stdout.readline()
-            time.sleep(0.003 * moment)
+            assert process.stdout.readline() == b"ready\n"
+            start = time.monotonic()
+            if seconds is None:
+                assert process.stdout.readline() == b"written\n"
+            else:
+                time.sleep(seconds)
             process.send_signal(signal.SIGKILL)
+            return time.monotonic() - start
+
+    one_write = killed_after(tmp_path / "existing", None)
+    for moment in range(20):
+        target = tmp_path / ("existing" if moment % 2 else f"new{moment}")
+        killed_after(target, one_write * moment / 14)
         assert not target.exists() or problems_of(target) == []
-    assert target.exists()
+    assert problems_of(tmp_path / "existing") == []
 
 
 def test_bounds_cover_the_rounding_to_the_printed_digits(dataset):
