@@ -130,7 +130,7 @@ def _release() -> list[Check]:
         Statement(
             "mathar_vii_middle",
             VII,
-            "the centre of the motion is the rest position, further south",
+            "the centre of the motion is the point of rest, further south",
             _middle_of_the_first_swing,
             by_run=True,
         ),
