@@ -18,7 +18,7 @@ import numpy as np
 from reference import DatasetError, Golden, InputError, Scene, load
 from reference.dataset.dense import WITHIN, Dense, dense
 from reference.precision import Array
-from reference.scene import data_root
+from reference.shipped import data_root
 
 from . import cache
 

@@ -12,7 +12,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from .errors import DatasetError, FoucaultError, InputError, IntegrationError, UnreachableError
-from .scene import Scene, load_scene, parse_scene, scene_ids
+from .scene import Scene, load_scene, parse_scene
+from .shipped import scene_ids
 
 if TYPE_CHECKING:
     from .dataset.read import Golden, load

@@ -18,6 +18,7 @@ from typing import Annotated, Any, Literal, cast, get_args
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError
 
 from .errors import InputError
+from .shipped import data_root, scene_ids
 
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
@@ -328,27 +329,6 @@ def _check_grid(scene: Scene) -> None:
         raise InputError(
             "run.grid_step", scene.run.grid_step, f"at most {MAX_ROWS} grid times up to t_end", "Take a longer step."
         )
-
-
-def data_root() -> Path:
-    """Return the folder that holds `scenes` and `golden`: in the installed package, or beside it in a checkout."""
-    package = Path(__file__).resolve().parent
-    return package / "data" if (package / "data").is_dir() else package.parent / "data"
-
-
-def in_checkout() -> bool:
-    """Return whether scenes and golden datasets are those of a source checkout, which `generate` may replace."""
-    return data_root().parent != Path(__file__).resolve().parent
-
-
-def scene_ids() -> list[str]:
-    """Return the ids of the scenes that come with the project, sorted."""
-    return sorted(path.stem for path in (data_root() / "scenes").glob("*.toml"))
-
-
-def flag_meanings() -> dict[str, str]:
-    """Return why a scene with a flag is difficult: a sentence for each flag, from `data/flags.toml`."""
-    return {flag: str(text) for flag, text in tomllib.loads((data_root() / "flags.toml").read_text("utf-8")).items()}
 
 
 def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:

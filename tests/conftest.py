@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import signal
+import sys
+from collections.abc import Callable
 
 import pytest
 from hypothesis import settings
@@ -23,3 +26,23 @@ __all__ = ["make_scene"]
 @pytest.fixture
 def paris() -> Scene:
     return load_scene("paris")
+
+
+@pytest.fixture
+def foucault(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
+    """Run a command in this process; return exit status, stdout, stderr."""
+
+    def call(*words: object, stdin: bytes = b"") -> tuple[int, str, str]:
+        from foucault import main
+
+        monkeypatch.setattr(sys, "argv", ["foucault", *map(str, words)])
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(stdin)))
+        status = 0
+        try:
+            main()
+        except SystemExit as stop:
+            status = int(stop.code or 0)
+        output = capfd.readouterr()
+        return status, output.out, output.err
+
+    return call

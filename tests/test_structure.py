@@ -25,7 +25,7 @@ FLOORS = {
         ["engines", "enclosure"],
         ["model"],
         ["scene", "table", "process", "packing"],
-        ["precision"],
+        ["precision", "shipped"],
         ["errors"],
     ],
     "reference/engines": [

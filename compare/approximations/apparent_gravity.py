@@ -1,4 +1,4 @@
-"""Apparent gravity in m/s², the cord's pull per mass at the rest position: Gastebois 4.2, Mathar (48)."""
+"""Apparent gravity in m/s², the cord's tension per mass at the rest position: Gastebois 4.2, Mathar (48)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .case import Case, under_gravity
 
 
 def of_the_model(scene: Scene) -> Any:
-    """Return the pull of the cord per mass at the full model's rest position."""
+    """Return the tension of the cord per mass at the full model's rest position."""
     case = Case.of(scene)
     return case.length * tension(case.rest, (0, 0, 0), case.k)
 

@@ -49,7 +49,7 @@ class Gauge:
     def of(cls, scene: Scene, rest: Any = None) -> Gauge:
         """Return the gauge of a scene about `rest` in m, or about the scene's own rest position.
 
-        ω follows from the pull of the cord at the scene's rest position.
+        ω follows from the tension of the cord at the scene's rest position.
 
         Raises:
             UnreachableError: there is no rest position, or nothing pulls the bob back to it.

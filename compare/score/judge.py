@@ -161,7 +161,7 @@ def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, st
 
 
 def _rest(scene: Scene) -> tuple[float, float]:
-    """Return x and y of the rest position in m; (0, 0) if every point is one."""
+    """Return x and y of the rest position in m; (0, 0) if none is singled out."""
     ctx = context(80)
     k = constants(scene.exact, ctx)
     try:

@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from ..scene import LEVELS, load_scene, scene_ids
+from ..scene import LEVELS, load_scene
+from ..shipped import scene_ids
 from .terminal import AsJson, Assignments, SceneWord, emit, progress
 
 Level = StrEnum("Level", list(LEVELS))  # type: ignore[misc]  # the functional form is fine at run time

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 import typer
 
-from ..scene import Scene, flag_meanings, load_scene
+from ..scene import Scene, load_scene
+from ..shipped import flag_meanings
 from .terminal import AsJson, Assignments, SceneWord, emit
 
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
-from ..scene import data_root
+from ..shipped import data_root
 from .terminal import AsJson, emit, progress
 
 

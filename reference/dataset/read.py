@@ -16,7 +16,8 @@ import numpy.typing as npt
 from pydantic import ValidationError
 
 from ..errors import DatasetError, InputError
-from ..scene import Scene, data_root, is_scene_id, parse_scene
+from ..scene import Scene, is_scene_id, parse_scene
+from ..shipped import data_root
 from .manifest import Manifest
 
 MANIFEST = "manifest.json"

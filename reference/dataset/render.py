@@ -10,7 +10,8 @@ from typing import Any
 from ..engines.equations import lines_and_left_out
 from ..engines.registry import engine_of
 from ..precision import outward, rounded_up
-from ..scene import Scene, load_scene, scene_ids
+from ..scene import Scene, load_scene
+from ..shipped import scene_ids
 from ..solver.solution import Solution
 from .certified import certified_page
 from .manifest import (

@@ -10,7 +10,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import DatasetError, InputError
-from ..scene import Scene, data_root, in_checkout
+from ..scene import Scene
+from ..shipped import data_root, in_checkout
 from ..solver.solution import Solution
 from .read import MANIFEST
 from .render import render

@@ -47,7 +47,7 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
     """Return a time δ in s such that xdot has no zero in (0, δ], for a run whose first variable is x over l.
 
     Let xdot = t^m (b_m + b_{m+1} t + …) with m = `multiplicity`. If |b_m| > Σ |b_k| δ^(k-m), summed over k > m, no
-    other root lies up to δ. The sum is taken over the polynomial only, and twice, to cover the terms beyond its order.
+    other root lies up to δ. The sum is taken over the polynomial, and doubled to cover the terms beyond its order.
 
     Raises:
         IntegrationError: there is no such δ down to the working precision.

@@ -58,11 +58,11 @@ def rest_position(k: Constants, ctx: Any) -> Vector:
         ctx: the context; θ is exact to its last few bits.
 
     Raises:
-        ValueError: nothing pulls, so that every point is a rest position.
+        ValueError: no force acts at the pivot, so that none is singled out.
     """
     if is_zero(k.pull[1]) and is_zero(k.centrifugal[2]):
         if is_zero(k.pull[2]) and is_zero(k.centrifugal[3]):
-            raise ValueError("without gravity and rotation every point is a rest position")
+            raise ValueError("no force acts at the pivot: no rest position is singled out")
         return (0, 0, ctx.mpf(-1))
 
     def tangential(theta: Any) -> Any:

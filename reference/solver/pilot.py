@@ -1,8 +1,7 @@
 """Pilot runs: how fast rounding errors grow on a scene, and the bits and steps a result will need.
 
-A run of `momentum` in double beside one in long double shows how many digits are lost between release and end. Before
-them the pace of the first steps is measured: where a scene is stiff, an explicit method needs so many steps that it is
-refused at once.
+A run of `momentum` in double beside one in long double shows how many digits are lost between release and end. A scene
+that would take too many steps, because it is stiff or long, is refused before that, by the pace of its first steps.
 """
 
 from __future__ import annotations

@@ -53,7 +53,7 @@ def check_pace(inputs: Inputs, end: Fraction, stepper: Stepper) -> None:
 
 
 def _reason(inputs: Inputs, needed: float, pace: float) -> str:
-    """Return why the run takes so many steps; only drag makes it stiff, for the swing's rates are all of one size."""
+    """Return why a run takes too many steps: it is long, or strong drag makes it stiff (rates far apart in size)."""
     altogether = f"{needed:.1e} steps, and at most {MAX_STEPS:.1e} are taken."
     ctx = context(LONG_DOUBLE.prec)
     k = constants(inputs, ctx)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from reference.scene import flag_meanings, load_scene, scene_ids
+from reference.scene import load_scene
+from reference.shipped import flag_meanings, scene_ids
 
 MEANINGS = flag_meanings()
 

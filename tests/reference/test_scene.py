@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from small_scenes import make_scene
 
 from reference.errors import InputError
-from reference.scene import Inputs, is_scene_id, load_scene, parse_scene, scene_ids
+from reference.scene import Inputs, is_scene_id, load_scene, parse_scene
+from reference.shipped import scene_ids
 
 
 def test_a_decimal_is_the_decimal_and_not_the_double_next_to_it(paris):

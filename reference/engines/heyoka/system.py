@@ -19,15 +19,11 @@ class System:
     """Equations of motion as heyoka expressions.
 
     Attributes:
-        formulation: the formulation they were built from.
-        constants: the constants in them.
         equations: pairs of a variable and its rate.
         xdot: velocity of the x coordinate, over l.
         xddot: its acceleration, over l.
     """
 
-    formulation: Formulation
-    constants: Constants
     equations: list[tuple[Any, Any]]
     xdot: Any
     xddot: Any
@@ -38,7 +34,7 @@ class System:
         state = hy.make_vars(*formulation.variables)
         n, v = formulation.cartesian(state, constants, hy)
         equations = as_pairs(state, rates(formulation, constants)(state, hy))
-        return cls(formulation, constants, equations, v[0], acceleration(n, v, constants)[0])
+        return cls(equations, v[0], acceleration(n, v, constants)[0])
 
 
 def rates(formulation: Formulation, constants: Constants) -> Callable[[Any, Any], Sequence[Any]]:

@@ -1,7 +1,7 @@
 """The engine limbs: an adaptive Taylor integrator in compiled multiprecision, fast at 17 to 100 digits; needs numba.
 
 A number is held in limbs of radix 2**22 (GMP's word), each an integer in a double. A day with many digits takes a
-hundredth of the time of a general integrator in a multiprecision type, and the bits are the same on every machine.
+fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are the same on every machine.
 `run` fills a plan as `reference.engines.run.run` does; `taylor_steps` gives a proof the polynomials of each step.
 """
 

@@ -56,7 +56,7 @@ class LinearTerms(NamedTuple):
 
     Attributes:
         turn: ω, -ω, -c_m ω, ω, -ω, 3 c_w, 3 c_m, c_m, times `partner` of the coefficients.
-        drag: γω, -γω, 2γ A_w, -γ, -γ, -γ, -2γ, -γ, times the coefficients.
+        drag: γω, -γω, 2γ c_w, -γ, -γ, -γ, -2γ, -γ, times the coefficients.
         drag_tension: lanes m and j: 2γ c_m, 2γω.
         drag_axial: lane 0: -γω, times w².
         steady: the constant terms: c, and γω for j; not doubled.

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import io
 import json
-import sys
 import time
 from decimal import Context, Decimal, localcontext
 
 import numpy as np
 import pytest
 
-from foucault import main
 from reference import load, load_scene, trajectory
 from reference.engines.variants import Variants
 
@@ -37,24 +34,6 @@ def own_cache(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("FOUCAULT_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield
-
-
-@pytest.fixture
-def foucault(monkeypatch, capfd):
-    """Run a command in this process; gives exit status, stdout, stderr."""
-
-    def call(*words, stdin=b""):
-        monkeypatch.setattr(sys, "argv", ["foucault", *map(str, words)])
-        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(stdin)))
-        status = 0
-        try:
-            main()
-        except SystemExit as stop:
-            status = int(stop.code or 0)
-        seen = capfd.readouterr()
-        return status, seen.out, seen.err
-
-    return call
 
 
 def write_csv(path, t, states, columns=COLUMNS, digits=17):

@@ -18,7 +18,7 @@ from compare.studies.long_runs import LongRun, laws
 from compare.studies.stability import _ORDERS, Cell, _digits_asked, cut, default_scenes, stability
 from foucault import app
 from reference import load_scene, trajectory
-from reference.scene import data_root
+from reference.shipped import data_root
 
 
 def character_of(scene_id: str, *changes: str):  # type: ignore[no-untyped-def]

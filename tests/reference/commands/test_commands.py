@@ -13,26 +13,6 @@ import time
 import pytest
 from places import ROOT
 
-from foucault import main
-
-
-@pytest.fixture
-def foucault(monkeypatch, capfd):
-    """Run a command in this process; return exit status, stdout, stderr."""
-
-    def call(*words: str) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["foucault", *words])
-        status = 0
-        try:
-            main()
-        except SystemExit as stop:
-            status = int(stop.code or 0)
-        output = capfd.readouterr()
-        return status, output.out, output.err
-
-    return call
-
-
 SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
 
 

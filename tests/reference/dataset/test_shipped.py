@@ -7,7 +7,7 @@ import pytest
 import reference
 from reference.dataset.recompute import recompute
 from reference.dataset.verify import problems_of
-from reference.scene import data_root
+from reference.shipped import data_root
 
 SHIPPED = sorted(path.name for path in (data_root() / "golden").glob("[a-z]*"))
 
