@@ -169,9 +169,11 @@ def test_at_the_rest_position_nothing_moves_and_mathars_equation_46_holds(latitu
     assert n[1] * side >= 0
 
 
-def test_without_gravity_and_rotation_there_is_no_rest_position():
-    ctx, k, _, _ = model_at(make_scene(site={"gravity": "0", "rotation_rate": "0"}), 100)
-    with pytest.raises(ValueError, match="every point"):
+@pytest.mark.parametrize("site", [{"rotation_rate": "0"}, {"latitude": "90"}])
+def test_without_a_force_at_the_pivot_no_rest_position_is_singled_out(site):
+    ctx, k, _, _ = model_at(make_scene(site={"gravity": "0", **site}), 100)
+    assert not any(k.pull)
+    with pytest.raises(ValueError, match="no force acts at the pivot"):
         rest_position(k, ctx)
 
 
