@@ -13,18 +13,18 @@ from .case import Case, under_gravity
 
 def of_the_model(scene: Scene) -> Any:
     """Return the tension of the cord per mass at the full model's rest position."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return case.length * tension(case.rest, (0, 0, 0), case.k)
 
 
 def _triangle(scene: Scene) -> Any:
     """(g² + Ω⁴ R² - 2 g Ω² R cos λ)^(1/2), R = R_p cos λ of the suspension."""
-    return Case.of(scene).apparent_gravity
+    return Case.of_scene(scene).apparent_gravity
 
 
 def _as_printed(scene: Scene) -> Any:
     """(g² + Ω² R_p cos λ - 2 g Ω² R_p cos² λ)^(1/2)."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return case.ctx.sqrt(case.gravity**2 + case.outward - 2 * case.gravity * case.outward * case.cos)
 
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, UnreachableError
-from reference.model.constants import Constants, Vector, constants, release
+from reference.model.constants import Vector
 from reference.model.force import rest_position
-from reference.precision import context
+from reference.model.start import Start
 
 from .approximation import Array
 
@@ -19,20 +19,13 @@ PREC = 200  # bits, 60 digits: a series that cancels to Ω⁶, some 40 digits be
 
 
 @dataclass(frozen=True)
-class Case:
-    """A scene's numbers as mpf in SI units, under the names used in the source papers."""
-
-    ctx: Any
-    k: Constants
-    position: Vector
-    velocity: Vector
+class Case(Start):
+    """A scene's start, with its numbers as mpf in SI units under the names used in the source papers."""
 
     @classmethod
-    def of(cls, scene: Scene) -> Case:
+    def of_scene(cls, scene: Scene) -> Case:
         """Return the case of a scene."""
-        ctx = context(PREC)
-        position, velocity = release(scene.exact, ctx)
-        return cls(ctx, constants(scene.exact, ctx), position, velocity)
+        return cls.of(scene.exact, PREC)
 
     @cached_property
     def length(self) -> Any:

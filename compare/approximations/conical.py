@@ -29,7 +29,7 @@ def _circle(case: Case) -> tuple[Any, Any]:
 
 
 def _path(scene: Scene, times: Array) -> Array:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     x, y, z = (float(part) for part in case.position)
     _, omega = _circle(case)
     place = complex(x, y) * np.exp(1j * float(omega) * times)
@@ -42,7 +42,7 @@ def _refused(scene: Scene) -> str | None:
     reason = below(scene) or under_gravity(scene)
     if reason:
         return reason
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     radius, omega = _circle(case)
     x, y, _ = case.position
     circular = (-y * omega, x * omega)
@@ -67,6 +67,6 @@ APPROXIMATIONS = (
         ),
         refuses=_refused,
         path=_path,
-        rest=lambda scene: (0, 0, -Case.of(scene).length),
+        rest=lambda scene: (0, 0, -Case.of_scene(scene).length),
     ),
 )

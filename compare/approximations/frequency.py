@@ -29,32 +29,32 @@ def _released_at_rest(scene: Scene) -> str | None:
 
 def _harmonic(scene: Scene) -> Any:
     """sqrt(g/l)/2π."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return case.ctx.sqrt(case.gravity / case.length) / (2 * case.ctx.pi)
 
 
 def _planar(scene: Scene) -> Any:
     """1/(4 sqrt(l/g) K(sin(φ0/2))), with φ0 counted from the vertical."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     quarter = case.ctx.ellipk((1 + case.position[2] / case.length) / 2)
     return case.ctx.sqrt(case.gravity / case.length) / (4 * quarter)
 
 
 def _turntable(scene: Scene, gravity: Callable[[Case], Any]) -> Any:
     """sqrt(ĝ + (Ω sin φ)²)/2π."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     turn = case.rate * case.sin
     return case.ctx.sqrt(gravity(case) / case.length + turn**2) / (2 * case.ctx.pi)
 
 
 def _slowed(scene: Scene) -> Any:
     """The frequency on a turntable with g', divided by 2K/π."""
-    return _turntable(scene, lambda case: case.apparent_gravity) / slow_down(Case.of(scene))
+    return _turntable(scene, lambda case: case.apparent_gravity) / slow_down(Case.of_scene(scene))
 
 
 def _slowed_as_printed(scene: Scene) -> Any:
     """The frequency on a turntable with g', divided by 4K as printed."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return _slowed(scene) / (2 * case.ctx.pi)
 
 

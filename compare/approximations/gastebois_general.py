@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from reference import Scene
-from reference.model.constants import Constants, scaled
+from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 
 from .approximation import Array, Motion, Order
@@ -28,15 +28,15 @@ def uniform(k: Constants) -> Constants:
 
 def hanging(scene: Scene) -> Any:
     """Return his rest position in m, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return (0, -case.length * case.ctx.sin(case.tilt), -case.length * case.ctx.cos(case.tilt))
 
 
 def _path(scene: Scene, times: Array) -> Array:
-    case, model = Case.of(scene), FORMULATIONS["spin"]
-    n, v = scaled(case.position, case.length), scaled(case.velocity, case.length)
-    k = uniform(case.k)
-    states = integrated(model.variables, model.derivatives, model.start(n, v, k, case.ctx), k, times)
+    case, model = Case.of_scene(scene), FORMULATIONS["spin"]
+    case = replace(case, k=uniform(case.k))
+    k = case.k
+    states = integrated(model.variables, model.derivatives, case.state(model), k, times)
     place, speed = model.cartesian(tuple(states.T), k, np)
     return np.column_stack((*place, *speed)) * float(case.length)
 

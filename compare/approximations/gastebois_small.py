@@ -29,7 +29,7 @@ def _rows(case: Case, plumb: PlumbAxes, z: Any, rate: Any) -> Array:
 
 def _general(scene: Scene, times: Array) -> Array:
     """Return rows of 6.1, for any release."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     plumb, omega, turn = small_angles(case)
     place, speed = plumb.inward(case.position), plumb.inward(case.velocity)
     return _rows(case, plumb, *oscillation(place[:2], speed[:2], omega, turn, times))
@@ -37,7 +37,7 @@ def _general(scene: Scene, times: Array) -> Array:
 
 def _general_as_printed(scene: Scene, times: Array) -> Array:
     """Return rows of 6.1 with the sine that is printed at the end of v_x."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     plumb, omega, turn = small_angles(case)
     (x, y, _), (vx, vy, _) = plumb.inward(case.position), plumb.inward(case.velocity)
     z, rate = oscillation((x, y), (vx, vy), omega, turn, times)
@@ -47,7 +47,7 @@ def _general_as_printed(scene: Scene, times: Array) -> Array:
 
 def _in_turning_axes(scene: Scene, times: Array, across: Callable[[Any, Any], Any]) -> Array:
     """Return rows of X = r0 cos ωt, Y = r0 `across`(ω, Ω_z) sin ωt in axes that turn at -Ω_z, X along the release."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     plumb, omega, turn = small_angles(case)
     x, y, _ = plumb.inward(case.position)
     minor, w, u = float(across(omega, turn)), float(omega), float(turn)

@@ -41,7 +41,7 @@ def stiffness(case: Case) -> tuple[Any, Any, Any]:
 
 
 def _path(scene: Scene, grid: Array) -> Array:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     ctx = case.ctx
     plumb, _ = plumb_line(case)
     a, b, turn = stiffness(case)
@@ -63,7 +63,7 @@ def _refused(scene: Scene) -> str | None:
     reason = below(scene)
     if reason:
         return reason
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     try:
         a, b, _ = stiffness(case)
     except UnreachableError:

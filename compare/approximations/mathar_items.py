@@ -16,7 +16,7 @@ from typing import Any
 
 from reference import IntegrationError, Scene
 from reference.model.algebra import Functions, State, minus, plus, product
-from reference.model.constants import Constants, scaled
+from reference.model.constants import Constants
 
 from .approximation import Array, Motion, Order
 from .carried import integrated
@@ -87,9 +87,8 @@ def truncated(k: Constants, items: frozenset[Item]) -> Constants:
 
 def path(scene: Scene, grid: Array, items: frozenset[Item]) -> Array:
     """Integrate (43) without the terms of `items`; return rows x, y, z, vx, vy, vz."""
-    case = Case.of(scene)
-    n, v = scaled(case.position, case.length), scaled(case.velocity, case.length)
-    start, k = (n[0], n[1], v[0], v[1]), truncated(case.k, items)
+    case = Case.of_scene(scene)
+    start, k = (*case.n[:2], *case.v[:2]), truncated(case.k, items)
     try:
         states = integrated(VARIABLES, partial(derivatives, items=items), start, k, grid)
     except IntegrationError as error:
@@ -105,7 +104,7 @@ def _above(scene: Scene) -> str | None:
 
 
 def _suspension(scene: Scene) -> Any:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return (0, 0, -case.length)
 
 

@@ -29,22 +29,22 @@ def slow_down(case: Case) -> Any:
 
 
 def _with_gravity(scene: Scene, times: Array) -> Array:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return swung(case, case.gravity, case.ctx.zero, times)
 
 
 def _with_apparent_gravity(scene: Scene, times: Array) -> Array:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return swung(case, case.apparent_gravity, case.ctx.zero, times)
 
 
 def _about_rest(scene: Scene, times: Array) -> Array:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return swung(case, case.apparent_gravity, _north_of_rest(case), times)
 
 
 def _slowed(scene: Scene, times: Array) -> Array:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return swung(case, case.apparent_gravity, _north_of_rest(case), times, slow_down(case))
 
 
@@ -53,7 +53,7 @@ def _north_of_rest(case: Case) -> Any:
 
 
 def _suspension(scene: Scene) -> Any:
-    return (0, 0, -Case.of(scene).length)
+    return (0, 0, -Case.of_scene(scene).length)
 
 
 def _refused(check: Callable[[Scene], str | None]) -> Callable[[Scene], str | None]:

@@ -54,7 +54,7 @@ class Gauge:
         Raises:
             UnreachableError: there is no rest position, or nothing pulls the bob back to it.
         """
-        case = Case.of(scene)
+        case = Case.of_scene(scene)
         hanging = case.rest
         turn = -case.ctx.mpf(case.k.turn[1]) * hanging[1] - case.ctx.mpf(case.k.turn[2]) * hanging[2]
         square = tension(hanging, (0, 0, 0), case.k) + turn**2

@@ -35,7 +35,7 @@ def sn_cn(u: Array, modulus: Any, ctx: Any) -> tuple[Array, Array]:
 
 def _path(scene: Scene, times: Array) -> Array:
     """sin(φ/2) = k sn(K + ω0 t), φ' = 2 k ω0 cn(K + ω0 t), k = sin(φ0/2), ω0² = g/l."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     ctx, (x, y, z) = case.ctx, case.position
     aside = ctx.hypot(x, y)
     modulus = ctx.sin(ctx.atan2(aside, -z) / 2)
@@ -80,6 +80,6 @@ APPROXIMATIONS = (
         ),
         refuses=_refused,
         path=_path,
-        rest=lambda scene: (0, 0, -Case.of(scene).length),
+        rest=lambda scene: (0, 0, -Case.of_scene(scene).length),
     ),
 )

@@ -30,26 +30,26 @@ def _released_at_rest(scene: Scene) -> str | None:
 
 def _sine(scene: Scene) -> Any:
     """T_p/sin λ."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return abs(2 * case.ctx.pi / (case.rate * case.sin))
 
 
 def _tilted(scene: Scene) -> Any:
     """T_p/sin λ_a, λ_a = λ + α."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return abs(2 * case.ctx.pi / (case.rate * case.ctx.sin(case.apparent_latitude)))
 
 
 def _spherical(scene: Scene) -> Any:
     """T_p/sin λ_a (1 + 3/8 r0²/L0²), with r0 counted from the plumb line."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     x, y, _ = PlumbAxes.tilted(-case.tilt, case.ctx).inward(case.position)
     return _tilted(scene) * (1 + 3 * (x**2 + y**2) / (8 * case.length**2))
 
 
 def _swing_over_sine(scene: Scene) -> Any:
     """T/sin λ_a with the period T of the swing, as 6.3 prints it."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     _, omega, _ = small_angles(case)
     return abs(2 * case.ctx.pi / (omega * case.ctx.sin(case.apparent_latitude)))
 

@@ -16,14 +16,14 @@ from .case import Case, under_gravity
 
 def of_the_model(scene: Scene) -> Any:
     """Return the angle at which the tangential force vanishes in the model of `reference`."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     _, y, z = case.rest
     return case.ctx.atan2(-y, -z)
 
 
 def _equation(scene: Scene) -> Any:
     """Solve (46) for its angle ϕ south of the vertical: R̂Ω² sin(φ + ϕ) - Ω² cos(φ + ϕ) sin(φ + ϕ) = (g/l) sin ϕ."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     ctx, square = case.ctx, case.rate**2
     latitude, distance, fall = ctx.atan2(case.sin, case.cos), case.axis_distance / case.length, case.k.gravity
 
@@ -40,7 +40,7 @@ def _equation(scene: Scene) -> Any:
 
 def _series(scene: Scene, terms: int) -> Any:
     """Return the series (47) up to Ω^(2 terms)."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     ctx, cord, g = case.ctx, case.length, case.gravity
     latitude = ctx.atan2(case.sin, case.cos)
     n = case.axis_distance / case.cos  # N + h
@@ -61,7 +61,7 @@ def _series(scene: Scene, terms: int) -> Any:
 
 def _triangle(scene: Scene) -> Any:
     """(50): the sine rule in the triangle of g, RΩ² and g'."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     return case.ctx.asin(case.outward * case.sin / case.apparent_gravity)
 
 

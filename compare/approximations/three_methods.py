@@ -17,7 +17,7 @@ from .case import Case, below, hung, under_gravity
 
 def _numbers(scene: Scene) -> tuple[Case, float, float]:
     """Return the case, ω̃ = (g/L + ω_p²)^(1/2) and ω sin α."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     turn = case.rate * case.sin
     return case, float(case.ctx.sqrt(case.gravity / case.length + turn**2)), float(turn)
 
@@ -96,7 +96,7 @@ def _motion(number: int, title: str, path: Any, printed: Printed | None) -> Moti
         refuses=lambda scene: below(scene) or under_gravity(scene),
         printed=printed,
         path=path,
-        rest=lambda scene: (0, 0, -Case.of(scene).length),
+        rest=lambda scene: (0, 0, -Case.of_scene(scene).length),
     )
 
 

@@ -20,12 +20,12 @@ from dataclasses import dataclass
 from typing import BinaryIO
 
 from reference import InputError, Scene
-from reference.model.constants import release
-from reference.precision import context
+from reference.model.start import Start
 
 from .lines import MAX_BYTES
 from .process_tree import ProcessTree
 
+PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
 TIMEOUT_S = 600.0
 REPEATS = 3
 LONG_S = 20.0  # a program that takes longer than this, in s, is timed once, by the run that is scored
@@ -54,11 +54,10 @@ class Timing:
 
 def placeholders(scene: Scene) -> dict[str, str]:
     """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
-    ctx = context(120)
-    position, velocity = release(scene.exact, ctx)
+    start = Start.of(scene.exact, PLACEHOLDER_BITS)
     words = {
         name: repr(float(value))
-        for name, value in zip(("x0", "y0", "z0", "vx0", "vy0", "vz0"), (*position, *velocity), strict=True)
+        for name, value in zip(("x0", "y0", "z0", "vx0", "vy0", "vz0"), (*start.position, *start.velocity), strict=True)
     }
     fields = scene.release.model_dump(exclude_none=True)
     words |= {f"{name}0": text for name, text in fields.items() if f"{name}0" in words}

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from reference.errors import IntegrationError
-from reference.model.constants import constants, release, scaled
 from reference.model.formulations import FORMULATIONS
-from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, context, real
+from reference.model.start import Start
+from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, real
 
 from ..rhs.problem import Array, Problem
 from .method import Exact, Method, Outcome, Setting, Work, failed
@@ -39,13 +39,11 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
     from reference.engines.heyoka.propagator import Propagator
     from reference.engines.heyoka.system import rates
 
-    model, ctx = FORMULATIONS[problem.formulation], context(number.prec + GUARD_BITS)
-    exact = constants(problem.scene.exact, ctx)
-    n, v = (scaled(vector, exact.length) for vector in release(problem.scene.exact, ctx))
-    numbers = Numbers(number)
-    k = exact.converted(numbers.of)
+    model, numbers = FORMULATIONS[problem.formulation], Numbers(number)
+    exact = Start.of(problem.scene.exact, number.prec + GUARD_BITS)
+    k = exact.k.converted(numbers.of)
     flow = Propagator(model.variables, rates(model, k), number, tolerance=tolerance)
-    start = [numbers.of(value) for value in model.start(n, v, exact, ctx)]
+    start = [numbers.of(value) for value in exact.state(model)]
     times = [numbers.of(Fraction(t)) for t in problem.times.tolist()]
 
     def columns(states: Any) -> list[Any]:

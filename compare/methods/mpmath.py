@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from reference.model.constants import constants, release, scaled
 from reference.model.formulations import FORMULATIONS
+from reference.model.start import Start
 from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
 
 from ..rhs.problem import Array, Problem
@@ -21,12 +21,10 @@ def prepare(problem: Problem, setting: float) -> Work:
     import numpy as np
 
     prec = int(setting)
-    ctx, finer_ctx = context(prec), context(prec + GUARD_BITS)
-    model = FORMULATIONS[problem.formulation]
-    exact = constants(problem.scene.exact, finer_ctx)
-    n, v = (scaled(vector, exact.length) for vector in release(problem.scene.exact, finer_ctx))
-    k = exact.converted(ctx.mpf)
-    start = [ctx.mpf(value) for value in model.start(n, v, exact, finer_ctx)]
+    ctx, model = context(prec), FORMULATIONS[problem.formulation]
+    exact = Start.of(problem.scene.exact, prec + GUARD_BITS)
+    k = exact.k.converted(ctx.mpf)
+    start = [ctx.mpf(value) for value in exact.state(model)]
     times = [to_mpf(Fraction(t), ctx) for t in problem.times.tolist()]
 
     def work() -> Outcome:

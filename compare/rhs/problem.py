@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from reference.errors import InputError
-from reference.model.constants import Constants, constants, is_zero, release, scaled
+from reference.model.constants import Constants, is_zero
 from reference.model.formulations import FORMULATIONS
-from reference.precision import context
+from reference.model.start import Start
 from reference.scene import Scene
 
 from .program import Program
@@ -99,25 +99,21 @@ class Problem:
         Raises:
             InputError: the formulation cannot express the release, or the times do not increase from 0.
         """
-        model = FORMULATIONS[formulation]
-        ctx = context(CONSTANT_BITS)
-        exact = constants(scene.exact, ctx)
-        n, v = (scaled(vector, exact.length) for vector in release(scene.exact, ctx))
+        model, start = FORMULATIONS[formulation], Start.of(scene.exact, CONSTANT_BITS)
         try:
-            start = model.start(n, v, exact, ctx)
+            state = start.state(model)
         except ValueError as error:
             raise InputError("formulation", formulation, "one that holds at the release", f"{error}.") from None
         if times is None:
             times = [float(t) for t in scene.exact.grid]
-        rounded = exact.converted(float)
-        swing = Swing.of(n, v, exact)
+        rounded = start.k.converted(float)
         return cls(
             scene=scene,
             formulation=formulation,
             constants=rounded,
-            start=np.array([float(value) for value in start]),
+            start=np.array([float(value) for value in state]),
             times=_increasing(times),
-            sizes=swing.sizes(len(model.variables)),
+            sizes=Swing.of(start).sizes(len(model.variables)),
             system=_model_system(formulation, rounded),
         )
 

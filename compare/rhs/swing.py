@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from reference.model.constants import Constants, Vector, constants, release, scaled
-from reference.precision import DOUBLE_BITS, GUARD_BITS, context
+from reference.model.start import Start
+from reference.precision import DOUBLE_BITS, GUARD_BITS
 from reference.scene import Scene
 
 Array = npt.NDArray[np.float64]
@@ -38,16 +38,19 @@ class Swing:
     spread: float
 
     @classmethod
-    def of(cls, position: Vector, velocity: Vector, k: Constants) -> Swing:
-        """Return the swing that follows from n = r/l and n' at the release, in any number type."""
-        n, v, pull = (np.array(part, dtype=float) for part in (position, velocity, k.pull))
+    def of(cls, start: Start) -> Swing:
+        """Return the swing that follows from the release."""
+        n, v, pull = (np.array(part, dtype=float) for part in (start.n, start.v, start.k.pull))
         strength = float(np.linalg.norm(pull))
         if strength == 0:
             return cls(-1.0, float(np.linalg.norm(v)), 1.0, 1.0)
         energy = float(v @ v / 2 - n @ pull)
         fastest = math.sqrt(max(2 * (energy + strength), 0.0))
         return cls(
-            min(-energy / strength, 1.0), fastest, float(np.hypot(*pull[:2])) / strength, float(k.rate) ** 2 / strength
+            min(-energy / strength, 1.0),
+            fastest,
+            float(np.hypot(*pull[:2])) / strength,
+            float(start.k.rate) ** 2 / strength,
         )
 
     @property
@@ -69,9 +72,6 @@ def suited(scene: Scene, formulations: Sequence[str]) -> str:
     `plane` holds below the horizontal only, and `space` leaves the sphere where a rod is pushed; for a bob whose energy
     may take it there any other formulation is better, `space` is second best, and `plane` fails.
     """
-    ctx = context(DOUBLE_BITS + GUARD_BITS)
-    k = constants(scene.exact, ctx)
-    n, v = (scaled(vector, k.length) for vector in release(scene.exact, ctx))
-    if Swing.of(n, v, k).below:
+    if Swing.of(Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)).below:
         return formulations[0]
     return min(formulations, key=lambda word: {"space": 1, "plane": 2}.get(word, 0))

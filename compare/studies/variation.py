@@ -37,7 +37,7 @@ def varied(scene: Scene, over: str, value: float | str) -> Scene:
 
 
 def _lengthened(scene: Scene, text: str) -> Scene:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     if scene.exact.position is not None:
         ratio = case.ctx.mpf(text) / case.length
         place, speed = (tuple(part * ratio for part in v) for v in (case.position, case.velocity))
@@ -49,13 +49,13 @@ def _lengthened(scene: Scene, text: str) -> Scene:
 
 def released(scene: Scene, east: float, north: float) -> Scene:
     """Return the scene released without velocity, `east` and `north` m (horizontally) from its rest position."""
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     y = case.ctx.mpf(case.rest[1]) * case.length + case.ctx.mpf(north)
     return _with_release(scene, _release(case, (case.ctx.mpf(east), y), (0, 0)))
 
 
 def _displaced(scene: Scene, text: str) -> Scene:
-    case = Case.of(scene)
+    case = Case.of_scene(scene)
     rest_y = case.ctx.mpf(case.rest[1]) * case.length
     east, north = case.position[0], case.position[1] - rest_y
     amplitude = case.ctx.hypot(east, north)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from ..model.constants import constants, release, scaled
 from ..model.formulations import FORMULATIONS
+from ..model.start import Start
 from ..model.vanishing import xdot_vanishes
-from ..precision import context
 from ..scene import Scene
 from .heyoka.system import equations_text
 
@@ -14,9 +13,8 @@ _PREC = 128  # bits; only exact zeros matter here
 
 def lines_and_left_out(scene: Scene, formulation: str) -> tuple[list[str], list[str]]:
     """Return the compiled lines "name' = …", and a sentence for each group of terms that the scene does not need."""
-    ctx = context(_PREC)
-    k = constants(scene.exact, ctx)
     inputs, left_out = scene.exact, []
+    start = Start.of(inputs, _PREC)
     if inputs.rotation_rate == 0:
         left_out.append("Coriolis and centrifugal terms: rotation_rate is 0.")
     elif abs(inputs.latitude) == 90:
@@ -27,11 +25,10 @@ def lines_and_left_out(scene: Scene, formulation: str) -> tuple[list[str], list[
         left_out.append("drag: it is 0.")
     if inputs.gravity == 0:
         left_out.append("gravity: it is 0.")
-    r, v = release(inputs, ctx)
     if not scene.run.transits:
         left_out.append("event detection: transits are off.")
-    elif xdot_vanishes(scaled(r, k.length), v, k):
+    elif xdot_vanishes(start):
         left_out.append("event detection: xdot is identically zero.")
     if scene.run.level != "enclosed":
         left_out.append("the enclosure: the level does not ask for it.")
-    return equations_text(FORMULATIONS[formulation], k), left_out
+    return equations_text(FORMULATIONS[formulation], start.k), left_out

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import IntegrationError
-from ..model.constants import Constants, Vector, constants, release, scaled
 from ..model.formulations import FORMULATIONS
+from ..model.start import Start
 from ..model.vanishing import xdot_vanishes, zero_at_release
-from ..precision import GUARD_BITS, NumberType, context
-from ..scene import Inputs
+from ..precision import GUARD_BITS
 from .heyoka.log import watched_log
 from .plan import Plan, Report, Run
 from .transits import march, quiet_start
@@ -22,15 +21,6 @@ if TYPE_CHECKING:
     from .heyoka import stepper as heyoka
 
 SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
-
-
-def start_of(inputs: Inputs, number: NumberType) -> tuple[Any, Constants, Vector, Vector]:
-    """Return a context finer than `number`, and in it the constants, n = r/l and v = r'/l at t = 0."""
-    ctx = context(number.prec + GUARD_BITS)
-    k = constants(inputs, ctx)
-    position, velocity = release(inputs, ctx)
-    n, v = (scaled(vector, k.length) for vector in (position, velocity))
-    return ctx, k, n, v
 
 
 def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[heyoka.Stepper], None] | None = None) -> Run:
@@ -51,16 +41,15 @@ def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[heyoka.S
         return limbs.run(plan, report)
     from .heyoka import stepper as heyoka  # takes 0.2 s to import, and is not needed to check or show a scene
 
-    ctx, k, n, v = start_of(plan.inputs, plan.number)
-    model = FORMULATIONS[plan.formulation]
-    watching = plan.transits and not xdot_vanishes(n, v, k)
-    stepper = heyoka.Stepper(model, k, n, v, ctx, plan.number, events=watching)
+    start = Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
+    watching = plan.transits and not xdot_vanishes(start)
+    stepper = heyoka.Stepper(FORMULATIONS[plan.formulation], start, plan.number, events=watching)
     times = [stepper.numbers.of(t) for t in plan.times]
     if look_ahead is not None:
         look_ahead(stepper)
     zeros: list[heyoka.Zero] = []
     with watched_log() as watch:
-        multiplicity = zero_at_release(n, v)
+        multiplicity = zero_at_release(start)
         quiet = quiet_start(stepper, multiplicity) if watching and multiplicity else None
         started = time.process_time()
         if watching:

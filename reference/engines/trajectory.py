@@ -6,14 +6,16 @@ They are as good as their number type and tolerance, no better: `solver.solve` g
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from ..model.constants import Constants, constants, release, scaled
+from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
-from ..precision import DOUBLE, GUARD_BITS, Array, NumberType, context
+from ..model.start import Start
+from ..precision import DOUBLE, GUARD_BITS, Array, NumberType
 from ..scene import Scene
 
 
@@ -72,20 +74,18 @@ def trajectory(
     Returns:
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
     """
-    ctx = context(number.prec + GUARD_BITS)
-    k = constants(scene.exact, ctx)
-    n, v = (scaled(vector, k.length) for vector in release(scene.exact, ctx))
-    k = k if alter is None else alter(k)
+    start = Start.of(scene.exact, number.prec + GUARD_BITS)
+    start = start if alter is None else replace(start, k=alter(start.k))
     from .heyoka.numbers import Numbers
     from .heyoka.propagator import Propagator
     from .heyoka.system import rates
 
     model = FORMULATIONS[formulation]
     numbers = Numbers(number)
-    rounded = k.converted(numbers.of)
+    rounded = start.k.converted(numbers.of)
     propagator = Propagator(model.variables, rates(model, rounded), number, tolerance=tolerance)
-    start = [numbers.of(value) for value in model.start(n, v, k, ctx)]
-    states = propagator.from_zero(start, [numbers.of(_exact(t)) for t in times])
+    state = [numbers.of(value) for value in start.state(model)]
+    states = propagator.from_zero(state, [numbers.of(_exact(t)) for t in times])
     columns = tuple(np.ascontiguousarray(states.T))
     position, velocity = model.cartesian(columns, rounded, np)
     rows = np.array([np.broadcast_to(part * rounded.length, len(states)) for part in (*position, *velocity)])

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
-from ..model.constants import Constants, constants, release, scaled
+from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
-from ..precision import DOUBLE, GUARD_BITS, Array, context
+from ..model.start import Start
+from ..precision import DOUBLE, GUARD_BITS, Array
 from ..scene import Inputs
 
 MAX_STEPS = 3_000_000  # of one run, so that a variant much stiffer than the scene comes to an end
@@ -28,7 +30,6 @@ class Variants:
     def __init__(self) -> None:
         from .heyoka.propagator import Propagator
 
-        self._ctx = context(DOUBLE.prec + GUARD_BITS)
         self._propagator = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=9)
 
     def states(self, inputs: Inputs, times: Array, alter: Callable[[Constants], Constants] | None = None) -> Array:
@@ -48,17 +49,16 @@ class Variants:
         """
         if inputs.position is not None and inputs.position[0] ** 2 + inputs.position[1] ** 2 >= inputs.length**2:
             raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
-        k = constants(inputs, self._ctx)
-        n, v = (scaled(vector, k.length) for vector in release(inputs, self._ctx))
-        k = (k if alter is None else alter(k)).converted(float)
-        start = [float(value) for value in self._MODEL.start(n, v, k, self._ctx)]
+        start = Start.of(inputs, DOUBLE.prec + GUARD_BITS)
+        k = (start.k if alter is None else alter(start.k)).converted(float)
+        state = [float(value) for value in replace(start, k=k).state(self._MODEL)]
         parameters = [float(value) for value in (*k.turn[1:], *k.pull[1:], *k.centrifugal, k.drag)]
-        rows = self._propagator.from_zero(start, times, parameters, MAX_STEPS)
+        rows = self._propagator.from_zero(state, times, parameters, MAX_STEPS)
         n_rows, spin = rows[:, :3], rows[:, 3:]
         return np.hstack([n_rows, np.cross(spin, n_rows)]) * float(k.length)
 
     @classmethod
     def _rates(cls, state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
         turn_y, turn_z, pull_y, pull_z, xx, yy, yz, zz, drag = parameters
-        k = Constants(1, (0, turn_y, turn_z), (0, pull_y, pull_z), (xx, yy, yz, zz), drag, 0, 0, 0, 0, 0)
+        k = Constants(turn=(0, turn_y, turn_z), pull=(0, pull_y, pull_z), centrifugal=(xx, yy, yz, zz), drag=drag)
         return cls._MODEL.derivatives(state, k, functions)

@@ -1,6 +1,6 @@
 """The model of the Foucault pendulum: its equations of motion, written once for every number type.
 
-- `constants`: the constants of the equations, and the release, from a scene's exact inputs.
+- `constants`: the constants of the equations, from a scene's exact inputs; `start`: these, and the release.
 - `earth`: how far the suspension is from the Earth's axis.
 - `algebra`: sums and products that leave out exact zeros.
 - `force`: force, tension of the cord, acceleration, the invariant h and the rest position.

@@ -1,4 +1,4 @@
-"""The constants of the equations, and the release (position and velocity), from a scene's exact inputs.
+"""The constants of the equations of motion, from a scene's exact inputs.
 
 Constants are combined here in high precision and rounded once: a run that added gravity and the centrifugal force in
 double would carry that rounding error to its end. A constant that is zero by the exact inputs (at a pole, on the
@@ -18,9 +18,9 @@ from .earth import axis_distance
 Vector = tuple[Any, Any, Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Constants:
-    """The constants of the equations of motion; all are numbers of one type, or the int 0.
+    """The constants of the equations of motion; all are numbers of one type, or the int 0, as those not given.
 
     Attributes:
         length: cord length l in m.
@@ -35,16 +35,16 @@ class Constants:
         cos: cosine of the geodetic latitude.
     """
 
-    length: Any
-    turn: Vector
-    pull: Vector
-    centrifugal: tuple[Any, Any, Any, Any]
-    drag: Any
-    gravity: Any
-    axis_distance: Any
-    rate: Any
-    sin: Any
-    cos: Any
+    length: Any = 1
+    turn: Vector = (0, 0, 0)
+    pull: Vector = (0, 0, 0)
+    centrifugal: tuple[Any, Any, Any, Any] = (0, 0, 0, 0)
+    drag: Any = 0
+    gravity: Any = 0
+    axis_distance: Any = 0
+    rate: Any = 0
+    sin: Any = 0
+    cos: Any = 0
 
     def converted(self, convert: Callable[[Any], Any]) -> Constants:
         """Return the same constants in another number type; exact zeros stay the int 0."""
@@ -92,28 +92,3 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
         sin=sin,
         cos=cos,
     )
-
-
-def release(inputs: Inputs, ctx: Any) -> tuple[Vector, Vector]:
-    """Return position in m and velocity in m/s at t = 0: Mathar (7), (10), or x, y, vx, vy completed to the sphere."""
-    length = to_mpf(inputs.length, ctx)
-    if inputs.position is not None:
-        x, y, vx, vy = (to_mpf(value, ctx) for value in inputs.position)
-        z = -ctx.sqrt(length * length - x * x - y * y)
-        return (x, y, z), (vx, vy, -(x * vx + y * vy) / z)
-    assert inputs.angles is not None
-    angle, azimuth = (to_mpf(value / 180, ctx) for value in inputs.angles[:2])
-    angle_rate, azimuth_rate = (to_mpf(value, ctx) * ctx.pi / 180 for value in inputs.angles[2:])
-    sa, ca, sl, cl = ctx.sinpi(angle), ctx.cospi(angle), ctx.sinpi(azimuth), ctx.cospi(azimuth)
-    position = (length * sa * cl, length * sa * sl, -length * ca)
-    velocity = (
-        length * (angle_rate * ca * cl - azimuth_rate * sa * sl),
-        length * (angle_rate * ca * sl + azimuth_rate * sa * cl),
-        length * angle_rate * sa,
-    )
-    return position, velocity
-
-
-def scaled(vector: Vector, length: Any) -> Vector:
-    """Return a position or velocity divided by the cord length."""
-    return (vector[0] / length, vector[1] / length, vector[2] / length)

@@ -19,10 +19,11 @@ import numpy as np
 
 from ..engines.plan import Plan, Run
 from ..engines.registry import HEYOKA, LIMBS, fastest
-from ..engines.run import result, start_of
+from ..engines.run import result
 from ..errors import IntegrationError
 from ..model.formulations import FORMULATIONS
-from ..precision import real
+from ..model.start import Start
+from ..precision import GUARD_BITS, real
 from ..process import Emit, Worker
 from ..scene import Inputs
 
@@ -110,11 +111,11 @@ def expand(inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Generator[
     from ..engines.heyoka import stepper as heyoka
 
     plan = Plan(inputs, "momentum", real(prec), times, transits=False)
-    ctx, k, n, v = start_of(inputs, plan.number)
-    stepper = heyoka.Stepper(FORMULATIONS["momentum"], k, n, v, ctx, plan.number)
+    start = Start.of(inputs, prec + GUARD_BITS)
+    stepper = heyoka.Stepper(FORMULATIONS["momentum"], start, plan.number)
     grid = [stepper.numbers.of(t) for t in times]
     started = time.process_time()
-    rate = max(float(ctx.sqrt(ctx.norm(k.pull))), float(k.drag) / DECAYS)
+    rate = max(float(start.ctx.sqrt(start.ctx.norm(start.k.pull))), float(start.k.drag) / DECAYS)
     longest = _few_bits(MOST_TURN / rate) if rate > 0 else max(times[-1], Fraction(1))
     states, limit, beyond = [stepper.state], stepper.numbers.of(longest), False
     while not beyond:

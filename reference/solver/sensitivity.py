@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from ..model.constants import Constants, constants, release, scaled
+from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
-from ..precision import DOUBLE, Array, context, to_fraction
+from ..model.start import Start
+from ..precision import DOUBLE, Array, to_fraction
 from ..scene import Inputs, Scene
 
 _SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
@@ -68,15 +69,15 @@ class Sensitivity:
 
     def _slope(self, name: str) -> Array:
         """Return the derivative of start, constants and length with respect to one input."""
-        ctx, inputs, value = self._ctx, self.scene.exact, self.values[name]
+        inputs, value = self.scene.exact, self.values[name]
         nudge = _NUDGE * max(abs(value), Fraction(1))
-        ahead, behind = (_parts(with_value(inputs, name, value + side * nudge), ctx) for side in (1, -1))
+        ahead, behind = (_parts(with_value(inputs, name, value + side * nudge)) for side in (1, -1))
         return np.array([float(to_fraction(p - q) / (2 * nudge)) for p, q in zip(ahead, behind, strict=True)])
 
     def _along(self, slope: Array) -> Array:
         """Return the response to a change of start, constants and length."""
         size = len(_MODEL.variables)
-        base = np.array([float(part) for part in _parts(self.scene.exact, self._ctx)])
+        base = np.array([float(part) for part in _parts(self.scene.exact)])
         start, turn, length = base[:size], np.array([0.0, *base[size : size + 2]]), base[-1]
         strength = max(1.0, float(np.abs(slope).max()))  # keeps the derivative near 1, for the step size
         parameters = [0.0, *base[size:-1], *(slope[size:-1] / strength)]
@@ -85,10 +86,6 @@ class Sensitivity:
         dn, dspin = strength * dn, strength * dmomentum - np.array([0.0, *slope[size : size + 2]])
         v, dv = np.cross(momentum - turn, n), np.cross(dspin, n) + np.cross(momentum - turn, dn)
         return np.hstack([slope[-1] * n + length * dn, slope[-1] * v + length * dv])
-
-    @cached_property
-    def _ctx(self) -> Any:
-        return context(_PREC)
 
     @cached_property
     def _propagator(self) -> Any:
@@ -102,15 +99,15 @@ def _rates(state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> S
     """Return the rates of `momentum` with constants c + ε d as parameters, also those that are zero in the scene."""
     epsilon, values, direction = parameters[0], parameters[1 : 1 + _CONSTANTS], parameters[1 + _CONSTANTS :]
     turn_y, turn_z, pull_y, pull_z, drag = (c + epsilon * d for c, d in zip(values, direction, strict=True))
-    k = Constants(1, (0, turn_y, turn_z), (0, pull_y, pull_z), (0, 0, 0, 0), drag, 0, 0, 0, 0, 0)
+    k = Constants(turn=(0, turn_y, turn_z), pull=(0, pull_y, pull_z), drag=drag)
     return _MODEL.derivatives(state, k, functions)
 
 
-def _parts(inputs: Inputs, ctx: Any) -> list[Any]:
+def _parts(inputs: Inputs) -> list[Any]:
     """Return start (n, H), constants (Ωy, Ωz, cy, cz, γ) and length that follow from the inputs."""
-    k = constants(inputs, ctx)
-    n, v = (scaled(vector, k.length) for vector in release(inputs, ctx))
-    return [ctx.mpf(part) for part in (*_MODEL.start(n, v, k, ctx), *k.turn[1:], *k.pull[1:], k.drag, k.length)]
+    start = Start.of(inputs, _PREC)
+    k = start.k
+    return [start.ctx.mpf(part) for part in (*start.state(_MODEL), *k.turn[1:], *k.pull[1:], k.drag, k.length)]
 
 
 def with_value(inputs: Inputs, name: str, value: Fraction) -> Inputs:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from reference.engines.run import start_of
-from reference.model.constants import constants, release, scaled
 from reference.model.formulations import FORMULATIONS
-from reference.precision import NumberType, context
+from reference.model.start import Start
+from reference.precision import GUARD_BITS, NumberType
 from reference.scene import Scene, parse_scene
 
 
@@ -18,15 +17,17 @@ def make_scene(scene_id: str = "test", **sections: Any) -> Scene:
 
 def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
     """Return context, constants, n and v of a scene at a precision in bits."""
-    ctx = context(prec)
-    k = constants(scene.exact, ctx)
-    position, velocity = release(scene.exact, ctx)
-    return ctx, k, scaled(position, k.length), scaled(velocity, k.length)
+    start = Start.of(scene.exact, prec)
+    return start.ctx, start.k, start.n, start.v
 
 
-def stepper_of(scene: Scene, number: NumberType, name: str = "momentum", **keywords: Any) -> Any:
-    """Return heyoka's integrator of a scene at its release."""
+def start_for(scene: Scene, number: NumberType) -> Start:
+    """Return a scene's start as a run in a number type takes it."""
+    return Start.of(scene.exact, number.prec + GUARD_BITS)
+
+
+def stepper_of(scene: Scene, number: NumberType, name: str = "momentum", kind: Any = None, **keywords: Any) -> Any:
+    """Return heyoka's integrator of a scene at its release; `kind` is a subclass of it."""
     from reference.engines.heyoka.stepper import Stepper
 
-    ctx, k, n, v = start_of(scene.exact, number)
-    return Stepper(FORMULATIONS[name], k, n, v, ctx, number, **keywords)
+    return (kind or Stepper)(FORMULATIONS[name], start_for(scene, number), number, **keywords)

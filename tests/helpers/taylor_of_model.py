@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from reference.model.constants import constants, release, scaled
 from reference.model.formulations import FORMULATIONS
-from reference.precision import context
+from reference.model.start import Start
 
 
 class Polynomial:
@@ -39,11 +38,9 @@ class Polynomial:
 
 def taylor(inputs, formulation, order, prec):
     """Return a context, the constants, and the Taylor coefficients of a formulation's variables at release, in rows."""
-    ctx = context(prec)
-    k = constants(inputs, ctx)
-    n, v = (scaled(vector, k.length) for vector in release(inputs, ctx))
-    model = FORMULATIONS[formulation]
-    rows = [[ctx.mpf(value)] for value in model.start(n, v, k, ctx)]
+    start, model = Start.of(inputs, prec), FORMULATIONS[formulation]
+    ctx, k = start.ctx, start.k
+    rows = [[ctx.mpf(value)] for value in start.state(model)]
     for j in range(order):
         rates = model.derivatives([Polynomial(row) for row in rows], k, ctx)
         for row, rate in zip(rows, rates, strict=True):

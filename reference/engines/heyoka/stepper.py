@@ -12,9 +12,9 @@ import heyoka as hy
 import numpy as np
 
 from ...errors import IntegrationError
-from ...model.constants import Constants, Vector
 from ...model.force import acceleration, tension
 from ...model.formulations import Formulation
+from ...model.start import Start
 from ...precision import NumberType
 from .numbers import Numbers
 from .system import System
@@ -63,10 +63,7 @@ class Stepper:
 
     Args:
         formulation: the formulation to integrate.
-        constants: the model's constants in an mpmath context finer than the run.
-        n: release position over l, in the same context.
-        v: release velocity over l.
-        ctx: that context.
+        start: constants and release, in a precision finer than the run's.
         number: type to compute in.
         events: whether to detect the zeros of xdot.
     """
@@ -74,16 +71,13 @@ class Stepper:
     def __init__(
         self,
         formulation: Formulation,
-        constants: Constants,
-        n: Vector,
-        v: Vector,
-        ctx: Any,
+        start: Start,
         number: NumberType,
         *,
         events: bool = False,
     ) -> None:
         self.number, self.numbers, self.formulation = number, Numbers(number), formulation
-        self.constants = constants.converted(self.numbers.of)
+        self.constants = start.k.converted(self.numbers.of)
         self.zeros: list[Zero] = []
         self.steps = 0
         system = System.build(formulation, self.constants)
@@ -98,11 +92,11 @@ class Stepper:
 
             event = hy.nt_event(system.xdot, callback=record, fp_type=self.numbers.type)
             keywords["nt_events"] = [event]
-        start = [self.numbers.of(value) for value in formulation.start(n, v, constants, ctx)]
+        state = [self.numbers.of(value) for value in start.state(formulation)]
         hy.llvm_state.set_diskcache_enabled(number.name != "real")
         started = time.process_time()
         self._ta: Any = hy.taylor_adaptive(
-            system.equations, np.array(start, dtype=self.numbers.dtype), fp_type=self.numbers.type, **keywords
+            system.equations, np.array(state, dtype=self.numbers.dtype), fp_type=self.numbers.type, **keywords
         )
         if events:
             outputs = [system.xdot, system.xddot]

@@ -42,8 +42,8 @@ class Integration:
     ) -> None:
         self.problem, self.seek = problem, seek
         limb_count, model = problem.model.limb_count, problem.model
-        multiplicity = zero_at_release(problem.n, problem.v) if seek else 0
-        self.state: MarchState = state_at_release(problem.start, problem.first, multiplicity, model.order, limb_count)
+        multiplicity = zero_at_release(problem.start) if seek else 0
+        self.state: MarchState = state_at_release(problem.state, problem.first, multiplicity, model.order, limb_count)
         room = STEPS_PER_CALL + MOST_ZEROS if seek else 0
         self.out = Outputs(
             whole,
@@ -126,5 +126,5 @@ def integration_of(plan: Plan, polynomials: int = 0, order: int | None = None) -
         )
     problem = limb_problem(plan.inputs, plan.number.prec, order)
     whole, remainders = limbs_of_fractions(plan.times, problem.grain, problem.model.limb_count)
-    seek = plan.transits and not xdot_vanishes(problem.n, problem.v, problem.k)
+    seek = plan.transits and not xdot_vanishes(problem.start)
     return Integration(problem, whole, remainders, seek, polynomials)

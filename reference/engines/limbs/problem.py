@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from ...model.algebra import add, cross
-from ...model.constants import Constants, Vector, constants, release, scaled
-from ...precision import GUARD_BITS, context
+from ...model.constants import Vector
+from ...model.start import Start
+from ...precision import GUARD_BITS
 from ...scene import Inputs
 from .limb import LIMB_BITS, MOST_LIMBS, Array, fraction_bits, rows_of
 from .series import LinearTerms
@@ -35,19 +36,17 @@ class LimbProblem:
 
     Attributes:
         model: constants, limb count and order.
-        start: the state at release: n in lanes 0 to 2, V in the unit of time in lanes 3 to 5.
+        state: at the release: n in lanes 0 to 2, V in the unit of time in lanes 3 to 5.
         unit: the unit of time in s, a power of two.
         first: the first step in grains.
-        k, n, v: the scene's constants and release as mpf.
+        start: the scene's constants and release as mpf.
     """
 
     model: Model
-    start: Array
+    state: Array
     unit: Fraction
     first: int
-    k: Constants
-    n: Vector
-    v: Vector
+    start: Start
 
     @property
     def grain(self) -> Fraction:
@@ -70,17 +69,15 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None) -> LimbPro
 
     `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer steps.
     """
-    ctx = context(most_bits() + 2 * GUARD_BITS)
-    k = constants(inputs, ctx)
-    position, velocity = release(inputs, ctx)
-    n, v = (scaled(vector, k.length) for vector in (position, velocity))
-    prec = min(prec + _swing_bits(k, n, v, ctx), most_bits())
+    start = Start.of(inputs, most_bits() + 2 * GUARD_BITS)
+    ctx, k, n = start.ctx, start.k, start.n
+    prec = min(prec + _swing_bits(start), most_bits())
     limb_count = limb_count_for(prec)
-    unit, first = _unit_of_time(k, v, ctx)
+    unit, first = _unit_of_time(start)
     h = ctx.mpf(unit.numerator) / unit.denominator
     sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
     turn, pull = _earth_axes(k.turn, sin, cos), _earth_axes(k.pull, sin, cos)
-    inertial = _earth_axes(add(v, cross(k.turn, n)), sin, cos)
+    inertial = _earth_axes(add(start.v, cross(k.turn, n)), sin, cos)
     longest = (
         min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / (h * ctx.sqrt(ctx.norm(pull)))))) if any(pull) else MOST_GRAINS
     )
@@ -95,12 +92,13 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None) -> LimbPro
         along=rows_of([1, sin, sin, 1, sin, sin, 1], limb_count),
         across=2 * rows_of([0, cos, -cos, 0, cos, -cos], limb_count),
     )
-    start = rows_of([*_earth_axes(n, sin, cos), *(h * u for u in inertial)], limb_count)
-    return LimbProblem(model, start, unit, min(first, longest), k, n, v)
+    state = rows_of([*_earth_axes(n, sin, cos), *(h * u for u in inertial)], limb_count)
+    return LimbProblem(model, state, unit, min(first, longest), start)
 
 
-def _swing_bits(k: Constants, n: Vector, v: Vector, ctx: Any) -> int:
+def _swing_bits(start: Start) -> int:
     """Return by how many bits the swing is smaller than l: limbs count from l, so that many more bits are needed."""
+    ctx, k, n, v = start.ctx, start.k, start.n, start.v
     rate = ctx.sqrt(ctx.norm(k.pull))
     swing = max(abs(n[0]), abs(n[1]), 1 + n[2] if k.pull[1] else 0, ctx.norm(v) / rate if rate else 1)
     return min(MOST_SWING_BITS, max(0, -int(ctx.floor(ctx.log(swing, 2))))) if swing else 0
@@ -132,9 +130,10 @@ def _linear_terms(w: Any, am: Any, aw: Any, g: Any, limb_count: int) -> LinearTe
     )
 
 
-def _unit_of_time(k: Constants, v: Vector, ctx: Any) -> tuple[Fraction, int]:
+def _unit_of_time(start: Start) -> tuple[Fraction, int]:
     """Return a power of two near the first step, in s, and that step in grains."""
-    rate = float(ctx.sqrt(ctx.norm(k.pull)) + ctx.norm(v) + abs(k.rate) + k.drag)
+    ctx, k = start.ctx, start.k
+    rate = float(ctx.sqrt(ctx.norm(k.pull)) + ctx.norm(start.v) + abs(k.rate) + k.drag)
     step = GUESS / rate if rate > 0 else 1.0
     mantissa, exponent = math.frexp(step)
     return Fraction(2) ** exponent, max(1, int(mantissa * GRAINS))

@@ -83,7 +83,7 @@ def _transits(integration: Integration, plan: Plan, bits: int, si_bits: int) -> 
 
 def _least_tension(problem: LimbProblem, grid: Sequence[tuple[int, ...]], si_bits: int) -> float:
     """Return the least tension of the cord over l on the grid, in 1/s², in binary64."""
-    k = problem.k.converted(float)
-    unit = float(problem.k.length) * 2.0**si_bits
+    k = problem.start.k.converted(float)
+    unit = float(problem.start.k.length) * 2.0**si_bits
     x, y, z, vx, vy, vz = (np.array([row[i] / unit for row in grid]) for i in range(6))
     return float(np.min(tension((x, y, z), (vx, vy, vz), k)))

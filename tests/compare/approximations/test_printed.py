@@ -103,7 +103,7 @@ def test_at_49_degrees_the_plane_comes_round_in_31_hours_and_48_minutes():
 
 
 def test_the_apparent_latitude_and_the_ellipse_of_6_3():
-    case = Case.of(gastebois())
+    case = Case.of_scene(gastebois())
     assert f"{float(case.ctx.degrees(case.apparent_latitude)):.2f}" == "48.97"
     _, omega, _ = small_angles(case)
     turn = float(case.rate * case.sin)  # its 5.49e-5 rad/s is without the centrifugal force
@@ -116,7 +116,7 @@ def test_the_apparent_latitude_and_the_ellipse_of_6_3():
 
 def test_the_offset_at_the_first_passage_and_after_one_swing_is_that_of_6_3():
     scene = gastebois().with_values(["site.equatorial_radius=0"])
-    _, omega, turn = (float(v) if i else v for i, v in enumerate(small_angles(Case.of(scene))))
+    _, omega, turn = (float(v) if i else v for i, v in enumerate(small_angles(Case.of_scene(scene))))
     period = 2 * math.pi / omega
     rows = approximation("gastebois_6_3").trajectory(scene, [0.0, period / 4, period])
     assert rows[1, 1] * 1e3 == pytest.approx(0.93, abs=0.01)
@@ -169,7 +169,7 @@ def test_the_printed_velocity_of_6_1_is_not_that_of_its_positions():
 
 def test_the_printed_sense_of_the_ellipse_of_6_3_is_no_release_at_rest():
     printed, right = printed_motion("gastebois_6_3", PARIS)
-    _, _, turn = small_angles(Case.of(PARIS))
+    _, _, turn = small_angles(Case.of_scene(PARIS))
     away = float(np.hypot(0.3, 0.4 + 67 * 0.00171948))
     assert np.linalg.norm(right[0, 3:]) < 1e-14
     assert np.linalg.norm(printed[0, 3:]) == pytest.approx(2 * float(turn) * away, rel=1e-4)
@@ -199,14 +199,14 @@ def test_printed_numbers_miss_by_their_lost_factor():
     assert float(declared.value(PARIS) / declared.printed.compute(PARIS)) == pytest.approx(2 * math.pi, rel=1e-14)
     declared = approximation("precession_tilted")
     assert float(declared.printed.compute(PARIS)) == pytest.approx(16.4358 / math.sin(math.radians(48.9446)), rel=1e-4)
-    declared, outward = approximation("apparent_gravity"), Case.of(PARIS).outward
+    declared, outward = approximation("apparent_gravity"), Case.of_scene(PARIS).outward
     missing = declared.printed.compute(PARIS) ** 2 - declared.value(PARIS) ** 2
     assert float(missing) == pytest.approx(float(outward - outward**2), rel=1e-14)
 
 
 def test_the_printed_45_has_no_solution_in_paris():
     # y² = sqrt(l² - y²) (y - R s - 2 y c²) Ω²/g + c (R y + (l² - 2 y²) s) Ω²/g; the right one has y on the left.
-    case = Case.of(PARIS)
+    case = Case.of_scene(PARIS)
     ctx, cord, s, c, R = case.ctx, case.length, case.sin, case.cos, case.axis_distance
 
     def right_side(y):

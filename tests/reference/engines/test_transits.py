@@ -7,14 +7,14 @@ from fractions import Fraction
 import heyoka as hy
 import numpy as np
 import pytest
-from small_scenes import make_scene, stepper_of
+from small_scenes import make_scene, start_for, stepper_of
 
 from reference.engines.heyoka.log import watched_log
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.heyoka.stepper import Stepper
 from reference.engines.heyoka.system import System
 from reference.engines.plan import Plan
-from reference.engines.run import run, start_of
+from reference.engines.run import run
 from reference.engines.transits import march, quiet_start
 from reference.errors import IntegrationError
 from reference.model.vanishing import xdot_vanishes, zero_at_release
@@ -25,12 +25,12 @@ def bare_heyoka(scene, number, t_end, first_step=None):
     """Times of xdot = 0 in (or at) 0 … t_end as heyoka alone reports them; its log is left on stdout."""
     from reference.model.formulations import FORMULATIONS
 
-    ctx, k, n, v = start_of(scene.exact, number)
+    release = start_for(scene, number)
     numbers, model = Numbers(number), FORMULATIONS["momentum"]
-    system = System.build(model, k.converted(numbers.of))
+    system = System.build(model, release.k.converted(numbers.of))
     times: list[float] = []
     event = hy.nt_event(system.xdot, callback=lambda _, t, __: times.append(float(t)), fp_type=numbers.type)
-    start = np.array([numbers.of(part) for part in model.start(n, v, k, ctx)], dtype=numbers.dtype)
+    start = np.array([numbers.of(part) for part in release.state(model)], dtype=numbers.dtype)
     alone = hy.taylor_adaptive(system.equations, start, nt_events=[event], fp_type=numbers.type, **numbers.keywords)
     if first_step is not None:
         alone.step(first_step)
@@ -42,7 +42,7 @@ def guarded(scene, number, t_end=60, stepper=None):
     """The zeros of xdot that pass the guards."""
     stepper = stepper or stepper_of(scene, number, events=True)
     with watched_log() as watch:
-        quiet = quiet_start(stepper, zero_at_release(*start_of(scene.exact, number)[2:]))
+        quiet = quiet_start(stepper, zero_at_release(start_for(scene, number)))
         _, zeros = march(stepper, [stepper.numbers.of(0), stepper.numbers.of(t_end)], watch, quiet)
     return zeros
 
@@ -76,10 +76,7 @@ class EdgeOnTransit(Stepper):
 @pytest.mark.parametrize("number", [DOUBLE, real(128), real(160), real(192)], ids=str)
 @pytest.mark.parametrize("offset", [0, 1, -1])
 def test_a_step_edge_on_a_transit_neither_loses_nor_doubles_it(paris, number, offset):
-    ctx, k, n, v = start_of(paris.exact, number)
-    from reference.model.formulations import FORMULATIONS
-
-    stepper = EdgeOnTransit(FORMULATIONS["momentum"], k, n, v, ctx, number, events=True)
+    stepper = stepper_of(paris, number, kind=EdgeOnTransit, events=True)
     first = exact_first_transit(paris, number)
     stepper.edge = first + first * stepper.numbers.power_of_two(-number.prec) * stepper.numbers.of(offset)
     zeros = guarded(paris, number, stepper=stepper)
@@ -122,8 +119,7 @@ def test_trap_xdot_identically_zero_gives_bogus_events():
 )
 def test_guard_xdot_identically_zero_is_known_from_the_exact_inputs(sections, vanishes):
     scene = make_scene(**sections)
-    _, k, n, v = start_of(scene.exact, DOUBLE)
-    assert xdot_vanishes(n, v, k) == vanishes
+    assert xdot_vanishes(start_for(scene, DOUBLE)) == vanishes
     if vanishes:
         done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
         assert done.zeros is None
@@ -145,10 +141,7 @@ class LosesEvents(Stepper):
 
 
 def losing(scene, number, kind=LosesEvents):
-    from reference.model.formulations import FORMULATIONS
-
-    ctx, k, n, v = start_of(scene.exact, number)
-    return kind(FORMULATIONS["momentum"], k, n, v, ctx, number, events=True)
+    return stepper_of(scene, number, kind=kind, events=True)
 
 
 def test_guard_a_root_lost_in_silence_is_found_again(paris):
@@ -231,7 +224,7 @@ def test_the_time_of_a_transit_near_the_north_south_passage_is_worse_than_the_ot
 )
 def test_the_order_of_the_zero_at_the_release_follows_from_the_inputs(release, multiplicity):
     scene = make_scene(release=release)
-    assert zero_at_release(*start_of(scene.exact, DOUBLE)[2:]) == multiplicity
+    assert zero_at_release(start_for(scene, DOUBLE)) == multiplicity
 
 
 @pytest.mark.parametrize("number", [DOUBLE, real(160)], ids=str)

@@ -12,10 +12,11 @@ from small_scenes import make_scene, model_at
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.heyoka.system import System
 from reference.model.algebra import cross, dot, minus, plus, product
-from reference.model.constants import constants, release, scaled
+from reference.model.constants import constants
 from reference.model.earth import axis_distance
 from reference.model.force import acceleration, force, invariant, rest_position, tension
 from reference.model.formulations import FORMULATIONS
+from reference.model.start import release
 from reference.precision import context, real
 
 PREC = 400  # bits; 60 digits need 200
@@ -225,6 +226,6 @@ def test_forms_that_do_not_reach_a_state_refuse_it():
     ctx, k, n, v = model_at(make_scene(release={"angle": "120", "azimuth": "0"}), 100)
     with pytest.raises(ValueError, match="below"):
         FORMULATIONS["plane"].start(n, v, k, ctx)
-    down = scaled((0, 0, ctx.mpf(-1)), ctx.mpf(1))
+    down = (ctx.mpf(0), ctx.mpf(0), ctx.mpf(-1))
     with pytest.raises(ValueError, match="vertical"):
         FORMULATIONS["angles"].start(down, (0, 0, 0), k, ctx)

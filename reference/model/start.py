@@ -1,0 +1,80 @@
+"""The start of a run: a scene's constants, and position and velocity at the release, in one precision."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Self
+
+from ..precision import context, to_mpf
+from ..scene import Inputs
+from .constants import Constants, Vector, constants
+
+if TYPE_CHECKING:
+    from .formulations import Formulation
+
+
+@dataclass(frozen=True)
+class Start:
+    """A scene's constants and release, as mpf of one precision.
+
+    Attributes:
+        ctx: the mpmath context of all numbers here.
+        k: constants of the equations of motion.
+        position: x, y, z in m at t = 0.
+        velocity: vx, vy, vz in m/s at t = 0.
+    """
+
+    ctx: Any
+    k: Constants
+    position: Vector
+    velocity: Vector
+
+    @classmethod
+    def of(cls, inputs: Inputs, prec: int) -> Self:
+        """Return the start of a scene from its exact inputs, computed in `prec` bits.
+
+        A run takes `precision.GUARD_BITS` more than its own precision, and rounds each number once.
+        """
+        ctx = context(prec)
+        return cls(ctx, constants(inputs, ctx), *release(inputs, ctx))
+
+    @cached_property
+    def n(self) -> Vector:
+        """Position over l: a unit vector."""
+        return scaled(self.position, self.k.length)
+
+    @cached_property
+    def v(self) -> Vector:
+        """Velocity over l, in 1/s."""
+        return scaled(self.velocity, self.k.length)
+
+    def state(self, formulation: Formulation) -> Sequence[Any]:
+        """Return the state at t = 0 in a formulation's variables; ValueError where it cannot express the release."""
+        return formulation.start(self.n, self.v, self.k, self.ctx)
+
+
+def release(inputs: Inputs, ctx: Any) -> tuple[Vector, Vector]:
+    """Return position in m and velocity in m/s at t = 0: Mathar (7), (10), or x, y, vx, vy completed to the sphere."""
+    length = to_mpf(inputs.length, ctx)
+    if inputs.position is not None:
+        x, y, vx, vy = (to_mpf(value, ctx) for value in inputs.position)
+        z = -ctx.sqrt(length * length - x * x - y * y)
+        return (x, y, z), (vx, vy, -(x * vx + y * vy) / z)
+    assert inputs.angles is not None
+    angle, azimuth = (to_mpf(value / 180, ctx) for value in inputs.angles[:2])
+    angle_rate, azimuth_rate = (to_mpf(value, ctx) * ctx.pi / 180 for value in inputs.angles[2:])
+    sa, ca, sl, cl = ctx.sinpi(angle), ctx.cospi(angle), ctx.sinpi(azimuth), ctx.cospi(azimuth)
+    position = (length * sa * cl, length * sa * sl, -length * ca)
+    velocity = (
+        length * (angle_rate * ca * cl - azimuth_rate * sa * sl),
+        length * (angle_rate * ca * sl + azimuth_rate * sa * cl),
+        length * angle_rate * sa,
+    )
+    return position, velocity
+
+
+def scaled(vector: Vector, length: Any) -> Vector:
+    """Return a position or velocity divided by the cord length."""
+    return (vector[0] / length, vector[1] / length, vector[2] / length)
