@@ -24,7 +24,7 @@ FLOORS = {
         ["solver"],
         ["engines", "enclosure"],
         ["model"],
-        ["scene", "table", "process", "packing"],
+        ["scene", "table", "process", "packing", "capture"],
         ["precision", "shipped"],
         ["errors"],
     ],

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
+from reference.capture import captured
+
 from ..rhs.problem import Problem
 from .method import TRACEABLE, Method, Outcome, Work, outcome
-from .native import listened
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
 
@@ -49,7 +50,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         states[0], start = problem.start, problem.start.copy()
         data = np.append(problem.parameters, 0.0)
         pointers: list[Any] = [array.ctypes.data for array in (start, data, problem.times, states, success)]
-        with listened() as output:
+        with captured(1, 2) as output:
             if rows > 1:
                 integrate(
                     address, variables, pointers[0], pointers[1], rows, pointers[2], pointers[3],
@@ -57,10 +58,10 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
                 )  # fmt: skip
         calls = int(data[-1])
         if rows == 1 or success == 1:
-            return outcome(problem, states, steps=None, rhs_evaluations=calls, reason=output.text)
+            return outcome(problem, states, steps=None, rhs_evaluations=calls, reason=output.words())
         finite = np.isfinite(states).all(axis=1)
         reached = rows if finite.all() else int(np.argmin(finite))
-        reason = output.text or f"numbalsoda's {code} stopped without a message"
+        reason = output.words() or f"numbalsoda's {code} stopped without a message"
         return outcome(problem, states[:reached], steps=None, rhs_evaluations=calls, reason=reason)
 
     return work

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from reference.capture import captured
+
 from ..rhs.problem import Array, Problem
 from .method import Method, Outcome, Work, outcome
-from .native import listened
 
 MOST_STEPS = 100_000_000  # between two output times
 
@@ -37,7 +38,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         if len(times) == 1:
             return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
         output_times = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])  # two mean every step
-        with listened():  # it prints its message as well
+        with captured(1, 2):  # it prints its message as well
             solution = solver.solve(output_times, problem.start)
         states = np.array(solution.y)[np.isin(solution.t, times)]
         reason = "" if solution.success else str(solution.message)

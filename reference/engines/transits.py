@@ -30,7 +30,7 @@ import numpy as np
 from ..errors import IntegrationError
 
 if TYPE_CHECKING:
-    from .heyoka.log import Watch
+    from ..capture import Capture
     from .heyoka.stepper import Stepper, Zero
 
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up
@@ -68,7 +68,7 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
 def march(
     stepper: Stepper,
     times: Sequence[Any],
-    watch: Watch,
+    watch: Capture,
     quiet: Fraction | None = None,
     report: Callable[[float], None] | None = None,
 ) -> tuple[Any, list[Zero]]:
@@ -128,7 +128,7 @@ def march(
 
 
 def _checked_zeros(
-    stepper: Stepper, t_start: Any, at_start: tuple[float, float], watch: Watch
+    stepper: Stepper, t_start: Any, at_start: tuple[float, float], watch: Capture
 ) -> tuple[list[Zero], tuple[float, float]]:
     """Return the zeros of the last step, checked, and xdot and xddot at its end.
 
