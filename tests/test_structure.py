@@ -26,7 +26,7 @@ FLOORS = {
         ["model"],
         ["scene", "table", "process", "packing", "capture"],
         ["precision", "shipped"],
-        ["errors"],
+        ["errors", "status"],
     ],
     "reference/engines": [
         ["side_by_side"],

@@ -6,6 +6,7 @@ import importlib.util
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
 from typing import Literal
@@ -22,6 +23,19 @@ Status = Literal["ok", "gave_up", "not_finite"]
 PARIS = Fraction("67") / Fraction("9.80665")  # l/g in s² of the pendulum for which ladders of steps are written
 TRACEABLE = ("momentum", "space", "spin", "plane", "angles")  # formulations that can be traced to straight-line code
 UNITS: dict[Setting, str] = {"step": "s", "tolerance": "relative", "precision": "bits"}
+
+
+class Family(StrEnum):
+    """A group of methods that share a colour and a panel in reports; its value is the panel's title."""
+
+    PAPER = "the paper's, fixed step"
+    GEOMETRIC = "geometric, fixed step"
+    MANY_DIGITS = "many digits"
+    HEYOKA = "heyoka, Taylor"
+    SCIPY = "SciPy"
+    COMPILED = "numbalsoda and CVODE"
+    REBOUND = "rebound"
+    OTHERS = "others"
 
 
 @dataclass(frozen=True)
@@ -89,6 +103,13 @@ class Method:
         requires: modules that must be installed.
         extra: the extra of `pip install 'foucault-reference[…]'` that installs them; None if nothing is needed.
         longest_s: simulated time in s beyond which a run would take unreasonably long.
+        order: of a method of fixed order, as its tableau proves it; None where the method chooses its order.
+        family: methods of a family share a colour and a panel in reports.
+        number: number type that it computes in, as tables print it.
+        libraries: distributions whose versions a study records.
+        stability: the runs of it that `foucault stability` makes, each a formulation (None: the first that can describe
+            the motion) and a setting; a step is given as a part of 2π over the fastest rate of the scene.
+        long_runs: the runs of it over thirty days, each a formulation and a setting.
     """
 
     id: str
@@ -104,6 +125,12 @@ class Method:
     requires: tuple[str, ...] = ()
     extra: str | None = None
     longest_s: float | None = None
+    order: int | None = None
+    family: Family = Family.OTHERS
+    number: str = "double"
+    libraries: tuple[str, ...] = ("numpy",)
+    stability: tuple[tuple[str | None, float], ...] = ()
+    long_runs: tuple[tuple[str, float], ...] = ()
 
     def settings(self, scene: Scene) -> tuple[float, ...]:
         """Return the ladder for a scene: steps in proportion to its period, other settings unchanged.
