@@ -10,7 +10,6 @@ import numpy as np
 
 from reference import Scene, UnreachableError
 from reference.model.constants import Vector
-from reference.model.force import rest_position
 from reference.model.start import Start
 
 from .approximation import Array
@@ -81,7 +80,7 @@ class Case(Start):
             UnreachableError: there is none, or the iteration does not converge.
         """
         try:
-            return rest_position(self.k, self.ctx)
+            return super().rest
         except (ValueError, ZeroDivisionError):
             raise UnreachableError("the scene has no rest position to swing about.") from None
 

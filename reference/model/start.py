@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Self
 from ..precision import context, to_mpf
 from ..scene import Inputs
 from .constants import Constants, Vector, constants
+from .force import rest_position
 
 if TYPE_CHECKING:
     from .formulations import Formulation
@@ -49,6 +50,11 @@ class Start:
     def v(self) -> Vector:
         """Velocity over l, in 1/s."""
         return scaled(self.velocity, self.k.length)
+
+    @cached_property
+    def rest(self) -> Vector:
+        """Rest position over l, n = (0, sin θ, -cos θ); raise as `force.rest_position` where there is none."""
+        return rest_position(self.k, self.ctx)
 
     def state(self, formulation: Formulation) -> Sequence[Any]:
         """Return the state at t = 0 in a formulation's variables; ValueError where it cannot express the release."""
