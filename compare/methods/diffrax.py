@@ -76,4 +76,6 @@ METHOD = Method(
     formulations=("space", "momentum", "spin", "plane", "angles"),
     requires=("diffrax",),
     extra="methods-jax",
+    order=8,
+    libraries=("numpy", "diffrax"),
 )

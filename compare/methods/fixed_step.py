@@ -12,7 +12,7 @@ from reference.model.algebra import plus, product
 
 from ..rhs.problem import Array, Problem
 from ..rhs.program import Program
-from .method import Method, Outcome, Work, outcome
+from .method import Family, Method, Outcome, Work, outcome
 from .tableau import NystromTableau, Tableau
 
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
@@ -119,7 +119,9 @@ def nystrom(tableau: NystromTableau) -> Step:
     return step
 
 
-def nystrom_method(name: str, title: str, tableau: NystromTableau, ladder: tuple[float, ...], source: str) -> Method:
+def nystrom_method(
+    name: str, title: str, tableau: NystromTableau, ladder: tuple[float, ...], source: str, **runs: Any
+) -> Method:
     """Declare a Runge-Kutta-Nyström method with a fixed step, for formulations whose state is (y, y')."""
 
     def prepare(problem: Problem, setting: float) -> Work:
@@ -137,6 +139,10 @@ def nystrom_method(name: str, title: str, tableau: NystromTableau, ladder: tuple
         dense=False,
         requires=("numba",),
         extra="methods",
+        order=tableau.order,
+        family=Family.PAPER,
+        libraries=("numpy", "numba"),
+        **runs,
     )
 
 

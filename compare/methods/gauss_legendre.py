@@ -18,7 +18,7 @@ from reference.precision import context
 
 from ..rhs.problem import Array, Problem
 from .fixed_step import steps_between
-from .method import Method, Outcome, Work, outcome
+from .method import Family, Method, Outcome, Work, outcome
 from .tableau import TableauError
 
 STAGES = 8
@@ -175,4 +175,9 @@ METHOD = Method(
     dense=False,
     requires=("numba",),
     extra="methods",
+    order=2 * STAGES,
+    family=Family.GEOMETRIC,
+    libraries=("numpy", "numba", "mpmath"),
+    stability=((None, 1 / 20),),
+    long_runs=(("momentum", 4.0),),
 )

@@ -21,7 +21,7 @@ from reference.model.start import Start
 from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, real
 
 from ..rhs.problem import Array, Problem
-from .method import Exact, Method, Outcome, Setting, Work, failed
+from .method import Exact, Family, Method, Outcome, Setting, Work, failed
 
 QUADRUPLE_BITS = 113
 SPARE_BITS = 64  # exact states are written with this many bits below the number type's epsilon
@@ -78,6 +78,7 @@ def _declared(
     ladder: tuple[float, ...],
     prepare: Callable[[Problem, float], Work],
     first: str,
+    **more: Any,
 ) -> Method:
     return Method(
         id=name,
@@ -88,6 +89,8 @@ def _declared(
         licence="MPL-2.0",
         prepare=prepare,
         formulations=(first, *(word for word in FORMULATIONS if word != first)),
+        libraries=("numpy", "heyoka"),
+        **more,
     )
 
 
@@ -99,6 +102,9 @@ METHODS = (
         (1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14, 2.0**-52),
         lambda problem, setting: prepare_in(problem, DOUBLE, setting),
         "space",
+        family=Family.HEYOKA,
+        stability=tuple((word, 1e-12) for word in ("momentum", "space", "spin", "plane", "angles", "lagrangian")),
+        long_runs=(("momentum", 2.0**-52), ("space", 2.0**-52)),
     ),
     _declared(
         "heyoka_long_double",
@@ -107,6 +113,10 @@ METHODS = (
         (1e-12, 1e-14, 1e-16, 1e-18, 2.0**-63),
         lambda problem, setting: prepare_in(problem, LONG_DOUBLE, setting),
         "space",
+        family=Family.HEYOKA,
+        number="long double",
+        stability=(("momentum", 1e-16),),
+        long_runs=(("momentum", 2.0**-63), ("space", 2.0**-63)),
     ),
     _declared(
         "heyoka_real128",
@@ -115,6 +125,10 @@ METHODS = (
         (1e-20, 1e-24, 1e-28, 2.0**-112),
         lambda problem, setting: prepare_in(problem, real(QUADRUPLE_BITS), setting),
         "momentum",
+        family=Family.MANY_DIGITS,
+        number=f"{QUADRUPLE_BITS} bits",
+        stability=(("momentum", 1e-28),),
+        long_runs=(("momentum", 2.0**-112),),
     ),
     _declared(
         "heyoka_real",
@@ -123,5 +137,7 @@ METHODS = (
         (64, 113, 160, 256, 512),
         lambda problem, setting: prepare_in(problem, real(int(setting)), None),
         "momentum",
+        family=Family.MANY_DIGITS,
+        number="MPFR",
     ),
 )

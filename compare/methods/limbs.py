@@ -7,7 +7,7 @@ from fractions import Fraction
 import numpy as np
 
 from ..rhs.problem import Array, Problem
-from .method import Exact, Method, Outcome, Work, failed
+from .method import Exact, Family, Method, Outcome, Work, failed
 
 
 def prepare(problem: Problem, setting: float) -> Work:
@@ -50,4 +50,9 @@ METHOD = Method(
     formulations=("momentum",),
     requires=("reference.engines.limbs", "numba"),
     extra="methods",
+    family=Family.MANY_DIGITS,
+    number="100 bits",
+    libraries=("numpy", "numba"),
+    stability=((None, 100),),
+    long_runs=(("momentum", 100),),
 )

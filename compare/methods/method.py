@@ -22,6 +22,8 @@ Status = Literal["ok", "gave_up", "not_finite"]
 
 PARIS = Fraction("67") / Fraction("9.80665")  # l/g in s² of the pendulum for which ladders of steps are written
 TRACEABLE = ("momentum", "space", "spin", "plane", "angles")  # formulations that can be traced to straight-line code
+NINE_DIGITS = ((None, 1e-9),)  # the run in `Method.stability` of a method that has a tolerance
+TWO_HUNDRED_STEPS = ((None, 1 / 200),)  # the same of one whose step is fixed: steps in a swing
 UNITS: dict[Setting, str] = {"step": "s", "tolerance": "relative", "precision": "bits"}
 
 

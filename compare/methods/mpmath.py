@@ -11,7 +11,7 @@ from reference.model.start import Start
 from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
 
 from ..rhs.problem import Array, Problem
-from .method import Exact, Method, Outcome, Work
+from .method import Exact, Family, Method, Outcome, Work
 
 SPARE_BITS = 64  # exact states are written with this many bits below the precision
 
@@ -64,4 +64,7 @@ METHOD = Method(
     prepare=prepare,
     formulations=("momentum", "space", "spin", "plane", "angles"),
     longest_s=60.0,
+    family=Family.MANY_DIGITS,
+    number="mpf",
+    libraries=("numpy", "mpmath"),
 )

@@ -15,7 +15,7 @@ import numpy as np
 from reference.capture import captured
 
 from ..rhs.problem import Problem
-from .method import TRACEABLE, Method, Outcome, Work, outcome
+from .method import NINE_DIGITS, TRACEABLE, Family, Method, Outcome, Work, outcome
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
 
@@ -67,7 +67,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     return work
 
 
-def _declared(code: str, title: str, source: str, licence: str, ladder: tuple[float, ...], *, stiff: bool) -> Method:
+def _declared(code: str, title: str, source: str, licence: str, ladder: tuple[float, ...], **more: Any) -> Method:
     return Method(
         id=f"numbalsoda_{code}",
         title=title,
@@ -77,9 +77,12 @@ def _declared(code: str, title: str, source: str, licence: str, ladder: tuple[fl
         licence=licence,
         prepare=lambda problem, setting: prepare(problem, setting, code),
         formulations=("space", *(word for word in TRACEABLE if word != "space")) if code == "dop853" else TRACEABLE,
-        stiff=stiff,
         requires=("numbalsoda", "numba"),
         extra="methods-fortran",
+        family=Family.COMPILED,
+        libraries=("numpy", "numba", "numbalsoda"),
+        stability=NINE_DIGITS,
+        **more,
     )
 
 
@@ -90,7 +93,7 @@ METHODS = (
         "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
         "MIT and BSD",
         (1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
-        stiff=False,
+        long_runs=(("space", 1e-14),),
     ),
     _declared(
         "lsoda",

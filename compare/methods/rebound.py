@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..rhs.problem import Array, Problem
-from .method import Method, Outcome, Work, outcome
+from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome
 
 _POINTER = """
 @nb.extending.intrinsic
@@ -148,7 +148,7 @@ def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Ar
 
 def _declared(
     name: str, title: str, source: str, ladder: tuple[float, ...], prepare: Callable[[Problem, float], Work],
-    formulations: tuple[str, ...],
+    formulations: tuple[str, ...], **more: Any,
 ) -> Method:  # fmt: skip
     return Method(
         id=name,
@@ -162,6 +162,10 @@ def _declared(
         dense=False,
         requires=("rebound", "numba"),
         extra="methods-gpl",
+        family=Family.REBOUND,
+        libraries=("numpy", "numba", "rebound"),
+        stability=NINE_DIGITS,
+        **more,
     )
 
 
@@ -173,6 +177,7 @@ METHODS = (
         (1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
         prepare_bs,
         ("space", "momentum", "spin", "plane", "angles"),
+        long_runs=(("space", 1e-12),),
     ),
     _declared(
         "rebound_ias15",

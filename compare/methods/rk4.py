@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..rhs.problem import Problem
 from .fixed_step import prepare_fixed, runge_kutta
-from .method import Method, Work
+from .method import TWO_HUNDRED_STEPS, Family, Method, Work
 from .tableau import Tableau, fractions, triangle
 
 TABLEAU = Tableau(
@@ -32,4 +32,9 @@ METHOD = Method(
     dense=False,
     requires=("numba",),
     extra="methods",
+    order=TABLEAU.order,
+    family=Family.PAPER,
+    libraries=("numpy", "numba"),
+    stability=(("plane", 1 / 200), *TWO_HUNDRED_STEPS),
+    long_runs=(("plane", 0.05),),
 )

@@ -15,7 +15,7 @@ from reference.model.constants import Vector, is_zero
 
 from ..rhs.problem import Problem
 from .fixed_step import Derivatives, combined, moved, prepare_fixed
-from .method import Method, Work
+from .method import TWO_HUNDRED_STEPS, Family, Method, Work
 from .rk4 import TABLEAU
 
 
@@ -72,4 +72,8 @@ METHOD = Method(
     dense=False,
     requires=("numba",),
     extra="methods",
+    order=TABLEAU.order,
+    family=Family.GEOMETRIC,
+    libraries=("numpy", "numba"),
+    stability=TWO_HUNDRED_STEPS,
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from .fixed_step import nystrom_method
+from .method import TWO_HUNDRED_STEPS
 from .tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(
@@ -84,4 +85,6 @@ METHOD = nystrom_method(
     TABLEAU,
     (2, 1, 0.5, 0.2, 0.1, 0.05, 0.02),
     "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 6",
+    stability=TWO_HUNDRED_STEPS,
+    long_runs=(("plane", 0.25),),
 )

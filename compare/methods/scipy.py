@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..rhs.problem import Problem
-from .method import TRACEABLE, Method, Outcome, Work, outcome
+from .method import NINE_DIGITS, TRACEABLE, Family, Method, Outcome, Work, outcome
 
 LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning
 IMPLICIT = ("Radau", "BDF", "LSODA")
@@ -59,6 +59,9 @@ def _declared(name: str, code: str, title: str, source: str, ladder: tuple[float
         stiff=stiff,
         requires=("scipy", "numba"),
         extra="methods",
+        family=Family.SCIPY,
+        libraries=("numpy", "numba", "scipy"),
+        stability=NINE_DIGITS,
     )
 
 

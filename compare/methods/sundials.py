@@ -12,7 +12,7 @@ import numpy as np
 from reference.capture import captured
 
 from ..rhs.problem import Array, Problem
-from .method import Method, Outcome, Work, outcome
+from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome
 
 MOST_STEPS = 100_000_000  # between two output times
 
@@ -60,6 +60,9 @@ def _declared(code: str, title: str, *, stiff: bool) -> Method:
         stiff=stiff,
         requires=("sksundae", "numba"),
         extra="methods",
+        family=Family.COMPILED,
+        libraries=("numpy", "numba", "scikit-sundae"),
+        stability=NINE_DIGITS,
     )
 
 
