@@ -10,6 +10,7 @@ import numpy as np
 
 from reference.errors import InputError
 from reference.scene import Scene
+from reference.status import Status
 
 from ..rhs.problem import Array, Problem
 from .method import Method, Outcome, Setting, Work, failed
@@ -59,7 +60,7 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
             return failed(problem, "the output does not begin at t = 0")
         whole = len(states) == len(problem.times)
         return Outcome(
-            status="ok" if whole else "gave_up",
+            status=Status.OK if whole else Status.GAVE_UP,
             reason="" if whole else "the output lacks a grid time",
             reached_t=float(problem.times[len(states) - 1]),
             steps=None,

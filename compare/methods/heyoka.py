@@ -19,6 +19,7 @@ from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, real
+from reference.status import Status
 
 from ..rhs.problem import Array, Problem
 from .method import Exact, Family, Method, Outcome, Setting, Work, failed
@@ -66,7 +67,7 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
             return failed(problem, error.reason)
         exactly = None if number == DOUBLE else lambda: finer(states)
         steps = flow.steps - before
-        return Outcome("ok", "", float(problem.times[-1]), steps, None, lambda: cartesian(states), exactly)
+        return Outcome(Status.OK, "", float(problem.times[-1]), steps, None, lambda: cartesian(states), exactly)
 
     return work
 

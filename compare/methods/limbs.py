@@ -6,6 +6,8 @@ from fractions import Fraction
 
 import numpy as np
 
+from reference.status import Status
+
 from ..rhs.problem import Array, Problem
 from .method import Exact, Family, Method, Outcome, Work, failed
 
@@ -34,7 +36,7 @@ def prepare(problem: Problem, setting: float) -> Work:
         def finer() -> Exact:
             return Exact(finished_run.bits, [row[:6] for row in finished_run.grid])
 
-        return Outcome("ok", "", float(problem.times[-1]), finished_run.steps, None, cartesian, finer)
+        return Outcome(Status.OK, "", float(problem.times[-1]), finished_run.steps, None, cartesian, finer)
 
     return work
 

@@ -14,11 +14,11 @@ from typing import Literal
 import numpy as np
 
 from reference.scene import Scene
+from reference.status import Status
 
 from ..rhs.problem import Array, Problem
 
 Setting = Literal["step", "tolerance", "precision"]
-Status = Literal["ok", "gave_up", "not_finite"]
 
 PARIS = Fraction("67") / Fraction("9.80665")  # l/g in s² of the pendulum for which ladders of steps are written
 TRACEABLE = ("momentum", "space", "spin", "plane", "angles")  # formulations that can be traced to straight-line code
@@ -53,7 +53,7 @@ class Outcome:
     """The result of a run. A numerical failure is an outcome too, with its reason and the states before it.
 
     Attributes:
-        status: `ok`; `gave_up` if the method stopped by itself; `not_finite` if it continued to NaN or infinity.
+        status: OK; GAVE_UP if the method stopped by itself; NOT_FINITE if it continued to NaN or infinity.
         reason: why it is not ok, in the library's words if it has any; or its warning.
         reached_t: last output time that was reached, in s.
         steps: number of steps, None if the method does not report it.
@@ -186,11 +186,11 @@ def outcome(
     finite = np.isfinite(states).all(axis=1)
     rows = len(states) if finite.all() else int(np.argmin(finite))
     reached_t = float(problem.times[rows - 1]) if rows else 0.0
-    status: Status = "ok"
+    status = Status.OK
     if rows < len(states):
-        status, reason = "not_finite", reason or f"the state is not finite after t = {reached_t:g} s"
+        status, reason = Status.NOT_FINITE, reason or f"the state is not finite after t = {reached_t:g} s"
     elif rows < len(problem.times):
-        status, reason = "gave_up", reason or f"stopped after t = {reached_t:g} s without giving a reason"
+        status, reason = Status.GAVE_UP, reason or f"stopped after t = {reached_t:g} s without giving a reason"
     return Outcome(
         status=status,
         reason=reason,

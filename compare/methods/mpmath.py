@@ -9,6 +9,7 @@ from typing import Any
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
+from reference.status import Status
 
 from ..rhs.problem import Array, Problem
 from .method import Exact, Family, Method, Outcome, Work
@@ -49,7 +50,7 @@ def prepare(problem: Problem, setting: float) -> Work:
             bits = prec + SPARE_BITS
             return Exact(bits, [tuple(int(to_fraction(value) * 2**bits) for value in row) for row in rows()])
 
-        return Outcome("ok", "", float(problem.times[-1]), None, calls, cartesian, fixed)
+        return Outcome(Status.OK, "", float(problem.times[-1]), None, calls, cartesian, fixed)
 
     return work
 
