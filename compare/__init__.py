@@ -4,31 +4,50 @@
 >>> score = compare.assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
 >>> score.verdict
 'agrees'
+
+A trajectory from a file, an array or a program is a `Candidate`, and its judgement a `Score`:
+
+>>> candidate = compare.read("mine.csv")                              # doctest: +SKIP
+>>> compare.judge(candidate, "paris")                                 # doctest: +SKIP
+Score(disagrees with paris: 0.0012 m)
+
+`METHODS` and `APPROXIMATIONS` hold the integrators and the analytic approximations that are compared, by id; `study`
+measures their error against run time.
+
+>>> "rk4" in compare.METHODS
+True
+>>> compare.jugde                                                     # doctest: +ELLIPSIS
+Traceback (most recent call last):
+AttributeError: module 'compare' has no attribute 'jugde'; it has judge, ...
 """
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from reference.lazy import lazy
 
 if TYPE_CHECKING:
+    from .approximations import APPROXIMATIONS
     from .candidates.candidate import Candidate
     from .candidates.read import read
-    from .score.judge import Score
+    from .methods import METHODS
+    from .score.judge import Score, judge
+    from .studies.study import study
     from .testing import assert_agrees
 
-__all__ = ["Candidate", "Score", "assert_agrees", "read"]
+__all__ = ["APPROXIMATIONS", "METHODS", "Candidate", "Score", "assert_agrees", "judge", "read", "study"]
 
-_LAZY = {
-    "Candidate": "candidates.candidate",
-    "Score": "score.judge",
-    "assert_agrees": "testing",
-    "read": "candidates.read",
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name where it is first used."""
-    if name not in _LAZY:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f".{_LAZY[name]}", __name__), name)
+__getattr__, __dir__ = lazy(
+    __name__,
+    {
+        "APPROXIMATIONS": "approximations",
+        "Candidate": "candidates.candidate",
+        "METHODS": "methods",
+        "Score": "score.judge",
+        "assert_agrees": "testing",
+        "judge": "score.judge",
+        "read": "candidates.read",
+        "study": "studies.study",
+    },
+)

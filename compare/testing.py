@@ -11,11 +11,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from reference import InputError, Scene, load_scene
+from reference import InputError, Scene
 
 from .candidates.candidate import COLUMNS, candidate_of
 from .candidates.transit_times import checked_transits
-from .score.judge import Score, score
+from .score.judge import Score, judge
 
 
 def assert_agrees(
@@ -51,11 +51,10 @@ def assert_agrees(
         if array.dtype.kind not in "fiu":
             raise InputError(name, f"dtype {array.dtype}", "real numbers")
     arrays = {"t": times, **{name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}}
-    problem = scene if isinstance(scene, Scene) else load_scene(scene)
     transit_times = None if transits is None else checked_transits(np.asarray(transits, dtype=np.float64), "transits")
-    result = score(
+    result = judge(
         candidate_of("states", arrays),
-        problem,
+        scene,
         transits=transit_times,
         tolerance=tolerance,
         inputs=inputs,

@@ -26,7 +26,7 @@ FLOORS = {
         ["model"],
         ["scene", "table", "process", "packing", "capture"],
         ["precision", "shipped"],
-        ["errors", "status"],
+        ["errors", "status", "lazy"],
     ],
     "reference/engines": [
         ["side_by_side"],
@@ -44,7 +44,7 @@ FLOORS = {
         ["studies", "foucpend"],
         ["methods"],
         ["approximations", "rhs"],
-        ["candidates", "truth"],
+        ["candidates", "truth", "observed"],
         ["cache"],
     ],
 }

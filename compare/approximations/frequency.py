@@ -8,7 +8,7 @@ from typing import Any
 
 from reference import Scene
 
-from . import observed
+from ..observed.apsides import frequency
 from .approximation import Order, Printed, Quantity
 from .case import Case, at_rest, below, under_gravity
 from .mathar_linear import slow_down
@@ -70,7 +70,7 @@ def _quantity(
         drops=drops,
         orders=orders,
         formula=formula,
-        truth=observed.frequency,
+        truth=frequency,
         unit="Hz",
         **{"refuses": _swinging} | more,
     )

@@ -6,7 +6,7 @@ from typing import Any
 
 from reference import Scene
 
-from . import observed
+from ..observed.apsides import precession_period
 from .approximation import Order, Printed, Quantity
 from .case import Case, PlumbAxes, at_rest, below, under_gravity
 from .gastebois_small import small_angles
@@ -66,7 +66,7 @@ def _quantity(
         drops=drops,
         orders=orders,
         formula=formula,
-        truth=observed.precession_period,
+        truth=precession_period,
         unit="s",
         **{"refuses": _turning} | more,
     )

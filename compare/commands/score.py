@@ -99,7 +99,7 @@ def command(
 
         check_target(plot)
     from ..candidates.read import read, read_transits
-    from ..score.judge import score as judge
+    from ..score.judge import judge
 
     transit_times = None if transits is None else read_transits(transits)
     timed_candidates: list[tuple[Candidate, Timing | None]] = [(read(name), None) for name in candidates or ()]

@@ -30,7 +30,9 @@ truth, and transits are those that the reference finds, not the zeros of a parab
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from reference.lazy import lazy
 
 if TYPE_CHECKING:
     from .options import Options
@@ -38,13 +40,4 @@ if TYPE_CHECKING:
 
 __all__ = ["Options", "lines"]
 
-_LAZY = {"Options": "options", "lines": "output"}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a name where it is first used: `foucault --help` needs none of them."""
-    if name not in _LAZY:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
-    return getattr(import_module(f".{_LAZY[name]}", __name__), name)
+__getattr__, __dir__ = lazy(__name__, {"Options": "options", "lines": "output"})  # `foucault --help` needs neither

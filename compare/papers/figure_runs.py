@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 
 from reference import InputError, Scene, load_scene
+from reference.precision import Array
 
 from ..methods import METHODS, available
 from ..rhs.problem import Problem
@@ -14,7 +15,7 @@ from .digits import MP, acos, dot, mpf, pi, sin, sqrt
 from .mathar.frequency import slow_down
 from .mathar.triangle import apparent_gravity
 from .points import paris
-from .runs import Array, frequency, path_in, solved
+from .runs import frequency, path_in, solved
 from .truth import rest
 
 FIXED_STEP = ("rk4", "rkng56", "rkng67")  # -R 4, 5, 6

@@ -8,13 +8,15 @@ from typing import Any
 import numpy as np
 
 from reference import load_scene
+from reference.precision import Array
 
 from ..approximations import Motion, approximation
+from ..observed.swing_plane import rest_in_metres
 from ..report.plotting import COLOURS, SAME_BYTES, pyplot, svg_of
 from .digits import degrees, mpf
 from .figure_runs import estimate_at, frequencies, orders_at, window
 from .points import paris
-from .runs import Array, mean_direction, paris_path, rest_in_metres
+from .runs import paris_path, paris_swing_plane
 from .truth import rest_angle
 
 BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
@@ -120,7 +122,7 @@ def figure_6(plt: Any) -> Any:
     figure, axes = plt.subplots(figsize=(WIDE, HIGH))
     hours, states = _snapshots()
     axes.plot(hours, np.degrees(np.arctan2(states[:, 1], states[:, 0])), ".", color=BLUE, markersize=2)
-    plane = mean_direction()[::120]
+    plane = paris_swing_plane()[::120]
     for turn in (-1, 0, 1, 2):
         line = np.degrees(plane) + 180 * turn
         axes.plot(hours, np.where(np.abs(line) <= 180, line, np.nan), color=RED, linewidth=1)

@@ -7,19 +7,13 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from reference import Golden, Scene, Solution, load, load_scene, solve
 from reference.engines.trajectory import trajectory
-from reference.model.constants import constants
-from reference.model.force import rest_position
-from reference.precision import LONG_DOUBLE, context
+from reference.precision import LONG_DOUBLE, Array
 
+from ..observed.swing_plane import Gauge
 from .digits import mpf
-
-Array = npt.NDArray[np.float64]
-
-PREC = 128  # bits in which the rest position is computed before it becomes doubles
 
 
 @cache
@@ -46,11 +40,10 @@ def path_in(scene: Scene, times: Array) -> Array:
     return trajectory(scene, times, number=LONG_DOUBLE)
 
 
-def rotation(scene: Scene, t_end: float, swing_hz: float) -> float:
-    """Return the rotation of the swing plane in degrees an hour, by a line fitted to its directions every 10 s."""
+def rotation(scene: Scene, t_end: float) -> float:
+    """Return the rotation of the swing plane in degrees an hour, by a line fitted to its azimuths every 10 s."""
     times = np.arange(0.0, t_end + 5.0, 10.0)
-    turned = swing_direction(path_in(scene, times), rest_in_metres(scene), 2 * np.pi * swing_hz)
-    return float(np.polyfit(times / 3600, np.degrees(turned), 1)[0])
+    return float(np.polyfit(times / 3600, np.degrees(swing_plane(scene, path_in(scene, times))), 1)[0])
 
 
 def solved(assignments: Sequence[str], t_end: str, digits: int = 20) -> Solution:
@@ -74,30 +67,15 @@ def frequency(solution: Solution) -> Any:
     return mpf(halves) / 2 / mpf(last)
 
 
-def rest_in_metres(scene: Scene) -> Array:
-    """Return the rest position in m, shape (3,)."""
-    ctx = context(PREC)
-    k = constants(scene.exact, ctx)
-    return np.array([float(part * k.length) for part in rest_position(k, ctx)])
-
-
-def swing_direction(states: Array, rest: Array, rate: float) -> Array:
-    """Return the direction of the ellipse's major axis in rad, east to north, continuous; `rate` is the swing's, rad/s.
-
-    With Z = x + i y seen from the rest position, Z = p exp(i rate t) + q exp(-i rate t): p = (Z - i Z'/rate) / 2,
-    q = (Z + i Z'/rate) / 2, and the axis lies at (arg p + arg q) / 2.
-    """
-    z = states[:, 0] - rest[0] + 1j * (states[:, 1] - rest[1])
-    turned = 1j * (states[:, 3] + 1j * states[:, 4]) / rate
-    return np.asarray(np.unwrap(np.angle((z - turned) * (z + turned))) / 2)
+def swing_plane(scene: Scene, states: Array) -> Array:
+    """Return the azimuth of the swing plane in rad, east to north, without jumps."""
+    return np.unwrap(Gauge.of(scene).swing_plane(states), period=np.pi)
 
 
 @cache
-def mean_direction() -> Array:
-    """Return the direction of the Paris pendulum's swing plane in rad, every 0.25 s for 24 h."""
-    times = transit_times()
-    hertz = float(1 / times[1])
-    return swing_direction(paris_path()[1], rest_in_metres(load_scene("paris")), 2 * np.pi * hertz)
+def paris_swing_plane() -> Array:
+    """Return the azimuth of the Paris pendulum's swing plane in rad, every 0.25 s for 24 h."""
+    return swing_plane(load_scene("paris"), paris_path()[1])
 
 
 def lead(ahead: Array, behind: Array) -> float:

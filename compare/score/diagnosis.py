@@ -25,7 +25,7 @@ from reference.solver.sensitivity import Sensitivity, sensitivity, with_value
 
 from ..candidates.candidate import Candidate
 from ..rhs.constants import constants_in_double
-from .errors import Errors
+from .errors import TrajectoryErrors
 from .hypotheses import hypotheses
 
 EXPLAINED = 0.99  # share of the root mean square error that a hypothesis has to explain to be offered
@@ -76,7 +76,7 @@ class _Explanation:
     shift: float | None = None
 
 
-def diagnose(candidate: Candidate, errors: Errors, scene: Scene) -> Diagnosis | None:
+def diagnose(candidate: Candidate, errors: TrajectoryErrors, scene: Scene) -> Diagnosis | None:
     """Return the mistake that explains at least 99 % of the error, or None.
 
     Args:
@@ -126,7 +126,7 @@ class _Case:
     model: Variants
 
     @classmethod
-    def of(cls, candidate: Candidate, errors: Errors, scene: Scene) -> _Case:
+    def of(cls, candidate: Candidate, errors: TrajectoryErrors, scene: Scene) -> _Case:
         rows = _sample(len(errors.t))
         names = [name for name in ("x", "y", "z") if name in candidate.columns]
         observed = np.column_stack([errors.components[name][rows] for name in names])

@@ -12,7 +12,7 @@ def document(score: Score) -> dict[str, Any]:
     """Return a score as a JSON document; its keys are part of the command line's contract."""
     errors, transits = score.errors, score.transits
     row, component = errors.worst
-    turn = score.ellipse.largest_turn
+    turn = score.swing.largest_turn
     column = score.candidate.columns[component]
     expected = errors.truth.states[row, "xyz".index(component)]
     fields: dict[str, Any] = {
@@ -36,7 +36,7 @@ def document(score: Score) -> dict[str, Any]:
         "error_over_floor": errors.max_m / score.input_floor_m if score.input_floor_m else None,
         "growth_exponent": errors.growth_exponent,
         "swing_plane_error_deg": None if turn is None else math.degrees(turn),
-        "phase_error_s": score.ellipse.largest_delay,
+        "phase_error_s": score.swing.largest_delay,
         "h_drift_m2_s2": score.drifts.get("h_m2_s2"),
         "length_drift_m": score.drifts.get("length_m"),
         "worst": {

@@ -19,15 +19,15 @@ from reference.precision import Array
 from reference.scene import Inputs
 
 from ..candidates.candidate import COLUMNS, Candidate
+from ..observed.turn_and_delay import SwingErrors, swing_errors
 from ..rhs.constants import constants_in_double
 from ..studies.power_of_time import power_of_time
-from .swing_plane import EllipseErrors, ellipse_errors
 
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
 
 
 @dataclass(frozen=True)
-class Errors:
+class TrajectoryErrors:
     """A candidate's errors at its own times.
 
     Attributes:
@@ -117,13 +117,13 @@ class Errors:
             return None
         return power_of_time(self.t[above], self.position[above], ENVELOPES)
 
-    def ellipse(self, rest: tuple[float, float]) -> EllipseErrors:
+    def swing(self, rest: tuple[float, float]) -> SwingErrors:
         """Fit the turn of the swing plane and the delay; `rest` is x, y of the rest position in m."""
         error = np.column_stack([self.components["x"], self.components["y"]])
-        return ellipse_errors(self.t, self.truth.states, error, rest)
+        return swing_errors(self.t, self.truth.states, error, rest)
 
 
-def errors_of(candidate: Candidate, truth: Dense, golden: Golden) -> Errors:
+def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden) -> TrajectoryErrors:
     """Subtract the truth, evaluated at the candidate's times, from the candidate.
 
     Args:
@@ -146,7 +146,7 @@ def errors_of(candidate: Candidate, truth: Dense, golden: Golden) -> Errors:
     amplitude = max(float(part.max()) for part in distances) or float(golden.scene.exact.length)
     velocities = [np.column_stack([golden.vx, golden.vy, golden.vz]), truth.states[:, 3:]]
     speed = max(float(np.sqrt((part**2).sum(axis=1)).max()) for part in velocities)
-    return Errors(candidate.t, components, np.asarray(position), truth, truth.bound_m, amplitude, speed)
+    return TrajectoryErrors(candidate.t, components, np.asarray(position), truth, truth.bound_m, amplitude, speed)
 
 
 def _rates(states: Array, k: Constants) -> Array:

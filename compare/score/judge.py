@@ -1,4 +1,10 @@
-"""Judge a candidate against the truth: `score()` returns a `Score` with errors, verdict and diagnosis."""
+"""Judge a candidate against the truth: `judge()` returns a `Score` with errors, verdict and diagnosis.
+
+>>> from compare import judge
+>>> score = judge("mine.csv", "paris")                                # doctest: +SKIP
+>>> score.verdict, score.errors.max_m                                 # doctest: +SKIP
+('agrees', 3.1e-11)
+"""
 
 from __future__ import annotations
 
@@ -6,27 +12,28 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
-from reference import Golden, InputError, Scene
+from reference import Golden, InputError, Scene, UnreachableError, load_scene
 from reference.dataset.dense import WITHIN
-from reference.model.constants import constants
-from reference.model.force import rest_position
-from reference.precision import Array, context
+from reference.precision import Array
 
 from ..candidates.candidate import Candidate
 from ..candidates.external import Timing
+from ..candidates.read import read
+from ..observed.swing_plane import rest_in_metres
+from ..observed.turn_and_delay import SwingErrors
 from ..rhs.constants import constants_in_double
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
 from .diagnosis import Diagnosis, diagnose
-from .errors import Errors, drifts, errors_of
+from .errors import TrajectoryErrors, drifts, trajectory_errors
 from .input_floor import input_floor
-from .swing_plane import EllipseErrors
 from .transits import TransitErrors, transit_errors
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Score:
     """The judgement of a candidate.
 
@@ -37,7 +44,7 @@ class Score:
         golden: the dataset that the truth comes from.
         errors: at the candidate's times.
         tolerance_m: largest position error allowed, in m.
-        ellipse: turn of the swing plane and delay.
+        swing: turn of the swing plane and delay.
         drifts: of h and of |r| - l, if the candidate has the columns.
         transits: errors of its transits, or None.
         timing: run time of the program, or None.
@@ -50,15 +57,18 @@ class Score:
     scene: Scene
     why_inputs: str
     golden: Golden
-    errors: Errors
+    errors: TrajectoryErrors
     tolerance_m: float
-    ellipse: EllipseErrors
+    swing: SwingErrors
     drifts: dict[str, float]
     transits: TransitErrors | None = None
     timing: Timing | None = None
     diagnosis: Diagnosis | None = None
     looked: bool = False
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"Score({self.verdict} with {self.scene.id}: {self.errors.max_m:.2g} m)"
 
     @cached_property
     def input_floor_m(self) -> float:
@@ -94,9 +104,9 @@ class Score:
         return self.errors.max_m <= self.errors.bound_m
 
 
-def score(
-    candidate: Candidate,
-    scene: Scene,
+def judge(
+    candidate: Candidate | str | Path,
+    scene: Scene | str | Path,
     *,
     transits: Array | None = None,
     tolerance: float | None = None,
@@ -108,8 +118,8 @@ def score(
     """Judge a candidate against the truth of a scene.
 
     Args:
-        candidate: the trajectory, at its own times.
-        scene: the problem that it claims to solve.
+        candidate: the trajectory, at its own times, or the path of its file.
+        scene: the problem that it claims to solve: a scene, its id, or the path of a TOML file.
         transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
         tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
@@ -118,15 +128,18 @@ def score(
         report: called with the simulated time reached, in s, while the scene is solved.
 
     Raises:
-        InputError: a time of the candidate is outside the scene's span, or the tolerance is not positive.
+        InputError: the candidate or the scene cannot be read, a time of the candidate is outside the scene's span, or
+            the tolerance is not positive.
         UnreachableError: the scene cannot be solved.
     """
     if tolerance is not None and not 0 < tolerance < math.inf:
         raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
+    scene = scene if isinstance(scene, Scene) else load_scene(scene)
+    candidate = candidate if isinstance(candidate, Candidate) else read(candidate)
     problem, why = _reading(candidate, scene, inputs)
     digits, until = scene.run.digits if candidate.extended else DIGITS, float(candidate.t[-1])
     golden = golden_of(problem, digits, announce, report, until)
-    errors = errors_of(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
+    errors = trajectory_errors(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
     allowed = TOLERANCE * errors.amplitude_m if tolerance is None else tolerance
     times = candidate.transits if transits is None else transits
     unjudged = None if times is None else _unjudged(golden)
@@ -137,7 +150,7 @@ def score(
         golden=golden,
         errors=errors,
         tolerance_m=allowed,
-        ellipse=errors.ellipse(_rest(scene)),
+        swing=errors.swing(_rest(scene)),
         drifts=drifts(candidate, problem),
         transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
         notes=candidate.notes + ((unjudged,) if unjudged else ()),
@@ -162,13 +175,11 @@ def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, st
 
 def _rest(scene: Scene) -> tuple[float, float]:
     """Return x and y of the rest position in m; (0, 0) if none is singled out."""
-    ctx = context(80)
-    k = constants(scene.exact, ctx)
     try:
-        x, y, _ = rest_position(k, ctx)
-    except ValueError:
+        x, y, _ = rest_in_metres(scene)
+    except UnreachableError:
         return 0.0, 0.0
-    return float(x * k.length), float(y * k.length)
+    return float(x), float(y)
 
 
 def _unjudged(golden: Golden) -> str | None:
@@ -179,7 +190,7 @@ def _unjudged(golden: Golden) -> str | None:
     return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None
 
 
-def _transits(times: Array, golden: Golden, errors: Errors, tolerance_m: float) -> TransitErrors:
+def _transits(times: Array, golden: Golden, errors: TrajectoryErrors, tolerance_m: float) -> TransitErrors:
     k = constants_in_double(golden.scene.exact)
     omega = max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), errors.speed_m_s / k.length)
     end = float(golden.scene.exact.t_end)

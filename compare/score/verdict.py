@@ -25,7 +25,7 @@ def lines(score: Score) -> Iterator[str]:
     expected = float(errors.truth.states[row, "xyz".index(component)])
     got = float(score.candidate.columns[component][row])
     yield from _row("worst", f"{component} at t = {errors.t[row]:.10g} s", f"expected {expected:.17g}, got {got:.17g}")
-    turn, delay = score.ellipse.largest_turn, score.ellipse.largest_delay
+    turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
         yield from _row("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
     if score.drifts:

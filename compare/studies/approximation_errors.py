@@ -1,7 +1,7 @@
 """Errors of the analytic approximations against the reference: position and swing plane over time, single numbers.
 
 Two errors are measured: `error_m`, the largest distance between the approximate and the true bob up to a time, and
-`plane_error_arcsec`, the largest difference of the swing planes (`approximations.observed`), each about its own rest
+`plane_error_arcsec`, the largest difference of the swing planes (`observed.swing_plane`), each about its own rest
 position: the direction that somebody who believes the approximation would draw on the floor.
 """
 
@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from reference import FoucaultError, InputError, Scene, UnreachableError, trajectory
+from reference.precision import Array
 
 from ..approximations import Motion, Quantity, approximation, motions, quantities
-from ..approximations.approximation import Array
-from ..approximations.observed import Gauge
+from ..observed.swing_plane import Gauge
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
 _PER_SWING = 16  # samples in a period

@@ -7,7 +7,7 @@ from reference import load_scene
 from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement
 from ..digits import MP, atan2, cross, dot, mpf, norm, pi, radians, shown, sin
 from ..points import paris
-from ..runs import frequency, rotation, solved
+from ..runs import rotation, solved
 from .frames import turning
 from .gravity import apparent, pantheon_on_sphere
 from .numbers import MEAN_RADIUS, SIDEREAL_DAY, G
@@ -28,8 +28,7 @@ def _slower_when_wide() -> Finding:
 
 def _turn(latitude: str, t_end: float = 7200.0) -> float:
     scene = load_scene("paris", [f"site.latitude={latitude}"])
-    hz = float(frequency(solved([f"site.latitude={latitude}"], "100", 15)))
-    return rotation(scene, t_end, hz)
+    return rotation(scene, t_end)
 
 
 def _pole() -> Finding:

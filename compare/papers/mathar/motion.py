@@ -12,7 +12,7 @@ from ...approximations import Motion, approximation
 from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, Vector, add, degrees, mpf, norm, shown
 from ..points import paris
-from ..runs import frequency, lead, mean_direction, paris_day, paris_path, path_in, solved
+from ..runs import frequency, lead, paris_day, paris_path, paris_swing_plane, path_in, solved
 from ..truth import rest
 from .frequency import STILL, VII, day_frequency, planar_period, released
 
@@ -72,7 +72,7 @@ def _clouds_move() -> Finding:
 
 def mean_rotation() -> tuple[float, float]:
     """Return the swing plane's degrees an hour, by a line fitted to the day, and the largest distance from the line."""
-    hours, turned = paris_path()[0] / 3600, np.degrees(mean_direction())
+    hours, turned = paris_path()[0] / 3600, np.degrees(paris_swing_plane())
     slope, start = np.polyfit(hours, turned, 1)
     return float(slope), float(np.abs(turned - slope * hours - start).max())
 

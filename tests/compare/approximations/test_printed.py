@@ -10,7 +10,7 @@ import pytest
 from compare.approximations import APPROXIMATIONS, Motion, approximation
 from compare.approximations.case import Case
 from compare.approximations.gastebois_small import small_angles
-from compare.approximations.observed import frequency, precession_period
+from compare.observed.apsides import frequency, precession_period
 from reference import load_scene, parse_scene
 
 PARIS = load_scene("paris")

@@ -290,14 +290,14 @@ def test_the_rotation_switch_is_an_o_or_the_zero_that_is_printed(app: typer.Type
 
 def test_its_output_scores_as_the_paris_pendulum(tmp_path: Path) -> None:
     from compare.candidates.read import read
-    from compare.score.judge import score
+    from compare.score.judge import judge
 
     path = tmp_path / "pend.txt"
     path.write_text("\n".join([*output(**PARIS, T="600", t="0.05", s="100", R="6"), ""]))
     scene = load_scene("paris", ["run.t_end=600"])
-    result = score(read(path), scene, tolerance=1e-6)  # a parabola's transits at 0.05 s are good to 1.2e-6 s
+    result = judge(read(path), scene, tolerance=1e-6)  # a parabola's transits at 0.05 s are good to 1.2e-6 s
     assert result.agrees
     assert result.errors.max_m < 1e-12
     worse = tmp_path / "worse.txt"
     worse.write_text("\n".join([*output(**PARIS, T="600", t="0.05", s="100", a="1"), ""]))
-    assert not score(read(worse), scene, tolerance=1e-6, explain=False).agrees
+    assert not judge(read(worse), scene, tolerance=1e-6, explain=False).agrees

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from compare.papers import figure_runs, runs
-from reference import load, load_scene
+from compare.papers import figure_runs
+from reference import load
 
 
 def test_a_window_shows_the_golden_states() -> None:
@@ -31,19 +31,3 @@ def test_a_higher_order_is_nearer_to_the_truth_after_12000_s() -> None:
     states = figure_runs.orders_at(12000, 20, 0.5)
     worst = [float(np.abs(states[name][:, :3] - truth[:, :3]).max()) for name in ("rk4", "rkng56", "rkng67")]
     assert worst[0] > 100 * worst[1] > 1e4 * worst[2] / 100
-
-
-def test_the_swing_s_direction_of_a_known_ellipse_comes_out() -> None:
-    turn, rate = 0.7, 2.0
-    t = np.linspace(0, 3, 50)
-    along, across = np.cos(rate * t), 0.1 * np.sin(rate * t)
-    speed, drift = -rate * np.sin(rate * t), 0.1 * rate * np.cos(rate * t)
-    c, s = np.cos(turn), np.sin(turn)
-    states = np.array([
-        c * along - s * across, s * along + c * across, 0 * t, c * speed - s * drift, s * speed + c * drift, 0 * t,
-    ]).T  # fmt: skip
-    assert runs.swing_direction(states, np.zeros(3), rate) == pytest.approx(np.full(50, turn), abs=1e-12)
-
-
-def test_the_rest_position_in_metres_is_that_of_the_golden_page() -> None:
-    assert runs.rest_in_metres(load_scene("paris")) == pytest.approx([0, -0.115205163344595, -66.9999009534367])

@@ -19,8 +19,8 @@ from typer.testing import CliRunner
 
 from compare.candidates.candidate import Candidate
 from compare.score.diagnosis import diagnose
-from compare.score.errors import Errors
-from compare.score.judge import Score, score
+from compare.score.errors import TrajectoryErrors
+from compare.score.judge import Score, judge
 from foucault import app
 from reference import Scene, trajectory
 from reference.dataset.dense import Dense
@@ -107,7 +107,7 @@ def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int
     times = np.linspace(0.0, float(scene.run.t_end), rows)
     states = Variants().states(with_value(read_as.exact, name, Fraction(value)), times).round(decimals)
     columns = {word: np.ascontiguousarray(states[:, i]) for i, word in enumerate("xyz")}
-    return score(Candidate.of("made", times, columns), scene, inputs="binary64")
+    return judge(Candidate.of("made", times, columns), scene, inputs="binary64")
 
 
 @pytest.mark.parametrize(
@@ -139,7 +139,9 @@ def test_named_mistakes_that_are_the_same_at_this_site_are_both_named() -> None:
     truth = trajectory(read_as, times, number=LONG_DOUBLE)
     found = Dense(times, truth, np.zeros_like(truth), 1e-16, "long_double")
     candidate = Candidate.of("made", times, columns)
-    errors = Errors(times, {w: columns[w] - truth[:, i] for i, w in enumerate("xyz")}, times, found, 1e-16, 0.5, 0.2)
+    errors = TrajectoryErrors(
+        times, {w: columns[w] - truth[:, i] for i, w in enumerate("xyz")}, times, found, 1e-16, 0.5, 0.2
+    )
     said = diagnose(candidate, errors, read_as)
     assert said is not None
     assert (said.id, said.also[0]) == ("vertical_only", "no_coriolis")
@@ -155,5 +157,5 @@ def test_above_the_horizontal_no_approximation_of_small_swings_is_tried() -> Non
     found = Dense(times, truth, np.zeros_like(truth), 1e-16, "long_double")
     columns = {word: np.ascontiguousarray((truth + noise)[:, i]) for i, word in enumerate("xyz")}
     candidate = Candidate.of("made", times, columns)
-    errors = Errors(times, {w: noise[:, i] for i, w in enumerate("xyz")}, times, found, 1e-16, 1.0, 4.0)
+    errors = TrajectoryErrors(times, {w: noise[:, i] for i, w in enumerate("xyz")}, times, found, 1e-16, 1.0, 4.0)
     assert diagnose(candidate, errors, scene) is None

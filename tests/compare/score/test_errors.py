@@ -10,7 +10,7 @@ import pytest
 from small_scenes import make_scene
 
 from compare.candidates.candidate import COLUMNS, Candidate, candidate_of
-from compare.score.errors import drifts, errors_of
+from compare.score.errors import drifts, trajectory_errors
 from reference import load, trajectory
 from reference.dataset.dense import dense
 from reference.precision import LONG_DOUBLE
@@ -36,7 +36,7 @@ def candidate(truth, columns=COLUMNS, **changes):
 
 def test_an_error_that_was_put_in_is_measured(golden, truth):
     wave = 1e-3 * np.sin(TIMES)
-    made = errors_of(candidate(truth, x=wave, y=2e-3, z=-2e-3), truth, golden)
+    made = trajectory_errors(candidate(truth, x=wave, y=2e-3, z=-2e-3), truth, golden)
     assert made.max_m == pytest.approx(math.sqrt(8e-6 + np.max(wave**2)), rel=1e-9)
     assert made.rms_m == pytest.approx(math.sqrt(8e-6 + np.mean(wave**2)), rel=1e-9)
     assert made.end_m == pytest.approx(math.sqrt(8e-6 + wave[-1] ** 2), rel=1e-9)
@@ -47,21 +47,21 @@ def test_an_error_that_was_put_in_is_measured(golden, truth):
 def test_the_worst_component_of_the_worst_row_is_named(golden, truth):
     error = np.zeros_like(TIMES)
     error[100] = -1.0
-    made = errors_of(candidate(truth, ("x", "y", "vx"), y=error, vx=100.0), truth, golden)
+    made = trajectory_errors(candidate(truth, ("x", "y", "vx"), y=error, vx=100.0), truth, golden)
     assert made.worst == (100, "y")
     assert made.max_m == pytest.approx(1.0)  # velocities are no part of it
 
 
 def test_digits_count_the_amplitude_and_stop_at_the_bound(golden, truth):
-    made = errors_of(candidate(truth, x=1e-6), truth, golden)
+    made = trajectory_errors(candidate(truth, x=1e-6), truth, golden)
     assert made.amplitude_m == np.hypot(golden.x, golden.y).max()
     assert made.digits == pytest.approx(-math.log10(1e-6 / made.amplitude_m), abs=1e-6)
-    exact = errors_of(candidate(truth, ("x", "y")), truth, golden)
+    exact = trajectory_errors(candidate(truth, ("x", "y")), truth, golden)
     assert exact.digits <= -math.log10(truth.bound_m / exact.amplitude_m)
 
 
 def test_scd_and_mescd_are_those_of_the_test_set_for_ivp_solvers(golden, truth):
-    made = errors_of(candidate(truth, x=1e-6, vy=-1e-8), truth, golden)
+    made = trajectory_errors(candidate(truth, x=1e-6, vy=-1e-8), truth, golden)
     end = np.abs(truth.states[-1])
     assert made.scd == pytest.approx(-math.log10(max(1e-6 / end[0], 1e-8 / end[4])), abs=1e-6)
     mixed = max(1e-6 / (made.amplitude_m + end[0]), 1e-8 / (made.speed_m_s + end[4]))
@@ -70,28 +70,28 @@ def test_scd_and_mescd_are_those_of_the_test_set_for_ivp_solvers(golden, truth):
 
 def test_a_component_whose_truth_is_zero_has_no_relative_error(golden):
     truth = dense(golden, [0.0])
-    made = errors_of(candidate(truth, x=3e-4, vx=1.0), truth, golden)
+    made = trajectory_errors(candidate(truth, x=3e-4, vx=1.0), truth, golden)
     assert made.scd == pytest.approx(3.0)  # vx = 0 at the release is left out
     assert made.mescd == pytest.approx(-math.log10(1 / made.speed_m_s), abs=1e-6)
 
 
 @pytest.mark.parametrize("power", [1.0, 2.0, 3.5])
 def test_the_growth_of_an_error_is_its_power_of_time(golden, truth, power):
-    made = errors_of(candidate(truth, ("x", "y"), x=1e-8 * (TIMES / 60) ** power), truth, golden)
+    made = trajectory_errors(candidate(truth, ("x", "y"), x=1e-8 * (TIMES / 60) ** power), truth, golden)
     assert made.growth_exponent == pytest.approx(power, abs=0.1)
 
 
 def test_few_rows_have_no_growth(golden):
     for times in ([0.0], [0.0, 1.0], [100.0, 101.0, 102.0, 103.0]):
         truth = dense(golden, times)
-        assert errors_of(candidate(truth, x=1.0), truth, golden).growth_exponent is None
+        assert trajectory_errors(candidate(truth, x=1.0), truth, golden).growth_exponent is None
 
 
 def test_the_amplitude_does_not_hang_on_where_the_rows_fall(golden):
     """One row near the middle of a swing, where the bob is close to the vertical."""
     t = float(golden.t[np.argmin(np.hypot(golden.x[1:200], golden.y[1:200])) + 1])
     truth = dense(golden, [t])
-    made = errors_of(candidate(truth, ("x", "y")), truth, golden)
+    made = trajectory_errors(candidate(truth, ("x", "y")), truth, golden)
     assert np.hypot(*truth.states[0, :2]) < 0.5 * made.amplitude_m
     assert made.amplitude_m > 0.49
 
@@ -99,7 +99,7 @@ def test_the_amplitude_does_not_hang_on_where_the_rows_fall(golden):
 def test_long_doubles_are_judged_with_all_their_digits(golden, truth):
     wide = truth.states.astype(np.longdouble) + truth.low.astype(np.longdouble)
     arrays = {"t": TIMES, "x": wide[:, 0] + np.longdouble("1e-18"), "y": wide[:, 1]}
-    made = errors_of(candidate_of("wide", arrays), truth, golden)
+    made = trajectory_errors(candidate_of("wide", arrays), truth, golden)
     assert made.max_m == pytest.approx(1e-18, rel=0.1)
 
 
@@ -111,10 +111,10 @@ def test_a_time_that_is_no_double_is_taken_as_it_is(golden):
     late = (times - near).astype(float)
     moved = truth.states[:, :3] + 0.0
     wide = moved.astype(np.longdouble) + truth.low[:, :3] + truth.states[:, 3:] * late[:, None]
-    made = errors_of(candidate_of("wide", {"t": times, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
+    made = trajectory_errors(candidate_of("wide", {"t": times, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
     assert np.abs(late).max() > 1e-12
     assert made.max_m < 1e-18
-    blind = errors_of(candidate_of("wide", {"t": near, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
+    blind = trajectory_errors(candidate_of("wide", {"t": near, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
     assert blind.max_m > 1e-14
 
 

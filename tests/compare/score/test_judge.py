@@ -344,7 +344,7 @@ def test_collinear_inputs_are_both_named(foucault, tmp_path):
 def test_a_day_of_100000_rows_is_judged_in_less_than_three_times_its_reading_and_one_run(tmp_path, kind):
     """Cold, that is with the truth evaluated at its times; imports and compilation apart."""
     from compare.candidates.read import read
-    from compare.score.judge import score
+    from compare.score.judge import judge
 
     paris = load_scene("paris", ["inputs=binary64"])
     times = np.linspace(0, 86400, 100_000)
@@ -354,7 +354,7 @@ def test_a_day_of_100000_rows_is_judged_in_less_than_three_times_its_reading_and
         write_csv(path, times, made)
     else:
         np.savez(path, t=times, **dict(zip(COLUMNS, made.T, strict=True)))
-    score(read(write_csv(tmp_path / "short.csv", times[:100], trajectory(paris, times[:100]))), paris)  # compiles
+    judge(read(write_csv(tmp_path / "short.csv", times[:100], trajectory(paris, times[:100]))), paris)  # compiles
     ratios = []
     for k in range(5):
         begun = time.process_time()
@@ -364,6 +364,6 @@ def test_a_day_of_100000_rows_is_judged_in_less_than_three_times_its_reading_and
         object.__setattr__(candidate, "t", candidate.t * (1 - k * 2.0**-40))  # times that no cache knows
         begun = time.process_time()
         read(path)
-        score(candidate, paris)
+        judge(candidate, paris)
         ratios.append((time.process_time() - begun) / alone)
     assert min(ratios) < 3

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from compare.approximations import approximation
-from compare.approximations.observed import PER_SWING, Gauge, frequency, precession_period
+from compare.observed.apsides import PER_SWING, apsides, frequency, precession_period
+from compare.observed.swing_plane import Gauge, rest_in_metres
 from reference import UnreachableError, load_scene, parse_scene, trajectory
 
 PARIS = load_scene("paris")
@@ -30,6 +31,10 @@ def test_the_plane_of_a_turntable_ellipse_is_its_major_axis_at_every_phase(turn,
     frame = np.exp(-1j * turn * t)
     plane = gauge.swing_plane(rows_of(frame * ellipse, frame * (speed - 1j * turn * ellipse)))
     assert np.abs(np.sin(plane - direction + turn * t)) == pytest.approx(0, abs=1e-14)
+
+
+def test_the_rest_position_in_metres_is_that_of_the_golden_page():
+    assert rest_in_metres(PARIS) == pytest.approx([0, -0.115205163344595, -66.9999009534367])
 
 
 def test_a_circle_has_no_plane():
@@ -53,9 +58,8 @@ def test_apsides_of_an_ellipse_are_found_to_rounding():
     gauge = Gauge((0.0, 0.0, -1.0), 1.0, omega, 0.0)
     t = np.arange(600) * (gauge.period / PER_SWING)
     phase = omega * t - start
-    times, azimuths = gauge.apsides(
-        t, rows_of(np.cos(phase) + 1j * minor * np.sin(phase), omega * (1j * minor * np.cos(phase) - np.sin(phase)))
-    )
+    rows = rows_of(np.cos(phase) + 1j * minor * np.sin(phase), omega * (1j * minor * np.cos(phase) - np.sin(phase)))
+    times, azimuths = apsides(gauge, t, rows)
     expected = (start + np.pi * np.arange(len(times) + 1)) / omega
     expected = expected[expected > times[0] - 1][: len(times)]
     assert len(times) > 15

@@ -1,4 +1,7 @@
-"""Fit how far a candidate's swing plane is turned and its phase delayed against the truth.
+"""Fit how far one motion's swing plane is turned, and its phase delayed, against another's.
+
+`swing_plane` reads the azimuth off each state by itself, and so needs velocities. Here two motions are compared, a
+candidate and the truth, and positions alone will do; a small turn is the difference of the two azimuths.
 
 Near the vertical the bob moves on an ellipse about its rest position. A candidate whose ellipse is turned by a
 small angle δθ and that is late by a small delay δτ differs from the truth u = (x, y) - rest by
@@ -25,7 +28,7 @@ TURNS = 4  # Gauss-Newton steps: the turn found so far is applied exactly and th
 
 
 @dataclass(frozen=True)
-class EllipseErrors:
+class SwingErrors:
     """Turn of the swing plane in radians (positive from east to north) and delay in s, for each part of the run."""
 
     t: Array
@@ -43,7 +46,7 @@ class EllipseErrors:
         return float(np.abs(self.delay).max()) if len(self.delay) else None
 
 
-def ellipse_errors(t: Array, truth: Array, error: Array, rest: tuple[float, float]) -> EllipseErrors:
+def swing_errors(t: Array, truth: Array, error: Array, rest: tuple[float, float]) -> SwingErrors:
     """Fit turn and delay of a candidate, part by part.
 
     Args:
@@ -53,12 +56,12 @@ def ellipse_errors(t: Array, truth: Array, error: Array, rest: tuple[float, floa
         rest: x and y of the rest position in m.
     """
     if len(t) < FEWEST:
-        return EllipseErrors(np.empty(0), np.empty(0), np.empty(0))
+        return SwingErrors(np.empty(0), np.empty(0), np.empty(0))
     parts = np.array_split(np.arange(len(t)), max(1, min(BLOCKS, len(t) // ROWS)))
     samples = [part[:: -(-len(part) // MOST_ROWS)] for part in parts]
     fits = [_fit(truth[part], error[part], rest) for part in samples]
     middle = np.array([float(np.mean(t[part])) for part in parts])
-    return EllipseErrors(middle, np.array([turn for turn, _ in fits]), np.array([delay for _, delay in fits]))
+    return SwingErrors(middle, np.array([turn for turn, _ in fits]), np.array([delay for _, delay in fits]))
 
 
 def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, float]:

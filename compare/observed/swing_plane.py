@@ -1,0 +1,100 @@
+"""The rest position, the linear oscillator about it, and the swing plane of a motion, instant by instant.
+
+A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its rest position. Let
+Z = X + iY be the displacement in the plane at right angles to the plumb line (X east, Y north), Z' its rate on the
+ground, Ω_n the component of Ω along the plumb line, and ω the frequency. In axes that do not turn, position and
+velocity over ω are Z and S = (Z' + i Ω_n Z)/ω, and the major axis of the ellipse has the direction
+    ψ = arg(Z² + S²)/2.
+For Z = C1 exp(-iωt) + C2 exp(iωt) this is arg(4 C1 C2)/2 at every t. The axes on the ground and those that do not turn
+coincide at the moment in question, so ψ is the azimuth (from east to north) on the ground. It is counted modulo 180°,
+and it has no meaning on a circle (C1 or C2 zero).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from reference import Scene, UnreachableError
+from reference.model.constants import Vector
+from reference.model.force import tension
+from reference.model.start import Start, scaled
+from reference.precision import Array
+
+PREC = 200  # bits in which a rest position is computed before it becomes doubles
+_ROUND = 1e-6  # an ellipse with |Z² + S²| below this part of |Z|² + |S|² is nearly a circle and has no direction
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """A rest position and the linear oscillator about it, by which the swing plane and the apsides are measured.
+
+    Attributes:
+        rest: unit vector from the suspension to the rest position.
+        length: l in m.
+        omega: ω in rad/s.
+        turn: Ω_n in rad/s.
+    """
+
+    rest: tuple[float, float, float]
+    length: float
+    omega: float
+    turn: float
+
+    @classmethod
+    def of(cls, scene: Scene, rest: Vector | None = None) -> Gauge:
+        """Return the gauge of a scene about `rest` in m, or about the scene's own rest position.
+
+        ω follows from the tension of the cord at the scene's rest position.
+
+        Raises:
+            UnreachableError: there is no rest position, or nothing pulls the bob back to it.
+        """
+        start, hanging = _hanging(scene)
+        turn = -start.ctx.mpf(start.k.turn[1]) * hanging[1] - start.ctx.mpf(start.k.turn[2]) * hanging[2]
+        square = tension(hanging, (0, 0, 0), start.k) + turn**2
+        if not square > 0:
+            raise UnreachableError("nothing pulls the bob back to its rest position: there is no swing to measure.")
+        east, north, up = hanging if rest is None else scaled(rest, start.k.length)
+        length, omega = float(start.k.length), float(start.ctx.sqrt(square))
+        return cls((float(east), float(north), float(up)), length, omega, float(turn))
+
+    @cached_property
+    def period(self) -> float:
+        """Period 2π/ω in s."""
+        return float(2 * np.pi / self.omega)
+
+    def displacement(self, rows: Array) -> tuple[Any, Any]:
+        """Return Z in m and Z' in m/s of rows x, y, z, vx, vy, vz."""
+        _, y, z = self.rest
+        return rows[:, 0] + 1j * (rows[:, 2] * y - rows[:, 1] * z), rows[:, 3] + 1j * (rows[:, 5] * y - rows[:, 4] * z)
+
+    def swing_plane(self, rows: Array) -> Array:
+        """Return ψ in rad, in (-π/2, π/2]; NaN where the ellipse is a circle."""
+        place, rate = self.displacement(rows)
+        speed = (rate + 1j * self.turn * place) / self.omega
+        square = place**2 + speed**2
+        size = np.abs(place) ** 2 + np.abs(speed) ** 2
+        return np.where(np.abs(square) > _ROUND * size, np.angle(square) / 2, np.nan)
+
+
+def rest_in_metres(scene: Scene) -> Array:
+    """Return the rest position in m, shape (3,).
+
+    Raises:
+        UnreachableError: no rest position is singled out.
+    """
+    start, hanging = _hanging(scene)
+    return np.array([float(part * start.k.length) for part in hanging])
+
+
+def _hanging(scene: Scene) -> tuple[Start, Vector]:
+    """Return the start of a scene and its rest position over l."""
+    start = Start.of(scene.exact, PREC)
+    try:
+        return start, start.rest
+    except (ValueError, ZeroDivisionError):
+        raise UnreachableError("the scene has no rest position to swing about.") from None
