@@ -45,7 +45,7 @@ FLOORS = {
         ["methods"],
         ["approximations", "rhs"],
         ["candidates", "truth", "observed"],
-        ["cache"],
+        ["cache", "power_law"],
     ],
 }
 

@@ -13,8 +13,8 @@ from typing import Any
 
 from reference import InputError
 
+from ..power_law import LEAST_POINTS, PowerLaw, power_law
 from ..studies.row import EXTRAPOLATED, OK, Row
-from .power_law import LEAST_POINTS, PowerLaw, power_law
 
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors for which costs are tabulated and the cheapest method is named
 PAPER_METHOD, PAPER_NAME = "rk4", "the paper's RK4"

@@ -20,8 +20,8 @@ from reference.scene import Inputs
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..observed.turn_and_delay import SwingErrors, swing_errors
+from ..power_law import power_of_time
 from ..rhs.constants import constants_in_double
-from ..studies.power_of_time import power_of_time
 
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
 

@@ -9,6 +9,7 @@ import numpy as np
 from reference import Scene, parse_scene, trajectory
 
 from ..approximations.approximation import Approximation, Motion, Order, Quantity
+from ..power_law import LEAST_POINTS, power_law
 from .variation import released, varied
 
 BASE = parse_scene(
@@ -24,7 +25,7 @@ class Measured:
 
     Attributes:
         errors: of a motion the largest distance in m within OBSERVED_S seconds, of a quantity as it declares.
-        slope: least squares fit of log(error) against log(value); NaN from a single value.
+        slope: least squares fit of log(error) against log(value); NaN from fewer than three values.
     """
 
     order: Order
@@ -52,6 +53,6 @@ def measure(approximation: Approximation, order: Order, base: Scene = BASE) -> M
         scenes = [released(scene, 0.6 * order.amplitude, 0.8 * order.amplitude) for scene in scenes]
     errors = tuple(error(approximation, scene) for scene in scenes)
     slope = float("nan")
-    if len(errors) > 1 and min(errors) > 0:
-        slope = float(np.polyfit(np.log(order.values), np.log(errors), 1)[0])
+    if len(errors) >= LEAST_POINTS and min(errors) > 0:
+        slope = power_law(order.values, errors).exponent
     return Measured(order, errors, slope)

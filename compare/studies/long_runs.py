@@ -18,11 +18,11 @@ from reference import FoucaultError, Golden, Scene, load, load_scene, parse_scen
 from reference.process import Emit
 
 from ..methods import METHODS, Problem, available
+from ..power_law import power_of_time
 from ..truth import golden_of
 from .isolated import isolated
 from .journal import Journal
 from .method_errors import GridTruth
-from .power_of_time import power_of_time
 
 SCENE = "paris_30d"
 TRUTH_DIGITS = 36  # enough to judge runs in 113 bits

@@ -6,9 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from ...power_law import PowerLaw
 from ...studies.row import Row
 from ..pareto import PRECISION_METHOD, Curve, cost_of, cost_of_digits, curves, digits_of
-from ..power_law import PowerLaw
 from .drawing import BAND, FAINT, limits, logarithmic, sheet, svg_text
 from .families import styles
 from .labels import Label, place

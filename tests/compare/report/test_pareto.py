@@ -9,7 +9,6 @@ from itertools import pairwise
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.stats import linregress
 
 from compare.report.pareto import (
     cost_at,
@@ -21,9 +20,7 @@ from compare.report.pareto import (
     sentences,
     whole_evaluations,
 )
-from compare.report.power_law import power_law
 from compare.studies.row import Row
-from reference import InputError
 
 BOUND = 1e-40
 
@@ -179,22 +176,6 @@ def test_where_the_papers_method_is_the_cheapest_the_next_is_named():
 def test_an_extrapolated_winner_is_marked_in_its_sentence():
     lines = sentences(document(ladder("a", [(1e-4, 3.0)], status="extrapolated")))
     assert "extrapolated" in lines[0]
-
-
-def test_the_power_law_and_its_standard_error_are_those_of_scipy():
-    x = [10.0, 19.0, 31.0, 45.0, 74.0]
-    y = [0.9, 2.1, 6.3, 11.0, 37.0]
-    law, truth = power_law(x, y), linregress([math.log(v) for v in x], [math.log(v) for v in y])
-    assert law.exponent == pytest.approx(truth.slope, rel=1e-12)
-    assert law.standard_error == pytest.approx(truth.stderr, rel=1e-12)
-    assert law.factor == pytest.approx(math.exp(truth.intercept), rel=1e-12)
-    assert (law.points, law.low, law.high) == (5, pytest.approx(10), pytest.approx(74))
-
-
-@pytest.mark.parametrize("x", [[], [1.0, 2.0], [3.0, 3.0, 3.0], [-1.0, 0.0, 2.0]])
-def test_a_power_law_needs_three_points_at_different_places(x):
-    with pytest.raises(InputError):
-        power_law(x, [1.0] * len(x))
 
 
 def test_the_cost_of_digits_leaves_out_rows_at_the_bound():

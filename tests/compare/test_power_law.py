@@ -1,11 +1,31 @@
-"""The exponent of time of errors whose exponent is known."""
+"""Power laws: the fit beside SciPy's, and the exponent of time of errors whose exponent is known."""
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
+from scipy.stats import linregress
 
-from compare.studies.power_of_time import power_of_time
+from compare.power_law import power_law, power_of_time
+from reference import InputError
+
+
+def test_the_power_law_and_its_standard_error_are_those_of_scipy():
+    x = [10.0, 19.0, 31.0, 45.0, 74.0]
+    y = [0.9, 2.1, 6.3, 11.0, 37.0]
+    law, truth = power_law(x, y), linregress([math.log(v) for v in x], [math.log(v) for v in y])
+    assert law.exponent == pytest.approx(truth.slope, rel=1e-12)
+    assert law.standard_error == pytest.approx(truth.stderr, rel=1e-12)
+    assert law.factor == pytest.approx(math.exp(truth.intercept), rel=1e-12)
+    assert (law.points, law.low, law.high) == (5, pytest.approx(10), pytest.approx(74))
+
+
+@pytest.mark.parametrize("x", [[], [1.0, 2.0], [3.0, 3.0, 3.0], [-1.0, 0.0, 2.0]])
+def test_a_power_law_needs_three_points_at_different_places(x):
+    with pytest.raises(InputError):
+        power_law(x, [1.0] * len(x))
 
 
 @pytest.mark.parametrize("power", [0.0, 0.5, 1.0, 1.5, 2.0, 7.0])

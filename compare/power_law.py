@@ -1,12 +1,15 @@
-"""Least squares fit of a power law y = factor · x**exponent, with the standard error of the exponent."""
+"""Fit power laws by least squares in logarithms: y = factor · x**exponent, and the power of time of a growing error."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
 from reference import InputError
+from reference.precision import Array
 
 LEAST_POINTS = 3  # a fit with a standard error needs at least three
 
@@ -36,7 +39,7 @@ class PowerLaw:
         return float(self.factor * x**self.exponent)
 
 
-def power_law(x: Sequence[float], y: Sequence[float]) -> PowerLaw:
+def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     """Fit a power law by least squares to the points with x > 0 and y > 0.
 
     Raises:
@@ -55,3 +58,25 @@ def power_law(x: Sequence[float], y: Sequence[float]) -> PowerLaw:
     low, high = min(u for u, _ in points), max(u for u, _ in points)
     factor = math.exp(mean_v - exponent * mean_u)
     return PowerLaw(factor, exponent, error, len(points), math.exp(low), math.exp(high))
+
+
+def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:
+    """Return times and the largest error up to each, thinned to at most `parts` points equally far apart in log t.
+
+    Args:
+        t: times in s, above zero, increasing, shape (rows,), at least one.
+        error: errors at these times.
+        parts: number of points, so that late times do not weigh more.
+    """
+    at = np.unique(np.searchsorted(t, np.geomspace(t[0], t[-1], parts), side="right") - 1)
+    at = at[at >= 0]
+    return t[at], np.maximum.accumulate(error)[at]
+
+
+def power_of_time(t: Array, error: Array, parts: int) -> float | None:
+    """Return the exponent p of error ∝ t^p, fitted to the largest error so far; None if there are too few points.
+
+    The arguments are those of `largest_so_far`; errors are above zero.
+    """
+    times, largest = largest_so_far(t, error, parts)
+    return power_law(times.tolist(), largest.tolist()).exponent if len(times) >= LEAST_POINTS else None
