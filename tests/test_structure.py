@@ -44,7 +44,7 @@ FLOORS = {
         ["studies", "foucpend"],
         ["methods"],
         ["approximations", "rhs"],
-        ["candidates", "truth", "observed"],
+        ["candidates", "truth", "observed", "position_error"],
         ["cache", "power_law"],
     ],
 }

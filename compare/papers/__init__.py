@@ -7,7 +7,7 @@ every printed formula, number or sentence, with the computation to compare it wi
 - `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a misprint);
 - `catalogue.py`: the list of all sections, in the order of print;
 - `points.py`: random points at which formulas are evaluated, and the numbers of the Paris pendulum;
-- `truth.py`: the truth about formulas, from the Lagrangian; `linear.py`: the same for the linear pendulum;
+- `first_principles.py`: the yardstick of formulas, from the Lagrangian; `linear.py`: the same for the linear pendulum;
 - `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
 - `runs.py`: runs of the reference that numbers and sentences rest on; `figure_runs.py`: runs for the figures only;
 - `figures.py` and `captions.py`: the first paper's figures, drawn again, and their captions;
@@ -48,13 +48,13 @@ def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
     Raises:
         InputError: matplotlib or numba is not installed, or the folder holds another page or cannot be written.
     """
+    from ..report.charts.drawing import check_matplotlib
     from ..report.folder import PAGE, check_folder, write_files
-    from ..report.plotting import pyplot
     from .figure_runs import check_methods
     from .figures import FIGURES, svg
     from .page import files_of
 
-    pyplot("--out")  # so that a missing package is reported before the work
+    check_matplotlib("--out")  # so that a missing package is reported before the work
     check_folder(out, [PAGE])
     check_methods()
     judged = rows(report)

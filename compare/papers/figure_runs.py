@@ -12,11 +12,11 @@ from reference.precision import Array
 from ..methods import METHODS, available
 from ..rhs.problem import Problem
 from .digits import MP, acos, dot, mpf, pi, sin, sqrt
+from .first_principles import rest
 from .mathar.frequency import slow_down
 from .mathar.triangle import apparent_gravity
 from .points import paris
 from .runs import frequency, path_in, solved
-from .truth import rest
 
 FIXED_STEP = ("rk4", "rkng56", "rkng67")  # -R 4, 5, 6
 LATITUDES = tuple(range(-90, 91, 10))

@@ -12,34 +12,23 @@ from reference.precision import Array
 
 from ..approximations import Motion, approximation
 from ..observed.swing_plane import rest_in_metres
-from ..report.plotting import COLOURS, SAME_BYTES, pyplot, svg_of
+from ..position_error import difference, distance
+from ..report.charts.drawing import COLOURS, FAINT, picture, sheet
 from .digits import degrees, mpf
 from .figure_runs import estimate_at, frequencies, orders_at, window
+from .first_principles import rest_angle
 from .points import paris
 from .runs import paris_path, paris_swing_plane
-from .truth import rest_angle
 
 BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
-GREY = "#888888"
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WINDOWS = (0, 7000, 12000)  # s
 WIDE, HIGH = 8.0, 4.2  # inches
 
-STYLE = SAME_BYTES | {
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.titlelocation": "left",
-    "axes.titlesize": "medium",
-    "figure.constrained_layout.use": True,
-    "font.size": 9.5,
-    "legend.frameon": False,
-    "lines.linewidth": 1.3,
-}
 
-
-def figure_1(plt: Any) -> Any:
+def figure_1(figure: Any) -> None:
     """Draw the rest position's angle against latitude, l = 1, 10, 100 m."""
-    figure, axes = plt.subplots(figsize=(WIDE, HIGH))
+    axes = figure.subplots()
     latitudes = np.linspace(-90, 90, 73)
     for length, colour, dashes in zip((1, 10, 100), (BLUE, RED, GREEN), DASHES, strict=False):
         p = paris().but(length=mpf(length))
@@ -48,27 +37,24 @@ def figure_1(plt: Any) -> Any:
     axes.set(xlabel="geodetic latitude in °", ylabel="deviation from the vertical in °", xlim=(-90, 90), ylim=(0, None))
     axes.set_xticks(range(-90, 91, 30))
     axes.legend(loc="upper center")
-    return figure
 
 
-def figure_3(plt: Any) -> Any:
+def figure_3(figure: Any) -> None:
     """Draw x and y over 20 s, three times."""
-    figure, panels = plt.subplots(1, 3, figsize=(WIDE, HIGH), sharey=True)
+    panels = figure.subplots(1, 3, sharey=True)
     for begin, axes in zip(WINDOWS, panels, strict=True):
         times, states = window(begin, 20)
         axes.plot(times, states[:, 0], color=BLUE, linestyle=DASHES[0], label="x, east")
         axes.plot(times, states[:, 1], color=RED, linestyle=DASHES[1], label="y, north")
-        axes.axhline(0, color=GREY, linewidth=0.5)
+        axes.axhline(0, color=FAINT, linewidth=0.5)
         axes.set(xlabel="t in s", xlim=(begin, begin + 20))
         axes.set_xticks([begin + 5, begin + 15])
     panels[0].set_ylabel("position in m")
     _legend_above(figure, panels[0])
-    return figure
 
 
-def figure_4(plt: Any) -> Any:
+def figure_4(figure: Any) -> None:
     """Draw three swings in space and from above."""
-    figure = plt.figure(figsize=(WIDE, HIGH))
     space, above = figure.add_subplot(1, 2, 1, projection="3d"), figure.add_subplot(1, 2, 2)
     rest = rest_in_metres(load_scene("paris"))
     for begin, colour, dashes in zip(WINDOWS, (BLUE, RED, GREEN), DASHES, strict=False):
@@ -83,7 +69,6 @@ def figure_4(plt: Any) -> Any:
     space.tick_params(labelsize=8, pad=1)
     space.locator_params(nbins=5)
     space.view_init(elev=22, azim=-65)
-    return figure
 
 
 def _snapshots() -> tuple[Array, Array]:
@@ -97,9 +82,9 @@ def _day(axes: Any) -> None:
     axes.set_xticks(range(0, 25, 3))
 
 
-def figure_5(plt: Any) -> Any:
+def figure_5(figure: Any) -> None:
     """Draw z over a day."""
-    figure, axes = plt.subplots(figsize=(WIDE, HIGH))
+    axes = figure.subplots()
     hours, states = _snapshots()
     axes.plot(hours, states[:, 2], ".", color=BLUE, markersize=2)
     axes.axhline(states[0, 2], color=RED, linewidth=1, linestyle=DASHES[1])
@@ -114,12 +99,11 @@ def figure_5(plt: Any) -> Any:
     axes.set(ylabel="z in m")
     axes.ticklabel_format(axis="y", useOffset=False)
     _day(axes)
-    return figure
 
 
-def figure_6(plt: Any) -> Any:
+def figure_6(figure: Any) -> None:
     """Draw the azimuth over a day."""
-    figure, axes = plt.subplots(figsize=(WIDE, HIGH))
+    axes = figure.subplots()
     hours, states = _snapshots()
     axes.plot(hours, np.degrees(np.arctan2(states[:, 1], states[:, 0])), ".", color=BLUE, markersize=2)
     plane = paris_swing_plane()[::120]
@@ -129,12 +113,12 @@ def figure_6(plt: Any) -> Any:
     axes.set(ylabel="azimuth λ in ° (east to north)", ylim=(-180, 180))
     axes.set_yticks(range(-180, 181, 60))
     _day(axes)
-    return figure
 
 
-def figure_7(plt: Any) -> Any:
+def figure_7(figure: Any) -> None:
     """Draw x and y after 12000 s: full, without rotation, without the off-diagonal elements, without Ω²."""
-    figure, panels = plt.subplots(2, 1, figsize=(WIDE, 1.35 * HIGH), sharex=True)
+    figure.set_figheight(1.35 * HIGH)
+    panels = figure.subplots(2, 1, sharex=True)
     times, full = window(12000, 20)
     no_rotation = load_scene("paris", ["site.rotation_rate=0"])
     output_times = np.concatenate(([0.0], times))
@@ -147,12 +131,11 @@ def figure_7(plt: Any) -> Any:
         axes.plot(times, full[:, i], color=PINK, linewidth=2.2, label="full theory")
         for label, colour, dashes, states in others:
             axes.plot(times, states[:, i], color=colour, linestyle=dashes, label=label)
-        axes.axhline(0, color=GREY, linewidth=0.5)
+        axes.axhline(0, color=FAINT, linewidth=0.5)
         axes.set(ylabel=f"{'xy'[i]} in m", xlim=(12000, 12020))
     panels[1].set_xlabel("t in s")
     panels[1].set_xticks(range(12000, 12021, 5))
     _legend_above(figure, panels[0])
-    return figure
 
 
 def _path(name: str, times: Array) -> Array:
@@ -161,9 +144,9 @@ def _path(name: str, times: Array) -> Array:
     return motion.trajectory(load_scene("paris"), times)[1:]
 
 
-def figure_8(plt: Any) -> Any:
+def figure_8(figure: Any) -> None:
     """Draw the frequency against latitude."""
-    figure, axes = plt.subplots(figsize=(WIDE, HIGH))
+    axes = figure.subplots()
     latitudes = np.linspace(-90, 90, 91)
     axes.plot(latitudes, [estimate_at(float(d)) for d in latitudes], color=RED, linewidth=1)
     measured = frequencies()
@@ -172,30 +155,29 @@ def figure_8(plt: Any) -> Any:
         "Paris, 0.0608436 Hz",
         (48.846111, estimate_at(48.846111)),
         (12, 0.060868),
-        arrowprops={"arrowstyle": "-", "color": GREY, "linewidth": 0.7},
+        arrowprops={"arrowstyle": "-", "color": FAINT, "linewidth": 0.7},
     )
     axes.set(xlabel="geodetic latitude in °", ylabel="frequency in Hz", xlim=(-93, 93))
     axes.set_xticks(range(-90, 91, 30))
     axes.ticklabel_format(axis="y", useOffset=False)
-    return figure
 
 
-def figure_9(plt: Any) -> Any:
+def figure_9(figure: Any) -> None:
     """Draw three fixed-step methods at steps of 0.5 s after 12000 s."""
-    figure, panels = plt.subplots(2, 1, figsize=(WIDE, 1.35 * HIGH), sharex=True)
+    figure.set_figheight(1.35 * HIGH)
+    panels = figure.subplots(2, 1, sharex=True)
     times, truth = window(12000, 20, step=0.5)
     smooth, path = window(12000, 20)
-    panels[0].plot(smooth, path[:, 0], color=GREY, linewidth=1, label="reference")
+    panels[0].plot(smooth, path[:, 0], color=FAINT, linewidth=1, label="reference")
     labels = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
     for (name, states), colour, mark in zip(orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osx", strict=True):
         panels[0].plot(times, states[:, 0], mark, color=colour, fillstyle="none", markersize=5, label=labels[name])
-        gap = np.linalg.norm(states[:, :3] - truth[:, :3], axis=1)
+        gap = distance(map(difference, states.T[:3], truth.T[:3]))
         panels[1].plot(times, gap, color=colour, marker=mark, fillstyle="none", markersize=5, linewidth=0.7)
     panels[0].set(ylabel="x in m", xlim=(12000, 12020))
     panels[1].set(ylabel="error in m", xlabel="t in s", yscale="log")
     panels[1].set_xticks(range(12000, 12021, 5))
     _legend_above(figure, panels[0])
-    return figure
 
 
 def _legend_above(figure: Any, axes: Any) -> None:
@@ -203,7 +185,7 @@ def _legend_above(figure: Any, axes: Any) -> None:
     figure.legend(handles, labels, loc="outside upper center", ncols=len(labels))
 
 
-FIGURES: dict[int, Callable[[Any], Any]] = {
+FIGURES: dict[int, Callable[[Any], None]] = {
     1: figure_1,
     3: figure_3,
     4: figure_4,
@@ -221,9 +203,6 @@ def svg(number: int) -> str:
     Raises:
         InputError: matplotlib is not installed.
     """
-    plt = pyplot("--out")
-    with plt.rc_context(STYLE):
-        figure = FIGURES[number](plt)
-        text = svg_of(figure)
-        plt.close(figure)
-    return text
+    with sheet((WIDE, HIGH)) as figure:
+        FIGURES[number](figure)
+        return picture(figure).decode()

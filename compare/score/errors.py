@@ -20,6 +20,7 @@ from reference.scene import Inputs
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..observed.turn_and_delay import SwingErrors, swing_errors
+from ..position_error import difference, distance
 from ..power_law import power_of_time
 from ..rhs.constants import constants_in_double
 
@@ -135,18 +136,16 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden) -> Tra
     rates = None if t_low is None else _rates(truth.states, constants_in_double(golden.scene.exact))
     components = {}
     for i, name in enumerate(COLUMNS):
-        if name not in candidate.columns:
-            continue
-        difference = (candidate.columns[name] - truth.states[:, i]) - truth.low[:, i]
-        difference = difference + candidate.low[name] if name in candidate.low else difference
-        # the truth is known at the double t; the candidate's row belongs to t + t_low
-        components[name] = difference if t_low is None or rates is None else difference - rates[:, i] * t_low
-    position = np.sqrt(sum(components[name] ** 2 for name in ("x", "y", "z") if name in components))
-    distances = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
-    amplitude = max(float(part.max()) for part in distances) or float(golden.scene.exact.length)
-    velocities = [np.column_stack([golden.vx, golden.vy, golden.vz]), truth.states[:, 3:]]
-    speed = max(float(np.sqrt((part**2).sum(axis=1)).max()) for part in velocities)
-    return TrajectoryErrors(candidate.t, components, np.asarray(position), truth, truth.bound_m, amplitude, speed)
+        if name in candidate.columns:
+            low = candidate.low.get(name, 0.0) - truth.low[:, i]
+            # the truth is known at the double t; the candidate's row belongs to t + t_low
+            low = low if t_low is None or rates is None else low - rates[:, i] * t_low
+            components[name] = difference(candidate.columns[name], truth.states[:, i], low)
+    position = distance(components[name] for name in ("x", "y", "z") if name in components)
+    amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
+    amplitude = max(float(part.max()) for part in amplitudes) or float(golden.scene.exact.length)
+    speed = max(float(distance(part).max()) for part in ((golden.vx, golden.vy, golden.vz), truth.states.T[3:]))
+    return TrajectoryErrors(candidate.t, components, position, truth, truth.bound_m, amplitude, speed)
 
 
 def _rates(states: Array, k: Constants) -> Array:

@@ -18,6 +18,7 @@ from reference.precision import Array
 
 from ..approximations import Motion, Quantity, approximation, motions, quantities
 from ..observed.swing_plane import Gauge
+from ..position_error import difference, distance
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
 _PER_SWING = 16  # samples in a period
@@ -70,7 +71,7 @@ class ApproximationErrors:
         return float(self.position[i]), None if np.isnan(plane) else plane
 
 
-class ApproximationTruth:
+class ReferenceMotion:
     """The reference's motion of a scene on a fine grid, with which approximations are compared.
 
     Args:
@@ -97,10 +98,10 @@ class ApproximationTruth:
         """
         rows = motion.trajectory(self.scene, self.times)
         gauge = self.gauge if motion.rest is None else _gauge(self.scene, motion.rest(self.scene))
-        distance = np.linalg.norm(rows[:, :3] - self.rows[:, :3], axis=1)
+        position = distance(map(difference, rows.T[:3], self.rows.T[:3]))
         turned = self._plane(gauge, rows) - self.plane
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
-        return ApproximationErrors(self.times, np.maximum.accumulate(distance), np.fmax.accumulate(plane))
+        return ApproximationErrors(self.times, np.maximum.accumulate(position), np.fmax.accumulate(plane))
 
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
@@ -143,7 +144,7 @@ def error_table(
         InputError: an unknown id, or one of a single number.
     """
     chosen, marks = chosen_motions(ids), [*(t for t in times if t < t_end), t_end]
-    truth, rows = ApproximationTruth(scene, t_end, marks), []
+    truth, rows = ReferenceMotion(scene, t_end, marks), []
     for motion in chosen:
         try:
             errors = truth.errors(motion)

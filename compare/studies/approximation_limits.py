@@ -11,7 +11,7 @@ import numpy as np
 from reference import FoucaultError, InputError, Scene
 
 from ..approximations.approximation import Motion
-from .approximation_errors import TIMES, ApproximationTruth, chosen_motions
+from .approximation_errors import TIMES, ReferenceMotion, chosen_motions
 from .variation import UNITS, varied
 
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
@@ -71,7 +71,7 @@ def sweep(
     chosen, rows = chosen_motions(ids), []
     for value in sweep_values(scene, over) if values is None else values:
         changed = varied(scene, over, value)
-        truth = ApproximationTruth(changed, t)
+        truth = ReferenceMotion(changed, t)
         for motion in chosen:
             try:
                 errors = truth.errors(motion).at(t)
@@ -109,7 +109,7 @@ def limits(
 
 
 def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[LimitRow]:
-    truth, rows = ApproximationTruth(scene, t_end, np.geomspace(_FIRST_S, t_end, _EXTRA_TIMES)), []
+    truth, rows = ReferenceMotion(scene, t_end, np.geomspace(_FIRST_S, t_end, _EXTRA_TIMES)), []
     for motion in chosen:
         try:
             errors = truth.errors(motion)

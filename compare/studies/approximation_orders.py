@@ -9,6 +9,7 @@ import numpy as np
 from reference import Scene, parse_scene, trajectory
 
 from ..approximations.approximation import Approximation, Motion, Order, Quantity
+from ..position_error import difference, distance
 from ..power_law import LEAST_POINTS, power_law
 from .variation import released, varied
 
@@ -37,8 +38,8 @@ def error(approximation: Approximation, scene: Scene) -> float:
     """Return the largest distance from the reference in m over OBSERVED_S seconds, or the error of a quantity."""
     if isinstance(approximation, Motion):
         times = np.linspace(0.0, OBSERVED_S, _SAMPLES)
-        gap = approximation.trajectory(scene, times)[:, :3] - trajectory(scene, times)[:, :3]
-        return float(np.max(np.linalg.norm(gap, axis=1)))
+        approximate, true = (rows.T[:3] for rows in (approximation.trajectory(scene, times), trajectory(scene, times)))
+        return float(distance(map(difference, approximate, true)).max())
     assert isinstance(approximation, Quantity)
     truth = approximation.truth(scene)
     gap = approximation.value(scene) - truth

@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
 from reference import Golden, Scene
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
-from reference.precision import Array, context
-from reference.solver.solution import GRID_COLUMNS
+from reference.precision import Array, context, to_mpf
 
+from ..candidates.candidate import COLUMNS
 from ..methods import Outcome
+from ..position_error import Column, difference, distance
 from ..rhs.constants import constants_in_double
 
 H_ROWS = 64  # rows at which h is evaluated
@@ -41,9 +41,8 @@ class GridTruth:
 
     @cached_property
     def exact(self) -> list[list[Fraction]]:
-        """x, y, z in m as printed, per grid time."""
-        columns = [self.golden.exact(name)[: len(self.times)] for name in GRID_COLUMNS[:3]]
-        return [list(row) for row in zip(*columns, strict=True)]
+        """Columns x, y, z in m as printed, at the grid times."""
+        return [self.golden.exact(name)[: len(self.times)] for name in "xyz"]
 
     @cached_property
     def transits(self) -> Array:
@@ -55,22 +54,12 @@ class GridTruth:
     def transits_rounded_by(self) -> Array:
         """Distance of the doubles in `transits` from the printed times, in s."""
         texts = self.golden.transits_text["t"][: len(self.transits)]
-        pairs = zip(self.transits, texts, strict=True)
-        return np.array([float(Fraction(float(t)) - Fraction(text)) for t, text in pairs])
+        return difference(self.transits, [Fraction(text) for text in texts])
 
     def position_errors(self, outcome: Outcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
-        finer = outcome.exact
-        if finer is not None:
-            unit = Fraction(1, 2**finer.bits)
-            positions: Any = [[unit * part for part in row[:3]] for row in finer.rows]
-        else:
-            positions = [[Fraction(float(part)) for part in row] for row in outcome.states[:, :3]]
-        differences = [
-            [float(p - q) for p, q in zip(row, true, strict=True)]
-            for row, true in zip(positions, self.exact[: len(positions)], strict=True)
-        ]
-        return np.asarray(np.sqrt((np.array(differences) ** 2).sum(axis=1)))
+        columns = [_column(outcome, name) for name in "xyz"]
+        return distance(difference(one, true[: len(one)]) for one, true in zip(columns, self.exact, strict=True))
 
     def transit_errors(self, scene: Scene, outcome: Outcome) -> Array:
         """Return the error of each transit's time in s, in any number type, by one Newton step from the true time.
@@ -79,8 +68,7 @@ class GridTruth:
             scene: its inputs read as the method read them.
             outcome: of a run with output at t = 0 and at `transits`.
         """
-        finer, states = outcome.exact, outcome.states[1:]
-        vx = states[:, 3] if finer is None else np.array([row[3] / (1 << finer.bits) for row in finer.rows[1:]])
+        states, vx = outcome.states[1:], np.array([float(part) for part in _column(outcome, "vx")[1:]])
         k = constants_in_double(scene.exact)
         n, v = (tuple(states[:, part] / k.length for part in parts) for parts in ((0, 1, 2), (3, 4, 5)))
         ax = np.asarray(acceleration(n, v, k)[0] * k.length)
@@ -96,13 +84,18 @@ def h_drift(scene: Scene, outcome: Outcome) -> float | None:
     # 27 bits beyond a double, or 64 beyond an exact state: h is a small difference of large terms
     ctx = context(80 if outcome.exact is None else outcome.exact.bits + 64)
     k = constants(scene.exact, ctx)
-    finer = outcome.exact
-    rows: Any = outcome.states if finer is None else finer.rows
-    unit = ctx.mpf(1) if finer is None else ctx.mpf(2) ** -finer.bits
+    columns = [_column(outcome, name) for name in COLUMNS]
     values, kinetic = [], ctx.mpf(0)
-    for i in np.unique(np.linspace(0, len(rows) - 1, H_ROWS).astype(int)):
-        numbers = [ctx.mpf(float(part) if finer is None else part) * unit / k.length for part in rows[i][:6]]
+    for i in np.unique(np.linspace(0, len(columns[0]) - 1, H_ROWS).astype(int)):
+        state = [column[i] for column in columns]
+        numbers = [(to_mpf(x, ctx) if isinstance(x, Fraction) else ctx.mpf(float(x))) / k.length for x in state]
         n, v = tuple(numbers[:3]), tuple(numbers[3:])
         values.append(invariant(n, v, k))
         kinetic = max(kinetic, sum(part * part for part in v) * k.length**2 / 2)
     return float(max(abs(value - values[0]) for value in values) / kinetic) if kinetic else None
+
+
+def _column(outcome: Outcome, name: str) -> Column:
+    """Return a column of the states that a run reached, exactly where its numbers are finer than doubles."""
+    i, finer = COLUMNS.index(name), outcome.exact
+    return outcome.states[:, i] if finer is None else [Fraction(row[i], 1 << finer.bits) for row in finer.rows]

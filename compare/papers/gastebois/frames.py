@@ -6,8 +6,8 @@ from typing import Any
 
 from ..checks import Check, Identity
 from ..digits import MP, Vector, add, cos, cross, scale, sin, vector_derivative
+from ..first_principles import AXIS, rotated
 from ..points import Point
-from ..truth import AXIS, rotated
 from .numbers import G
 
 

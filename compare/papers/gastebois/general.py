@@ -9,8 +9,8 @@ from reference.model.force import acceleration
 
 from ..checks import Check, Identity, component
 from ..digits import MP, Vector, cos, derivative, dot, scale, sin
+from ..first_principles import by_angles
 from ..points import Point
-from ..truth import by_angles
 from .lagrangian import along, angle_functions, coriolis, lagrangian, moving_velocity, speeds
 from .numbers import G
 

@@ -9,9 +9,9 @@ from reference.model.force import acceleration
 
 from ..checks import Check, Identity
 from ..digits import MP, Vector, add, cos, cross, dot, scale, sin, vector_derivative
+from ..first_principles import by_angles
 from ..mathar.velocity import moving
 from ..points import Point
-from ..truth import by_angles
 from .frames import turning
 from .numbers import G
 

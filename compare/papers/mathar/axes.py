@@ -8,8 +8,8 @@ from reference.model.earth import axis_distance
 
 from ..checks import Check, Finding, Identity, Statement
 from ..digits import MP, Vector, add, cos, cross, dot, norm, scale, shown, sin, sqrt, unit, vector_derivative
+from ..first_principles import suspension, turned_to_site
 from ..points import Point, points
-from ..truth import suspension, turned_to_site
 
 II = "Mathar II"
 AXES = ((MP.one, MP.zero, MP.zero), (MP.zero, MP.one, MP.zero), (MP.zero, MP.zero, MP.one))  # east, north, up

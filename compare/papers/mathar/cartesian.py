@@ -7,8 +7,8 @@ from typing import Any
 
 from ..checks import Check, Finding, Identity, Statement
 from ..digits import MP, Vector, cos, shown, sin
+from ..first_principles import by_plane, euler_lagrange, horizontal_acceleration, in_rate
 from ..points import Point, points
-from ..truth import by_plane, euler_lagrange, horizontal_acceleration, in_rate
 
 IV = "Mathar IV"
 

@@ -6,9 +6,9 @@ from typing import Any
 
 from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, Vector, acos, asin, dot, mpf, pi, shown, sin, sqrt
+from ..first_principles import rest
 from ..points import paris
 from ..runs import solved, transit_times
-from ..truth import rest
 from .triangle import apparent_gravity
 
 VII = "Mathar VII"

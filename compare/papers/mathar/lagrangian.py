@@ -6,8 +6,16 @@ from typing import Any
 
 from ..checks import Check, Finding, Identity, Statement
 from ..digits import MP, Vector, cos, derivative, shown, sin, sqrt
+from ..first_principles import (
+    by_angles,
+    by_plane,
+    euler_lagrange,
+    horizontal_acceleration,
+    in_rate,
+    lagrangian,
+    square_speed,
+)
 from ..points import Point, points
-from ..truth import by_angles, by_plane, euler_lagrange, horizontal_acceleration, in_rate, lagrangian, square_speed
 from .velocity import alpha_0, alpha_1, alpha_2
 
 III = "Mathar III"

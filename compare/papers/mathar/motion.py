@@ -11,9 +11,9 @@ from reference import load_scene
 from ...approximations import Motion, approximation
 from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, Vector, add, degrees, mpf, norm, shown
+from ..first_principles import rest
 from ..points import paris
 from ..runs import frequency, lead, paris_day, paris_path, paris_swing_plane, path_in, solved
-from ..truth import rest
 from .frequency import STILL, VII, day_frequency, planar_period, released
 
 

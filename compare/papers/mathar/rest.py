@@ -9,8 +9,8 @@ from reference.model.force import tension
 
 from ..checks import Check, Finding, Identity, Statement
 from ..digits import MP, cos, degrees, derivative, scale, shown, sin, sqrt
+from ..first_principles import horizontal_acceleration, rest, rest_angle
 from ..points import Point, paris, points
-from ..truth import horizontal_acceleration, rest, rest_angle
 from .cartesian import beta_x, beta_y
 from .rest_series import series_term
 

@@ -7,8 +7,8 @@ from functools import cache
 from typing import Any
 
 from ..digits import MP, Vector, cos, scale, sin, sqrt
+from ..first_principles import rest_angle
 from ..points import Point, points
-from ..truth import rest_angle
 
 
 def series(p: Point) -> Vector:

@@ -9,8 +9,8 @@ from reference.model.force import acceleration
 
 from ..checks import Approximate, Check, Identity, PrintedNumber
 from ..digits import MP, Vector, cos, scale, shown, sin, sqrt, vector_derivative
+from ..first_principles import in_rate
 from ..points import Point, paris
-from ..truth import in_rate
 from .cartesian import beta_x, beta_y, in_powers, inverse_times, solved
 from .rest import pull_at_rest
 from .triangle import apparent_gravity

@@ -6,8 +6,8 @@ from typing import Any
 
 from ..checks import Approximate, Check, Identity
 from ..digits import MP, asin, cos, pi, sin, sqrt
+from ..first_principles import rest_angle
 from ..points import Point, paris
-from ..truth import rest_angle
 from .rest import V, pull_at_rest
 
 

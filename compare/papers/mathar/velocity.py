@@ -7,8 +7,8 @@ from typing import Any
 
 from ..checks import Check, Identity
 from ..digits import MP, Vector, add, cos, dot, scale, sin, vector_derivative
+from ..first_principles import by_angles, in_rate, place, square_speed, suspension, turned_to_site
 from ..points import Point
-from ..truth import by_angles, in_rate, place, square_speed, suspension, turned_to_site
 from .axes import AXES, II, east, north, printed_suspension, up
 
 

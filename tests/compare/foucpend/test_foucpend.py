@@ -21,8 +21,8 @@ from compare.foucpend.options import DEFAULTS
 from compare.foucpend.output import SiteFrame
 from compare.foucpend.zeros import Transits, parabola_zero
 from compare.papers.digits import degrees, norm
+from compare.papers.first_principles import place
 from compare.papers.points import paris
-from compare.papers.truth import place
 from reference import InputError, IntegrationError, load, load_scene
 from reference.engines.trajectory import trajectory
 

@@ -8,6 +8,7 @@ import pytest
 from places import ROOT
 
 from compare.papers.digits import MP, degrees, mpf, norm, pi, shown, sin, sqrt
+from compare.papers.first_principles import rest, rest_angle
 from compare.papers.mathar.frequency import (
     amplitude,
     day_frequency,
@@ -22,7 +23,6 @@ from compare.papers.mathar.frequency import (
 from compare.papers.mathar.rest import pull_at_rest
 from compare.papers.points import paris
 from compare.papers.runs import paris_day, transit_times
-from compare.papers.truth import rest, rest_angle
 
 PAGE = " ".join((ROOT / "docs/physics.md").read_text(encoding="utf-8").split())
 P = paris()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from compare.approximations import approximation, motions, quantities
-from compare.studies.approximation_errors import TIMES, ApproximationTruth, error_table, quantity_table
+from compare.studies.approximation_errors import TIMES, ReferenceMotion, error_table, quantity_table
 from compare.studies.approximation_limits import LIMITS, limits, sweep, sweep_values
 from compare.studies.approximation_limits import _below as below
 from compare.studies.variation import varied
@@ -107,7 +107,7 @@ def test_limits_over_time_are_where_the_error_passes_them():
     ids = ["linear_3d", "gastebois_6_1", "mathar_item_4"]
     rows = limits(PARIS, ids, t_end=7200.0)
     assert [(row.approximation, row.limit) for row in rows] == [(word, name) for word in ids for name, _, _ in LIMITS]
-    truth = ApproximationTruth(PARIS, 7200.0)
+    truth = ReferenceMotion(PARIS, 7200.0)
     for row in rows:
         _, quantity, limit = next(entry for entry in LIMITS if entry[0] == row.limit)
         (start, end), index = row.good[0], ("error_m", "plane_error_arcsec").index(quantity)

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from compare.papers.digits import MP, mpf, norm, pi, shown, sqrt
-from compare.papers.gastebois.turning_swing import plane_period, swing_period
-from compare.papers.linear import motion
-from compare.papers.points import paris, points
-from compare.papers.truth import (
+from compare.papers.first_principles import (
     by_angles,
     by_plane,
     euler_lagrange,
@@ -17,6 +14,9 @@ from compare.papers.truth import (
     rotated,
     suspension,
 )
+from compare.papers.gastebois.turning_swing import plane_period, swing_period
+from compare.papers.linear import motion
+from compare.papers.points import paris, points
 
 TINY = MP.mpf("1e-50")
 
