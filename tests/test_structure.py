@@ -39,9 +39,9 @@ FLOORS = {
     "compare": [
         ["commands", "fixture"],
         ["testing"],
-        ["papers", "score"],
+        ["papers"],
         ["report"],
-        ["studies", "foucpend"],
+        ["studies", "foucpend", "score"],
         ["methods"],
         ["approximations", "rhs"],
         ["candidates", "truth", "observed", "position_error"],

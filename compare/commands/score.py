@@ -95,7 +95,7 @@ def command(
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:
-        from ..score.picture import check_target
+        from ..report.charts.score import check_target
 
         check_target(plot)
     from ..candidates.read import read, read_transits
@@ -124,7 +124,7 @@ def command(
             )
         scores.append(replace(score, timing=timing))
     if plot is not None:
-        from ..score.picture import error_picture
+        from ..report.charts.score import error_picture
 
         error_picture(scores, plot)
     _print(scores, as_json)

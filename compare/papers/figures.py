@@ -23,7 +23,7 @@ from .runs import paris_path, paris_swing_plane
 BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WINDOWS = (0, 7000, 12000)  # s
-WIDE, HIGH = 8.0, 4.2  # inches
+WIDE, HIGH = 7.6, 4.0  # inches
 
 
 def figure_1(figure: Any) -> None:

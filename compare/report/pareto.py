@@ -12,13 +12,13 @@ from itertools import pairwise
 from typing import Any
 
 from reference import InputError
+from reference.status import Status
 
 from ..power_law import LEAST_POINTS, PowerLaw, power_law
-from ..studies.row import EXTRAPOLATED, OK, Row
+from ..studies.row import Row
 
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors for which costs are tabulated and the cheapest method is named
 PAPER_METHOD, PAPER_NAME = "rk4", "the paper's RK4"
-PRECISION_METHOD = "heyoka_real"  # the method whose cost is fitted as a power of the digits
 ALIKE = 1.05  # costs closer than this factor count as equal: repeated runs spread by as much
 
 
@@ -29,14 +29,24 @@ class Curve:
     Attributes:
         method: id of the method.
         formulation: of the equations of motion.
-        label: the method's id, with the formulation in brackets where it is not the method's own.
+        own: whether this is the method's own formulation, the first that it is run with.
         rows: from the loosest setting to the tightest, failed ones included.
     """
 
     method: str
     formulation: str
-    label: str
+    own: bool
     rows: tuple[Row, ...]
+
+    @property
+    def label(self) -> str:
+        """The method's id, with the formulation in brackets where it is not the method's own."""
+        return self.method if self.own else f"{self.method} ({self.formulation})"
+
+    @property
+    def kind(self) -> str:
+        """The quantity that is varied: "step", "tolerance" or "precision"."""
+        return self.rows[0].kind
 
     @property
     def measured(self) -> tuple[Row, ...]:
@@ -79,7 +89,7 @@ def curves(rows: Sequence[Row]) -> list[Curve]:
         Curve(
             method,
             formulation,
-            method if own[method] == formulation else f"{method} ({formulation})",
+            own[method] == formulation,
             tuple(sorted(group, key=lambda row: row.setting if row.kind == "precision" else -row.setting)),
         )
         for (method, formulation), group in groups.items()
@@ -133,14 +143,14 @@ def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[tuple[float,
     """Yield each cost at which the error is reached: CPU seconds, whether interpolated, whether extrapolated."""
     for row in curve.measured:
         if row.cpu_s and error_of(row, bound_m) <= error_m:
-            yield row.cpu_s, False, row.status == EXTRAPOLATED
+            yield row.cpu_s, False, row.status == Status.EXTRAPOLATED
     for a, b in pairwise(curve.rows):
         if not (a.measured and b.measured and a.cpu_s and b.cpu_s):
             continue
         e, f = error_of(a, bound_m), error_of(b, bound_m)
         if 0 < min(e, f) < error_m < max(e, f):
             part = math.log(error_m / e) / math.log(f / e)
-            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part, True, EXTRAPOLATED in (a.status, b.status)
+            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part, True, Status.EXTRAPOLATED in (a.status, b.status)
 
 
 def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[CostAtError]:
@@ -155,10 +165,11 @@ def sentences(document: dict[str, Any]) -> list[str]:
     A study of high precisions alone says nothing about large errors; then only the cost of digits is given.
     """
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
-    law = cost_of_digits(rows, bound_m)
-    coarse = {row.method for row in _measured(rows) if error_of(row, bound_m) > TARGETS_M[-1]}
-    cheapest = [_sentence(rows, error_m, bound_m) for error_m in TARGETS_M] if coarse or law is None else []
-    return [sentence for sentence in (*cheapest, cost_sentence(law) if law else "") if sentence]
+    laws = costs_of_digits(rows, bound_m)
+    coarse = any(error_of(row, bound_m) > TARGETS_M[-1] for row in _measured(rows))
+    cheapest = [_sentence(rows, error_m, bound_m) for error_m in TARGETS_M] if coarse or not laws else []
+    costs = [cost_sentence(label, law) for label, law in laws.items()]
+    return [sentence for sentence in (*cheapest, *costs) if sentence]
 
 
 def _sentence(rows: Sequence[Row], error_m: float, bound_m: float) -> str:
@@ -191,25 +202,27 @@ def digits_of(row: Row, bound_m: float) -> float:
     return -math.log10(error_of(row, bound_m))
 
 
-def cost_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> PowerLaw | None:
-    """Fit CPU seconds of `heyoka_real` as a power of the digits achieved; None with fewer than three rows to fit.
+def costs_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> dict[str, PowerLaw]:
+    """Fit the CPU seconds of each method whose setting is the precision as a power of the digits achieved.
 
-    Rows at or below the bound of the reference are left out, because their true error is not known.
+    Rows at or below the bound of the reference are left out, because their true error is not known; so is a method with
+    fewer than three rows to fit.
+
+    Returns:
+        The power laws by the labels of their curves.
     """
-    known = [
-        row
-        for row in _measured(rows)
-        if row.method == PRECISION_METHOD and row.error_m and bound_m < row.error_m < 1 and row.cpu_s
-    ]
-    if len({row.error_m for row in known}) < LEAST_POINTS:
-        return None
-    return power_law([digits_of(row, bound_m) for row in known], [cost_of(row) for row in known])
+    laws = {}
+    for curve in curves(rows):
+        known = [row for row in _measured(curve.rows) if row.error_m and bound_m < row.error_m < 1 and row.cpu_s]
+        if curve.kind == "precision" and len({row.error_m for row in known}) >= LEAST_POINTS:
+            laws[curve.label] = power_law([digits_of(row, bound_m) for row in known], map(cost_of, known))
+    return laws
 
 
-def cost_sentence(law: PowerLaw) -> str:
+def cost_sentence(label: str, law: PowerLaw) -> str:
     """Return the fitted cost of digits as a sentence."""
     return (
-        f"The cost of {PRECISION_METHOD} is {law.factor:.2g} s · digits^a with a = {law.exponent:.2f} ± "
+        f"The cost of {label} is {law.factor:.2g} s · digits^a with a = {law.exponent:.2f} ± "
         f"{law.standard_error:.2f} (standard error of the fit to {law.points} settings, {law.low:.0f} to "
         f"{law.high:.0f} digits; digits = −log10 of the largest error in m)."
     )
@@ -217,7 +230,7 @@ def cost_sentence(law: PowerLaw) -> str:
 
 def whole_evaluations(row: Row, t_end: float) -> float | None:
     """Return the evaluations of the right-hand side over the whole span, scaled up for an extrapolated row."""
-    if row.rhs_evaluations is None or row.status == OK or not row.reached_t:
+    if row.rhs_evaluations is None or row.status == Status.OK or not row.reached_t:
         return row.rhs_evaluations
     return row.rhs_evaluations * t_end / row.reached_t
 

@@ -1,25 +1,34 @@
-"""Shared parts of the charts: the figure and its colours, logarithmic axes with plain labels, and SVG for a page."""
+"""The set-up that all pictures share: figures, colours, logarithmic axes with plain labels, and SVG for a page."""
 
 from __future__ import annotations
 
+import html
+import io
 import math
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-from ..plotting import SAME_BYTES, pyplot, svg_of
+from reference import InputError
 
 # Colours that follow a page's light or dark scheme, by these names: the greys of a figure, and its darkest colour
 INKS = {
     "ink": "#1b1b1b", "faint": "#6b6b6b", "rule": "#dcdcdc", "band": "#e9e9e9", "paper": "#fefefe", "blue": "#0072b2",
 }  # fmt: skip
-INK, FAINT, RULE, BAND, PAPER, _ = INKS.values()
+INK, FAINT, RULE, BAND, PAPER, BLUE = INKS.values()
+# Okabe and Ito's palette for colour-blind readers; in grey the line styles tell lines apart
+COLOURS = (BLUE, "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", INK)
+GUIDE: dict[str, Any] = {"color": FAINT, "linewidth": 0.8, "linestyle": (0, (1, 2))}  # lines to compare others with
+_DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (7, 1.5, 1.2, 1.5)), (0, (3, 3)))
+_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
 
 _ROOM = 0.06  # free part of a logarithmic axis at each end
 PIXELS = 4 / 3  # CSS pixels in a typographic point
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_PARAMETERS = SAME_BYTES | {
+_PARAMETERS = {
+    "svg.hashsalt": "foucault",  # the same picture gives the same bytes
+    "svg.fonttype": "none",
     "font.size": 9,
     "font.family": ["DejaVu Sans", "sans-serif"],
     "text.color": INK,
@@ -37,26 +46,64 @@ _PARAMETERS = SAME_BYTES | {
     "ytick.labelcolor": INK,
     "grid.color": RULE,
     "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "lines.linewidth": 1.3,
 }
+_NO_DATE = {"svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
 
 
-@contextmanager
-def sheet(size: tuple[float, float], rows: int = 1, columns: int = 1, **shared: Any) -> Iterator[tuple[Any, Any]]:
-    """Yield a figure of this size in inches and its array of axes; close the figure afterwards.
+def check_matplotlib(field: str) -> None:
+    """Check that pictures can be drawn.
+
+    Args:
+        field: option or function that needs the picture, for the error message.
 
     Raises:
         InputError: matplotlib is not installed.
     """
-    plt = pyplot("--out")
-    with plt.rc_context(_PARAMETERS):
-        figure, axes = plt.subplots(rows, columns, figsize=size, layout="constrained", squeeze=False, **shared)
-        figure.patch.set_visible(False)
-        try:
-            for one in axes.flat:
-                one.patch.set_visible(False)
-            yield figure, axes
-        finally:
-            plt.close(figure)
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        advice = "pip install 'foucault-reference[plot]'."
+        raise InputError(field, "no matplotlib", "the extra plot", advice) from None
+
+
+@contextmanager
+def sheet(size: tuple[float, float]) -> Iterator[Any]:
+    """Yield an empty figure of this size in inches; draw and save it inside the context.
+
+    The figure belongs to no window and not to pyplot, so that a caller's own settings of matplotlib stay as they are.
+
+    Raises:
+        InputError: matplotlib is not installed.
+    """
+    check_matplotlib("--out")
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    with rc_context(_PARAMETERS):
+        figure = Figure(figsize=size, layout="constrained")
+        FigureCanvasAgg(figure)
+        yield figure
+
+
+def line_style(colour: str, place: int) -> dict[str, Any]:
+    """Return the style of the n-th line of a colour; full and hollow markers alternate."""
+    return {
+        "color": colour,
+        "linestyle": _DASHES[place % len(_DASHES)],
+        "marker": _MARKERS[place % len(_MARKERS)],
+        "markersize": 4.5,
+        "markerfacecolor": colour if place % 2 == 0 else "none",
+    }
+
+
+def picture(figure: Any, form: str = "svg") -> bytes:
+    """Return the content of a picture file: svg, pdf or png, without a date."""
+    content = io.BytesIO()
+    figure.savefig(content, format=form, dpi=150, metadata=_NO_DATE.get(form))
+    return content.getvalue()
 
 
 def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> str:
@@ -64,41 +111,31 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
 
     Args:
         figure: figure from `sheet`.
-        name: prefix of the ids, which keeps them apart from those of other pictures in the page.
+        name: another one for each picture in the page: the ids in the SVG depend on it.
         description: text for readers who cannot see the picture.
         kind: CSS class; in class `lines` the page gives text a halo, so that it is legible over lines.
     """
-    text = svg_of(figure)
-    text = text[text.index("<svg") :]
+    from matplotlib import rc_context
+
+    for part in (figure, *figure.axes):
+        part.patch.set_visible(False)  # the page's background shows
+    with rc_context({"svg.hashsalt": name}):
+        text = picture(figure).decode()
+    text = text[text.index(">", text.index("<svg")) + 1 :]
     text = re.sub(
         r"<metadata>.*?</metadata>\s*|<defs>\s*<style.*?</defs>\s*|<!--.*?-->\s*|(?<=\n) +", "", text, flags=re.DOTALL
     )
-    width, height = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', text).groups()  # type: ignore[union-attr]
+    targets = set(re.findall(r'#([^")]+)', text))  # other ids would stand in a page more than once
+    text = re.sub(r' id="([^"]+)"', lambda match: match[0] if match[1] in targets else "", text)
+    width, height = 72 * figure.get_size_inches()
     opening = (
         '<svg xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink" '
-        f'viewBox="0 0 {width} {height}" width="{float(width) * PIXELS:.0f}" class="{kind}" '
-        f'style="stroke-linejoin: round" role="img" aria-label="{_quoted(description)}">'
+        f'viewBox="0 0 {width:g} {height:g}" width="{width * PIXELS:.0f}" class="{kind}" '
+        f'style="stroke-linejoin: round" role="img" aria-label="{html.escape(description)}">'
     )
-    text = opening + text[text.index(">") + 1 :]
-    return _with_inks(_own_ids(text, name)).strip() + "\n"
-
-
-def _own_ids(text: str, name: str) -> str:
-    """Put the picture's name before ids that are referred to, and remove all other ids."""
-    targets = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
-    text = re.sub(r' id="([^"]+)"', lambda match: f' id="{name}-{match[1]}"' if match[1] in targets else "", text)
-    return re.sub(r'(href="#|url\(#)([^")]+)', rf"\g<1>{name}-\g<2>", text)
-
-
-def _with_inks(text: str) -> str:
-    """Replace the colours of `INKS` by CSS variables of the page."""
     for word, colour in INKS.items():
         text = text.replace(colour, f"var(--{word}, {colour})")
-    return text
-
-
-def _quoted(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    return opening + text.strip() + "\n"
 
 
 def power_of_ten(value: float, _: Any = None) -> str:

@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from operator import itemgetter
 
 import numpy as np
-import numpy.typing as npt
 
 from reference import InputError
+from reference.precision import Array
 
-from ..plotting import COLOURS
-from .drawing import BAND, FAINT, logarithmic, sheet, svg_text
-from .families import line_style
-from .labels import Label, place
+from ...power_law import largest_so_far
+from .drawing import BAND, COLOURS, GUIDE, line_style, logarithmic, sheet, svg_text
+from .labels import Line, draw, place
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
-_POINTS = 240  # points of a line, evenly spaced in the logarithm of time
-_APART = 1e3  # lines whose last errors are closer than this factor share one fan of guide lines
-_FAN = 50.0  # length of the guide lines, as a factor of time
+_POINTS = 240  # points of a line
+_APART = 1e3  # lines whose errors are closer than this factor where guide lines begin share one fan of them
+_FAN, _BEFORE = 50.0, 5.0  # length of the guide lines, and how far before the line's end they end, as factors of time
 _ABOVE = 4.0  # distance of the fan from the lines, as a factor of error
 
 
@@ -34,74 +34,68 @@ class ErrorHistory:
     """
 
     label: str
-    t: npt.NDArray[np.float64]
-    error: npt.NDArray[np.float64]
+    t: Array
+    error: Array
     exponent: float | None = None
 
-    def so_far(self) -> tuple[list[float], list[float]]:
-        """Return times and the largest error up to each of them, thinned to at most `_POINTS` points."""
-        largest = np.maximum.accumulate(self.error)
-        positive = (self.t > 0) & (largest > 0)
-        t, largest = self.t[positive], largest[positive]
-        if not len(t):
+    def line(self, colour: str, place: int) -> Line:
+        """Return the largest error so far as a line, with the exponent in its name."""
+        positive = (self.t > 0) & (np.maximum.accumulate(self.error) > 0)
+        if not positive.any():
             raise InputError("growth", self.label, "an error above zero at a time above zero")
-        marks = np.geomspace(t[0], t[-1], _POINTS)
-        at = np.unique(np.searchsorted(t, marks * (1 - 1e-12)).clip(0, len(t) - 1))
-        return t[at].tolist(), largest[at].tolist()
+        t, largest = largest_so_far(self.t[positive], self.error[positive], _POINTS)
+        power = "" if self.exponent is None else f", t^{self.exponent:.2f}"
+        return Line(f"{self.label}{power}", t.tolist(), largest.tolist(), line_style(colour, place))
 
 
 def error_growth(
-    lines: Sequence[ErrorHistory], bound_m: float, *, quantity: str = "largest error of position so far in m"
+    histories: Sequence[ErrorHistory], bound_m: float, *, quantity: str = "largest error of position so far in m"
 ) -> str:
     """Draw errors over time, log-log, with fans of slopes 1, 1.5 (Brouwer's law) and 2 and each line's own exponent.
 
     Args:
-        lines: one for each method, at least one.
+        histories: one for each method, at least one.
         bound_m: bound of the reference in m, drawn as a band.
         quantity: label of the vertical axis.
 
     Raises:
         InputError: there is nothing to draw.
     """
-    if not lines:
+    if not histories:
         raise InputError("growth", "no lines", "at least one")
-    curves = [(line.label, *line.so_far()) for line in lines]
-    with sheet((9.5, 6.0)) as (figure, grid):
-        axes = grid[0, 0]
-        times, errors = [t for _, ts, _ in curves for t in ts], [e for _, _, es in curves for e in es]
-        logarithmic(axes, "x", min(times), max(times) * 6)
-        fans = _fans(curves)
-        top = max([*errors, *(low * _FAN ** SLOPES[-1][0] for _, low in fans)])
-        logarithmic(axes, "y", min(errors) / 5, top * 5, 16)
+    lines = [one.line(COLOURS[i % len(COLOURS)], i) for i, one in enumerate(histories)]
+    guides = _guides(lines)
+    with sheet((9.5, 6.0)) as figure:
+        axes = figure.subplots()
+        logarithmic(axes, "x", min(line.x[0] for line in lines), max(line.x[-1] for line in lines))
+        lowest = min(line.y[0] for line in lines)
+        logarithmic(axes, "y", lowest / 5, 5 * max(line.y[-1] for line in (*lines, *guides)), 16)
         if axes.get_ylim()[0] < bound_m:
             axes.axhspan(axes.get_ylim()[0], bound_m, color=BAND, linewidth=0, zorder=0)
-        labels, guides = [], []
-        for i, (label, t, error) in enumerate(curves):
-            look = line_style(COLOURS[i % len(COLOURS)], i) | {"marker": ""}
-            axes.plot(t, error, **look, zorder=3)
-            power = "" if lines[i].exponent is None else f", t^{lines[i].exponent:.2f}"
-            labels.append(Label(f"{label}{power}", look["color"], t, error))
-        for end, low in fans:
-            for slope, name in SLOPES:
-                x, y = [end / _FAN, end], [low, low * _FAN**slope]
-                axes.plot(x, y, color=FAINT, linewidth=0.8, linestyle=(0, (1, 2)), zorder=2)
-                guides.append(Label(name, FAINT, x, y))
+        draw(axes, [*lines, *guides])
         axes.set(xlabel="time in s", ylabel=quantity)
-        ends = [Label(one.text, one.colour, one.x[-1:], one.y[-1:]) for one in guides]
-        place(axes, [*ends, *labels], [*labels, *guides])
-        return svg_text(figure, "growth", f"Error over time, log-log: {', '.join(label for label, *_ in curves)}.")
+        place(axes, lines, margin=True)
+        place(axes, [replace(one, x=one.x[-1:], y=one.y[-1:]) for one in guides], [*lines, *guides])
+        names = ", ".join(one.label for one in histories)
+        return svg_text(figure, "growth", f"Error over time, log-log: {names}.")
 
 
-def _fans(curves: Sequence[tuple[str, list[float], list[float]]]) -> list[tuple[float, float]]:
-    """Return the end time and the lowest error of each fan of guide lines, one above each group of lines."""
-    groups: list[list[tuple[list[float], list[float]]]] = []
-    for _, t, error in sorted(curves, key=lambda one: one[2][-1]):
-        if groups and error[-1] < groups[-1][-1][1][-1] * _APART:
-            groups[-1].append((t, error))
+def _guides(lines: Sequence[Line]) -> list[Line]:
+    """Return fans of guide lines, one fan above each group of lines that have similar errors where the fan begins."""
+    groups: list[list[tuple[float, Line]]] = []
+    for low, line in sorted(((_error_at(one, one.x[-1]), one) for one in lines), key=itemgetter(0)):
+        if groups and low < groups[-1][-1][0] * _APART:
+            groups[-1].append((low, line))
         else:
-            groups.append([(t, error)])
-    ends = [max(t[-1] for t, _ in group) for group in groups]
-    return [
-        (end, _ABOVE * max(float(np.interp(end / _FAN, t, error)) for t, error in group))
-        for end, group in zip(ends, groups, strict=True)
-    ]
+            groups.append([(low, line)])
+    guides = []
+    for group in groups:
+        last = max(line.x[-1] for _, line in group)
+        end, low = last / _BEFORE, _ABOVE * max(_error_at(line, last) for _, line in group)
+        guides += [Line(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES]
+    return guides
+
+
+def _error_at(line: Line, last: float) -> float:
+    """Return a line's error where the guide lines begin that belong to lines with this last time."""
+    return float(np.interp(last / _BEFORE / _FAN, line.x, line.y))

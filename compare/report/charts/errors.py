@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from operator import attrgetter
 
 import numpy as np
 
+from ...methods import Family
 from ...studies.row import Row
-from ..pareto import Curve, cost_of, curves, whole_evaluations
-from ..plotting import COLOURS
-from .drawing import FAINT, limits, logarithmic, sheet, svg_text
-from .families import MANY_DIGITS, family_of, line_style, styles
-from .labels import Label
-from .ladders import CPU, ERROR, Horizontal, Style, band, draw, label, points
+from ..pareto import cost_of, curves, whole_evaluations
+from .drawing import COLOURS, GUIDE, limits, line_style, logarithmic, sheet, svg_text
+from .labels import Line, draw, place
+from .ladders import CPU, ERROR, band, error_above, family_of, ladders
 
 
 def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str | None:
     """Draw error against evaluations of the right-hand side, for methods that count them; None if there are none."""
-    own = [one for one in curves(rows) if "(" not in one.label]
+    own = [one for one in curves(rows) if one.own]
     return _single(
-        own,
-        lambda row: whole_evaluations(row, t_end),
+        ladders(own, lambda row: whole_evaluations(row, t_end), error_above(bound_m)),
         bound_m,
         ("evaluations", "evaluations of the right-hand side", "Error against evaluations of the right-hand side"),
     )
@@ -28,56 +28,41 @@ def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str |
 
 def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw the error achieved against the relative tolerance asked for; None if no method takes a tolerance."""
-    own = [
-        one
-        for one in curves(rows)
-        if "(" not in one.label and one.rows[0].kind == "tolerance" and family_of(one.method).title != MANY_DIGITS
-    ]
+    own = [one for one in curves(rows) if one.own and one.kind == "tolerance"]
+    coarse = [one for one in own if family_of(one.method) != Family.MANY_DIGITS]
     words = ("tolerance", "relative tolerance asked for", "Error achieved against the tolerance asked for")
-    return _single(own, lambda row: row.setting, bound_m, words, diagonal="error in m = tolerance")
+    lines = ladders(coarse, attrgetter("setting"), error_above(bound_m))
+    return _single(lines, bound_m, words, diagonal="error in m = tolerance")
 
 
 def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw error against CPU seconds of formulations of the same equations with one method; None without such rows."""
     every = curves(rows)
-    compared = {one.method for one in every if "(" in one.label}
-    ladders = [
-        Curve(one.method, one.formulation, one.formulation, one.rows)
-        for one in every
-        if one.method in compared and one.measured
-    ]
+    compared = {one.method for one in every if not one.own}
+    ladders_of_all = ladders(
+        [one for one in every if one.method in compared], cost_of, error_above(bound_m), attrgetter("formulation")
+    )
     words = ("formulations", CPU, "Error against CPU seconds of formulations of the same equations")
-    looks = [line_style(COLOURS[i % 6], i) for i in range(len(ladders))]
-    return _single(ladders, cost_of, bound_m, words, looks=looks)
+    lines = [replace(one, style=line_style(COLOURS[i % 6], i)) for i, one in enumerate(ladders_of_all)]
+    return _single(lines, bound_m, words)
 
 
-def _single(
-    ladders: Sequence[Curve],
-    x_of: Horizontal,
-    bound_m: float,
-    words: tuple[str, str, str],
-    *,
-    looks: Sequence[Style] | None = None,
-    diagonal: str = "",
-) -> str | None:
+def _single(lines: Sequence[Line], bound_m: float, words: tuple[str, str, str], diagonal: str = "") -> str | None:
     """Draw one panel; `words` are the picture's name, the label of the horizontal axis and the description."""
-    ladders = [one for one in ladders if any(x_of(row) for row in one.measured)]
-    if not ladders:
+    if not lines:
         return None
-    looks = looks or styles(ladders)
-    x, y = zip(*[point for one in ladders for point in zip(*points(one, x_of, bound_m), strict=True)], strict=True)
-    with sheet((9.5, 5.6)) as (figure, grid):
-        axes = grid[0, 0]
-        logarithmic(axes, "x", *limits(x, 0.4, 3.0), 12)
-        logarithmic(axes, "y", *limits(y, 0.2, 5.0), 16)
+    with sheet((9.5, 5.6)) as figure:
+        axes = figure.subplots()
+        logarithmic(axes, "x", *limits([x for one in lines for x in one.x], 0.4, 3.0), 12)
+        logarithmic(axes, "y", *limits([y for one in lines for y in one.y], 0.2, 5.0), 16)
+        axes.set(xlabel=words[1], ylabel=ERROR)
         band(axes, bound_m)
+        draw(axes, lines)
         others = []
         if diagonal:
             low, high = axes.get_xlim()
             ends = np.geomspace(low, high, 9).tolist()
-            axes.plot(ends, ends, color=FAINT, linewidth=0.9, linestyle=(0, (1, 2)))
-            others.append(Label(diagonal, FAINT, ends, ends))
-        draw(axes, ladders, looks, x_of, bound_m)
-        axes.set(xlabel=words[1], ylabel=ERROR)
-        label(axes, ladders, x_of, bound_m, colours=[look["color"] for look in looks], others=others)
-        return svg_text(figure, words[0], f"{words[2]}, log-log: {', '.join(one.label for one in ladders)}.")
+            others.append(Line(diagonal, ends, ends, GUIDE))
+            draw(axes, others)
+        place(axes, [*lines, *others])
+        return svg_text(figure, words[0], f"{words[2]}, log-log: {', '.join(one.name for one in lines)}.")

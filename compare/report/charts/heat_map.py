@@ -73,8 +73,8 @@ def heat_map(cells: Sequence[Field], steps: Sequence[float] = (3, 6, 9, 12, 15))
         list(dict.fromkeys(names)) for names in zip(*[(one.row, one.column) for one in cells], strict=True)
     )
     size = (_MARGINS[0] + _CELL * max(len(columns), _LEAST_COLUMNS), _MARGINS[1] + _CELL * (len(rows) + _KEY_ROWS))
-    with sheet(size) as (figure, grid):
-        axes = grid[0, 0]
+    with sheet(size) as figure:
+        axes = figure.subplots()
         wide = max(len(columns), _LEAST_COLUMNS)
         axes.set(xlim=(0, wide), ylim=(len(rows) + _KEY_ROWS, 0), aspect="equal")
         for cell in cells:

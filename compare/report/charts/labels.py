@@ -1,8 +1,8 @@
-"""Placement of labels beside their lines: near an end of the line, covering neither other labels nor lines."""
+"""Lines of a chart and the placement of their names: beside the line, covering neither other names nor lines."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
@@ -10,63 +10,107 @@ from typing import Any
 import numpy as np
 
 _WIDE, _TALL = 0.64, 1.25  # size of a character over the font size: slightly too large, to allow for other fonts
-_GAP = 5.0  # between a marker and its label, in points
-_MARKER = 2.5  # half the size of a marker, in points: labels keep this distance from lines
+_GAP = 5.0  # between a marker and its name, in points
+_MARGIN, _APART = 24.0, 3.0  # between the axes and names in the margin, and between these names, in points
+_MARKER = 2.5  # half the size of a marker, in points: names keep this distance from lines
 _EVERY = 3.0  # spacing, in points, of the samples that represent a line
-_OUTSIDE, _ON_LABEL, _ON_LINE, _AWAY = 1e6, 1e4, 40.0, 8.0  # penalties of a place
+_OUTSIDE, _ON_NAME, _ON_LINE, _AWAY, _CROSSED = 1e6, 1e4, 40.0, 8.0, 1e3  # penalties of a place
+_FAINT = 0.35  # opacity of faint markers
 _SIDES = (
     (1.0, 0.0), (1.0, 0.8), (1.0, -0.8), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (-1.0, 0.8), (-1.0, -0.8),
     (1.0, 1.6), (1.0, -1.6), (-1.0, 1.6), (-1.0, -1.6),
 )  # fmt: skip
+_ALIGNED = {1.0: "left", -1.0: "right", 0.0: "center"}
 
 
 @dataclass(frozen=True)
-class Label:
-    """Text at a line.
+class Line:
+    """A line of a chart.
 
     Attributes:
-        text: text of the label.
-        colour: colour of the text.
-        x: x of the line's points, in data coordinates.
-        y: y of the line's points, in data coordinates.
+        name: its name, in one or more lines of text.
+        x: x of its points, in data coordinates.
+        y: y of its points, in data coordinates.
+        style: matplotlib's keywords, with the colour; see `line_style`.
+        faint: for each point whether its marker is drawn faint; empty for a line without markers.
     """
 
-    text: str
-    colour: str
+    name: str
     x: Sequence[float]
     y: Sequence[float]
+    style: Mapping[str, Any]
+    faint: Sequence[bool] = ()
 
 
-def place(axes: Any, labels: Sequence[Label], lines: Sequence[Label] | None = None, size: float = 8.0) -> None:
-    """Put labels at their lines; call it last, when the limits of the axes are final.
+@dataclass(frozen=True)
+class _Place:
+    """A place for a name: the box (x0, y0, x1, y1), the penalty for its distance from the line, and its side."""
+
+    box: Any
+    away: float
+    side: float = 1.0
+
+
+def draw(axes: Any, lines: Sequence[Line]) -> None:
+    """Draw lines with their markers."""
+    for line in lines:
+        axes.plot(line.x, line.y, **{**line.style, "marker": ""}, zorder=3)
+        for faint, alpha in ((False, 1.0), (True, _FAINT)):
+            marked = [i for i, one in enumerate(line.faint) if one == faint]
+            if marked:
+                style = {**line.style, "linestyle": "none"}
+                axes.plot(line.x, line.y, **style, markevery=marked, alpha=alpha, zorder=4)
+
+
+def place(
+    axes: Any, lines: Sequence[Line], others: Sequence[Line] = (), *, size: float = 8.0, margin: bool = False
+) -> None:
+    """Write names at their lines; call it last, when the limits of the axes are final.
 
     Args:
         axes: matplotlib axes.
-        labels: labels with their lines.
-        lines: lines that a label should not cover; by default those of `labels`.
+        lines: lines to be named; one with no point inside the axes gets no name.
+        others: further lines that the names should not cover.
         size: font size in points.
+        margin: write the names into a column right of the axes, each joined to the end of its line by a thin rule.
     """
-    if not labels:
+    if not lines:
         return
     figure = axes.figure
+    if margin:
+        room = _MARGIN + max(_size(line, size)[0] for line in lines)
+        figure.get_layout_engine().set(rect=(0, 0, 1 - room / 72 / figure.get_figwidth(), 1))
     figure.get_layout_engine().execute(figure)
-    points = 72.0 / figure.dpi
-    frame = axes.get_window_extent().extents * points
-    samples = np.vstack([_sampled(_places(axes, line) * points) for line in (lines or labels)])
-    boxes: list[Any] = []
-    for label in labels:
-        vertices = _places(axes, label) * points
-        box = min(_boxes(label, vertices, frame, size), key=lambda box: _penalty(box, boxes, samples, frame))
-        boxes.append(box[0])
-        x0, y0, x1, y1 = box[0]
-        align = {1.0: "left", -1.0: "right", 0.0: "center"}[box[2]]
-        at = {"left": x0, "right": x1, "center": (x0 + x1) / 2}[align]
-        corner = axes.transData.inverted().transform((at / points, (y0 + y1) / 2 / points))
-        axes.text(*corner, label.text, color=label.colour, fontsize=size, ha=align, va="center_baseline")
+    scale = 72 / figure.dpi  # points in a pixel
+    frame = axes.get_window_extent().extents * scale
+    paths = {
+        id(line): axes.transData.transform(np.column_stack([line.x, line.y])) * scale for line in (*lines, *others)
+    }
+    samples = np.vstack([_sampled(path) for path in paths.values()])
+    placed: list[tuple[float, Any]] = []  # height of the line's end, box of the name
+    for line in sorted(lines, key=lambda line: -paths[id(line)][-1, 1]) if margin else lines:
+        path = paths[id(line)]
+        options = list((_in_margin if margin else _beside)(path, _size(line, size), frame, placed))
+        if not options:
+            continue
+        best = min(options, key=lambda one: _penalty(one, placed, samples, frame))
+        placed.append((path[-1, 1], best.box))
+        x0, y0, x1, y1 = best.box
+        at = np.array([{1.0: x0, -1.0: x1, 0.0: (x0 + x1) / 2}[best.side], (y0 + y1) / 2])
+        corner, near, end = axes.transData.inverted().transform(np.array([at, at - (_GAP, 0), path[-1]]) / scale)
+        if margin:
+            rule = np.column_stack([end, near])
+            axes.plot(*rule, color=line.style["color"], linewidth=0.6, clip_on=False, scalex=False, scaley=False)
+        axes.text(
+            *corner, line.name, color=line.style["color"], fontsize=size, ha=_ALIGNED[best.side], in_layout=False,
+            va="center" if "\n" in line.name else "center_baseline",
+        )  # fmt: skip
 
 
-def _places(axes: Any, line: Label) -> Any:
-    return axes.transData.transform(np.column_stack([line.x, line.y]))
+def _size(line: Line, size: float) -> tuple[float, float]:
+    """Return width and height of a name in points."""
+    words = line.name.split("\n")
+    return _WIDE * size * max(map(len, words)), _TALL * size * len(words)
 
 
 def _sampled(vertices: Any) -> Any:
@@ -78,31 +122,40 @@ def _sampled(vertices: Any) -> Any:
     return np.vstack(parts)
 
 
-def _boxes(label: Label, vertices: Any, frame: Any, size: float) -> list[tuple[Any, float, float]]:
-    """Return places for a label: (x0, y0, x1, y1), the penalty for its distance from the end, and its side."""
-    wide, tall = _WIDE * size * len(label.text), _TALL * size
-    order = [len(vertices) - 1, 0, *range(len(vertices) - 2, 0, -1)]
-    options = []
-    for rank, index in enumerate(order):
-        x, y = vertices[index]
+def _beside(path: Any, size: tuple[float, float], frame: Any, _: Sequence[tuple[float, Any]]) -> Iterator[_Place]:
+    """Yield places around the points of a line: at its end first, then at its start, then in between."""
+    wide, tall = size
+    for rank, index in enumerate([len(path) - 1, 0, *range(len(path) - 2, 0, -1)]):
+        x, y = path[index]
         if not (frame[0] <= x <= frame[2] and frame[1] <= y <= frame[3]):
             continue
         for turn, (side, up) in enumerate(_SIDES):
             left = x + side * _GAP - (0.0 if side > 0 else wide if side < 0 else wide / 2)
             low = y - tall / 2 + up * (tall / 2 + _GAP * (0.9 if side == 0 else 0.2))
-            options.append((np.array([left, low, left + wide, low + tall]), _AWAY * rank + turn, side))
-    centre = (frame[:2] + frame[2:]) / 2  # for a line that is wholly outside the axes
-    return options or [(np.hstack([centre, centre + np.array([wide, tall])]), 0.0, 1.0)]
+            box = np.array([left, low, left + wide, low + tall])
+            outside = left < frame[0] or left + wide > frame[2]
+            yield _Place(box, _AWAY * rank + turn + _OUTSIDE * outside, side)
 
 
-def _penalty(option: tuple[Any, float, float], boxes: Sequence[Any], samples: Any, frame: Any) -> float:
-    """Return the penalty of a place: outside the axes, on other labels, on lines, and far from the end."""
-    box, away, _ = option
-    outside = box[0] < frame[0] or box[1] < frame[1] or box[3] > frame[3] or box[2] > frame[2]
-    covered = sum(max(0.0, _overlap(box, other)) for other in boxes)
+def _in_margin(
+    path: Any, size: tuple[float, float], frame: Any, placed: Sequence[tuple[float, Any]]
+) -> Iterator[_Place]:
+    """Yield places in the margin: at the height of the line's end, and right above and below the names there."""
+    wide, tall, left, end = size[0], size[1] + _APART, frame[2] + _MARGIN, path[-1, 1]
+    for middle in (end, *(y for _, box in placed for y in (box[1] - tall / 2, box[3] + tall / 2))):
+        crossed = sum((height - end) * ((box[1] + box[3]) / 2 - middle) < 0 for height, box in placed)
+        box = np.array([left, middle - tall / 2, left + wide, middle + tall / 2])
+        yield _Place(box, abs(middle - end) + _CROSSED * crossed)
+
+
+def _penalty(option: _Place, placed: Sequence[tuple[float, Any]], samples: Any, frame: Any) -> float:
+    """Return the penalty of a place: outside the axes, on other names, on lines, and far from the line's end."""
+    box = option.box
+    outside = box[1] < frame[1] or box[3] > frame[3]
+    covered = sum(_overlap(box, other) for _, other in placed)
     low, high = box[:2] - _MARKER, box[2:] + _MARKER
     inside = ((samples > low) & (samples < high)).all(axis=1)
-    return float(_OUTSIDE * outside + _ON_LABEL * covered + _ON_LINE * inside.sum() + away)
+    return float(_OUTSIDE * outside + _ON_NAME * covered + _ON_LINE * inside.sum() + option.away)
 
 
 def _overlap(a: Any, b: Any) -> float:

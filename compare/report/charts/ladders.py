@@ -1,71 +1,80 @@
-"""Ladders (a method over its settings) as lines of a chart: points, names, and the reference's bound as a band."""
+"""Ladders (a method over its settings) as lines of a chart, in their family's colours; the bound of the reference."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from operator import attrgetter
 from typing import Any
 
-from ...studies.row import EXTRAPOLATED, Row
-from ..pareto import Curve, error_of
-from .drawing import BAND, FAINT
-from .families import family_of
-from .labels import Label, place
+from reference.status import Status
 
-Style = dict[str, Any]
-Horizontal = Callable[[Row], float | None]
+from ...methods import METHODS, Family
+from ...studies.row import Row
+from ..pareto import Curve, error_of
+from .drawing import BAND, COLOURS, FAINT, line_style
+from .labels import Line
+
+Coordinate = Callable[[Row], float | None]
 
 CPU, ERROR = "CPU seconds", "largest error of position in m"
-_FAINT = 0.35  # opacity of markers of extrapolated rows
+_NARROW = 0.1  # a band below this part of the height of the axes has its text above it
+_BLUE, _VERMILLION, _GREEN, _PURPLE, _ORANGE, _SKY, _INK = COLOURS
+FAMILY_COLOURS = {
+    Family.PAPER: _INK,
+    Family.GEOMETRIC: _PURPLE,
+    Family.MANY_DIGITS: _SKY,
+    Family.HEYOKA: _BLUE,
+    Family.SCIPY: _ORANGE,
+    Family.COMPILED: _VERMILLION,
+    Family.REBOUND: _GREEN,
+    Family.OTHERS: FAINT,
+}
 
 
-def points(curve: Curve, x_of: Horizontal, bound_m: float) -> tuple[list[float], list[float]]:
-    """Return x and y of a ladder's measured rows, loose to tight, without those that a logarithmic axis cannot show."""
-    known = [(x, error_of(row, bound_m)) for row in curve.measured if (x := x_of(row)) and error_of(row, bound_m)]
-    return [x for x, _ in known], [error for _, error in known]
+@dataclass(frozen=True)
+class Ladder(Line):
+    """A method over its settings as a line; `family` is the method's."""
+
+    family: Family = Family.OTHERS
 
 
-def draw(axes: Any, ladders: Sequence[Curve], looks: Sequence[Style], x_of: Horizontal, bound_m: float) -> None:
-    """Draw ladders as lines with markers, those of extrapolated rows faint."""
-    for curve, look in zip(ladders, looks, strict=True):
-        axes.plot(*points(curve, x_of, bound_m), **{**look, "marker": ""}, zorder=3)
-        for part, alpha in ((False, 1.0), (True, _FAINT)):
-            rows = tuple(row for row in curve.measured if (row.status == EXTRAPOLATED) == part)
-            selection = Curve(curve.method, curve.formulation, curve.label, rows)
-            if rows:
-                axes.plot(*points(selection, x_of, bound_m), **{**look, "linestyle": "none"}, alpha=alpha, zorder=4)
+def family_of(method: str) -> Family:
+    """Return a method's family; a program of the user's belongs to the others."""
+    return METHODS[method].family if method in METHODS else Family.OTHERS
 
 
-def label(
-    axes: Any,
-    ladders: Sequence[Curve],
-    x_of: Horizontal,
-    bound_m: float,
-    *,
-    size: float = 8.0,
-    colours: Sequence[str] | None = None,
-    others: Sequence[Label] = (),
-    lines: Sequence[Curve] = (),
-) -> None:
-    """Put names at the ladders that are inside the axes; call it last.
+def ladders(
+    curves: Iterable[Curve], x_of: Coordinate, y_of: Coordinate, name: Callable[[Curve], str] = attrgetter("label")
+) -> list[Ladder]:
+    """Return a line for each curve that has points; within a family, markers and dashes differ.
 
     Args:
-        axes: matplotlib axes.
-        ladders: the ladders to be named.
-        x_of: horizontal coordinate of a row.
-        bound_m: bound of the reference in m.
-        size: font size in points.
-        colours: colours of the names; those of the families by default.
-        others: further labels.
-        lines: further ladders that names should not cover.
+        curves: methods over their settings.
+        x_of: horizontal coordinate of a measured row; a row without one, or with zero, is left out.
+        y_of: vertical coordinate, likewise.
+        name: name of a curve's line.
     """
-    low, high = axes.get_ylim()
-    labels = []
-    for curve, colour in zip(ladders, colours or [family_of(one.method).colour for one in ladders], strict=True):
-        x, y = points(curve, x_of, bound_m)
-        if x and any(low <= one <= high for one in y):
-            labels.append(Label(curve.label, colour, x, y))
-    more = [Label(curve.label, "", *points(curve, x_of, bound_m)) for curve in lines]
-    place(axes, [*labels, *others], [*labels, *others, *more], size=size)
+    places: Counter[Family] = Counter()
+    lines = []
+    for curve in curves:
+        points = [
+            (x, y, row.status == Status.EXTRAPOLATED) for row in curve.measured if (x := x_of(row)) and (y := y_of(row))
+        ]
+        if points:
+            family = family_of(curve.method)
+            style = line_style(FAMILY_COLOURS[family], places[family])
+            across, up, faint = zip(*points, strict=True)
+            lines.append(Ladder(name(curve), across, up, style, faint, family))
+            places[family] += 1
+    return lines
+
+
+def error_above(bound_m: float) -> Coordinate:
+    """Return the coordinate of a row by its error, which counts as no smaller than the bound of the reference."""
+    return lambda row: error_of(row, bound_m)
 
 
 def band(axes: Any, bound_m: float) -> None:
@@ -73,7 +82,8 @@ def band(axes: Any, bound_m: float) -> None:
     low, high = axes.get_ylim()
     if low < bound_m < high:
         axes.axhspan(low, bound_m, color=BAND, linewidth=0, zorder=0)
+        inside = math.log(bound_m / low) > _NARROW * math.log(high / low)
         axes.text(
             0.005, bound_m, f"bound of the reference, {bound_m:.1e} m",
-            transform=axes.get_yaxis_transform(), ha="left", va="top", color=FAINT, fontsize=8,
+            transform=axes.get_yaxis_transform(), va="top" if inside else "bottom", color=FAINT, fontsize=8,
         )  # fmt: skip

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from ...methods import Family
 from ...studies.row import Row
-from ..pareto import Curve, cost_of, curves, error_of, front
+from ..pareto import cost_of, curves, error_of, front
 from .drawing import BAND, FAINT, RULE, limits, logarithmic, sheet, svg_text
-from .families import FAMILIES, MANY_DIGITS, family_of, styles
-from .ladders import CPU, ERROR, band, draw, label, points
+from .labels import draw, place
+from .ladders import CPU, ERROR, FAMILY_COLOURS, Ladder, band, error_above, family_of, ladders
 
 FINEST_M = 1e-20  # m: the upper panel shows the methods of fixed precision, but no errors below this
 _SPLIT = 4.0  # the panels meet at the smallest error of these methods divided by this
@@ -25,54 +26,41 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
     """
     best = front(rows, bound_m)
     on_front = {row.key for row in best}
-    ladders = [one for one in curves(rows) if "(" not in one.label or any(row.key in on_front for row in one.rows)]
-    ladders = [one for one in ladders if points(one, cost_of, bound_m)[0]]
-    if not ladders:
+    shown = [one for one in curves(rows) if one.own or any(row.key in on_front for row in one.rows)]
+    lines = ladders(shown, cost_of, error_above(bound_m))
+    if not lines:
         return None
-    scales = _scales(ladders, bound_m)
-    with sheet(
-        (9.5, 8.6 if len(scales) > 1 else 6.6), len(scales), sharex=True, height_ratios=(3.4, 1.2)[: len(scales)]
-    ) as (
-        figure,
-        axes,
-    ):
+    scales = _scales(lines, bound_m)
+    with sheet((9.5, 8.6 if len(scales) > 1 else 6.6)) as figure:
+        grid = figure.subplots(len(scales), sharex=True, height_ratios=(3.4, 1.2)[: len(scales)], squeeze=False)
+        panels = list(zip(grid[:, 0], scales, (18, 8), strict=False))
         x_limits = limits([row.cpu_s for row in rows if row.cpu_s], 0.5, 3.0)
-        for panel, scale in zip(axes[:, 0], scales, strict=True):
-            logarithmic(panel, "x", *x_limits, 12)
-            logarithmic(panel, "y", *scale, 18 if panel is axes[0, 0] else 8)
-            band(panel, bound_m)
-            _front_line(panel, best, bound_m)
-            draw(panel, ladders, styles(ladders), cost_of, bound_m)
-        _failed(axes[0, 0], rows)
-        axes[-1, 0].set_xlabel(CPU)
+        for axes, scale, labels in panels:
+            logarithmic(axes, "x", *x_limits, 12)
+            logarithmic(axes, "y", *scale, labels)
+            band(axes, bound_m)
+            _front_line(axes, best, bound_m)
+            draw(axes, lines)
+        _failed(grid[0, 0], rows)
+        grid[-1, 0].set_xlabel(CPU)
         figure.supylabel(ERROR, fontsize=9)
-        for panel, (low, high) in zip(axes[:, 0], scales, strict=True):
-            ending = [one for one in ladders if low <= points(one, cost_of, bound_m)[1][-1] < high]
-            label(panel, ending, cost_of, bound_m, lines=ladders)
-        names = ", ".join(one.label for one in ladders)
+        for axes, (low, high), _ in panels:
+            ending = [one for one in lines if low <= one.y[-1] < high]
+            place(axes, ending, [one for one in lines if one not in ending])
+        names = ", ".join(one.name for one in lines)
         return svg_text(figure, "overview", f"Largest position error against CPU seconds, log-log, of {names}.")
 
 
-def _scales(ladders: Sequence[Curve], bound_m: float) -> list[tuple[float, float]]:
+def _scales(lines: Sequence[Ladder], bound_m: float) -> list[tuple[float, float]]:
     """Return the lowest and the highest error of each panel."""
-    errors = [error for one in ladders for error in points(one, cost_of, bound_m)[1]]
-    split = _split(ladders, bound_m)
-    if split is None:
-        return [(min(errors) / _SPLIT, max(errors) * 30)]
-    finest = min(errors)
+    errors = [error for one in lines for error in one.y]
+    fixed = [error for one in lines if one.family != Family.MANY_DIGITS for error in one.y]
+    finest, most = min(errors), max(errors) * 30
+    split = max(min(fixed) / _SPLIT, FINEST_M) if fixed else 0.0
+    if finest >= split:
+        return [(finest / _SPLIT, most)]
     lowest = bound_m if finest / _BAND_WITHIN < bound_m < finest else finest
-    return [(split, max(errors) * 30), (lowest / 30, split)]
-
-
-def _split(ladders: Sequence[Curve], bound_m: float) -> float | None:
-    """Return the error at which the panels meet; None if one panel is enough."""
-    ends = {True: [], False: []}  # type: dict[bool, list[float]]
-    for one in ladders:
-        ends[family_of(one.method).title == MANY_DIGITS] += points(one, cost_of, bound_m)[1]
-    if not ends[False]:
-        return None
-    split = max(min(ends[False]) / _SPLIT, FINEST_M)
-    return split if min([*ends[True], *ends[False]]) < split else None
+    return [(split, most), (lowest / 30, split)]
 
 
 def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
@@ -80,34 +68,33 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
 
     The family of many digits is left to `precision_ladder` if there are others. None if no row is measured.
     """
-    own = [one for one in curves(rows) if "(" not in one.label and points(one, cost_of, bound_m)[0]]
-    coarse = [one for one in own if family_of(one.method).title != MANY_DIGITS] or own
-    families = [one for one in FAMILIES if any(family_of(curve.method) == one for curve in coarse)]
+    lines = ladders([one for one in curves(rows) if one.own], cost_of, error_above(bound_m))
+    coarse = [one for one in lines if one.family != Family.MANY_DIGITS] or lines
+    families = [family for family in Family if any(one.family == family for one in coarse)]
     if not families:
         return None
-    x_limits = limits([cpu_s for one in coarse for cpu_s in points(one, cost_of, bound_m)[0]])
-    y_limits = limits([error for one in coarse for error in points(one, cost_of, bound_m)[1]], 0.2, 6.0)
-    count, looks = -(-len(families) // _COLUMNS), styles(own)
-    with sheet((9.5, 2.9 * count), count, min(_COLUMNS, len(families)), sharex=True, sharey=True) as (figure, axes):
-        for i, panel in enumerate(axes.flat):
-            if i >= len(families):
-                panel.set_axis_off()
-                continue
+    x_limits = limits([cpu_s for one in coarse for cpu_s in one.x])
+    y_limits = limits([error for one in coarse for error in one.y], 0.2, 6.0)
+    count = -(-len(families) // _COLUMNS)
+    with sheet((9.5, 2.9 * count)) as figure:
+        grid = figure.subplots(count, min(_COLUMNS, len(families)), sharex=True, sharey=True, squeeze=False)
+        for panel in grid.flat[len(families) :]:
+            panel.set_axis_off()
+        panels = list(zip(grid.flat, families, strict=False))
+        for i, (panel, family) in enumerate(panels):
             logarithmic(panel, "x", *x_limits, 6)
             logarithmic(panel, "y", *y_limits, 9)
             panel.tick_params(labelbottom=i + _COLUMNS >= len(families))
-            panel.set_title(families[i].title)
-            for curve, look in zip(own, looks, strict=True):
-                if family_of(curve.method) == families[i]:
-                    draw(panel, [curve], [look], cost_of, bound_m)
-                else:
-                    panel.plot(*points(curve, cost_of, bound_m), color=RULE, linewidth=1.0, zorder=1)
+            panel.set_title(family)
+            for one in lines:
+                if one.family != family:
+                    panel.plot(one.x, one.y, color=RULE, linewidth=1.0, zorder=1)
+            draw(panel, [one for one in lines if one.family == family])
         figure.supxlabel(CPU, fontsize=9)
         figure.supylabel(ERROR, fontsize=9)
-        for panel, family in zip(axes.flat, families, strict=False):
-            label(panel, [curve for curve in own if family_of(curve.method) == family], cost_of, bound_m, size=7.5)
-        names = ", ".join(family.title for family in families)
-        return svg_text(figure, "families", f"Error against CPU seconds in small multiples: {names}.")
+        for panel, family in panels:
+            place(panel, [one for one in lines if one.family == family], size=7.5)
+        return svg_text(figure, "families", f"Error against CPU seconds in small multiples: {', '.join(families)}.")
 
 
 def _front_line(axes: Any, best: Sequence[Row], bound_m: float) -> None:
@@ -124,6 +111,6 @@ def _failed(axes: Any, rows: Sequence[Row]) -> None:
     axes.text(0.995, middle, "failed", ha="right", va="center_baseline", color=FAINT, fontsize=8, **strip)
     for row in failed:
         axes.plot(
-            [row.cpu_s], [middle], marker="x", markersize=5, color=family_of(row.method).colour,
+            [row.cpu_s], [middle], marker="x", markersize=5, color=FAMILY_COLOURS[family_of(row.method)],
             transform=axes.get_xaxis_transform(), zorder=5,
         )  # fmt: skip

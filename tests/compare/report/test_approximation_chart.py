@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from itertools import pairwise
 
 import pytest
 
-from compare.report.charts.approximations import _apart as apart
 from compare.report.charts.approximations import plot
 from compare.studies.approximation_errors import TimeRow, error_table
 from compare.studies.approximation_limits import SweepRow
@@ -38,15 +36,6 @@ def test_a_sweep_is_drawn_over_its_own_axis():
     words = texts(plot(rows, "plane_error_arcsec"))
     assert "latitude, degrees" in words
     assert "planar" in words
-
-
-def test_labels_do_not_touch_and_stay_near_their_lines():
-    ends, tall = [0.9, 0.9, 0.9, 0.5, 0.1, 0.1], [0.05, 0.1, 0.05, 0.05, 0.05, 0.05]
-    places = apart(ends, tall)
-    for (a, b), (upper, lower) in zip(pairwise(places), pairwise(tall), strict=True):
-        assert a - b >= (upper + lower) / 2 - 1e-12
-    assert places[3] == pytest.approx(0.5)
-    assert sum(places[:3]) / 3 == pytest.approx(0.9, abs=0.02)
 
 
 def test_nothing_to_draw_is_said():

@@ -8,12 +8,12 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from compare.methods import METHODS
+from compare.methods import METHODS, Family
 from compare.report import charts
-from compare.report.charts.drawing import power_of_ten, sheet
-from compare.report.charts.families import FAMILIES, family_of, styles
-from compare.report.charts.labels import Label, place
-from compare.report.pareto import curves
+from compare.report.charts.drawing import COLOURS, line_style, power_of_ten, sheet
+from compare.report.charts.labels import Line, place
+from compare.report.charts.ladders import FAMILY_COLOURS, family_of, ladders
+from compare.report.pareto import cost_of, curves
 from compare.studies.row import Row
 from reference import InputError
 
@@ -115,7 +115,7 @@ def test_ids_are_unique_over_all_pictures_of_a_page_and_every_reference_is_met(p
 def test_every_measured_method_is_named_in_the_overview(pictures):
     named = texts(pictures["overview"])
     for curve in curves(ROWS):
-        if curve.measured and "(" not in curve.label:
+        if curve.measured and curve.own:
             assert curve.label in named
     assert "mpmath_odefun" not in named
 
@@ -138,7 +138,7 @@ def test_formulations_are_named_by_their_words(pictures):
 
 
 def test_the_fitted_law_stands_in_the_precision_ladder(pictures):
-    assert any(one.startswith("∝ digits^") for one in texts(pictures["precision"]))
+    assert any(one.startswith("heyoka_real, ∝ digits^") for one in texts(pictures["precision"]))
 
 
 def test_growth_names_the_slopes_and_each_lines_own(pictures):
@@ -197,25 +197,55 @@ def test_an_error_of_zero_is_drawn_nowhere_but_harms_nothing():
 
 
 def test_every_method_has_a_family_and_within_a_picture_no_two_look_alike():
-    looks = styles(curves(ROWS))
-    assert len({(one["color"], one["marker"]) for one in looks}) == len(looks)
-    for name in METHODS:
-        if not name.startswith("diffrax"):
-            assert family_of(name).prefixes, name
-    assert family_of("my_own_program") is FAMILIES[-1]
+    looks = [line.style for line in ladders(curves(ROWS), cost_of, cost_of)]
+    assert len({(one["color"], one["marker"]) for one in looks}) == len(looks) > 20
+    assert [name for name in METHODS if family_of(name) == Family.OTHERS] == ["diffrax_dopri8"]
+    assert family_of("my_own_program") == family_of("external: ./run") == Family.OTHERS
+    assert len(set(FAMILY_COLOURS.values())) == len(Family)
 
 
-def test_labels_do_not_cover_each_other():
-    with sheet((6, 4)) as (figure, grid):
-        axes = grid[0, 0]
+def named(lines, **how):
+    """Draw names at lines; return the boxes that matplotlib draws them in, and the axes' own box."""
+    with sheet((6, 4)) as figure:
+        axes = figure.subplots()
         axes.set(xlim=(0, 10), ylim=(0, 10))
-        lines = [Label(f"method {i}", "#000000", [1, 5, 8], [9, 5 + 0.1 * i, 5 + 0.05 * i]) for i in range(8)]
-        place(axes, lines)
+        place(axes, lines, **how)
         renderer = figure.canvas.get_renderer()
-        boxes = [one.get_window_extent(renderer) for one in axes.texts]
-        assert len(boxes) == 8
-        for i, one in enumerate(boxes):
-            assert not any(one.overlaps(other) for other in boxes[:i])
+        boxes = {one.get_text(): one.get_window_extent(renderer) for one in axes.texts}
+        return boxes, axes.get_window_extent(), figure.bbox
+
+
+def lines_to(ends, x=8):
+    return [
+        Line(f"method {i}", [1, 5, x], [9, 5 + 0.1 * i, y], line_style(COLOURS[i % 7], i)) for i, y in enumerate(ends)
+    ]
+
+
+@pytest.mark.parametrize(
+    "ends",
+    [[5 + 0.05 * i for i in range(8)], [5.0] * 8, [0.01 * i for i in range(8)], [10 - 0.01 * i for i in range(8)]],
+)
+@pytest.mark.parametrize("margin", [False, True])
+def test_names_do_not_cover_each_other(ends, margin):
+    boxes, axes, page = named(lines_to(ends, 10 if margin else 8), margin=margin)
+    assert len(boxes) == 8
+    for i, one in enumerate(boxes.values()):
+        assert not any(one.overlaps(other) for other in list(boxes.values())[:i])
+        assert (one.x0 > axes.x1) == margin
+        assert page.x0 <= one.x0 < one.x1 <= page.x1
+        assert page.y0 <= one.y0 < one.y1 <= page.y1
+
+
+def test_names_in_the_margin_stand_in_the_order_of_their_lines_and_near_their_ends():
+    boxes, axes, _ = named(lines_to([9.0, 8.9, 8.8, 5.0, 1.0, 0.9], 10), margin=True)
+    middles = [(box.y0 + box.y1) / 2 for box in boxes.values()]
+    assert middles == sorted(middles, reverse=True)
+    assert middles[3] == pytest.approx(axes.y0 + axes.height / 2, abs=2)
+
+
+def test_a_line_outside_the_axes_has_no_name():
+    boxes, *_ = named([Line("far", [20, 30], [1, 2], line_style(COLOURS[0], 0)), *lines_to([5.0])])
+    assert list(boxes) == ["method 0"]
 
 
 @pytest.mark.parametrize(("value", "text"), [(1e-9, "10⁻⁹"), (0.01, "0.01"), (1000, "1000"), (1e12, "10¹²")])

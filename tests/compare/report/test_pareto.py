@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from compare.report.pareto import (
     cost_at,
-    cost_of_digits,
     cost_sentence,
     costs_at,
+    costs_of_digits,
     curves,
     front,
     sentences,
@@ -183,13 +183,20 @@ def test_the_cost_of_digits_leaves_out_rows_at_the_bound():
         row("heyoka_real", bits, 10.0**-digits, 0.01 * digits**1.5, "ok", "momentum", "precision")
         for bits, digits in ((64, 15), (113, 30), (160, 39), (256, 70), (512, 150))
     ]
-    law = cost_of_digits(rows, BOUND)
+    law = costs_of_digits(rows, BOUND)["heyoka_real"]
     assert law.points == 3
     assert law.exponent == pytest.approx(1.5)
     assert law.standard_error < 1e-12
-    assert "a = 1.50 ± 0.00" in cost_sentence(law)
-    assert cost_of_digits(rows, 1e-35) is None
-    assert cost_of_digits(rows).points == 5
+    assert "a = 1.50 ± 0.00" in cost_sentence("heyoka_real", law)
+    assert costs_of_digits(rows, 1e-35) == {}
+    assert costs_of_digits(rows)["heyoka_real"].points == 5
+
+
+def test_every_method_whose_setting_is_the_precision_has_its_cost_of_digits():
+    points = [(10.0**-digits, 0.01 * digits**1.5) for digits in (15, 30, 60)]
+    rows = [one for name in ("a", "b") for one in ladder(name, points, kind="precision")] + ladder("c", points)
+    assert list(costs_of_digits(rows)) == ["a", "b"]
+    assert [line.split(" is ")[0] for line in sentences(document(rows, 0.0))] == ["The cost of a", "The cost of b"]
 
 
 def test_evaluations_of_a_part_are_scaled_to_the_whole_span():
