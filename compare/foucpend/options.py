@@ -11,42 +11,48 @@ from pydantic import ValidationError
 from reference import InputError, Scene, parse_scene
 from reference.scene import RunTable
 
-DEFAULTS = {
-    "x": "0",
-    "y": "0",
-    "l": "67",
-    "v": "0",
-    "L": "48.846111",
-    "T": "86400",
-    "t": "0.1",
-    "s": "1",
-    "g": "9.80665",
-    "O": "7.292115e-5",
-    "f": "298.257223564",
-    "h": "0",
-    "r": "6.378137e6",
-    "R": "4",
-    "a": "0",
-}
 METHOD_OF = {"4": "rk4", "5": "rkng56", "6": "rkng67"}
 MAX_STEPS = 1_000_000_000
 
-# the field of a scene that a switch sets; the scene checks its value
-_FIELDS = {
-    "x": "release.x",
-    "y": "release.y",
-    "v": "release.vx",
-    "l": "pendulum.length",
-    "L": "site.latitude",
-    "h": "site.altitude",
-    "g": "site.gravity",
-    "O": "site.rotation_rate",
-    "r": "site.equatorial_radius",
-    "f": "site.inverse_flattening",
-    "T": "run.t_end",
-    "t": "run.grid_step",
+
+@dataclass(frozen=True)
+class Switch:
+    """A switch of the program.
+
+    Attributes:
+        unit: of its value, as the help shows it.
+        help: its meaning.
+        default: its value where it is left out.
+        field: the field of a scene that it sets, which checks the value; "" if none.
+    """
+
+    unit: str
+    help: str
+    default: str
+    field: str = ""
+
+
+SWITCHES = {
+    "x": Switch("M", "East position at time zero, m", "0", "release.x"),
+    "y": Switch("M", "North position at time zero, m", "0", "release.y"),
+    "l": Switch("M", "Cord length, m", "67", "pendulum.length"),
+    "v": Switch("M/S", "East velocity at time zero, m/s", "0", "release.vx"),
+    "L": Switch("DEG", "Geodetic latitude, degrees", "48.846111", "site.latitude"),
+    "T": Switch("S", "Duration, s", "86400", "run.t_end"),
+    "t": Switch("S", "Time step, s", "0.1", "run.grid_step"),
+    "s": Switch("N", "Number of steps from one snapshot to the next", "1"),
+    "g": Switch("M/S2", "Gravity, m/s²", "9.80665", "site.gravity"),
+    "O": Switch("RAD/S", "Angular speed of the Earth, rad/s", "7.292115e-5", "site.rotation_rate"),
+    "f": Switch(
+        "1/F", "Inverse flattening of the Earth, or inf for a sphere", "298.257223564", "site.inverse_flattening"
+    ),
+    "h": Switch("M", "Altitude of the suspension, m", "0", "site.altitude"),
+    "r": Switch("M", "Equatorial radius of the Earth, m", "6.378137e6", "site.equatorial_radius"),
+    "R": Switch("4|5|6", "Integrator: 4 Runge-Kutta, 5 RKN-G 5(6), 6 RKN-G 6(7)", "4"),
+    "a": Switch("BITS", "Leave out 1: the off-diagonal elements; 2: the terms in Ω²; 3: both", "0"),
 }
-_SWITCHES = {field: switch for switch, field in _FIELDS.items()}
+DEFAULTS = {letter: switch.default for letter, switch in SWITCHES.items()}
+_LETTERS = {switch.field: letter for letter, switch in SWITCHES.items() if switch.field}
 
 
 @dataclass(frozen=True)
@@ -70,6 +76,14 @@ class Options:
     method: str
     bits: int
     exact: bool
+
+    @property
+    def printed(self) -> str:
+        """The switches that set the problem and the output, as they may be typed again."""
+        scene = self.scene.model_dump()
+        fields = {letter: field.split(".") for field, letter in _LETTERS.items()}
+        values = {letter: scene[section][key] for letter, (section, key) in fields.items()} | {"s": self.skip}
+        return " ".join(f"-{letter} {values[letter]}" for letter in SWITCHES if letter in values)
 
     @classmethod
     def parse(cls, given: Mapping[str, str], exact: bool = False) -> Options:
@@ -117,15 +131,15 @@ def _whole(switch: str, text: str, low: int, high: int | None) -> int:
 
 def _scene(values: Mapping[str, str]) -> Scene:
     document: dict[str, dict[str, str]] = {"release": {"vy": "0"}}
-    for switch, field in _FIELDS.items():
+    for field, letter in _LETTERS.items():
         section, _, key = field.partition(".")
-        document.setdefault(section, {})[key] = values[switch]
+        document.setdefault(section, {})[key] = values[letter]
     run = document.pop("run")
     for key in run:
         try:
             RunTable(**{key: run[key]})
         except ValidationError:
-            raise InputError(f"-{_SWITCHES[f'run.{key}']}", run[key], "a number above 0, in s") from None
+            raise InputError(f"-{_LETTERS[f'run.{key}']}", run[key], "a number above 0, in s") from None
     try:
         scene = parse_scene({"id": "pend", "inputs": "binary64", **document})
     except InputError as error:
@@ -136,8 +150,8 @@ def _scene(values: Mapping[str, str]) -> Scene:
 
 def _renamed(error: InputError, values: Mapping[str, str]) -> InputError:
     """Return the same error with the switch in place of the scene's field."""
-    if error.field in _SWITCHES:
-        switch = _SWITCHES[error.field]
+    if error.field in _LETTERS:
+        switch = _LETTERS[error.field]
         return InputError(f"-{switch}", values[switch], error.expected, error.advice)
     if error.field == "release":
         x, y = values["x"], values["y"]

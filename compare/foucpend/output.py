@@ -11,7 +11,7 @@ from reference.model.constants import constants
 from reference.precision import Array, context
 from reference.scene import MAX_ROWS
 
-from .options import DEFAULTS, METHOD_OF, Options
+from .options import METHOD_OF, Options
 
 DIGITS = 17  # decimal digits that identify a double
 PREC = 128  # bits in which the site's constants are computed before they become doubles
@@ -46,24 +46,8 @@ def _texts(rows: Array) -> Iterator[str]:
 
 
 def _comments(options: Options) -> Iterator[str]:
-    scene = options.scene
-    values = {
-        "x": scene.release.x,
-        "y": scene.release.y,
-        "l": scene.pendulum.length,
-        "v": scene.release.vx,
-        "L": scene.site.latitude,
-        "T": scene.run.t_end,
-        "t": scene.run.grid_step,
-        "s": options.skip,
-        "g": scene.site.gravity,
-        "O": scene.site.rotation_rate,
-        "f": scene.site.inverse_flattening,
-        "h": scene.site.altitude,
-        "r": scene.site.equatorial_radius,
-    }
     mode = "--exact" if options.exact else f"-R {_order(options.method)} -a {options.bits}"
-    yield "# foucault pend " + " ".join(f"-{switch} {values[switch]}" for switch in DEFAULTS if switch in values)
+    yield f"# foucault pend {options.printed}"
     yield f"# {mode}"
     yield f"# columns: {COLUMNS}"
     yield "# transits of xdot = 0: # P count t/s frequency/Hz"
