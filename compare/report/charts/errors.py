@@ -8,7 +8,7 @@ from operator import attrgetter
 
 import numpy as np
 
-from ...methods import Family
+from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import cost_of, curves, whole_evaluations
 from .drawing import COLOURS, GUIDE, limits, line_style, logarithmic, sheet, svg_text

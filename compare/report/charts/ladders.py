@@ -11,7 +11,8 @@ from typing import Any
 
 from reference.status import Status
 
-from ...methods import METHODS, Family
+from ...methods import METHODS
+from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import Curve, error_of
 from .drawing import BAND, COLOURS, FAINT, line_style

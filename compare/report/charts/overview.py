@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from ...methods import Family
+from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import cost_of, curves, error_of, front
 from .drawing import BAND, FAINT, RULE, limits, logarithmic, sheet, svg_text

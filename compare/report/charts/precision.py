@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from ...methods import Family
+from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import Curve, cost_of, costs_of_digits, curves, digits_of
 from .drawing import BAND, FAINT, limits, logarithmic, sheet, svg_text
