@@ -1,16 +1,18 @@
-"""Shared parts of the commands: comma-separated options, result folders, progress bars on stderr."""
+"""Shared parts of the commands: comma-separated options, folders of results, their progress and their end."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import typer
 
 from reference import InputError
+from reference.commands.terminal import bar, emit
 
-Counted = Callable[[int, int, str], None]
+Document = dict[str, Any]
 
 
 def listed(text: str | None, field: str, known: Iterable[str]) -> list[str] | None:
@@ -42,23 +44,26 @@ def inside(folder: Path | None, name: str) -> Path | None:
 
 
 @contextmanager
-def counting(label: str) -> Iterator[Counted]:
+def counting(label: str) -> Iterator[Callable[[int, int, str], None]]:
     """Show a progress bar if stderr is a terminal; yield its update(completed, total, current item)."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield lambda completed, total, item: None
-        return
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(label, total=None)
-        yield lambda completed, total, item: bar.update(
-            task, completed=completed, total=total, description=f"{label}: {item}"
+    with bar(label, None) as update:
+        yield (
+            lambda completed, total, item: (
+                update(completed=completed, total=total, description=f"{label}: {item}") if update else None
+            )
         )
 
 
 def announce(text: str) -> None:
     """Print a message on stderr before work that takes long."""
     typer.echo(text, err=True)
+
+
+def finish(document: Document, text: Callable[[Document], str], page: Path | None, as_json: bool) -> None:
+    """Print a result as a JSON document, or as text with the path of the page that was written."""
+    if as_json:
+        emit(document)
+        return
+    typer.echo(text(document))
+    if page is not None:
+        typer.echo(f"{page}: the report")

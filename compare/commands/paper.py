@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from reference.commands.terminal import AsJson, emit
+from reference.commands.terminal import AsJson
 
-from .options import counting
+from .options import counting, finish
 
 
 def command(
@@ -27,6 +28,7 @@ def command(
     """
     from ..papers import build, rows
     from ..papers.page import document
+    from ..report.folder import PAGE
 
     with counting("judging") as count:
 
@@ -34,15 +36,15 @@ def command(
             count(completed, total, place)
 
         judged = rows(report) if out is None else build(out, report)
-    if as_json:
-        emit({"out": None if out is None else str(out), "rows": [document(row) for row in judged]})
-        return
-    for row in judged:
-        detail = row.error or row.correction
-        typer.echo(f"{row.verdict:13}  {row.place}: {row.printed}")
-        typer.echo(f"{'':13}  {row.recomputed}{f'  ({detail})' if detail else ''}")
-    typer.echo("")
-    for verdict in dict.fromkeys(row.verdict for row in judged):
-        typer.echo(f"{verdict:13}  {sum(row.verdict == verdict for row in judged)}")
-    if out is not None:
-        typer.echo(f"{out / 'index.html'}")
+    result = {"out": None if out is None else str(out), "rows": [document(row) for row in judged]}
+    finish(result, _text, None if out is None else out / PAGE, as_json)
+
+
+def _text(result: dict[str, Any]) -> str:
+    lines = []
+    for row in result["rows"]:
+        detail = row["error"] or row["correction"]
+        lines.append(f"{row['verdict']:13}  {row['place']}: {row['printed']}")
+        lines.append(f"{'':13}  {row['recomputed']}{f'  ({detail})' if detail else ''}")
+    counts = Counter(row["verdict"] for row in result["rows"])
+    return "\n".join([*lines, "", *(f"{verdict:13}  {count}" for verdict, count in counts.items())])

@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from reference import InputError, scene_ids
-from reference.commands.terminal import AsJson, emit
+from reference.commands.terminal import AsJson
 
-from .options import counting, inside, listed
+from .options import counting, finish, inside, listed
 
 
 def command(
@@ -34,29 +34,21 @@ def command(
     For each: digits kept, or the way it failed; with the same --out a study resumes.
     """
     from ..methods import METHODS
-    from ..report import stability as stability_report
-    from ..report.folder import PAGE, check_folder
+    from ..report.folder import check_folder
+    from ..report.stability import REPORT, document_of
+    from ..studies.campaign import declared
     from ..studies.long_runs import over_thirty_days
-    from ..studies.stability import default_scenes
     from ..studies.stability import stability as measure
-    from ..studies.study import machine, single_thread
 
     if not 0 < limit < float("inf"):
         raise InputError("--limit", f"{limit:g}", "a positive number of seconds")
     if out is not None:
-        check_folder(out, stability_report.FILES)
-    single_thread()
-    chosen = listed(scenes, "--scenes", scene_ids()) or default_scenes()
-    requested = listed(methods, "--methods", METHODS)
+        check_folder(out, REPORT.files)
+    chosen, requested = listed(scenes, "--scenes", scene_ids()), listed(methods, "--methods", METHODS)
+    if long:
+        declared(requested, "long_runs")  # refuses a method without long runs before the others take minutes
     with counting("stability") as report:
         cells = measure(chosen, requested, limit_s=limit, journal_path=inside(out, "cells.jsonl"), report=report)
         runs = over_thirty_days(requested, journal_path=inside(out, "long.jsonl"), report=report) if long else []
-    document = stability_report.document(cells, runs, machine())
-    if out is not None:
-        stability_report.write(document, cells, runs, out)
-    if as_json:
-        emit(document)
-        return
-    typer.echo(stability_report.text_table(cells, runs))
-    if out is not None:
-        typer.echo(f"{out / PAGE}: the report")
+    document = document_of(cells, runs)
+    finish(document, REPORT.text, None if out is None else REPORT.write(document, out), as_json)

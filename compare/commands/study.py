@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from reference import InputError, Scene, load_scene
-from reference.commands.terminal import AsJson, Assignments, SceneWord, emit
+from reference.commands.terminal import AsJson, Assignments, SceneWord
 
-from .options import announce, counting, inside, listed, numbers
+from .options import announce, counting, finish, inside, listed, numbers
 
 
 def command(
@@ -61,13 +61,12 @@ def command(
         return
     from ..methods import EXTERNAL, METHODS
     from ..report.folder import check_folder
-    from ..report.study import FILES
-    from ..studies.study import plan, single_thread
+    from ..report.study import REPORT
+    from ..studies.study import plan
     from ..studies.study import study as measure
 
     if out is not None:
-        check_folder(out, FILES)
-    single_thread()
+        check_folder(out, REPORT.files)
     problem, digits = scene, None
     items = plan(scene, listed(methods, "--methods", METHODS), not no_formulations)
     if precisions is not None:
@@ -88,32 +87,12 @@ def command(
             report=report,
             announce=announce,
         )
-    _report(study.document(), out, as_json)
+    document = study.document()
+    finish(document, REPORT.text, None if out is None else REPORT.write(document, out), as_json)
 
 
 def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
-    from ..report import approximations as approximation_report
-    from ..report.folder import PAGE
+    from ..report.approximations import document_of, report_of
 
-    document = approximation_report.document(scene)
-    if out is not None:
-        approximation_report.write(scene, document, out)
-    if as_json:
-        emit(document)
-        return
-    typer.echo(approximation_report.text_table(document))
-    if out is not None:
-        typer.echo(f"{out / PAGE}: the report")
-
-
-def _report(document: dict[str, Any], out: Path | None, as_json: bool) -> None:
-    from ..report.study import text_table, write_report
-
-    if out is not None:
-        write_report(document, out)
-    if as_json:
-        emit(document)
-        return
-    typer.echo(text_table(document))
-    if out is not None:
-        typer.echo(f"{out / 'index.html'}: the report")
+    document, report = document_of(scene), report_of(scene)
+    finish(document, report.text, None if out is None else report.write(document, out), as_json)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -14,15 +14,14 @@ from ..approximations import APPROXIMATIONS
 from ..studies.approximation_errors import error_table, quantity_table
 from ..studies.approximation_limits import LIMITS, SWEEP_S, LimitRow, limits, sweep
 from .charts.approximations import plot
-from .folder import PAGE, csv_text, json_text, write_files
-from .page import Column, TableRow, figure, page, paragraph, section, table
+from .folder import Report
+from .page import Column, Html, TableRow, figure, page, paragraph, section, table
 
-CSV, JSON = "rows.csv", "approximations.json"
 OVERS = ("time", "amplitude", "latitude", "length")
 CURVE_TIMES = 80  # points of a curve over time
 
 
-def document(scene: Scene) -> dict[str, Any]:
+def document_of(scene: Scene) -> dict[str, Any]:
     """Return errors up to 20 s, 1 h, 12000 s and the end, ranges good to 1 mm, 1 µm and 1 arcsecond, and quantities."""
     t_end = float(scene.exact.t_end)
     within = min(SWEEP_S, t_end)
@@ -65,11 +64,9 @@ def text_table(report: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def write(scene: Scene, report: dict[str, Any], out: Path) -> Path:
-    """Write rows.csv, approximations.json and the page, all or none; return the path of the page."""
-    rows = csv_text(report["rows"][0], report["rows"])
-    write_files(out, {CSV: rows, JSON: json_text(report), PAGE: page_text(scene, report)})
-    return out / PAGE
+def report_of(scene: Scene) -> Report:
+    """Return the report of a scene, whose pictures are measured when the page is made."""
+    return Report("approximations.json", text_table, partial(page_text, scene))
 
 
 def page_text(scene: Scene, report: dict[str, Any]) -> str:
@@ -106,7 +103,7 @@ def page_text(scene: Scene, report: dict[str, Any]) -> str:
     )
 
 
-def _errors(report: dict[str, Any]) -> str:
+def _errors(report: dict[str, Any]) -> Html:
     """Return a table with one row for each approximation: errors of position and swing plane up to each time."""
     times = sorted({row["t"] for row in report["rows"]})
     by_key = {(row["approximation"], row["t"]): row for row in report["rows"]}
@@ -123,7 +120,7 @@ def _errors(report: dict[str, Any]) -> str:
     )
 
 
-def _limits(report: dict[str, Any], over: str) -> str:
+def _limits(report: dict[str, Any], over: str) -> Html:
     rows = [row for row in report["limits"] if row["over"] == over]
     names = list(dict.fromkeys(row["approximation"] for row in rows))
     by_key = {(row["approximation"], row["limit"]): row for row in rows}
@@ -138,7 +135,7 @@ def _intervals(row: dict[str, Any] | LimitRow) -> str:
     return ", ".join(f"{low:.3g} to {high:.3g}" for low, high in good) or "nowhere"
 
 
-def _quantities(report: dict[str, Any]) -> str:
+def _quantities(report: dict[str, Any]) -> Html:
     columns = [Column("approximation"), Column("value", "number"), Column("reference", "number"), Column("unit")]
     rows = [
         TableRow(
@@ -152,7 +149,7 @@ def _quantities(report: dict[str, Any]) -> str:
     return table([*columns, Column("relative error", "number")], rows)
 
 
-def _about() -> str:
+def _about() -> Html:
     columns = [Column("id"), Column("description", "prose"), Column("source", "prose"), Column("leaves out", "prose")]
     rows = [TableRow((one.id, one.title, one.where, one.drops)) for one in APPROXIMATIONS.values()]
     return table(columns, rows)

@@ -1,4 +1,4 @@
-"""A report's folder, whose files are written all or none; rows as CSV text, documents as JSON text."""
+"""A report: a JSON document, and text, rows and a page made from it; its files are written all or none."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ import json
 import math
 import os
 import shutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,42 @@ from reference import InputError
 
 from .page import MARK
 
-PAGE = "index.html"
+CSV, PAGE = "rows.csv", "index.html"
 _HEAD = 1024  # bytes at the start of a page that hold its mark
+
+
+@dataclass(frozen=True)
+class Report:
+    """The shape of a report: all that is shown is made from one JSON document; the same document gives the same bytes.
+
+    Attributes:
+        json: name of the document's file.
+        text: makes the text for a terminal.
+        page: makes the page as HTML.
+    """
+
+    json: str
+    text: Callable[[dict[str, Any]], str]
+    page: Callable[[dict[str, Any]], str]
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """Names of the files."""
+        return CSV, self.json, PAGE
+
+    def write(self, document: dict[str, Any], out: Path) -> Path:
+        """Write the files, all or none, and return the path of the page.
+
+        Args:
+            document: with the rows of its table under `rows`, at least one.
+            out: folder, created if it does not exist.
+
+        Raises:
+            InputError: the folder cannot be written to, or `check_folder` refuses it.
+        """
+        rows = csv_text(document["rows"][0], document["rows"])
+        write_files(out, {CSV: rows, self.json: json_text(document), PAGE: self.page(document)})
+        return out / PAGE
 
 
 def check_folder(folder: Path, names: Iterable[str]) -> None:

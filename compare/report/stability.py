@@ -4,41 +4,42 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, fields
-from pathlib import Path
+from dataclasses import asdict
 from statistics import median
 from typing import Any
 
 import numpy as np
 
 from reference import load_scene
+from reference.status import Status
 
 from ..studies.long_runs import LongRun, laws
+from ..studies.machine import machine
 from ..studies.stability import WRONG, Cell
-from .charts import ErrorHistory, error_growth, heat_map
-from .charts.heat_map import CLASSES, Field
-from .folder import PAGE, csv_text, json_text, write_files
-from .page import Column, TableRow, facts, figure, findings, page, paragraph, section, table
+from .charts import ErrorHistory, Field, error_growth, heat_map
+from .charts.heat_map import LETTERS
+from .folder import Report
+from .page import Column, Html, TableRow, facts, figure, findings, page, paragraph, section, table
+from .tables import advice, word, words
 
-CSV, JSON = "rows.csv", "stability.json"
-FILES = (CSV, JSON, PAGE)
+NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
 
 
-def document(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, str]) -> dict[str, Any]:
+def document_of(cells: Sequence[Cell], runs: Sequence[LongRun]) -> dict[str, Any]:
     """Return the JSON document of the command."""
     return {
         "rows": [asdict(cell) for cell in cells],
-        "silently_wrong": sum(cell.status == "silently_wrong" for cell in cells),
+        "silently_wrong": sum(cell.status == Status.SILENTLY_WRONG for cell in cells),
         "long_runs": [run.document() for run in runs],
-        "machine": machine,
+        "machine": machine(),
     }
 
 
 def headlines(cells: Sequence[Cell]) -> list[str]:
     """Return the main results as sentences."""
-    wrong = [cell for cell in cells if cell.status == "silently_wrong"]
-    tried = [cell for cell in cells if cell.status not in ("not_installed", "refused")]
+    wrong = [cell for cell in cells if cell.status == Status.SILENTLY_WRONG]
+    tried = [cell for cell in cells if cell.status not in NOT_TRIED]
     methods = Counter(cell.method for cell in wrong)
     sentences = [
         f"{len(wrong)} of {len(tried)} runs are silently wrong: they report success, but the error is over {WRONG} "
@@ -72,17 +73,17 @@ def _times(gain: float) -> str:
     return f"{gain:.2g} times cheaper" if gain >= 1 else f"{1 / gain:.2g} times more expensive"
 
 
-def write(report: dict[str, Any], cells: Sequence[Cell], runs: Sequence[LongRun], out: Path) -> Path:
-    """Write rows.csv, stability.json and the page, all or none; return the path of the page."""
-    rows = csv_text((one.name for one in fields(Cell)), report["rows"])
-    write_files(out, {CSV: rows, JSON: json_text(report), PAGE: page_text(cells, runs, report["machine"])})
-    return out / PAGE
+def _parsed(document: dict[str, Any]) -> tuple[list[Cell], list[LongRun]]:
+    return [Cell.parsed(row) for row in document["rows"]], [LongRun.parsed(run) for run in document["long_runs"]]
 
 
-def page_text(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str, str]) -> str:
+def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
-    letters = "; ".join(f"{letter}: {meaning}" for letter, meaning in CLASSES.values())
+    cells, runs = _parsed(document)
+    letters = "; ".join(f"{letter}: {status.meaning}" for status, letter in LETTERS.items())
     squares = [Field(cell.scene, f"{cell.method} {_short(cell.precision)}", cell.status, cell.digits) for cell in cells]
+    failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
+    wrong = [cell for cell in failures if cell.status == Status.SILENTLY_WRONG]
     parts = [
         section("Findings", findings(headlines(cells))),
         section(
@@ -92,13 +93,9 @@ def page_text(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str,
                 f"Digits of the amplitude that a run kept, rounded down, or a letter for how it failed. {letters}.",
             ),
         ),
-        section("Silently wrong", _reasons([cell for cell in cells if cell.status == "silently_wrong"])),
-        section(
-            "Other failures",
-            _reasons(
-                [cell for cell in cells if cell.reason and cell.status not in ("silently_wrong", "not_installed")]
-            ),
-        ),
+        section("Silently wrong", _reasons(wrong)),
+        section("Other failures", _reasons([cell for cell in failures if cell not in wrong])),
+        section("What the words mean", words({cell.status for cell in cells})),
         section("Scenes", _scenes(cells)),
     ]
     measured = [run for run in runs if run.exponent is not None]
@@ -110,7 +107,7 @@ def page_text(cells: Sequence[Cell], runs: Sequence[LongRun], machine: dict[str,
         caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
         picture = figure(error_growth(lines, max(run.bound_m for run in measured)), caption)
         parts.append(section("Long runs", picture, findings(laws(runs))))
-    parts.append(section("Measured on", facts(machine)))
+    parts.append(section("Measured on", facts(document["machine"])))
     return page(
         "Stiff and extreme scenes: what breaks, and when",
         parts,
@@ -126,13 +123,13 @@ def _short(precision: str) -> str:
     return formulation if number == "double" else f"{number} {formulation}"
 
 
-def _reasons(cells: Sequence[Cell]) -> str:
+def _reasons(cells: Sequence[Cell]) -> Html:
     columns = [Column("scene"), Column("method"), Column("precision"), Column("status")]
     columns += [Column("digits", "number"), Column("asked for", "number"), Column("reason", "prose")]
     rows = [
         TableRow(
             (
-                cell.scene, cell.method, cell.precision, cell.status.replace("_", " "),
+                cell.scene, cell.method, cell.precision, word(cell.status),
                 "" if cell.digits is None else f"{max(cell.digits, 0):.1f}", f"{cell.asked:.1f}", cell.reason,
             )
         )
@@ -141,30 +138,32 @@ def _reasons(cells: Sequence[Cell]) -> str:
     return table(columns, rows)
 
 
-def _scenes(cells: Sequence[Cell]) -> str:
+def _scenes(cells: Sequence[Cell]) -> Html:
     names = list(dict.fromkeys(cell.scene for cell in cells))
     rows = []
     for name in names:
         scene = load_scene(name)
-        digits = [
-            cell.digits for cell in cells if cell.scene == name and cell.status == "ok" and cell.digits is not None
-        ]
-        failed = sum(cell.scene == name and cell.status not in ("ok", "not_installed", "refused") for cell in cells)
-        rows.append(TableRow((name, scene.title, ", ".join(scene.flags), f"{len(digits)}", f"{failed}")))
+        statuses = [cell.status for cell in cells if cell.scene == name]
+        correct, failed = statuses.count(Status.OK), sum(one not in (Status.OK, *NOT_TRIED) for one in statuses)
+        rows.append(TableRow((name, scene.title, ", ".join(scene.flags), f"{correct}", f"{failed}")))
     columns = [Column("scene"), Column("description", "prose"), Column("flags", "prose")]
     return table([*columns, Column("correct", "number"), Column("failed", "number")], rows)
 
 
-def text_table(cells: Sequence[Cell], runs: Sequence[LongRun]) -> str:
+def text_table(document: dict[str, Any]) -> str:
     """Return main results and one line for each method, as text for a terminal."""
+    cells, runs = _parsed(document)
     names = list(dict.fromkeys((cell.method, cell.precision) for cell in cells))
-    words = ["ok", "silently_wrong", "not_finite", "gave_up", "out_of_time", "refused", "not_installed"]
+    present = [one for one in Status if one in {cell.status for cell in cells}]
     lines = [
         *headlines(cells),
         "",
-        f"{'method':20}{'precision':24}" + "".join(f"{word.replace('_', ' '):>16}" for word in words),
+        f"{'method':20}{'precision':24}" + "".join(f"{word(one):>16}" for one in present),
     ]
     for method, precision in names:
         counts = Counter(cell.status for cell in cells if (cell.method, cell.precision) == (method, precision))
-        lines.append(f"{method:20}{precision:24}" + "".join(f"{counts[word] or '':>16}" for word in words))
-    return "\n".join([*lines, *([""] if runs else []), *laws(runs)])
+        lines.append(f"{method:20}{precision:24}" + "".join(f"{counts[one] or '':>16}" for one in present))
+    return "\n".join([*lines, "", *advice(present), *([""] if runs else []), *laws(runs)])
+
+
+REPORT = Report("stability.json", text_table, page_text)

@@ -1,53 +1,23 @@
-"""Report of a study (error against run time): rows.csv, study.json, a self-contained page, and a table as text.
-
-Everything is made from the study's JSON document alone: the same document gives the same bytes.
-"""
+"""Report of a study (error against run time)."""
 
 from __future__ import annotations
 
 import importlib.util
 from collections.abc import Sequence
-from dataclasses import asdict, fields
-from pathlib import Path
 from typing import Any
 
 from ..studies.row import Row
 from . import explanations, tables
-from .folder import PAGE, csv_text, json_text, write_files
+from .folder import Report
 from .page import Html, facts, figure, findings, join, page, paragraph, section
 from .pareto import rows_of, sentences
-from .tables import text_table
-
-__all__ = ["page_text", "text_table", "write_report"]
-
-CSV, JSON = "rows.csv", "study.json"
-FILES = (CSV, JSON, PAGE)
-
-
-def write_report(document: dict[str, Any], out: Path) -> Path:
-    """Write the report of a study, all files or none: after an interruption the old files are there as before.
-
-    Args:
-        document: `Study.document()`, or the content of study.json; the optional keys `title` (of the scene) and
-            `limit_s` (CPU seconds of a run) are used if present.
-        out: folder, created if it does not exist.
-
-    Returns:
-        Path of the page.
-
-    Raises:
-        InputError: the folder cannot be written to.
-    """
-    rows = csv_text((one.name for one in fields(Row)), map(asdict, rows_of(document)))
-    write_files(out, {CSV: rows, JSON: json_text(document), PAGE: page_text(document)})
-    return out / PAGE
 
 
 def page_text(document: dict[str, Any]) -> str:
-    """Return the page as HTML."""
+    """Return the page as HTML; `title` of the scene and `limit_s` of a run are used if the document has them."""
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
     conclusions = sentences(document)
-    failed = tables.failures(rows)
+    failed, lost = tables.failures(rows), {row.status for row in rows if not row.measured}
     parts = [
         section(
             "Main results",
@@ -57,7 +27,7 @@ def page_text(document: dict[str, Any]) -> str:
         *_pictures(document, rows, bound_m),
         section("The Pareto front", tables.pareto_front(rows, bound_m)),
         section("Every row", tables.every_row(rows, bound_m)),
-        *([section("What failed, and why", failed)] if failed else []),
+        *([section("What failed, and why", failed, tables.words(lost))] if failed else []),
         section("How it was measured", *map(paragraph, explanations.measured(document.get("limit_s")))),
         section("The methods", tables.methods(rows)),
     ]
@@ -94,3 +64,6 @@ def _pictures(document: dict[str, Any], rows: Sequence[Row], bound_m: float) -> 
         ("What digits cost", charts.precision_ladder(rows, bound_m), explanations.PRECISION),
     ]
     return [section(heading, figure(svg, caption)) for heading, svg, caption in pictures if svg is not None]
+
+
+REPORT = Report("study.json", tables.text_table, page_text)

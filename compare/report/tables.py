@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
+from reference.status import Status
+
 from ..methods import METHODS
-from ..studies.row import EXTRAPOLATED, Row
+from ..studies.row import Row
 from . import explanations
 from .page import Column, Html, TableRow, strong, table
 from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
@@ -67,7 +69,7 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
             kinds = ["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * (not row.measured)
             cells = [
                 FRONT_MARK if row.key in best else "", row.method, row.formulation, setting(row),
-                row.status.replace("_", " "), number(row.error_m), number(row.end_error_m), number(row.transit_error_s),
+                word(row.status), number(row.error_m), number(row.end_error_m), number(row.transit_error_s),
                 number(row.h_drift), cost(row), "" if row.cpu_spread is None else f"{100 * row.cpu_spread:.0f} %",
                 cpu(row.compile_s), count(row.rhs_evaluations), count(row.steps),
                 "" if row.reached_t is None else f"{row.reached_t:g}", row.reason,
@@ -78,7 +80,7 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
 
 def failures(rows: Sequence[Row]) -> Html | None:
     """Return the reasons for which rows failed, rows with the same reason together; None if no row failed."""
-    groups: dict[tuple[str, str, str], list[Row]] = {}
+    groups: dict[tuple[str, Status, str], list[Row]] = {}
     for curve in curves(rows):
         for row in curve.rows:
             if not row.measured:
@@ -89,7 +91,7 @@ def failures(rows: Sequence[Row]) -> Html | None:
     for (label, status, reason), group in groups.items():
         reached = {f"{row.reached_t:g}" for row in group if row.reached_t is not None}
         settings = ", ".join(setting(row) for row in group)
-        body.append(TableRow([label, settings, status.replace("_", " "), ", ".join(sorted(reached)), reason], "failed"))
+        body.append(TableRow([label, settings, word(status), ", ".join(sorted(reached)), reason], "failed"))
     columns = [
         Column("method"),
         Column("settings", "prose"),
@@ -98,6 +100,22 @@ def failures(rows: Sequence[Row]) -> Html | None:
         Column("reason", "prose"),
     ]
     return table(columns, body, explanations.FAILED)
+
+
+def words(statuses: Collection[Status]) -> Html:
+    """Return the meaning of the words that stand for these statuses, and what to do about each."""
+    columns = [Column("word"), Column("meaning", "prose"), Column("what to do", "prose")]
+    return table(columns, [TableRow([word(one), one.meaning, one.advice]) for one in Status if one in statuses])
+
+
+def advice(statuses: Collection[Status]) -> list[str]:
+    """Return what to do about each of these statuses, as lines of text."""
+    return [f"{word(one)}: {one.advice}" for one in Status if one in statuses and one.advice]
+
+
+def word(status: Status) -> str:
+    """Return the word of a status as it is read."""
+    return status.replace("_", " ")
 
 
 def methods(rows: Sequence[Row]) -> Html:
@@ -138,13 +156,14 @@ def text_table(document: dict[str, Any]) -> str:
         "",
         f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span; the errors are those of that part",
     ]
-    lines += ["", "Failed:", *failed] if failed else []
+    lost = {row.status for row in rows if not row.measured}
+    lines += ["", "Failed:", *failed, "", *advice(lost)] if failed else []
     return "\n".join([*lines, "", *sentences(document)]) + "\n"
 
 
 def _why(row: Row) -> str:
     """Return status and reason, or the reason alone if it begins with the status."""
-    status = row.status.replace("_", " ")
+    status = word(row.status)
     return row.reason if row.reason.startswith(status) else f"{status}: {row.reason}"
 
 
@@ -176,7 +195,7 @@ def cpu(value: float | None) -> str:
 
 def cost(row: Row) -> str:
     """Return a row's CPU seconds, marked if they are extrapolated."""
-    return f"{PART_MARK if row.status == EXTRAPOLATED else ''}{cpu(row.cpu_s)}"
+    return f"{PART_MARK if row.status == Status.EXTRAPOLATED else ''}{cpu(row.cpu_s)}"
 
 
 def count(value: int | None) -> str:

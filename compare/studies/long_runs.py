@@ -6,23 +6,25 @@ the frequency has a constant error.
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from reference import FoucaultError, Golden, Scene, load, load_scene, parse_scene
+from reference import Golden, Scene, load, load_scene, parse_scene
 from reference.process import Emit
+from reference.status import Status
 
 from ..methods import METHODS, Problem, available
 from ..power_law import power_of_time
 from ..truth import golden_of
-from .isolated import isolated
-from .journal import Journal
+from .campaign import Counted, campaign, declared
+from .measure import FAILURES, failure, timed
 from .method_errors import GridTruth
+from .row import Record
 
 SCENE = "paris_30d"
 TRUTH_DIGITS = 36  # enough to judge runs in 113 bits
@@ -34,28 +36,14 @@ PARTS = 24  # points of the fitted curve, equally far apart in log t
 
 Item = tuple[str, str, float]  # method, formulation, setting
 
-ITEMS: tuple[Item, ...] = (
-    ("heyoka_double", "momentum", 2.0**-52),
-    ("heyoka_double", "space", 2.0**-52),
-    ("heyoka_long_double", "momentum", 2.0**-63),
-    ("heyoka_long_double", "space", 2.0**-63),
-    ("heyoka_real128", "momentum", 2.0**-112),
-    ("limbs", "momentum", 100),
-    ("gauss_legendre", "momentum", 4.0),
-    ("rkng67", "plane", 0.25),
-    ("rk4", "plane", 0.05),
-    ("numbalsoda_dop853", "space", 1e-14),
-    ("rebound_bs", "space", 1e-12),
-)
-
 
 @dataclass(frozen=True)
-class LongRun:
+class LongRun(Record):
     """A method's errors over a long run.
 
     Attributes:
         method, formulation, setting: the run.
-        status: ok, or how it failed.
+        status: OK, or how it failed.
         reason: why it failed.
         t: times in s.
         error_m: position errors at these times.
@@ -66,17 +54,12 @@ class LongRun:
     method: str
     formulation: str
     setting: float
-    status: str
+    status: Status
     reason: str = ""
     t: list[float] = field(default_factory=list, repr=False)
     error_m: list[float] = field(default_factory=list, repr=False)
     cpu_s: float | None = None
     bound_m: float = 0.0
-
-    @property
-    def key(self) -> Item:
-        """The identity of a row."""
-        return self.method, self.formulation, self.setting
 
     @property
     def exponent(self) -> float | None:
@@ -96,13 +79,32 @@ class LongRun:
         return asdict(self) | {"exponent": self.exponent, "law": self.law}
 
 
-def long_run(
+def over_thirty_days(
+    methods: Sequence[str] | None = None, *, journal_path: Path | None = None, report: Counted | None = None
+) -> list[LongRun]:
+    """Measure the errors of methods on Paris over 30 days, and solve for the truth if needed.
+
+    Args:
+        methods: ids; all that declare such runs if None.
+        journal_path: a file to which results are appended, and whose results are not measured again.
+        report: called with the number of finished runs, of all runs, and the method that runs now.
+
+    Raises:
+        InputError: a method declares no such runs.
+    """
+    items = declared(methods, "long_runs")
+    scene = load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
+    golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)
+    return long_runs(scene, golden, items, journal_path=journal_path, report=report)
+
+
+def long_runs(
     scene: Scene,
     golden: Golden,
-    items: Sequence[Item] = ITEMS,
+    items: Sequence[Item],
     *,
     journal_path: Path | None = None,
-    report: Callable[[int, int, str], None] | None = None,
+    report: Counted | None = None,
 ) -> list[LongRun]:
     """Measure the errors of methods over a long run.
 
@@ -113,21 +115,17 @@ def long_run(
         journal_path: a file to which results are appended, and whose results are not measured again.
         report: called with the number of finished runs, of all runs, and the method that runs now.
     """
-    journal = Journal(journal_path, f"{scene.id} {scene.run.t_end} {golden.manifest.files['grid.csv'].sha256[:16]}")
-    finished = {row.key: row for row in (LongRun(**result) for result in journal)}
-    document = scene.model_dump(exclude_none=True)
-    for item in items:
-        if report is not None:
-            report(len(finished), len(items), item[0])
-        if item not in finished:
-            for row in isolated(errors_over_time, (document, golden.path), [item], PATIENCE_S, _failed):
-                finished[row.key] = row
-                journal.add(asdict(row))
-    return [finished[item] for item in items]
-
-
-def _failed(item: Item, timed_out: bool, reason: str) -> LongRun:
-    return LongRun(*item, "out_of_time" if timed_out else "gave_up", reason)
+    return campaign(
+        errors_over_time,
+        (scene.model_dump(exclude_none=True), golden.path),
+        items,
+        kind=LongRun,
+        failed=lambda item, status, reason: LongRun(*item, status, reason),
+        patience_s=PATIENCE_S,
+        recipe=[scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256],
+        journal_path=journal_path,
+        report=report,
+    )
 
 
 def errors_over_time(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item]) -> None:
@@ -136,26 +134,20 @@ def errors_over_time(emit: Emit, document: dict[str, Any], folder: Path, items: 
     truth = GridTruth(load(folder), float(scene.exact.t_end))
     bound_m = float(truth.golden.manifest.bounds.position_m)
     for name, formulation, setting in items:
+        run = partial(LongRun, name, formulation, setting)
         method = METHODS[name]
         missing = available(method)
         if missing is not None:
-            emit(LongRun(name, formulation, setting, "not_installed", missing))
+            emit(run(Status.NOT_INSTALLED, missing))
             continue
         try:
-            work = method.prepare(Problem.of(scene, formulation, truth.times), setting)
-            started = time.process_time()
-            outcome = work()
-            cpu_s = time.process_time() - started
-        except FoucaultError as error:
-            emit(LongRun(name, formulation, setting, "refused", str(error)))
+            outcome, cpu_s = timed(method.prepare(Problem.of(scene, formulation, truth.times), setting))
+        except FAILURES as error:
+            emit(run(*failure(error)))
             continue
         errors = truth.position_errors(outcome)
         t = truth.times[: len(errors)]
-        emit(
-            LongRun(
-                name, formulation, setting, outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m
-            )
-        )
+        emit(run(outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m))
 
 
 def laws(rows: Sequence[LongRun]) -> Iterator[str]:
@@ -171,21 +163,3 @@ def laws(rows: Sequence[LongRun]) -> Iterator[str]:
                 f"{row.method} ({row.formulation}): {end:.2g} m after {days:g} days, grows like t^{exponent:.2f}: "
                 f"nearest law {row.law}"
             )
-
-
-def over_thirty_days(
-    methods: Sequence[str] | None = None,
-    *,
-    journal_path: Path | None = None,
-    report: Callable[[int, int, str], None] | None = None,
-) -> list[LongRun]:
-    """Run `long_run` on Paris over 30 days, and solve for the truth if needed; for the arguments see there."""
-    scene = load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
-    golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)
-    return long_run(
-        scene,
-        golden,
-        [i for i in ITEMS if methods is None or i[0] in methods],
-        journal_path=journal_path,
-        report=report,
-    )

@@ -20,10 +20,12 @@ import numpy as np
 from reference import FoucaultError, Scene, load, parse_scene
 from reference.precision import Array
 from reference.process import Emit
+from reference.status import Status
 
-from ..methods import METHODS, Method, Outcome, Problem, available
+from ..methods import METHODS, Method, Outcome, Problem, Work, available
+from ..rhs.swing import suited
 from .method_errors import GridTruth, h_drift
-from .row import EXTRAPOLATED, OK, Row
+from .row import Row
 
 PROBE = 64  # the probe runs 1/64 of the span, to warm up and to predict the cost
 LEAST_ROWS = 4  # grid rows in any span
@@ -31,6 +33,7 @@ REPEAT_S = 1.0  # a run is repeated while the CPU time spent on its setting stay
 REPEATS = 5  # and at most this often
 TRANSIT_S = 3.0  # transit times need a second, untimed run, which is made only if the first took at most this long
 TRANSIT_FLOOR_S = 1e-29  # error of one Newton step from the double next to a transit; nothing smaller is reported
+FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)  # what a run may raise
 MISSED = 0.5  # a transit whose error exceeds this part of the gap to its neighbour counts as missed
 
 
@@ -52,18 +55,24 @@ class Bench:
     repeats: int = REPEATS
     transits: bool = True
 
-    def row(self, method: Method, formulation: str, setting: float) -> Row:
-        """Measure a method at a setting; a failure of any kind becomes the row's status and reason."""
-        base = Row(method.id, formulation, setting, method.setting, self.scene.inputs, OK)
+    def row(self, method: Method, formulation: str | None, setting: float) -> Row:
+        """Measure a method at a setting; a failure of any kind becomes the row's status and reason.
+
+        Args:
+            method: to be measured.
+            formulation: of the equations of motion; None for the first of the method's that can describe the motion.
+            setting: step in s, relative tolerance, or bits.
+        """
+        base = Row(method.id, formulation or "", setting, method.setting, self.scene.inputs, Status.OK)
         missing = available(method)
         if missing is not None:
-            return replace(base, status="not_installed", reason=missing)
+            return replace(base, status=Status.NOT_INSTALLED, reason=missing)
         try:
+            base = replace(base, formulation=formulation or suited(self.scene, method.formulations))
             return self._measured(base, method)
-        except FoucaultError as error:
-            return replace(base, status="refused", reason=str(error))
-        except (ArithmeticError, ValueError, RuntimeError, MemoryError) as error:
-            return replace(base, status="gave_up", reason=f"{type(error).__name__}: {error}")
+        except FAILURES as error:
+            status, reason = failure(error)
+            return replace(base, status=status, reason=reason)
 
     def _measured(self, base: Row, method: Method) -> Row:
         times = self.truth.times
@@ -72,11 +81,11 @@ class Bench:
         probe_times = times[: min(longest, max(LEAST_ROWS, len(times) // PROBE))]
         probe = method.prepare(self._problem(base, probe_times), base.setting)
         compile_s = time.process_time() - started
-        probe_outcome, probe_s = _timed(probe)
+        probe_outcome, probe_s = timed(probe)
         base = replace(base, compile_s=compile_s)
-        if probe_outcome.status != OK:
-            return self._failed(base, probe_outcome, probe_s)
-        probe_s = min(probe_s, _timed(probe)[1]) if probe_s < self.limit_s / PROBE else probe_s
+        if probe_outcome.status != Status.OK:
+            return self._stopped(base, probe_outcome, probe_s)
+        probe_s = min(probe_s, timed(probe)[1]) if probe_s < self.limit_s / PROBE else probe_s
         expected = probe_s * float(times[-1] / probe_times[-1])
         rows = min(len(times), longest)
         if expected > self.limit_s:
@@ -86,18 +95,18 @@ class Bench:
         started = time.process_time()
         work = method.prepare(self._problem(base, times[:rows]), base.setting)
         base = replace(base, compile_s=compile_s + time.process_time() - started)
-        outcome, cpu_s = _timed(work)
-        if outcome.status != OK:
-            return self._failed(base, outcome, cpu_s)
+        outcome, cpu_s = timed(work)
+        if outcome.status != Status.OK:
+            return self._stopped(base, outcome, cpu_s)
         costs_s = [cpu_s]
         while len(costs_s) < self.repeats and sum(costs_s) + cpu_s < REPEAT_S:
-            costs_s.append(_timed(work)[1])
+            costs_s.append(timed(work)[1])
         return self._finished(base, outcome, costs_s, times[:rows])
 
     def _problem(self, base: Row, times: Array) -> Problem:
         return Problem.of(self.scene, base.formulation, times)
 
-    def _failed(self, base: Row, outcome: Outcome, cpu_s: float) -> Row:
+    def _stopped(self, base: Row, outcome: Outcome, cpu_s: float) -> Row:
         return replace(
             base,
             status=outcome.status,
@@ -116,7 +125,7 @@ class Bench:
         reason = "" if whole else f"measured to t = {times[-1]:g} s; the cost is scaled to {self.truth.times[-1]:g} s"
         row = replace(
             base,
-            status=OK if whole else EXTRAPOLATED,
+            status=Status.OK if whole else Status.EXTRAPOLATED,
             reason=reason,
             error_m=float(errors.max()),
             end_error_m=float(errors[-1]),
@@ -136,7 +145,7 @@ class Bench:
             return row
         work = METHODS[row.method].prepare(self._problem(row, np.concatenate([[0.0], transits])), row.setting)
         outcome = work()
-        if outcome.status != OK:
+        if outcome.status != Status.OK:
             return row
         errors_s = self.truth.transit_errors(self.scene, outcome)
         gaps = np.diff(np.concatenate([[0.0], transits, [np.inf]]))
@@ -144,11 +153,19 @@ class Bench:
         if missed.any():
             first = float(transits[np.argmax(missed)])
             text = f"{int(missed.sum())} of {len(transits)} transits are missed, the first at t = {first:.6f} s"
-            return replace(row, status="missed_transits", reason=text)
+            return replace(row, status=Status.MISSED_TRANSITS, reason=text)
         return replace(row, transit_error_s=max(float(errors_s.max()), TRANSIT_FLOOR_S))
 
 
-def _timed(work: Any) -> tuple[Outcome, float]:
+def failure(error: Exception) -> tuple[Status, str]:
+    """Return status and reason of a run that raised one of `FAILURES`."""
+    if isinstance(error, FoucaultError):
+        return Status.REFUSED, str(error)
+    return Status.GAVE_UP, f"{type(error).__name__}: {error}"
+
+
+def timed(work: Work) -> tuple[Outcome, float]:
+    """Run a prepared method; return its outcome and its CPU seconds."""
     started = time.process_time()
     outcome = work()
     spent = time.process_time() - started

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from reference import InputError, Scene
 from reference.precision import DOUBLE_BITS, LONG_DOUBLE_BITS
 
-from ..methods import METHODS
+from ..methods import METHODS, Method
 
 SPAN_S = 600  # longer scenes are cut to this, unless an end is given: 512 bits take a thousand times as long as double
 MOST_BITS = 4096
 SPARE_DIGITS = 8  # digits of the truth beyond those of the finest run
-LIMBS = "limbs"
+HARDWARE = {"double": DOUBLE_BITS, "long double": LONG_DOUBLE_BITS}  # number types of the processor
 
 Item = tuple[str, str, float]  # method, formulation, setting
 
@@ -40,13 +40,17 @@ def bits_of(text: str) -> list[int]:
 
 def precision_items(bits: Sequence[int]) -> list[Item]:
     """List the runs: heyoka in double and long double if asked for, in MPFR beyond them, and `limbs` for comparison."""
-    items: list[Item] = []
-    if DOUBLE_BITS in bits:
-        items.append(("heyoka_double", "momentum", 2.0 ** (1 - DOUBLE_BITS)))
-    if LONG_DOUBLE_BITS in bits:
-        items.append(("heyoka_long_double", "momentum", 2.0 ** (1 - LONG_DOUBLE_BITS)))
-    items += [("heyoka_real", "momentum", float(prec)) for prec in bits if prec > LONG_DOUBLE_BITS]
-    return items + [(LIMBS, "momentum", setting) for setting in METHODS[LIMBS].ladder if setting <= bits[-1]]
+    return [(name, "momentum", setting) for name in METHODS for setting in _settings(METHODS[name], bits)]
+
+
+def _settings(method: Method, bits: Sequence[int]) -> list[float]:
+    if "heyoka" not in method.libraries:
+        fast = method.setting == "precision" and method.longest_s is None
+        return [setting for setting in method.ladder if fast and setting <= bits[-1]]
+    if method.setting == "precision":
+        return [float(prec) for prec in bits if prec > LONG_DOUBLE_BITS]
+    own = HARDWARE.get(method.number, MOST_BITS + 1)
+    return [2.0 ** (1 - own)] if own in bits else []
 
 
 def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Scene, int]:

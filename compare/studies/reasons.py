@@ -4,34 +4,38 @@ from __future__ import annotations
 
 import math
 
+from reference.status import Status
+
 from .character import Character
 from .row import Row
 
 EXPLICIT_REACH = 3.3  # rate times step up to which an explicit method of order 5 to 8 is stable, about
 
 
-def reason_of(row: Row, status: str, traits: Character, digits: float | None, requested: float, limit_s: float) -> str:
+def reason_of(
+    row: Row, status: Status, traits: Character, digits: float | None, requested: float, limit_s: float
+) -> str:
     """Return the causes that the numbers point to, the strongest first; empty if the run is right."""
-    if status == "ok":
+    if status == Status.OK:
         return ""
-    if status in ("not_installed", "refused"):
+    if status in (Status.NOT_INSTALLED, Status.REFUSED):
         return row.reason
     causes = [*_causes(row, status, traits)]
-    reported = f" It reported: {row.reason.rstrip('.')}." if row.reason and status != "out_of_time" else ""
-    if status == "out_of_time":
+    reported = f" It reported: {row.reason.rstrip('.')}." if row.reason and status != Status.OUT_OF_TIME else ""
+    if status == Status.OUT_OF_TIME:
         cost = (
             f"the whole span would take about {row.cpu_s:.0f} s; the limit is {limit_s:g} s"
             if row.cpu_s
             else row.reason
         )
         return _sentence([cost, *causes])
-    if status == "silently_wrong" and digits is not None:
+    if status == Status.SILENTLY_WRONG and digits is not None:
         head = f"success was reported with {max(digits, 0):.1f} digits where {requested:.1f} were asked for"
         return _sentence([head, *(causes or [_accumulated(row)])])
     return _sentence(causes or ["no measured property of the scene explains it"]) + reported
 
 
-def _causes(row: Row, status: str, traits: Character) -> list[str]:
+def _causes(row: Row, status: Status, traits: Character) -> list[str]:
     causes = []
     if traits.stiff:
         steps = traits.damping * traits.span / EXPLICIT_REACH
@@ -46,9 +50,9 @@ def _causes(row: Row, status: str, traits: Character) -> list[str]:
     if row.formulation == "space" and traits.least_tension < 0:
         text = f"the rod is pushed (least tension {traits.least_tension:.2g}/s²): |r| - l grows exponentially"
         causes.append(text)
-    if status != "out_of_time" and traits.magnified > 1e3:
+    if status != Status.OUT_OF_TIME and traits.magnified > 1e3:
         causes.append(f"the flow amplifies an error at the release {traits.magnified:.1g} times")
-    if status == "silently_wrong" and 0 < traits.amplitude < 1e-5 and row.kind != "precision":
+    if status == Status.SILENTLY_WRONG and 0 < traits.amplitude < 1e-5 and row.kind != "precision":
         lost = -math.log10(traits.amplitude)
         causes.append(
             f"the amplitude is {traits.amplitude:.1g} of the length: "

@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, Self
 
-OK, EXTRAPOLATED = "ok", "extrapolated"
+from reference.status import Status
+
+OK, EXTRAPOLATED = Status.OK, Status.EXTRAPOLATED
 
 
 @dataclass(frozen=True)
-class Row:
+class Record:
+    """A result with a status, among other fields; `dataclasses.asdict` makes its JSON document."""
+
+    @classmethod
+    def parsed(cls, document: dict[str, Any]) -> Self:
+        """Read a result from its JSON document; keys that it does not have are left out."""
+        values = {one.name: document[one.name] for one in fields(cls) if one.name in document}
+        return cls(**values | {"status": Status(values["status"])})  # type: ignore[call-arg]
+
+
+@dataclass(frozen=True)
+class Row(Record):
     """One method at one setting on a scene: status, errors and cost.
 
     Attributes:
@@ -18,9 +31,8 @@ class Row:
         setting: step in s, relative tolerance, or bits.
         kind: which of these: "step", "tolerance" or "precision".
         inputs: how the scene's numbers are read: "decimal" or "binary64".
-        status: ok; extrapolated (cost of the whole span from a part; the errors are of that part);
-            not_installed, gave_up, not_finite, missed_transits, out_of_time, refused.
-        reason: why it is not ok.
+        status: where it is EXTRAPOLATED, the errors are those of the part that was run.
+        reason: why it is not OK.
         error_m: largest position error on the grid.
         end_error_m: position error at the last row reached.
         transit_error_s: largest error of a transit's time, by one Newton step from the state at the true time.
@@ -38,7 +50,7 @@ class Row:
     setting: float
     kind: str
     inputs: str
-    status: str
+    status: Status
     reason: str = ""
     error_m: float | None = None
     end_error_m: float | None = None
@@ -51,6 +63,12 @@ class Row:
     steps: int | None = None
     reached_t: float | None = None
 
+    def __repr__(self) -> str:
+        """Return the run, its status, and what was measured of error and cost."""
+        error = "" if self.error_m is None else f", {self.error_m:.2g} m"
+        cost = "" if self.cpu_s is None else f", {self.cpu_s:.2g} s"
+        return f"Row({self.method} in {self.formulation} at {self.setting:g}: {self.status}{error}{cost})"
+
     @property
     def key(self) -> tuple[str, str, float]:
         """The identity of a row within a study."""
@@ -59,10 +77,4 @@ class Row:
     @property
     def measured(self) -> bool:
         """True if the row has a cost and an error."""
-        return self.status in (OK, EXTRAPOLATED)
-
-    @classmethod
-    def parsed(cls, document: dict[str, Any]) -> Row:
-        """Read a row from its JSON document."""
-        names = {one.name for one in fields(cls)}
-        return cls(**{key: value for key, value in document.items() if key in names})
+        return self.status in (Status.OK, Status.EXTRAPOLATED)

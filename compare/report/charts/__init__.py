@@ -8,12 +8,11 @@ from __future__ import annotations
 
 from .error_growth import ErrorHistory, error_growth
 from .errors import achieved_tolerance, formulations, right_hand_sides
-from .heat_map import CLASSES, Field, heat_map
+from .heat_map import Field, heat_map
 from .overview import by_family, overview
 from .precision import precision_ladder
 
 __all__ = [
-    "CLASSES",
     "ErrorHistory",
     "Field",
     "achieved_tolerance",

@@ -7,20 +7,22 @@ from dataclasses import dataclass
 from typing import Any
 
 from reference import InputError
+from reference.status import Status
 
 from .drawing import BAND, FAINT, INK, PAPER, sheet, svg_text
 
-# status: letter and meaning
-CLASSES = {
-    "silently_wrong": ("W", "silently wrong"),
-    "not_finite": ("N", "NaN or infinity"),
-    "gave_up": ("G", "gave up"),
-    "out_of_time": ("T", "out of time"),
-    "missed_transits": ("M", "missed transits"),
-    "refused": ("R", "refused"),
-    "not_installed": ("–", "not installed"),
+LETTERS = {
+    Status.SILENTLY_WRONG: "W",
+    Status.NOT_FINITE: "N",
+    Status.GAVE_UP: "G",
+    Status.CRASHED: "C",
+    Status.OUT_OF_TIME: "T",
+    Status.MISSED_TRANSITS: "M",
+    Status.REFUSED: "R",
+    Status.UNREACHABLE: "U",
+    Status.NOT_INSTALLED: "–",
 }
-LOUD = "silently_wrong"  # the status that stands out by its colour
+LOUD = Status.SILENTLY_WRONG  # the status that stands out by its colour
 _LOUD_COLOUR, _QUIET_COLOUR = "#D55E00", "#F2C9A8"
 _BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")  # few to many digits, in grey as well
 _DARK_FROM = 3  # index of the first blue with white text
@@ -37,20 +39,20 @@ class Field:
     Attributes:
         row: scene.
         column: method, with its precision where that is needed to tell columns apart.
-        status: `ok` or a key of `CLASSES`.
-        digits: digits kept, if the status is `ok`.
+        status: OK or a key of `LETTERS`.
+        digits: digits kept, if the status is OK.
     """
 
     row: str
     column: str
-    status: str
+    status: Status
     digits: float | None = None
 
     @property
     def mark(self) -> str:
         """Text of the field: digits kept, rounded down, or the letter of its status."""
-        if self.status in CLASSES:
-            return CLASSES[self.status][0]
+        if self.status in LETTERS:
+            return LETTERS[self.status]
         return "?" if self.digits is None else f"{int(max(0.0, self.digits))}"
 
 
@@ -66,9 +68,9 @@ def heat_map(cells: Sequence[Field], steps: Sequence[float] = (3, 6, 9, 12, 15))
     """
     if not cells:
         raise InputError("cells", "none", "at least one")
-    unknown = next((cell for cell in cells if cell.status not in CLASSES and cell.status != "ok"), None)
+    unknown = next((cell for cell in cells if cell.status not in LETTERS and cell.status != Status.OK), None)
     if unknown is not None:
-        raise InputError("status", unknown.status, f"ok or one of {', '.join(CLASSES)}")
+        raise InputError("status", unknown.status, f"ok or one of {', '.join(LETTERS)}")
     rows, columns = (
         list(dict.fromkeys(names)) for names in zip(*[(one.row, one.column) for one in cells], strict=True)
     )
@@ -92,32 +94,31 @@ def heat_map(cells: Sequence[Field], steps: Sequence[float] = (3, 6, 9, 12, 15))
 
 def _colours(cell: Field, steps: Sequence[float]) -> tuple[str, str]:
     """Return the colours of the field and of its text."""
-    if cell.status == "ok":
+    if cell.status == Status.OK:
         shade = sum((cell.digits or 0.0) >= step for step in steps)
         return _BLUES[shade], PAPER if shade >= _DARK_FROM else "#10202c"
-    if cell.status == "not_installed":
+    if cell.status == Status.NOT_INSTALLED:
         return BAND, FAINT
     return (_LOUD_COLOUR, "#000000") if cell.status == LOUD else (_QUIET_COLOUR, "#3a1c05")
 
 
 def _field(axes: Any, x: float, y: float, mark: str, colour: str, ink: str) -> None:
     axes.fill([x, x + 0.94, x + 0.94, x], [y, y, y + 0.94, y + 0.94], color=colour, linewidth=0)
-    weight = "bold" if mark == CLASSES[LOUD][0] else "normal"
+    weight = "bold" if mark == LETTERS[LOUD] else "normal"
     axes.text(x + 0.47, y + 0.5, mark, ha="center", va="center_baseline", fontsize=7.5, color=ink, weight=weight)
 
 
-def _key(axes: Any, y: float, wide: float, present: set[str], steps: Sequence[float]) -> None:
+def _key(axes: Any, y: float, wide: float, present: set[Status], steps: Sequence[float]) -> None:
     """Draw the key below the map."""
     for i, digits in enumerate([0.0, *steps]):
-        cell = Field("", "", "ok", digits)
+        cell = Field("", "", Status.OK, digits)
         _field(axes, i, y, cell.mark, *_colours(cell, steps))
     axes.text(len(steps) + 1.3, y + 0.5, "digits kept, at least", fontsize=8, va="center_baseline", color=INK)
     x = 0.0
-    for status in [word for word in CLASSES if word in present]:
-        letter, meaning = CLASSES[status]
-        needs = 1.7 + _CHARACTER * len(meaning)
+    for status in [one for one in LETTERS if one in present]:
+        needs = 1.7 + _CHARACTER * len(status.meaning)
         if x == 0.0 or x + needs > wide:
             x, y = 0.0, y + 1.2
-        _field(axes, x, y, letter, *_colours(Field("", "", status), steps))
-        axes.text(x + 1.2, y + 0.5, meaning, fontsize=8, va="center_baseline", color=INK)
+        _field(axes, x, y, LETTERS[status], *_colours(Field("", "", status), steps))
+        axes.text(x + 1.2, y + 0.5, status.meaning, fontsize=8, va="center_baseline", color=INK)
         x += needs

@@ -21,12 +21,13 @@ from compare.report.page import Column, Html, TableRow
 from compare.report.tables import cpu, setting, tidy
 from compare.studies.row import Row
 from reference import InputError
+from reference.status import Status
 
 VOID = {"meta", "br", "link", "path", "use"}
 NASTY = 'died of <script>alert("x")</script> & "quotes"'
 
 
-def row(method, setting_, error_m, cpu_s, status="ok", formulation="space", kind="tolerance", **more):
+def row(method, setting_, error_m, cpu_s, status=Status.OK, formulation="space", kind="tolerance", **more):
     return Row(method, formulation, setting_, kind, "binary64", status, error_m=error_m, cpu_s=cpu_s, **more)
 
 
@@ -37,10 +38,10 @@ def study_document(rows=None, **more):
         row("heyoka_double", 1e-8, 2e-7, 0.01, formulation="momentum", h_drift=1e-12, transit_error_s=3e-9),
         row("heyoka_double", 2.0**-52, 3e-13, 0.02, formulation="momentum"),
         row("heyoka_double", 2.0**-52, 9e-13, 0.025),
-        row("scipy_dop853", 1e-6, 1e-5, 40.0, "extrapolated", reason="measured to t = 90 s"),
-        row("scipy_lsoda", 1e-12, None, 0.7, "gave_up", reason=NASTY, reached_t=123.5),
-        row("scipy_bdf", 1e-12, 0.5, 0.7, "missed_transits", reason="1 of 9 transits is missed", reached_t=900.0),
-        row("mpmath_odefun", 53, None, None, "not_installed", kind="precision",
+        row("scipy_dop853", 1e-6, 1e-5, 40.0, Status.EXTRAPOLATED, reason="measured to t = 90 s"),
+        row("scipy_lsoda", 1e-12, None, 0.7, Status.GAVE_UP, reason=NASTY, reached_t=123.5),
+        row("scipy_bdf", 1e-12, 0.5, 0.7, Status.MISSED_TRANSITS, reason="1 of 9 transits is missed", reached_t=900.0),
+        row("mpmath_odefun", 53, None, None, Status.NOT_INSTALLED, kind="precision",
             reason="not installed (mpmath): pip install 'foucault-reference[methods]'"),
     ]  # fmt: skip
     return {
@@ -89,7 +90,7 @@ class Reader(HTMLParser):
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     out = tmp_path_factory.mktemp("report") / "new" / "folder"
-    assert report.write_report(study_document(), out) == out / "index.html"
+    assert report.REPORT.write(study_document(), out) == out / "index.html"
     return out
 
 
@@ -145,6 +146,12 @@ def test_failures_are_listed_with_their_reason_and_the_extra_that_is_missing(rea
     assert rows["scipy_bdf"][2] == "missed transits"
 
 
+def test_each_way_to_fail_stands_once_with_what_to_do_about_it(read):
+    words = {cells[0]: cells[1:] for _, cells in table_of(read, "word", "what to do")[1:]}
+    assert words.keys() == {"gave up", "missed transits", "not installed"}
+    assert words["missed transits"] == [Status.MISSED_TRANSITS.meaning, Status.MISSED_TRANSITS.advice]
+
+
 def test_the_front_is_a_table_of_its_own(read):
     fronts = next(one for one in read.tables if one[0][1] == ["method", "setting", "error m", "CPU s", ""])
     assert [cells[:2] for _, cells in fronts[1:]] == [["heyoka_double", "1e-8"], ["heyoka_double", "2.22e-16"]]
@@ -192,13 +199,13 @@ def test_title_and_limit_are_used_where_they_are_given():
 
 
 def test_the_same_document_makes_the_same_bytes(written, tmp_path):
-    report.write_report(json.loads((written / "study.json").read_text()), tmp_path)
+    report.REPORT.write(json.loads((written / "study.json").read_text()), tmp_path)
     for path in written.iterdir():
         assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
 
 
 def test_a_study_in_which_everything_failed_still_has_a_page():
-    html = report.page_text(study_document([row("my_program", 0.1, None, None, "gave_up", reason="broken")]))
+    html = report.page_text(study_document([row("my_program", 0.1, None, None, Status.GAVE_UP, reason="broken")]))
     assert "No method reached an error of 1e-3 m." in html
     assert "broken" in html
     Reader(html)
@@ -215,7 +222,7 @@ def test_without_matplotlib_the_page_says_what_is_missing(monkeypatch):
 
 
 def test_an_interrupted_write_leaves_the_old_report(tmp_path, monkeypatch):
-    report.write_report(study_document(), tmp_path)
+    report.REPORT.write(study_document(), tmp_path)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
     def interrupted(descriptor):
@@ -223,25 +230,26 @@ def test_an_interrupted_write_leaves_the_old_report(tmp_path, monkeypatch):
 
     monkeypatch.setattr("os.fsync", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        report.write_report(study_document(title="another"), tmp_path)
+        report.REPORT.write(study_document(title="another"), tmp_path)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_a_place_that_cannot_be_written_is_a_message(tmp_path):
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(InputError, match="--out"):
-        report.write_report(study_document(), tmp_path / "file")
+        report.REPORT.write(study_document(), tmp_path / "file")
 
 
 def test_the_text_table_has_every_row_and_the_sentences():
-    text = report.text_table(study_document())
+    text = report.REPORT.text(study_document())
     for word in ("rk4", "scipy_dop853", "mpmath_odefun", "~40.0", "At 1e-6 m", "1 of 9 transits is missed"):
         assert word in text
     marked = [line for line in text.splitlines() if line.startswith("* ") and "Pareto" not in line]
     assert len(marked) == 2
     assert all("heyoka_double" in line for line in marked)
     assert all(len(line) <= 100 for line in text.split("Failed:")[0].splitlines())
-    assert text.count("not installed") == 1
+    assert text.count("missed transits: ") == 2  # the row's reason, and what to do about it
+    assert Status.MISSED_TRANSITS.advice in text
 
 
 @pytest.mark.parametrize(

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from compare.studies import long_runs as longrun
-from compare.studies.long_runs import LongRun, laws, long_run
+from compare.studies import long_runs as module
+from compare.studies.long_runs import LongRun, laws, long_runs
 from compare.truth import golden_of
-from reference import load_scene
+from reference import InputError, load_scene
+from reference.status import Status
 
 ITEMS = (("rkmk4", "momentum", 0.1), ("heyoka_double", "plane", 2.0**-52), ("rk4", "plane", 0.1))
 
@@ -17,12 +18,12 @@ ITEMS = (("rkmk4", "momentum", 0.1), ("heyoka_double", "plane", 2.0**-52), ("rk4
 def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path: Path) -> None:
     scene = load_scene("paris", ["inputs=binary64", "run.t_end=7200"])
     golden, journal_path = golden_of(scene), tmp_path / "long.jsonl"
-    rows = long_run(scene, golden, ITEMS[:1], journal_path=journal_path)
+    rows = long_runs(scene, golden, ITEMS[:1], journal_path=journal_path)
     assert rows[0].status == "ok"
     assert rows[0].exponent == pytest.approx(1, abs=0.15)  # a constant error of the frequency
     assert rows[0].bound_m == float(golden.manifest.bounds.position_m)
     reports: list[str] = []
-    again = long_run(
+    again = long_runs(
         scene,
         golden,
         ITEMS,
@@ -30,13 +31,13 @@ def test_a_fixed_step_errs_in_proportion_to_time_and_the_rows_are_kept(tmp_path:
         report=lambda finished, total, now: reports.append(f"{finished} of {total}"),
     )
     assert again[0] == rows[0]
-    assert reports == ["1 of 3", "1 of 3", "2 of 3"]
-    assert [row.key for row in again] == list(ITEMS)
+    assert reports == ["1 of 3", "2 of 3"]
+    assert [(row.method, row.formulation, row.setting) for row in again] == list(ITEMS)
 
 
 def test_what_cannot_run_is_a_row_with_its_reason() -> None:
     upright = load_scene("two_radians", ["inputs=binary64", "run.t_end=1", "run.transits=false"])
-    (row,) = long_run(upright, golden_of(upright), [("rk4", "plane", 0.1)])
+    (row,) = long_runs(upright, golden_of(upright), [("rk4", "plane", 0.1)])
     assert (row.status, row.exponent, row.law) == ("refused", None, None)
     assert next(laws([row])).startswith("rk4 (plane): refused")
 
@@ -48,9 +49,11 @@ def test_thirty_days_are_paris_with_a_truth_of_its_own(monkeypatch: pytest.Monke
         requests.append(
             f"{scene.id} {scene.inputs} {float(scene.exact.t_end):g} {golden} {[item[0] for item in items]}"
         )
-        return [LongRun("m", "f", 1.0, "ok")]
+        return [LongRun("m", "f", 1.0, Status.OK)]
 
-    monkeypatch.setattr(longrun, "golden_of", lambda scene, digits, level: f"{digits} {level}")
-    monkeypatch.setattr(longrun, "long_run", short)
-    longrun.over_thirty_days(["rk4"])
+    monkeypatch.setattr(module, "golden_of", lambda scene, digits, level: f"{digits} {level}")
+    monkeypatch.setattr(module, "long_runs", short)
+    module.over_thirty_days(["rk4"])
     assert requests == ["paris_30d binary64 2.592e+06 36 self_consistent ['rk4']"]
+    with pytest.raises(InputError, match="scipy_rk45"):
+        module.over_thirty_days(["scipy_rk45"])

@@ -15,10 +15,11 @@ from compare.methods import METHODS, gauss_legendre, rk4, rkng56, rkng67
 from compare.methods.tableau import TableauError
 from compare.studies.character import character
 from compare.studies.long_runs import LongRun, laws
-from compare.studies.stability import _ORDERS, Cell, _digits_asked, cut, default_scenes, stability
+from compare.studies.stability import Cell, cut, default_scenes, digits_asked, stability
 from foucault import app
-from reference import load_scene, trajectory
+from reference import InputError, load_scene, trajectory
 from reference.shipped import data_root
+from reference.status import Status
 
 
 def character_of(scene_id: str, *changes: str):  # type: ignore[no-untyped-def]
@@ -57,7 +58,7 @@ def test_there_are_thirty_extreme_scenes_and_each_says_what_it_catches() -> None
         assert float(cut(scene).exact.t_end) <= float(scene.exact.t_end)
 
 
-def test_the_orders_that_decide_what_is_asked_are_those_that_the_tableaux_prove() -> None:
+def test_every_method_of_fixed_step_declares_the_order_that_its_tableau_proves_and_its_title_names() -> None:
     tableaux = {"rk4": rk4.TABLEAU, "rkng56": rkng56.TABLEAU, "rkng67": rkng67.TABLEAU, "rkmk4": rk4.TABLEAU}
     proved = {name: tableau.order for name, tableau in tableaux.items()}
     for tableau in tableaux.values():  # checked up to its order when it was created, and has no higher one
@@ -65,19 +66,15 @@ def test_the_orders_that_decide_what_is_asked_are_those_that_the_tableaux_prove(
             replace(tableau, order=tableau.order + 1)
         assert caught.value.order == tableau.order + 1
     gauss_legendre.gauss(gauss_legendre.STAGES)  # raises unless its quadrature has order 2 stages
-    assert proved | {"gauss_legendre": 2 * gauss_legendre.STAGES} == _ORDERS
-
-
-def test_the_table_of_orders_holds_every_fixed_step_method_and_agrees_with_its_title() -> None:
-    assert _ORDERS.keys() == {name for name, method in METHODS.items() if method.setting == "step"}
-    for name, order in _ORDERS.items():
-        assert f"order {order}" in METHODS[name].title
+    steps = {name: method for name, method in METHODS.items() if method.setting == "step"}
+    assert proved | {"gauss_legendre": 2 * gauss_legendre.STAGES} == {name: one.order for name, one in steps.items()}
+    assert all(f"order {method.order}" in method.title for method in steps.values())
 
 
 def test_a_fixed_step_is_asked_for_as_many_digits_as_its_order_gives() -> None:
-    assert _digits_asked("rkng67", 1 / 200) == pytest.approx(9.0, abs=0.02)  # (2 pi / 200)^6
-    assert _digits_asked("rkng56", 1 / 200) == pytest.approx(7.5, abs=0.02)
-    assert _digits_asked("rk4", 1 / 200) == pytest.approx(6.0, abs=0.02)
+    assert digits_asked("rkng67", 1 / 200) == pytest.approx(9.0, abs=0.02)  # (2 pi / 200)^6
+    assert digits_asked("rkng56", 1 / 200) == pytest.approx(7.5, abs=0.02)
+    assert digits_asked("rk4", 1 / 200) == pytest.approx(6.0, abs=0.02)
 
 
 @pytest.fixture(scope="module")
@@ -116,7 +113,7 @@ def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:
 
 def test_the_law_of_a_known_exponent_of_time_is_named() -> None:
     t = np.linspace(0, 100, 400)
-    run = LongRun("m", "f", 1.0, "ok", "", t.tolist(), (1e-9 * t**1.5).tolist(), 1.0)
+    run = LongRun("m", "f", 1.0, Status.OK, "", t.tolist(), (1e-9 * t**1.5).tolist(), 1.0)
     assert run.exponent == pytest.approx(1.5, abs=0.02)
     assert run.law == "t^1.5"
     assert "grows like t^1.5" in next(laws([run]))
@@ -129,3 +126,9 @@ def test_the_command_reports_rows_and_a_page(tmp_path: Path) -> None:
     rows = json.loads(result.stdout)["rows"]
     assert {"scene", "method", "precision", "status", "digits", "cpu_s", "reason"} <= rows[0].keys()
     assert "<svg" in (tmp_path / "index.html").read_text()
+
+
+def test_a_method_without_declared_runs_is_refused() -> None:
+    result = CliRunner().invoke(app, ["stability", "--scenes", "hard", "--methods", "rk4,rkng56"])
+    assert isinstance(result.exception, InputError)
+    assert "rkng56" in str(result.exception) and "gauss_legendre" in str(result.exception)

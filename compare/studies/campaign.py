@@ -1,0 +1,163 @@
+"""A campaign: many measurements in child processes, each result stored at once, so that it resumes where it stopped.
+
+None pays for another's memory or threads, and a hang (killed after a patience) or a crash loses only its own item.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import threading
+from collections.abc import Callable, Generator, Iterator, Sequence
+from contextlib import closing
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any, TypeVar
+
+from reference import InputError, IntegrationError
+from reference.process import Worker
+from reference.status import Status
+
+from ..methods import METHODS
+from .machine import machine, single_thread
+from .row import Record
+
+STARTING_S = 30.0  # wall-clock time for imports and compilation, on top of the patience for a process's first item
+
+Item = TypeVar("Item", bound=tuple[Any, ...])
+Result = TypeVar("Result", bound=Record)
+Counted = Callable[[int, int, str], None]
+
+
+def declared(methods: Sequence[str] | None, field: str) -> list[tuple[str, Any, float]]:
+    """List the runs that methods declare for a study, as id, formulation and setting.
+
+    Args:
+        methods: ids; all if None.
+        field: of `Method` that holds the runs: "stability" or "long_runs".
+
+    Raises:
+        InputError: a method is unknown, or declares no such runs.
+    """
+    runs = {name: getattr(METHODS[name], field) for name in methods or METHODS}
+    without = [name for name in methods or () if not runs[name]]
+    if without:
+        known = ", ".join(name for name in METHODS if getattr(METHODS[name], field))
+        raise InputError(
+            "methods", ", ".join(without), f"methods that declare runs in `{field}`", f"These do: {known}."
+        )
+    return [(name, *run) for name, declared in runs.items() for run in declared]
+
+
+def campaign(
+    measure: Callable[..., None],
+    arguments: tuple[Any, ...],
+    items: Sequence[Item],
+    *,
+    kind: type[Result],
+    failed: Callable[[Item, Status, str], Result],
+    patience_s: float,
+    recipe: Any,
+    journal_path: Path | None = None,
+    report: Counted | None = None,
+) -> list[Result]:
+    """Measure items and return their results in order; those in the journal are not measured again.
+
+    Items that differ in nothing but their last part share a process, one after the other.
+
+    Args:
+        measure: called in a child process as `measure(emit, *arguments, items)`; it emits one result for each item, in
+            order. At the top level of a module, so that it can be pickled.
+        arguments: anything that can be pickled.
+        items: tuples of words and numbers, the first of which is shown as what runs now.
+        kind: class of the results.
+        failed: makes the result of an item that was lost, from the status OUT_OF_TIME or CRASHED and the reason.
+        patience_s: wall-clock seconds for one item; then its process is killed.
+        recipe: what else decides the results, to be written as JSON; together with machine and versions of libraries it
+            must be equal for a stored result to be used again.
+        journal_path: a file of JSON lines to which results are appended; None if nothing is to be stored.
+        report: called before each measurement with the number of finished items, of all items, and what runs now.
+
+    Raises:
+        InputError: the journal cannot be written.
+    """
+    mark = hashlib.sha256(json.dumps([recipe, machine()], sort_keys=True).encode()).hexdigest()[:16]
+    stored = dict(_stored(journal_path, mark))
+    results = {item: kind.parsed(stored[item]) for item in items if item in stored}
+    groups: dict[tuple[Any, ...], list[Item]] = {}
+    for item in items:
+        if item not in results:
+            groups.setdefault(item[:-1], []).append(item)
+    for group in groups.values():
+        with closing(_isolated(measure, arguments, group, patience_s, failed)) as answers:
+            for item in group:
+                if report is not None:
+                    report(len(results), len(items), str(item[0]))
+                results[item] = next(answers)
+                _store(journal_path, {"recipe": mark, "item": item, "result": asdict(results[item])})
+    return [results[item] for item in items]
+
+
+def _stored(path: Path | None, mark: str) -> Iterator[tuple[tuple[Any, ...], dict[str, Any]]]:
+    """Yield items and results with this mark, in order; a line cut short by an interrupt is skipped."""
+    if path is None or not path.exists():
+        return
+    for line in path.read_text().splitlines():
+        try:
+            record = json.loads(line)
+            if record["recipe"] == mark:
+                yield tuple(record["item"]), dict(record["result"])
+        except (ValueError, KeyError, TypeError):
+            continue
+
+
+def _store(path: Path | None, record: dict[str, Any]) -> None:
+    if path is None:
+        return
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open("a") as stream:
+            stream.write(json.dumps(record) + "\n")
+    except OSError as error:
+        raise InputError("--out", str(path), "a folder that can be written to", f"{error.strerror}.") from None
+
+
+def _isolated(
+    measure: Callable[..., None],
+    arguments: tuple[Any, ...],
+    items: Sequence[Item],
+    patience_s: float,
+    failed: Callable[[Item, Status, str], Result],
+) -> Generator[Result, None, None]:
+    """Yield the result of each item; after a hang or a crash a new process goes on with the next one."""
+    remaining = list(items)
+    while remaining:
+        with single_thread():
+            worker = Worker(measure, *arguments, remaining)
+        timed_out = threading.Event()
+        answers = iter(worker)
+        starting_s = STARTING_S
+        try:
+            while remaining:
+                alarm = threading.Timer(patience_s + starting_s, _end, (worker, timed_out))
+                alarm.start()
+                try:
+                    result = next(answers)
+                finally:
+                    alarm.cancel()
+                starting_s = 0.0
+                yield result
+                remaining.pop(0)
+        except (IntegrationError, StopIteration) as error:
+            if timed_out.is_set():
+                yield failed(remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {patience_s:g} s")
+            else:
+                yield failed(remaining.pop(0), Status.CRASHED, f"its process ended: {error}")
+        finally:
+            worker.kill()
+            worker.stop()
+
+
+def _end(worker: Worker, timed_out: threading.Event) -> None:
+    timed_out.set()
+    worker.kill()

@@ -1,0 +1,109 @@
+"""Campaigns: a hang or crash loses only its own item, nothing measured is lost, only what is equal is used again."""
+
+from __future__ import annotations
+
+import json
+import os
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import compare.studies.campaign as module
+from compare.studies.campaign import campaign, declared
+from compare.studies.machine import ONE_THREAD
+from compare.studies.row import Record
+from reference import InputError
+from reference.process import Emit
+from reference.status import Status
+
+
+@dataclass(frozen=True)
+class Answer(Record):
+    text: str
+    status: Status = Status.OK
+    process: int = 0
+    threads: str = ""
+
+
+def answers(emit: Emit, offset: int, items: list[tuple[str, str]]) -> None:
+    for _, word in items:
+        if word == "hangs":
+            time.sleep(600)
+        if word == "dies":
+            os._exit(3)
+        emit(Answer(f"{word} {offset}", process=os.getpid(), threads=os.environ["OMP_NUM_THREADS"]))
+
+
+def failed(item: tuple[str, str], status: Status, reason: str) -> Answer:
+    return Answer(f"{item[-1]}: {reason}", status)
+
+
+def run(items: list[tuple[str, str]], **keywords: Any) -> list[Answer]:
+    keywords = {"patience_s": 0.5, "recipe": "one"} | keywords
+    return campaign(answers, (7,), items, kind=Answer, failed=failed, **keywords)
+
+
+def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("compare.studies.campaign.STARTING_S", 5.0)
+    results = run([("m", word) for word in ("a", "dies", "b", "hangs", "c")])
+    assert [one.status for one in results] == ["ok", "crashed", "ok", "out_of_time", "ok"]
+    assert [results[i].text for i in (0, 2, 3, 4)] == ["a 7", "b 7", "hangs: no answer within 0.5 s", "c 7"]
+    assert results[1].text.startswith("dies: its process ended")
+
+
+def test_items_that_differ_in_their_last_part_share_a_process_with_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "5")
+    first, other, second = run([("m", "a"), ("n", "a"), ("m", "b")])
+    assert first.process == second.process != other.process
+    assert {one.threads for one in (first, other, second)} == {"1"}
+    assert os.environ["OMP_NUM_THREADS"] == "5"  # ours is as it was
+    assert not (ONE_THREAD.keys() - {"OMP_NUM_THREADS"}) & os.environ.keys()
+
+
+def test_results_of_the_same_recipe_and_machine_are_not_measured_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, items = tmp_path / "deep" / "rows.jsonl", [("m", "a"), ("m", "b")]
+    reports: list[tuple[int, int, str]] = []
+    first = run(items[:1], journal_path=path)
+    with path.open("a") as stream:
+        stream.write('{"recipe": "cut off by an interr\n')
+    again = run(items, journal_path=path, report=lambda *now: reports.append(now))
+    assert again[0] == first[0]
+    assert reports == [(1, 2, "m")]
+    assert run(items, journal_path=path) == again
+    assert run(items, journal_path=path, recipe="two")[0].process != first[0].process
+    monkeypatch.setattr(module, "machine", lambda: {"processor": "another"})
+    assert run(items, journal_path=path)[0].process != first[0].process
+    assert len(path.read_text().splitlines()) == 7
+
+
+def test_after_an_interruption_the_results_before_it_are_there(tmp_path: Path) -> None:
+    path = tmp_path / "rows.jsonl"
+
+    def interrupt(finished: int, total: int, now: str) -> None:
+        if finished == 2:
+            raise KeyboardInterrupt
+
+    items = [("m", "a"), ("m", "b"), ("m", "c")]
+    with pytest.raises(KeyboardInterrupt):
+        run(items, journal_path=path, report=interrupt)
+    assert [json.loads(line)["item"] for line in path.read_text().splitlines()] == [["m", "a"], ["m", "b"]]
+
+
+def test_a_journal_that_cannot_be_written_says_so(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="--out"):
+        run([("m", "a")], journal_path=tmp_path / "file" / "rows.jsonl")
+
+
+def test_the_runs_of_a_study_are_those_that_methods_declare() -> None:
+    assert declared(["rk4"], "long_runs") == [("rk4", "plane", 0.05)]
+    assert {name for name, _, _ in declared(None, "stability")} > {"rk4", "limbs", "heyoka_double"}
+    with pytest.raises(InputError, match="got 'rkng56', expected methods that declare runs"):
+        declared(["rk4", "rkng56"], "stability")
+    with pytest.raises(InputError, match="rk5"):
+        declared(["rk5"], "stability")
