@@ -20,7 +20,6 @@ _SIDES = (
     (1.0, 0.0), (1.0, 0.8), (1.0, -0.8), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (-1.0, 0.8), (-1.0, -0.8),
     (1.0, 1.6), (1.0, -1.6), (-1.0, 1.6), (-1.0, -1.6),
 )  # fmt: skip
-_ALIGNED = {1.0: "left", -1.0: "right", 0.0: "center"}
 
 
 @dataclass(frozen=True)
@@ -83,28 +82,37 @@ def place(
     figure.get_layout_engine().execute(figure)
     scale = 72 / figure.dpi  # points in a pixel
     frame = axes.get_window_extent().extents * scale
-    paths = {
-        id(line): axes.transData.transform(np.column_stack([line.x, line.y])) * scale for line in (*lines, *others)
-    }
-    samples = np.vstack([_sampled(path) for path in paths.values()])
+    named = [(line, _path(axes, line) * scale) for line in lines]
+    if margin:
+        named.sort(key=lambda one: -one[1][-1, 1])
+    paths = [path for _, path in named] + [_path(axes, line) * scale for line in others]
+    samples = np.vstack([_sampled(path) for path in paths])
     placed: list[tuple[float, Any]] = []  # height of the line's end, box of the name
-    for line in sorted(lines, key=lambda line: -paths[id(line)][-1, 1]) if margin else lines:
-        path = paths[id(line)]
+    for line, path in named:
         options = list((_in_margin if margin else _beside)(path, _size(line, size), frame, placed))
-        if not options:
-            continue
-        best = min(options, key=lambda one: _penalty(one, placed, samples, frame))
-        placed.append((path[-1, 1], best.box))
-        x0, y0, x1, y1 = best.box
-        at = np.array([{1.0: x0, -1.0: x1, 0.0: (x0 + x1) / 2}[best.side], (y0 + y1) / 2])
-        corner, near, end = axes.transData.inverted().transform(np.array([at, at - (_GAP, 0), path[-1]]) / scale)
-        if margin:
-            rule = np.column_stack([end, near])
-            axes.plot(*rule, color=line.style["color"], linewidth=0.6, clip_on=False, scalex=False, scaley=False)
-        axes.text(
-            *corner, line.name, color=line.style["color"], fontsize=size, ha=_ALIGNED[best.side], in_layout=False,
-            va="center" if "\n" in line.name else "center_baseline",
-        )  # fmt: skip
+        if options:
+            best = min(options, key=lambda one: _penalty(one, placed, samples, frame))
+            placed.append((path[-1, 1], best.box))
+            _write(axes, line, best, scale, size)
+            if margin:
+                rule = np.array([path[-1], [best.box[0] - _GAP, (best.box[1] + best.box[3]) / 2]]) / scale
+                style = {"color": line.style["color"], "linewidth": 0.6, "clip_on": False}
+                axes.plot(*axes.transData.inverted().transform(rule).T, **style, scalex=False, scaley=False)
+
+
+def _write(axes: Any, line: Line, where: _Place, scale: float, size: float) -> None:
+    """Write a line's name at its place."""
+    x0, y0, x1, y1 = where.box / scale
+    side, x = {1.0: ("left", x0), -1.0: ("right", x1), 0.0: ("center", (x0 + x1) / 2)}[where.side]
+    axes.text(
+        *axes.transData.inverted().transform((x, (y0 + y1) / 2)), line.name, color=line.style["color"], fontsize=size,
+        ha=side, va="center" if "\n" in line.name else "center_baseline", in_layout=False,
+    )  # fmt: skip
+
+
+def _path(axes: Any, line: Line) -> Any:
+    """Return a line's points in pixels, shape (points, 2)."""
+    return axes.transData.transform(np.column_stack([line.x, line.y]))
 
 
 def _size(line: Line, size: float) -> tuple[float, float]:
@@ -113,10 +121,10 @@ def _size(line: Line, size: float) -> tuple[float, float]:
     return _WIDE * size * max(map(len, words)), _TALL * size * len(words)
 
 
-def _sampled(vertices: Any) -> Any:
-    """Return closely spaced points along a polyline."""
-    parts = [vertices]
-    for a, b in pairwise(vertices):
+def _sampled(path: Any) -> Any:
+    """Return closely spaced points along a line."""
+    parts = [path]
+    for a, b in pairwise(path):
         count = int(np.hypot(*(b - a)) / _EVERY) + 1
         parts.append(a + np.linspace(0, 1, count, endpoint=False)[:, None] * (b - a))
     return np.vstack(parts)
