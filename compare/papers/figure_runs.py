@@ -11,10 +11,8 @@ from reference.precision import Array
 
 from ..methods import METHODS, available
 from ..rhs.problem import Problem
-from .digits import MP, acos, dot, mpf, pi, sin, sqrt
-from .first_principles import rest
-from .mathar.frequency import slow_down
-from .mathar.triangle import apparent_gravity
+from .digits import mpf
+from .mathar.frequency import estimate
 from .points import paris
 from .runs import frequency, path_in, solved
 
@@ -40,10 +38,7 @@ def frequencies() -> dict[float, float]:
 
 def estimate_at(latitude: float) -> float:
     """Return the paper's last but one estimate of the frequency in Hz: (51)-(52) with g' of (48), slowed by 2K/π."""
-    p = paris().but(latitude=mpf(latitude))
-    amplitude = acos(dot((p.x, p.y, p.z), rest(p)) / p.length**2)
-    rate = sqrt(apparent_gravity(p) / p.length + (p.rate * sin(p.phi)) ** 2)
-    return float(rate / (2 * pi) / slow_down(amplitude) + MP.zero)
+    return float(estimate(paris().but(latitude=mpf(latitude))))
 
 
 def orders_at(begin: float, span: float, step: float) -> dict[str, Array]:

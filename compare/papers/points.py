@@ -15,6 +15,7 @@ from reference.model.constants import Constants, constants
 from reference.precision import to_fraction
 from reference.scene import Inputs
 
+from ..approximations.case import Case
 from .digits import MP, Vector, cos, mpf, radians, sin, sqrt
 
 COUNT = 5  # random points
@@ -104,6 +105,11 @@ class Point:
     def uniform(self) -> Constants:
         """The same with gravity alone: no centrifugal force, as in the other two papers."""
         return replace(self.k, pull=(0, 0, -self.gravity / self.length), centrifugal=(0, 0, 0, 0))
+
+    @cached_property
+    def case(self) -> Case:
+        """The same numbers as the approximations take them."""
+        return Case(MP, self.k, self.position, self.velocity)
 
     def but(self, **changes: Any) -> Point:
         """Return the point with some of its numbers changed."""

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Any
 
+from ...approximations.gastebois_small import turntable_frequency
+from ...approximations.mathar_linear import slow_down
 from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, Vector, acos, asin, dot, mpf, pi, shown, sin, sqrt
 from ..first_principles import rest
-from ..points import paris
+from ..points import Point, paris
 from ..runs import solved, transit_times
-from .triangle import apparent_gravity
 
 VII = "Mathar VII"
 STILL = ["site.rotation_rate=0"]
@@ -26,21 +27,15 @@ def planar_amplitude() -> Any:
     return asin(sqrt(mpf("0.3") ** 2 + mpf("0.4") ** 2) / paris().length)
 
 
-def slow_down(amplitude: Any) -> Any:
-    """Return the ratio of the period to that of a small swing: 2 K(sin(φ0/2)) / π."""
-    return 2 * MP.ellipk(sin(amplitude / 2) ** 2) / pi
-
-
 def planar_period() -> Any:
     """Return 4 sqrt(l/g) K(sin(φ0/2)) in s."""
-    p = paris()
-    return 2 * pi * sqrt(p.length / p.gravity) * slow_down(planar_amplitude())
+    p = paris().but(rate=MP.zero)  # so that the rest position is straight down
+    return 2 * pi * sqrt(p.length / p.gravity) * slow_down(p.case)
 
 
-def harmonic_frequency(gravity: Any) -> Any:
+def harmonic_frequency(p: Point, gravity: Any) -> Any:
     """Return the frequency of (51)-(52): sqrt(g/l + (Ω sinϕ)²) / 2π, in Hz."""
-    p = paris()
-    return sqrt(gravity / p.length + (p.rate * sin(p.phi)) ** 2) / (2 * pi)
+    return turntable_frequency(p.case, gravity, p.rate * sin(p.phi)) / (2 * pi)
 
 
 def amplitude() -> Any:
@@ -48,9 +43,9 @@ def amplitude() -> Any:
     return acos(dot(released(), rest(paris())) / paris().length ** 2)
 
 
-def estimate() -> Any:
-    """Return the frequency of (51)-(52) with g' of (48), slowed down: 0.060843634 Hz."""
-    return harmonic_frequency(apparent_gravity(paris())) / slow_down(amplitude())
+def estimate(p: Point) -> Any:
+    """Return the frequency of (51)-(52) with g' of (48), slowed down, in Hz."""
+    return harmonic_frequency(p, p.case.apparent_gravity) / slow_down(p.case)
 
 
 def first_period_frequency() -> Any:
@@ -107,15 +102,17 @@ def checks() -> list[Check]:
             f"{VII}, item 3",
             "sqrt(ĝ + (Ω sinϕ)²) ≈ 0.06088959 Hz",
             "0.06088959",
-            lambda: harmonic_frequency(p.gravity),
+            lambda: harmonic_frequency(p, p.gravity),
         ),
-        PrintedNumber("mathar_vii_g", f"{VII}, item 4", "g' = 9.79195 m/s²", "9.79195", lambda: apparent_gravity(p)),
+        PrintedNumber(
+            "mathar_vii_g", f"{VII}, item 4", "g' = 9.79195 m/s²", "9.79195", lambda: p.case.apparent_gravity
+        ),
         PrintedNumber(
             "mathar_vii_g_hz",
             f"{VII}, item 4",
             "≈ 0.060843935 Hz",
             "0.060843935",
-            lambda: harmonic_frequency(apparent_gravity(p)),
+            lambda: harmonic_frequency(p, p.case.apparent_gravity),
         ),
         Statement(
             "mathar_vii_slow",
@@ -138,7 +135,7 @@ def checks() -> list[Check]:
             "mathar_vii_rest_z", f"{VII}, item 5", "equilibrium z = -66.999 m", "-66.999", lambda: rest(p)[2]
         ),
         PrintedNumber("mathar_vii_amplitude", f"{VII}, item 5", "φ(0) = 0.008898355 rad", "0.008898355", amplitude),
-        PrintedNumber("mathar_vii_estimate", f"{VII}, item 5", "0.060843634 Hz", "0.060843634", estimate),
+        PrintedNumber("mathar_vii_estimate", f"{VII}, item 5", "0.060843634 Hz", "0.060843634", lambda: estimate(p)),
         PrintedNumber(
             "mathar_vii_frequency",
             f"{VII}, item 6",
@@ -153,8 +150,8 @@ def checks() -> list[Check]:
 
 def _slowed(by: Any) -> Finding:
     """Compare the factor, `by` times 2K/π, with the two frequencies between which the paper puts it."""
-    factor = by * slow_down(amplitude())
-    hertz = harmonic_frequency(apparent_gravity(paris())) / factor
+    hertz = estimate(paris()) / by
+    factor = by * slow_down(paris().case)
     return Finding(
         abs(hertz - mpf("0.060843634")) < mpf("5e-10"), f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz"
     )

@@ -7,13 +7,13 @@ from typing import Any
 
 from reference.model.force import acceleration
 
+from ...approximations.mathar_items import derivatives, truncated
 from ..checks import Approximate, Check, Identity, PrintedNumber
 from ..digits import MP, Vector, cos, scale, shown, sin, sqrt, vector_derivative
 from ..first_principles import in_rate
 from ..points import Point, paris
-from .cartesian import beta_x, beta_y, in_powers, inverse_times, solved
+from .cartesian import solved
 from .rest import pull_at_rest
-from .triangle import apparent_gravity
 
 VI = "Mathar VI"
 
@@ -27,38 +27,15 @@ def _swinging(s: Any, rate: Any = None) -> Point:
     return base.but(x=x, y=y, vx=w * y / 2, vy=w * x, rate=turning)
 
 
-def _negated(vector: Vector) -> Vector:
-    return tuple(-part for part in vector)
+def without(item: int) -> Callable[[Point], Vector]:
+    """Return a function that gives x'', y'' by (43) without the terms that an item leaves out."""
+    items = frozenset({item})
 
+    def accelerations(p: Point) -> Vector:
+        (x, y, _), (vx, vy, _) = p.case.n, p.case.v
+        return scale(p.length, derivatives((x, y, vx, vy), truncated(p.k, items), MP, items)[2:])
 
-def _diagonal(p: Point, b: Vector) -> Vector:
-    x, y, z = p.position
-    return tuple(part / (z**4 * p.length**2) for part in ((y**2 + z**2) * b[0], (x**2 + z**2) * b[1]))
-
-
-def without_square_rate(p: Point) -> Vector:
-    """Return x'', y'' of item 1: (35) and (41) replaced by zero."""
-    return inverse_times(p, _negated(tuple(in_powers(p, beta(p)[:2]) for beta in (beta_x, beta_y))))
-
-
-def without_coupling(p: Point) -> Vector:
-    """Return x'', y'' of item 2: -yx in (43) set to zero."""
-    return _diagonal(p, _negated(tuple(in_powers(p, beta(p)) for beta in (beta_x, beta_y))))
-
-
-def gravity_alone(p: Point) -> Vector:
-    """Return x'', y'' of item 3: of (33) and (39) only the term with g."""
-    pull = p.gravity * abs(p.z) ** 3
-    sums = tuple(in_powers(p, (place * pull, *beta(p)[1:])) for place, beta in ((p.x, beta_x), (p.y, beta_y)))
-    return inverse_times(p, _negated(sums))
-
-
-def without_cosine(p: Point) -> Vector:
-    """Return x'', y'' of item 4: of (34) and (40) only the term with sinϕ."""
-    bent = 2 * p.z**4 * sin(p.phi)
-    once = (-bent * p.vy, bent * p.vx)
-    sums = (in_powers(p, (beta(p)[0], linear, beta(p)[2])) for linear, beta in zip(once, (beta_x, beta_y), strict=True))
-    return inverse_times(p, _negated(tuple(sums)))
+    return accelerations
 
 
 def _depth_is_length(p: Point) -> Vector:
@@ -101,13 +78,13 @@ def _dropped(simplified: Callable[[Point], Vector], turning: bool = False) -> Ca
 
 def _sizes_at_rate(s: Any) -> tuple[Vector, Vector]:
     p = _swinging(MP.one, paris().rate * s)
-    return without_square_rate(p), solved(p)
+    return without(1)(p), solved(p)
 
 
 def _printed_gravity(s: Any) -> tuple[Any, Any]:
     base = paris()
     p = base.but(rate=base.rate * sqrt(s))
-    return p.gravity - p.R * p.rate**2 * cos(p.phi), apparent_gravity(p)
+    return p.gravity - p.R * p.rate**2 * cos(p.phi), p.case.apparent_gravity
 
 
 def _no_centrifugal_force(s: Any) -> tuple[Any, Any]:
@@ -128,7 +105,7 @@ def _cosine(s: Any) -> tuple[Vector, Vector]:
     def linear(function: Callable[[Point], Vector], i: int) -> Any:
         return in_rate(lambda rate: function(p.but(rate=rate))[i], 1)
 
-    printed, true = (tuple(linear(function, i) for i in (0, 1)) for function in (without_cosine, solved))
+    printed, true = (tuple(linear(function, i) for i in (0, 1)) for function in (without(4), solved))
     return printed, true
 
 
@@ -177,7 +154,7 @@ def checks() -> list[Check]:
             "mathar_vi_2",
             f"{VI} item 2",
             "-yx in (43) set to zero",
-            _dropped(without_coupling),
+            _dropped(without(2)),
             2,
             "amplitude",
             remark=f"{place}; bit 1 of the program's -a",
@@ -186,7 +163,7 @@ def checks() -> list[Check]:
             "mathar_vi_3",
             f"{VI} item 3",
             "only the terms with g in (33), (39)",
-            _dropped(gravity_alone),
+            _dropped(without(3)),
             2,
             "amplitude",
             remark=place,

@@ -5,21 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 from ..checks import Approximate, Check, Identity
-from ..digits import MP, asin, cos, pi, sin, sqrt
+from ..digits import MP, asin, cos, sin, sqrt
 from ..first_principles import rest_angle
 from ..points import Point, paris
 from .rest import V, pull_at_rest
 
 
-def apparent_gravity(p: Point) -> Any:
-    """Return g' by (48)."""
-    out = p.R * p.rate**2
-    return sqrt(p.gravity**2 + out**2 - 2 * p.gravity * out * cos(p.phi))
-
-
 def triangle_angle(p: Point) -> Any:
     """Return φ by (50)."""
-    return asin(p.R * p.rate**2 * sin(p.phi) / apparent_gravity(p))
+    return asin(p.R * p.rate**2 * sin(p.phi) / p.case.apparent_gravity)
 
 
 def _shorter(s: Any) -> Point:
@@ -43,12 +37,6 @@ def _one_term(p: Point) -> Any:
     return sin(2 * p.phi) / p.gravity * (p.N + p.altitude) * p.rate**2 / 2
 
 
-def _tilt(p: Point) -> Any:
-    """Return the triangle's angle at the bob, between g and the sum of g and the centrifugal acceleration."""
-    out = p.R * p.rate**2
-    return pi / 2 - MP.atan2(p.gravity - out * cos(p.phi), out * sin(p.phi))
-
-
 def checks() -> list[Check]:
     """Return the rows of section V from (48) on."""
     return [
@@ -56,7 +44,7 @@ def checks() -> list[Check]:
             "mathar_48",
             f"{V} (48)",
             "g' = sqrt(g² + (RΩ²)² - 2 g RΩ² cosϕ)",
-            lambda s: (apparent_gravity(_shorter(s)), pull_at_rest(_shorter(s))),
+            lambda s: (_shorter(s).case.apparent_gravity, pull_at_rest(_shorter(s))),
             1,
             "l",
             "m/s²",
@@ -66,8 +54,8 @@ def checks() -> list[Check]:
             "mathar_49",
             f"{V} (49)",
             "RΩ² / sinφ = g' / sinϕ",
-            lambda p: p.R * p.rate**2 / sin(_tilt(p)),
-            lambda p: apparent_gravity(p) / sin(p.phi),
+            lambda p: p.R * p.rate**2 / sin(p.case.tilt),
+            lambda p: p.case.apparent_gravity / sin(p.phi),
             remark="the sine rule of the triangle of (48), its angle by atan2",
         ),
         Approximate(

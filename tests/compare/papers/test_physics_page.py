@@ -7,16 +7,15 @@ from typing import Any
 import pytest
 from places import ROOT
 
+from compare.approximations.mathar_linear import slow_down
 from compare.papers.digits import MP, degrees, mpf, norm, pi, shown, sin, sqrt
 from compare.papers.first_principles import rest, rest_angle
 from compare.papers.mathar.frequency import (
-    amplitude,
     day_frequency,
     estimate,
     first_period_frequency,
     planar_period,
     released,
-    slow_down,
     swings_surplus,
     transit_frequency,
 )
@@ -50,7 +49,7 @@ def without_the_centrifugal_part() -> tuple[Any, Any]:
 def estimate_with_square_rate() -> Any:
     """Stiffness east T/l - Ω², along the meridian T/l - w²; their mean, and w² for the turning axes."""
     square = pull_at_rest(P) / P.length - (P.rate**2 + TURN**2) / 2 + TURN**2
-    return sqrt(square) / (2 * pi) / slow_down(amplitude())
+    return sqrt(square) / (2 * pi) / slow_down(P.case)
 
 
 def jump() -> Any:
@@ -95,11 +94,11 @@ NUMBERS = {
     "end": f"still {fixed(transit_frequency(), 7)} Hz",
     "count": f"{len(transit_times()) - swings_surplus()} of them for {len(transit_times())} transits, gives "
     f"{fixed(day_frequency(), 11)} Hz",
-    "estimate": f"amplitude | {fixed(estimate(), 11)} Hz",
+    "estimate": f"amplitude | {fixed(estimate(P), 11)} Hz",
     "first": f"the first swing | {fixed(first_period_frequency(), 11)} Hz",
     "day": f"not rounded | {fixed(day_frequency(), 11)} Hz",
     "minutes": f"less than about {int(last_run_that_prints_633() / 60)} minutes",
-    "higher": f"higher by {float(estimate() - estimate_with_square_rate()):.0e} Hz",
+    "higher": f"higher by {float(estimate(P) - estimate_with_square_rate()):.0e} Hz",
     "corrected": f"estimate is {fixed(estimate_with_square_rate(), 11)} Hz",
     "agree": f"agree to {float(abs(estimate_with_square_rate() - day_frequency())):.0e} Hz",
 }
