@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from reference import InputError, scene_ids
+from reference import InputError
 from reference.commands.terminal import AsJson
 
 from .options import counting, finish, inside, listed
@@ -33,7 +33,6 @@ def command(
 
     For each: digits kept, or the way it failed; with the same --out a study resumes.
     """
-    from ..methods import METHODS
     from ..report.folder import check_folder
     from ..report.stability import REPORT, document_of
     from ..studies.campaign import declared
@@ -44,7 +43,7 @@ def command(
         raise InputError("--limit", f"{limit:g}", "a positive number of seconds")
     if out is not None:
         check_folder(out, REPORT.files)
-    chosen, requested = listed(scenes, "--scenes", scene_ids()), listed(methods, "--methods", METHODS)
+    chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
     if long:
         declared(requested, "long_runs")  # refuses a method without long runs before the others take minutes
     with counting("stability") as report:

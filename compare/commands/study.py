@@ -59,7 +59,7 @@ def command(
     if approximations:
         _study_approximations(scene, out, as_json)
         return
-    from ..methods import EXTERNAL, METHODS
+    from ..methods import EXTERNAL
     from ..report.folder import check_folder
     from ..report.study import REPORT
     from ..studies.study import plan
@@ -68,7 +68,7 @@ def command(
     if out is not None:
         check_folder(out, REPORT.files)
     problem, digits = scene, None
-    items = plan(scene, listed(methods, "--methods", METHODS), not no_formulations)
+    items = plan(scene, listed(methods, "--methods"), not no_formulations)
     if precisions is not None:
         from ..studies.precisions import bits_of, precision_items, precision_scene
 

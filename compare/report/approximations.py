@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from reference import Scene
+from reference.status import Status
 
 from ..approximations import APPROXIMATIONS
 from ..studies.approximation_errors import error_table, quantity_table
@@ -113,7 +114,7 @@ def _errors(report: dict[str, Any]) -> Html:
     rows = []
     for name in dict.fromkeys(row["approximation"] for row in report["rows"]):
         values = [by_key[name, t][what] for what in ("error_m", "plane_error_arcsec") for t in times]
-        remark = "" if by_key[name, times[0]]["status"] == "ok" else "does not apply to this scene"
+        remark = "" if by_key[name, times[0]]["status"] == Status.OK else "does not apply to this scene"
         rows.append(TableRow((name, *("" if value is None else f"{value:.3g}" for value in values), remark)))
     return table(
         [*columns, Column("remark", "prose")], rows, "Largest errors of position and of the swing plane's direction"

@@ -30,7 +30,7 @@ def document_of(cells: Sequence[Cell], runs: Sequence[LongRun]) -> dict[str, Any
     """Return the JSON document of the command."""
     return {
         "rows": [asdict(cell) for cell in cells],
-        "silently_wrong": sum(cell.status == Status.SILENTLY_WRONG for cell in cells),
+        Status.SILENTLY_WRONG.value: sum(cell.status == Status.SILENTLY_WRONG for cell in cells),
         "long_runs": [run.document() for run in runs],
         "machine": machine(),
     }

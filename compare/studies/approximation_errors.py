@@ -15,6 +15,7 @@ import numpy as np
 
 from reference import FoucaultError, InputError, Scene, UnreachableError, trajectory
 from reference.precision import Array
+from reference.status import Status
 
 from ..approximations import Motion, Quantity, approximation, motions, quantities
 from ..observed.swing_plane import Gauge
@@ -35,7 +36,7 @@ class TimeRow:
     t: float
     error_m: float | None
     plane_error_arcsec: float | None
-    status: str = "ok"
+    status: str = Status.OK
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,7 @@ class QuantityRow:
     truth: str | None
     unit: str
     relative_error: float | None
-    status: str = "ok"
+    status: str = Status.OK
 
 
 @dataclass(frozen=True)

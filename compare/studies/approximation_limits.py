@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from reference import FoucaultError, InputError, Scene
+from reference.status import Status
 
 from ..approximations.approximation import Motion
 from .approximation_errors import TIMES, ReferenceMotion, chosen_motions
@@ -31,7 +32,7 @@ class SweepRow:
     t: float
     error_m: float | None
     plane_error_arcsec: float | None
-    status: str = "ok"
+    status: str = Status.OK
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,7 @@ class LimitRow:
     unit: str
     limit: str
     good: tuple[tuple[float, float], ...]
-    status: str = "ok"
+    status: str = Status.OK
 
 
 def sweep_values(scene: Scene, over: str) -> tuple[float, ...]:
@@ -100,7 +101,7 @@ def limits(
     limit_rows = []
     for word in dict.fromkeys(row.approximation for row in rows):
         of_one = sorted((row for row in rows if row.approximation == word), key=lambda row: row.value)
-        status = of_one[0].status if all(row.error_m is None for row in of_one) else "ok"
+        status = of_one[0].status if all(row.error_m is None for row in of_one) else Status.OK
         for name, quantity, limit in LIMITS:
             errors = [getattr(row, quantity) for row in of_one]
             good = _below(over, [row.value for row in of_one], errors, limit)

@@ -7,8 +7,6 @@ from typing import Any, Self
 
 from reference.status import Status
 
-OK, EXTRAPOLATED = Status.OK, Status.EXTRAPOLATED
-
 
 @dataclass(frozen=True)
 class Record:

@@ -104,18 +104,18 @@ def stability(
     Raises:
         InputError: an unknown scene or method, or one that declares no such runs.
     """
-    runs, names = declared(methods, "stability"), default_scenes() if scenes is None else scenes
+    runs = declared(methods, "stability")
+    cuts = {name: cut(load_scene(name)) for name in (default_scenes() if scenes is None else scenes)}
     problems: Problems = {}
     unsolved: dict[str, str] = {}
-    for name in names:
+    for count, (name, scene) in enumerate(cuts.items()):
         if report is not None:
-            report(len(problems), len(names), f"truth of {name}")
-        scene = cut(load_scene(name))
+            report(count, len(cuts), f"truth of {name}")
         try:
             problems[name] = scene.model_dump(exclude_none=True), golden_of(scene, TRUTH_DIGITS).path
         except UnreachableError as error:
             unsolved[name] = f"The reference cannot solve it: {error}"
-    items: list[Item] = [(*run, name) for run in runs for name in names]
+    items: list[Item] = [(*run, name) for run in runs for name in cuts]
     solved = [item for item in items if item[-1] in problems]
     orders = {name: method.order for name, method in METHODS.items() if method.setting == "step"}
     cells = campaign(

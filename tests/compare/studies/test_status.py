@@ -1,0 +1,40 @@
+"""Outcomes: one enumeration for all of compare, each with its letter, its meaning and what to do."""
+
+from __future__ import annotations
+
+import ast
+import json
+
+import pytest
+from places import ROOT
+
+from compare.report.charts.heat_map import LETTERS
+from compare.studies.row import Row
+from reference.status import Status
+
+FILES = sorted((ROOT / "compare").rglob("*.py"))
+
+
+def bare(text: str) -> list[str]:
+    """Every literal that is the word of a status."""
+    literals = (node.value for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Constant))
+    return [literal for literal in literals if literal in list(Status)]
+
+
+def test_no_word_of_a_status_stands_in_compare_but_in_the_enumeration() -> None:
+    assert bare('status = "gave_up"') == ["gave_up"]
+    assert {path.name: bare(path.read_text()) for path in FILES if bare(path.read_text())} == {}
+
+
+@pytest.mark.parametrize("status", Status)
+def test_a_status_goes_through_json_and_comes_back(status: Status) -> None:
+    row = Row("rk4", "plane", 0.1, "step", "binary64", status)
+    document = json.loads(json.dumps(vars(row)))
+    assert document["status"] == str(status)
+    assert Row.parsed(document | {"of a later version": 1}) == row
+    assert Row.parsed(document).status is status
+
+
+def test_what_can_go_wrong_says_what_to_do_and_has_a_letter_of_its_own() -> None:
+    assert all(status.advice for status in LETTERS)
+    assert len(set(LETTERS.values())) == len(LETTERS)
