@@ -14,9 +14,6 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
-from compare.approximations import APPROXIMATIONS
-from compare.methods import METHODS
-
 README = (ROOT / "README.md").read_text()
 
 
@@ -73,8 +70,9 @@ def test_the_packages_own_examples_are_true(module):
     assert result.attempted and not result.failed
 
 
-def test_the_counts_in_the_readme_are_those_of_the_registries():
-    assert f"{len(METHODS)} integrators and {len(APPROXIMATIONS)} analytic approximations" in README
+def test_the_readme_counts_nothing_that_a_new_file_would_change():
+    counted = re.findall(r"\d+ (?:\w+ )?(?:integrators|methods|approximations|scenes)", README)
+    assert counted == []
 
 
 PAGES = ("README.md", "CONTRIBUTING.md", "docs/architecture.md", "docs/physics.md", "docs/studies.md", "CHANGELOG.md")

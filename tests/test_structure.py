@@ -43,9 +43,10 @@ FLOORS = {
         ["report"],
         ["studies", "foucpend", "score"],
         ["methods"],
+        ["runge_kutta"],
         ["approximations", "rhs"],
         ["candidates", "truth", "observed", "position_error"],
-        ["cache", "power_law"],
+        ["cache", "power_law", "registry"],
     ],
 }
 

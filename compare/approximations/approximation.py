@@ -34,6 +34,10 @@ class Order:
     amplitude: float | None = None
 
 
+CUBE_IN_AMPLITUDE = Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",))
+SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), ("release.x=3e-3", "release.y=4e-3"))
+
+
 @dataclass(frozen=True)
 class Printed:
     """A misprint: the formula as a source paper prints it, beside the right form.

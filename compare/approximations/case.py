@@ -113,6 +113,11 @@ class PlumbAxes:
         return np.column_stack((x, cos * y - sin * z, sin * y + cos * z, vx, cos * vy - sin * vz, sin * vy + cos * vz))
 
 
+def lowest_point(scene: Scene) -> Vector:
+    """Return the point straight below the suspension, (0, 0, -l) in m."""
+    return (0, 0, -Case.of_scene(scene).length)
+
+
 def hung(x: Array, y: Array, vx: Array, vy: Array, length: Any) -> Array:
     """Return rows x, y, z, vx, vy, vz with z < 0 from |r| = l and vz from r·v = 0: Mathar (7), (12).
 
@@ -148,3 +153,13 @@ def at_rest(scene: Scene) -> str | None:
 def under_gravity(scene: Scene) -> str | None:
     """Return a reason to refuse a scene without gravity, where nothing pulls the bob back, or None."""
     return None if scene.exact.gravity else "Without gravity nothing pulls the bob back: give site.gravity above 0"
+
+
+def swinging(scene: Scene) -> str | None:
+    """Return a reason to refuse drag, a release that is not below the suspension, or no gravity, or None."""
+    return below(scene) or under_gravity(scene)
+
+
+def released_at_rest(scene: Scene) -> str | None:
+    """Return the same, or a reason to refuse a release with a velocity."""
+    return at_rest(scene) or under_gravity(scene)

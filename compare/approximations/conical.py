@@ -9,7 +9,7 @@ import numpy as np
 from reference import Scene
 
 from .approximation import Array, Motion, Order
-from .case import Case, below, under_gravity
+from .case import Case, lowest_point, swinging
 
 _CONICAL_ENOUGH = 0.1  # part of the circle's speed by which the velocity of release may differ from it
 
@@ -39,7 +39,7 @@ def _path(scene: Scene, times: Array) -> Array:
 
 
 def _refused(scene: Scene) -> str | None:
-    reason = below(scene) or under_gravity(scene)
+    reason = swinging(scene)
     if reason:
         return reason
     case = Case.of_scene(scene)
@@ -67,6 +67,6 @@ APPROXIMATIONS = (
         ),
         refuses=_refused,
         path=_path,
-        rest=lambda scene: (0, 0, -Case.of_scene(scene).length),
+        rest=lowest_point,
     ),
 )

@@ -10,21 +10,14 @@ from reference import Scene
 
 from ..observed.apsides import frequency
 from .approximation import Order, Printed, Quantity
-from .case import Case, at_rest, below, under_gravity
+from .case import Case, released_at_rest, swinging
 from .mathar_linear import slow_down
 
 _STILL = ("site.rotation_rate=0",)
 _SQUARE_IN_AMPLITUDE = Order("amplitude", 2, (1.0, 2.0, 4.0, 8.0), _STILL)
+_EXACT = Order("amplitude", None, (1.0, 8.0, 40.0), _STILL)
 _SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_radius=0",), 1e-2)
 _CENTRIFUGAL = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4), (), 1e-2)
-
-
-def _swinging(scene: Scene) -> str | None:
-    return below(scene) or under_gravity(scene)
-
-
-def _released_at_rest(scene: Scene) -> str | None:
-    return at_rest(scene) or under_gravity(scene)
 
 
 def _harmonic(scene: Scene) -> Any:
@@ -58,68 +51,52 @@ def _slowed_as_printed(scene: Scene) -> Any:
     return _slowed(scene) / (2 * case.ctx.pi)
 
 
-def _quantity(
-    word: str, number: int, title: str, drops: str, orders: tuple[Order, ...], formula: Any, **more: Any
-) -> Any:
-    """Declare one frequency of section VII; `number` counts them as the paper does, `more` are further fields."""
-    return Quantity(
-        id=word,
-        title=title,
-        where=f"Mathar section VII, frequency {number}",
-        domain="small amplitudes, slow rotation",
-        drops=drops,
-        orders=orders,
-        formula=formula,
-        truth=frequency,
-        unit="Hz",
-        **{"refuses": _swinging} | more,
-    )
-
+_frequency = partial(Quantity, domain="small amplitudes, slow rotation", refuses=swinging, truth=frequency, unit="Hz")
 
 APPROXIMATIONS = (
-    _quantity(
-        "frequency_harmonic",
-        1,
-        "harmonic frequency sqrt(g/l)/2π",
-        "the amplitude, Ω, the centrifugal force",
-        (_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
-        _harmonic,
+    _frequency(
+        id="frequency_harmonic",
+        title="harmonic frequency sqrt(g/l)/2π",
+        where="Mathar section VII, frequency 1",
+        drops="the amplitude, Ω, the centrifugal force",
+        orders=(_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
+        formula=_harmonic,
     ),
-    _quantity(
-        "frequency_planar",
-        2,
-        "frequency of the plane pendulum of finite amplitude",
-        "Ω and the centrifugal force",
-        (Order("amplitude", None, (1.0, 8.0, 40.0), _STILL), _CENTRIFUGAL),
-        _planar,
-        refuses=_released_at_rest,
+    _frequency(
+        id="frequency_planar",
+        title="frequency of the plane pendulum of finite amplitude",
+        where="Mathar section VII, frequency 2",
+        drops="Ω and the centrifugal force",
+        orders=(_EXACT, _CENTRIFUGAL),
+        refuses=released_at_rest,
+        formula=_planar,
     ),
-    _quantity(
-        "frequency_turntable",
-        3,
-        "harmonic frequency on a turntable, sqrt(g/l + (Ω sin φ)²)/2π",
-        "the amplitude, the centrifugal force",
-        (_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
-        partial(_turntable, gravity=lambda case: case.gravity),
+    _frequency(
+        id="frequency_turntable",
+        title="harmonic frequency on a turntable, sqrt(g/l + (Ω sin φ)²)/2π",
+        where="Mathar section VII, frequency 3",
+        drops="the amplitude, the centrifugal force",
+        orders=(_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
+        formula=partial(_turntable, gravity=lambda case: case.gravity),
     ),
-    _quantity(
-        "frequency_apparent",
-        4,
-        "harmonic frequency on a turntable, with the apparent gravity g' of (48)",
-        "the amplitude, the centrifugal gradient",
-        (_SQUARE_IN_AMPLITUDE, _SQUARE_IN_RATE),
-        partial(_turntable, gravity=lambda case: case.apparent_gravity),
+    _frequency(
+        id="frequency_apparent",
+        title="harmonic frequency on a turntable, with the apparent gravity g' of (48)",
+        where="Mathar section VII, frequency 4",
+        drops="the amplitude, the centrifugal gradient",
+        orders=(_SQUARE_IN_AMPLITUDE, _SQUARE_IN_RATE),
+        formula=partial(_turntable, gravity=lambda case: case.apparent_gravity),
     ),
-    _quantity(
-        "frequency_anharmonic",
-        5,
-        "harmonic frequency on a turntable with g', slowed down by the amplitude, 2K/π",
-        "the centrifugal gradient; the effects of the ellipse and of Ω cos φ at finite amplitude",
-        (Order("amplitude", None, (1.0, 8.0, 40.0), _STILL), _SQUARE_IN_RATE),
-        _slowed,
-        refuses=_released_at_rest,
+    _frequency(
+        id="frequency_anharmonic",
+        title="harmonic frequency on a turntable with g', slowed down by the amplitude, 2K/π",
+        where="Mathar section VII, frequency 5",
+        drops="the centrifugal gradient; the effects of the ellipse and of Ω cos φ at finite amplitude",
+        orders=(_EXACT, _SQUARE_IN_RATE),
+        refuses=released_at_rest,
         printed=Printed(
             "slow-down with the factor 4K(sin(φ0/2))", "2K(sin(φ0/2))/π, which is 1 at amplitude 0", _slowed_as_printed
         ),
+        formula=_slowed,
     ),
 )

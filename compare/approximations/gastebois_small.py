@@ -1,4 +1,8 @@
-"""Small angles about the tilted plumb line: Gastebois 5, with his closed solutions 6.1, 6.2 and 6.3."""
+"""Small angles about the tilted plumb line: Gastebois 5, with his closed solutions 6.1, 6.2 and 6.3.
+
+Z = x + i y, Z'' = -ω0² Z - 2 i Ω_z Z' has the solution Z = C1 exp(-i (ω + Ω_z) t) + C2 exp(i (ω - Ω_z) t) of 6.1, with
+ω² = ω0² + Ω_z²; `mathar_linear` uses it too.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +11,41 @@ from typing import Any
 
 import numpy as np
 
-from reference import Scene
+from reference import Scene, UnreachableError
 
-from .approximation import Array, Motion, Order, Printed
-from .case import Case, PlumbAxes, at_rest, below, hung, under_gravity
+from .approximation import CUBE_IN_AMPLITUDE, Array, Motion, Order, Printed
+from .case import Case, PlumbAxes, hung, released_at_rest, swinging
 from .gastebois_general import hanging
-from .oscillator import oscillation, turntable_frequency
+
+
+def turntable_frequency(case: Case, gravity: Any, turn: Any) -> Any:
+    """Return ω = (gravity/l + Ω_z²)^(1/2) in rad/s.
+
+    Raises:
+        UnreachableError: ω is zero.
+    """
+    omega = case.ctx.sqrt(gravity / case.length + turn**2)
+    if not omega:
+        raise UnreachableError("nothing pulls the bob back: gravity and centrifugal force cancel.")
+    return omega
+
+
+def oscillation(place: tuple[Any, Any], speed: tuple[Any, Any], omega: Any, turn: Any, times: Array) -> Any:
+    """Return Z in m and Z' in m/s at the times, two complex arrays.
+
+    Args:
+        place: x, y in m at t = 0, mpf.
+        speed: vx, vy in m/s at t = 0, mpf.
+        omega: ω in rad/s, mpf, not zero.
+        turn: Ω_z in rad/s, mpf.
+        times: in s.
+    """
+    (x, y), (vx, vy) = place, speed
+    first = complex(((omega - turn) * x - vy) / (2 * omega), ((omega - turn) * y + vx) / (2 * omega))
+    second = complex(((omega + turn) * x + vy) / (2 * omega), ((omega + turn) * y - vx) / (2 * omega))
+    fast, slow = float(omega + turn), float(omega - turn)
+    one, two = first * np.exp(-1j * fast * times), second * np.exp(1j * slow * times)
+    return one + two, 1j * (slow * two - fast * one)
 
 
 def small_angles(case: Case) -> tuple[PlumbAxes, Any, Any]:
@@ -69,7 +102,6 @@ def _released_clockwise(scene: Scene, times: Array) -> Array:
     return _in_turning_axes(scene, times, lambda omega, turn: -turn / omega)
 
 
-_CUBE_IN_AMPLITUDE = Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",))
 _SQUARE_IN_RATE = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4, 4e-4), (), 1e-3)
 _DROPS = "the centrifugal gradient, powers of the angle beyond the first (so the slow-down and the spherical drift)"
 
@@ -80,8 +112,8 @@ APPROXIMATIONS = (
         where="Gastebois 5, 6.1, with g_a and λ_a of 4.2; 7.3",
         domain="small angles; an hour",
         drops=_DROPS,
-        orders=(_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
-        refuses=lambda scene: below(scene) or under_gravity(scene),
+        orders=(_SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
+        refuses=swinging,
         printed=Printed(
             "v_x ends with - c'2 (ω - Ωz) sin (ω - Ωz)t; x and y are the integer part (partie entière)",
             "- c'2 (ω - Ωz) cos (ω - Ωz)t; real part",
@@ -96,8 +128,8 @@ APPROXIMATIONS = (
         where="Gastebois 6.2",
         domain="small angles, released with the transverse velocity -r0 Ωz; an hour",
         drops=_DROPS + "; the scene's own velocity of release (for a release at rest an error of the order Ω)",
-        orders=(Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4), ("site.equatorial_radius=0",)), _CUBE_IN_AMPLITUDE),
-        refuses=lambda scene: below(scene) or under_gravity(scene),
+        orders=(Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4), ("site.equatorial_radius=0",)), CUBE_IN_AMPLITUDE),
+        refuses=swinging,
         path=_launched_in_the_plane,
         rest=hanging,
     ),
@@ -107,8 +139,8 @@ APPROXIMATIONS = (
         where="Gastebois 6.3",
         domain="small angles, released at rest; an hour",
         drops=_DROPS,
-        orders=(_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
-        refuses=lambda scene: at_rest(scene) or under_gravity(scene),
+        orders=(_SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
+        refuses=released_at_rest,
         printed=Printed(
             "the ellipse is run through clockwise, transverse speed -r0 Ωz",
             "counter-clockwise in the north, +r0 Ωz, as his own X and Y say",

@@ -18,7 +18,7 @@ from reference.model.algebra import product
 from reference.model.constants import Vector
 from reference.model.force import tension
 
-from .approximation import Array, Motion, Order
+from .approximation import CUBE_IN_AMPLITUDE, Array, Motion, Order
 from .case import Case, PlumbAxes, below, hung
 
 
@@ -80,7 +80,7 @@ APPROXIMATIONS = (
         drops="second and higher powers of the displacement from the rest position",
         orders=(
             Order("amplitude", 2, (0.1, 0.2, 0.4, 0.8), ("site.equatorial_radius=0", "site.rotation_rate=0.02")),
-            Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",)),
+            CUBE_IN_AMPLITUDE,
         ),
         refuses=_refused,
         path=_path,

@@ -9,7 +9,6 @@ squares too is one more step, of the same order, which the paper takes without s
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -18,18 +17,15 @@ from reference import IntegrationError, Scene
 from reference.model.algebra import Functions, State, minus, plus, product
 from reference.model.constants import Constants
 
-from .approximation import Array, Motion, Order
+from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Array, Motion, Order
 from .carried import integrated
-from .case import Case, hung
+from .case import Case, hung, lowest_point
 
 VARIABLES = ("x", "y", "vx", "vy")
 VARIANT = "variant of item 1"
 Item = int | str
 
-_STILL = ("site.rotation_rate=0",)
 _ON_AXIS = ("site.equatorial_radius=0",)  # R = 0: the rest position stays below the suspension
-_AMPLITUDES = (0.5, 1.0, 2.0, 4.0)
-_RATES = (1e-5, 2e-5, 4e-5, 8e-5)
 
 
 def derivatives(state: State, k: Constants, functions: Functions, items: frozenset[Item] = frozenset()) -> State:
@@ -103,101 +99,86 @@ def _above(scene: Scene) -> str | None:
     return "(43) holds below the suspension only: give release.angle below 90" if high else None
 
 
-def _suspension(scene: Scene) -> Any:
-    case = Case.of_scene(scene)
-    return (0, 0, -case.length)
-
-
-def _motion(
-    word: str, items: tuple[Item, ...], title: str, drops: str, domain: str, orders: tuple[Order, ...]
-) -> Motion:
+def _without(*items: Item, **fields: Any) -> Motion:
     """Declare (43) without `items`; where item 1 or its variant is among them, it swings about the vertical."""
-    vertical = 1 in items or VARIANT in items
-    rest: Callable[[Scene], Any] | None = _suspension if vertical else None
     names = ", ".join(str(item) for item in items)
     return Motion(
-        id=word,
-        title=title,
         where=f"Mathar (43), section VI, {'item ' if isinstance(items[0], int) else ''}{names}",
-        domain=domain,
-        drops=drops,
-        orders=orders,
         refuses=_above,
         path=partial(path, items=frozenset(items)),
-        rest=rest,
+        rest=lowest_point if 1 in items or VARIANT in items else None,
+        **fields,
     )
 
 
-_SQUARE_IN_RATE = Order("rotation_rate", 2, _RATES, ("release.x=3e-3", "release.y=4e-3"))
-_CUBE_IN_AMPLITUDE = Order("amplitude", 3, _AMPLITUDES, _STILL)
 _CORIOLIS = (
     Order("amplitude", 2, (0.5, 1.0, 2.0, 4.0), (*_ON_AXIS, "site.rotation_rate=1e-3")),
     Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4, 8e-4), _ON_AXIS),
 )
 
 APPROXIMATIONS = (
-    _motion(
-        "mathar_item_1",
-        (1,),
-        "Mathar's equations without the terms in Ω²",
-        "β of (35), (41): centrifugal force, tilt of the plumb line; RΩ² is 3e-3 of g, not Ω² = 5e-9 as printed",
-        "any amplitude below the suspension; slow rotation",
-        (_SQUARE_IN_RATE,),
+    _without(
+        1,
+        id="mathar_item_1",
+        title="Mathar's equations without the terms in Ω²",
+        drops="β of (35), (41): centrifugal force, tilt of the plumb line; RΩ² is 3e-3 of g, not Ω² = 5e-9 as printed",
+        domain="any amplitude below the suspension; slow rotation",
+        orders=(SQUARE_IN_RATE,),
     ),
-    _motion(
-        "mathar_item_1_variant",
-        (VARIANT,),
-        "Mathar's equations without the terms in Ω², gravity less RΩ² cos φ",
-        "β of (35), (41) apart from the term in R cos φ: the tilt of the plumb line is left out",
-        "any amplitude below the suspension; slow rotation; best at the equator",
-        (_SQUARE_IN_RATE,),
+    _without(
+        VARIANT,
+        id="mathar_item_1_variant",
+        title="Mathar's equations without the terms in Ω², gravity less RΩ² cos φ",
+        drops="β of (35), (41) apart from the term in R cos φ: the tilt of the plumb line is left out",
+        domain="any amplitude below the suspension; slow rotation; best at the equator",
+        orders=(SQUARE_IN_RATE,),
     ),
-    _motion(
-        "mathar_item_2",
-        (2,),
-        "Mathar's equations without the off-diagonal elements -xy",
-        "the matrix elements -xy of (43)",
-        "small amplitudes",
-        (_CUBE_IN_AMPLITUDE,),
+    _without(
+        2,
+        id="mathar_item_2",
+        title="Mathar's equations without the off-diagonal elements -xy",
+        drops="the matrix elements -xy of (43)",
+        domain="small amplitudes",
+        orders=(CUBE_IN_AMPLITUDE,),
     ),
-    _motion(
-        "mathar_item_3",
-        (3,),
-        "Mathar's equations with gravity alone in β0",
-        "the velocities in (33), (39): the centripetal pull of the cord",
-        "small amplitudes",
-        (_CUBE_IN_AMPLITUDE,),
+    _without(
+        3,
+        id="mathar_item_3",
+        title="Mathar's equations with gravity alone in β0",
+        drops="the velocities in (33), (39): the centripetal pull of the cord",
+        domain="small amplitudes",
+        orders=(CUBE_IN_AMPLITUDE,),
     ),
-    _motion(
-        "mathar_item_4",
-        (4,),
-        "Mathar's equations without Ω cos φ",
-        "the terms with cos φ of (34), (40): the Coriolis force of the north component of Ω",
-        "small amplitudes",
-        _CORIOLIS,
+    _without(
+        4,
+        id="mathar_item_4",
+        title="Mathar's equations without Ω cos φ",
+        drops="the terms with cos φ of (34), (40): the Coriolis force of the north component of Ω",
+        domain="small amplitudes",
+        orders=_CORIOLIS,
     ),
-    _motion(
-        "mathar_item_5",
-        (5,),
-        "Mathar's equations with z replaced by l",
-        "the change of z along the sphere",
-        "small amplitudes",
-        (_CUBE_IN_AMPLITUDE,),
+    _without(
+        5,
+        id="mathar_item_5",
+        title="Mathar's equations with z replaced by l",
+        drops="the change of z along the sphere",
+        domain="small amplitudes",
+        orders=(CUBE_IN_AMPLITUDE,),
     ),
-    _motion(
-        "mathar_items_1_2",
-        (1, 2),
-        "both approximations of the paper's program, foucPend -a 3",
-        "the terms in Ω² and the off-diagonal elements -xy",
-        "small amplitudes, slow rotation",
-        (_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
+    _without(
+        1, 2,
+        id="mathar_items_1_2",
+        title="both approximations of the paper's program, foucPend -a 3",
+        drops="the terms in Ω² and the off-diagonal elements -xy",
+        domain="small amplitudes, slow rotation",
+        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
     ),
-    _motion(
-        "mathar_items_1_to_5",
-        (1, 2, 3, 4, 5),
-        "Mathar's five items together",
-        "everything that section VI names; the diagonal of (43) still holds x² + l² and y² + l²",
-        "small amplitudes, slow rotation",
-        (_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
+    _without(
+        1, 2, 3, 4, 5,
+        id="mathar_items_1_to_5",
+        title="Mathar's five items together",
+        drops="everything that section VI names; the diagonal of (43) still holds x² + l² and y² + l²",
+        domain="small amplitudes, slow rotation",
+        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
     ),
-)
+)  # fmt: skip

@@ -6,19 +6,15 @@ frequency. In print (51)-(52) lost hats and dots; dimensions and the limit of (4
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from reference import Scene
 from reference.model.algebra import dot
 
-from .approximation import Array, Motion, Order, Printed
-from .case import Case, at_rest, below, under_gravity
-from .oscillator import swung
+from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Array, Motion, Order, Printed
+from .case import Case, hung, lowest_point, released_at_rest, swinging
+from .gastebois_small import oscillation, turntable_frequency
 
-_SMALL = ("release.x=3e-3", "release.y=4e-3")
-_CUBE_IN_AMPLITUDE = Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",))
-_SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), _SMALL)
 _ABOUT_REST = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_radius=0",), 1e-3)
 
 
@@ -28,36 +24,37 @@ def slow_down(case: Case) -> Any:
     return 2 * case.ctx.ellipk((1 - cosine) / 2) / case.ctx.pi
 
 
+def _swung(case: Case, gravity: Any, centre: Any, times: Array, slowed: Any = 1) -> Array:
+    """Return rows of Mathar (51)-(52): ω0² = gravity/l about (0, centre), Ω_z = Ω sin φ, and ω divided by `slowed`."""
+    turn = case.rate * case.sin
+    omega = turntable_frequency(case, gravity, turn) / slowed
+    place = (case.position[0], case.position[1] - centre)
+    z, rate = oscillation(place, case.velocity[:2], omega, turn, times)
+    return hung(z.real, z.imag + float(centre), rate.real, rate.imag, case.length)
+
+
 def _with_gravity(scene: Scene, times: Array) -> Array:
     case = Case.of_scene(scene)
-    return swung(case, case.gravity, case.ctx.zero, times)
+    return _swung(case, case.gravity, case.ctx.zero, times)
 
 
 def _with_apparent_gravity(scene: Scene, times: Array) -> Array:
     case = Case.of_scene(scene)
-    return swung(case, case.apparent_gravity, case.ctx.zero, times)
+    return _swung(case, case.apparent_gravity, case.ctx.zero, times)
 
 
 def _about_rest(scene: Scene, times: Array) -> Array:
     case = Case.of_scene(scene)
-    return swung(case, case.apparent_gravity, _north_of_rest(case), times)
+    return _swung(case, case.apparent_gravity, _north_of_rest(case), times)
 
 
 def _slowed(scene: Scene, times: Array) -> Array:
     case = Case.of_scene(scene)
-    return swung(case, case.apparent_gravity, _north_of_rest(case), times, slow_down(case))
+    return _swung(case, case.apparent_gravity, _north_of_rest(case), times, slow_down(case))
 
 
 def _north_of_rest(case: Case) -> Any:
     return case.ctx.mpf(case.rest[1]) * case.length
-
-
-def _suspension(scene: Scene) -> Any:
-    return (0, 0, -Case.of_scene(scene).length)
-
-
-def _refused(check: Callable[[Scene], str | None]) -> Callable[[Scene], str | None]:
-    return lambda scene: check(scene) or under_gravity(scene)
 
 
 APPROXIMATIONS = (
@@ -67,11 +64,11 @@ APPROXIMATIONS = (
         where="Mathar (51)-(52)",
         domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
         drops="Ω² (so the tilt and strength of the apparent gravity), all powers of x/l and y/l beyond the first",
-        orders=(_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
-        refuses=_refused(below),
+        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
+        refuses=swinging,
         printed=Printed("ẍ = -x̂ ĝ + 2 Ω sin φ ŷ", "x̂'' = -x̂ ĝ + 2 Ω sin φ ŷ', each with a hat and ŷ with its dot"),
         path=_with_gravity,
-        rest=_suspension,
+        rest=lowest_point,
     ),
     Motion(
         id="linear_apparent",
@@ -79,10 +76,10 @@ APPROXIMATIONS = (
         where="Mathar (51)-(52) with g' of (48), section VII",
         domain="small amplitudes; the frequency holds for hours, the centre does not",
         drops="the tilt of the plumb line, the centrifugal gradient, all powers of x/l and y/l beyond the first",
-        orders=(_SQUARE_IN_RATE, _CUBE_IN_AMPLITUDE),
-        refuses=_refused(below),
+        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
+        refuses=swinging,
         path=_with_apparent_gravity,
-        rest=_suspension,
+        rest=lowest_point,
     ),
     Motion(
         id="linear_recentred",
@@ -90,8 +87,8 @@ APPROXIMATIONS = (
         where="Mathar (51)-(52) with g' of (48), about the point of section V",
         domain="small amplitudes; an hour",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the anharmonic slow-down",
-        orders=(_ABOUT_REST, _CUBE_IN_AMPLITUDE),
-        refuses=_refused(below),
+        orders=(_ABOUT_REST, CUBE_IN_AMPLITUDE),
+        refuses=swinging,
         path=_about_rest,
     ),
     Motion(
@@ -100,8 +97,8 @@ APPROXIMATIONS = (
         where="Mathar section VII, fifth frequency: 2K(sin(φ0/2))/π, where 4K is printed",
         domain="amplitudes of some degrees, released at rest; a day",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the overtones of the swing",
-        orders=(_ABOUT_REST, _CUBE_IN_AMPLITUDE),
-        refuses=_refused(at_rest),
+        orders=(_ABOUT_REST, CUBE_IN_AMPLITUDE),
+        refuses=released_at_rest,
         path=_slowed,
     ),
 )

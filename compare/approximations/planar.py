@@ -9,7 +9,7 @@ import numpy as np
 from reference import Scene
 
 from .approximation import Array, Motion, Order
-from .case import Case, under_gravity, without_drag
+from .case import Case, lowest_point, under_gravity, without_drag
 
 _SMALLEST = 1e-20  # terms of the series below this are lost in binary64 rounding
 
@@ -80,6 +80,6 @@ APPROXIMATIONS = (
         ),
         refuses=_refused,
         path=_path,
-        rest=lambda scene: (0, 0, -Case.of_scene(scene).length),
+        rest=lowest_point,
     ),
 )

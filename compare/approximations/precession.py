@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from reference import Scene
 
 from ..observed.apsides import precession_period
 from .approximation import Order, Printed, Quantity
-from .case import Case, PlumbAxes, at_rest, below, under_gravity
+from .case import Case, PlumbAxes, at_rest, swinging
 from .gastebois_small import small_angles
 
 _AT_POLE = ("site.latitude=90", "site.rotation_rate=2e-3")
 _SMALL = 1e-2
+_SQUARE_IN_AMPLITUDE = Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE)
 
 
 def _turning(scene: Scene) -> str | None:
     still = not scene.exact.rotation_rate or not scene.exact.latitude
-    return (
-        "The plane does not turn: give a rotation rate and a latitude other than 0"
-        if still
-        else below(scene) or under_gravity(scene)
-    )
+    return "The plane does not turn: give a rotation rate and a latitude other than 0" if still else swinging(scene)
 
 
 def _released_at_rest(scene: Scene) -> str | None:
@@ -54,52 +52,42 @@ def _swing_over_sine(scene: Scene) -> Any:
     return abs(2 * case.ctx.pi / (omega * case.ctx.sin(case.apparent_latitude)))
 
 
-def _quantity(
-    word: str, title: str, where: str, drops: str, orders: tuple[Order, ...], formula: Any, **more: Any
-) -> Any:
-    """Declare one precession period of Gastebois; `more` are further fields."""
-    return Quantity(
-        id=word,
-        title=title,
-        where=where,
-        domain="small angles, away from the equator; the mean over a half turn",
-        drops=drops,
-        orders=orders,
-        formula=formula,
-        truth=precession_period,
-        unit="s",
-        **{"refuses": _turning} | more,
-    )
-
+_precession = partial(
+    Quantity,
+    domain="small angles, away from the equator; the mean over a half turn",
+    refuses=_turning,
+    truth=precession_period,
+    unit="s",
+)
 
 APPROXIMATIONS = (
-    _quantity(
-        "precession_sine",
-        "precession period T_p/sin λ",
-        "Gastebois 4.1",
-        "the centrifugal force, the amplitude",
-        (Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), _SMALL), Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE)),
-        _sine,
+    _precession(
+        id="precession_sine",
+        title="precession period T_p/sin λ",
+        where="Gastebois 4.1",
+        drops="the centrifugal force, the amplitude",
+        orders=(Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), _SMALL), _SQUARE_IN_AMPLITUDE),
+        formula=_sine,
     ),
-    _quantity(
-        "precession_tilted",
-        "precession period T_p/sin λ_a, with the tilt of the plumb line",
-        "Gastebois 4.2, 6.3",
-        "the centrifugal gradient, the amplitude",
-        (
+    _precession(
+        id="precession_tilted",
+        title="precession period T_p/sin λ_a, with the tilt of the plumb line",
+        where="Gastebois 4.2, 6.3",
+        drops="the centrifugal gradient, the amplitude",
+        orders=(
             Order("rotation_rate", 2, (2e-3, 4e-3, 8e-3), ("site.equatorial_radius=0",), _SMALL),
-            Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE),
+            _SQUARE_IN_AMPLITUDE,
         ),
-        _tilted,
         printed=Printed("T_f = 2π/Ωz = T/sin λ_a", "T_f = T_p/sin λ_a: T is the period of the swing", _swing_over_sine),
+        formula=_tilted,
     ),
-    _quantity(
-        "precession_spherical",
-        "precession period with the drift of the spherical pendulum, T_p/sin λ_a (1 + 3/8 r0²/L0²)",
-        "Gastebois 6.3",
-        "the fourth power of the amplitude; the centrifugal gradient, which changes the ellipse that drifts",
-        (Order("amplitude", 4, (4.0, 8.0, 16.0), _AT_POLE),),
-        _spherical,
+    _precession(
+        id="precession_spherical",
+        title="precession period with the drift of the spherical pendulum, T_p/sin λ_a (1 + 3/8 r0²/L0²)",
+        where="Gastebois 6.3",
+        drops="the fourth power of the amplitude; the centrifugal gradient, which changes the ellipse that drifts",
+        orders=(Order("amplitude", 4, (4.0, 8.0, 16.0), _AT_POLE),),
         refuses=_released_at_rest,
+        formula=_spherical,
     ),
 )

@@ -74,59 +74,49 @@ def _not_at_a_pole(scene: Scene) -> str | None:
     )
 
 
-def _quantity(
-    word: str, title: str, where: str, drops: str, orders: tuple[Order, ...], formula: Any, **more: Any
-) -> Any:
-    """Declare one formula for the angle of the rest position; `more` are further fields."""
-    return Quantity(
-        id=word,
-        title=title,
-        where=where,
-        domain="any length and latitude on a body that gravity holds together",
-        drops=drops,
-        orders=orders,
-        formula=formula,
-        truth=of_the_model,
-        unit="rad",
-        relative=False,
-        **{"refuses": under_gravity} | more,
-    )
-
+_rest_angle = partial(
+    Quantity,
+    domain="any length and latitude on a body that gravity holds together",
+    refuses=under_gravity,
+    truth=of_the_model,
+    unit="rad",
+    relative=False,
+)
 
 _RATES = (5e-5, 1e-4, 2e-4)
 _FAST, _SMALL_BODY = (4e-3, 8e-3, 1.6e-2), ("site.equatorial_radius=300",)  # where l is a large part of N + h
-_NAMES = ("Ω²", "Ω⁴", "Ω⁶")
-_EQUATION = _quantity(
-    "rest_equation",
-    "rest position by the equation of forces",
-    "Mathar (46); (45) is the same in y",
-    "nothing",
-    (Order("rotation_rate", None, _RATES), Order("length", None, (1, 67, 10000))),
-    _equation,
-    printed=Printed(
-        "(45) begins with y²",
-        "y; as printed it has no solution in the north, where its right side is negative for every y near 0",
+
+APPROXIMATIONS = (
+    _rest_angle(
+        id="rest_equation",
+        title="rest position by the equation of forces",
+        where="Mathar (46); (45) is the same in y",
+        drops="nothing",
+        orders=(Order("rotation_rate", None, _RATES), Order("length", None, (1, 67, 10000))),
+        printed=Printed(
+            "(45) begins with y²",
+            "y; as printed it has no solution in the north, where its right side is negative for every y near 0",
+        ),
+        formula=_equation,
+    ),
+    *(
+        _rest_angle(
+            id=f"rest_series_{terms}",
+            title=f"rest position by the series up to {name}",
+            where=f"Mathar (47) up to {name}",
+            drops=f"Ω to the power {2 * terms + 2} and beyond",
+            orders=tuple(Order("rotation_rate", 2 * terms + 2, *of) for of in ((_RATES,), (_FAST, _SMALL_BODY))),
+            refuses=_not_at_a_pole,
+            formula=partial(_series, terms=terms),
+        )
+        for terms, name in enumerate(("Ω²", "Ω⁴", "Ω⁶"), start=1)
+    ),
+    _rest_angle(
+        id="rest_triangle",
+        title="rest position by the triangle of forces",
+        where="Mathar (48)-(50)",
+        drops="the cord: N + h stands for N + h - l, the distance of the bob",
+        orders=(Order("rotation_rate", 2, _RATES), Order("length", 1, (10, 20, 40, 80))),
+        formula=_triangle,
     ),
 )
-_SERIES = tuple(
-    _quantity(
-        f"rest_series_{terms}",
-        f"rest position by the series up to {_NAMES[terms - 1]}",
-        f"Mathar (47) up to {_NAMES[terms - 1]}",
-        f"Ω to the power {2 * terms + 2} and beyond",
-        (Order("rotation_rate", 2 * terms + 2, _RATES), Order("rotation_rate", 2 * terms + 2, _FAST, _SMALL_BODY)),
-        partial(_series, terms=terms),
-        refuses=_not_at_a_pole,
-    )
-    for terms in (1, 2, 3)
-)
-_TRIANGLE = _quantity(
-    "rest_triangle",
-    "rest position by the triangle of forces",
-    "Mathar (48)-(50)",
-    "the cord: N + h stands for N + h - l, the distance of the bob",
-    (Order("rotation_rate", 2, _RATES), Order("length", 1, (10, 20, 40, 80))),
-    _triangle,
-)
-
-APPROXIMATIONS = (_EQUATION, *_SERIES, _TRIANGLE)

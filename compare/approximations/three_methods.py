@@ -5,14 +5,15 @@ All three give one motion, that of `linear_g`. Each is computed by its own metho
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from reference import Scene
 
-from .approximation import Array, Motion, Order, Printed
-from .case import Case, below, hung, under_gravity
+from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Array, Motion, Printed
+from .case import Case, hung, lowest_point, swinging
 
 
 def _numbers(scene: Scene) -> tuple[Case, float, float]:
@@ -77,49 +78,42 @@ def _complex_variable_as_concluded(scene: Scene, times: Array) -> Array:
     return _complex_variable(scene, times, -1)
 
 
-_SMALL = ("release.x=3e-3", "release.y=4e-3")
-_ORDERS = (
-    Order("rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), _SMALL),
-    Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_rate=0",)),
+_motion = partial(
+    Motion,
+    domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
+    drops="the centrifugal force, the vertical motion, all powers of x/L beyond the first",
+    orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
+    refuses=swinging,
+    rest=lowest_point,
 )
 
-
-def _motion(number: int, title: str, path: Any, printed: Printed | None) -> Motion:
-    """Declare one of the three methods."""
-    return Motion(
-        id=f"method_{number}",
-        title=title,
-        where=f"third source paper, method {number}",
-        domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
-        drops="the centrifugal force, the vertical motion, all powers of x/L beyond the first",
-        orders=_ORDERS,
-        refuses=lambda scene: below(scene) or under_gravity(scene),
-        printed=printed,
-        path=path,
-        rest=lambda scene: (0, 0, -Case.of_scene(scene).length),
-    )
-
-
 APPROXIMATIONS = (
-    _motion(1, "harmonic pendulum by an explicit rotating frame", _rotating_frame, None),
     _motion(
-        2,
-        "harmonic pendulum by the Coriolis theorem",
-        _coriolis_theorem,
-        Printed(
+        id="method_1",
+        title="harmonic pendulum by an explicit rotating frame",
+        where="third source paper, method 1",
+        path=_rotating_frame,
+    ),
+    _motion(
+        id="method_2",
+        title="harmonic pendulum by the Coriolis theorem",
+        where="third source paper, method 2",
+        printed=Printed(
             "-m ω_p × (ω_p × x') = -m ω_p² x', and F_eff with ẋ' for ẋ: two errors that cancel",
             "+m ω_p² x', and ẋ = ẋ' + ω_p × x' in F_eff; with one error alone ω̃² is off by 2 ω_p²",
             _one_error_corrected,
         ),
+        path=_coriolis_theorem,
     ),
     _motion(
-        3,
-        "harmonic pendulum by a complex variable",
-        _complex_variable,
-        Printed(
+        id="method_3",
+        title="harmonic pendulum by a complex variable",
+        where="third source paper, method 3",
+        printed=Printed(
             "the conclusion says ω_P = -ω sin α",
             "z = w exp(-i ω_P t) needs ω_P = +ω sin α, as the method says; -ω sin α is the frame's angular velocity",
             _complex_variable_as_concluded,
         ),
+        path=_complex_variable,
     ),
 )

@@ -7,6 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+import numpy as np
 import typer
 
 from reference import InputError, Scene, load_scene
@@ -106,9 +107,7 @@ def command(
     if run is not None:
         timed_candidates.append(_run(run, scene, timeout, repeats))
     if approximation is not None:
-        from ..approximations.as_candidate import candidate_of
-
-        timed_candidates.append((candidate_of(approximation, scene), None))
+        timed_candidates.append((_approximate(approximation, scene), None))
     scores = []
     for candidate, timing in timed_candidates:
         with progress(f"solve {scene.id}", float(scene.run.t_end)) as report:
@@ -140,6 +139,19 @@ def _run(words: str, scene: Scene, timeout: float, repeats: int) -> tuple[Candid
     output, timing = timed(arguments(words, scene), timeout, repeats)
     with output:
         return read_stream(output, "the program"), timing
+
+
+def _approximate(word: str, scene: Scene) -> Candidate:
+    """Return the motion of an approximation at the scene's grid times."""
+    from ..approximations import APPROXIMATIONS, Motion, motions
+    from ..candidates.candidate import COLUMNS, candidate_of
+
+    motion = APPROXIMATIONS[word]
+    if not isinstance(motion, Motion):
+        raise InputError("--approximation", word, f"one of {', '.join(motions())}", "It gives a number, not a motion.")
+    times = [float(t) for t in scene.exact.grid]
+    columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
+    return candidate_of(word, {"t": np.array(times), **columns})
 
 
 def _print(scores: list[Score], as_json: bool) -> None:

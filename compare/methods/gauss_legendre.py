@@ -17,9 +17,9 @@ import numpy as np
 from reference.precision import context
 
 from ..rhs.problem import Array, Problem
-from .fixed_step import steps_between
-from .method import Family, Method, Outcome, Work, outcome
-from .tableau import TableauError
+from ..runge_kutta.fixed_step import steps_between
+from ..runge_kutta.tableau import TableauError
+from .method import Family, Outcome, Work, fixed_step, outcome
 
 STAGES = 8
 MOST_ITERATIONS = 60
@@ -163,21 +163,18 @@ def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
     return work
 
 
-METHOD = Method(
-    id="gauss_legendre",
-    title="Gauss-Legendre with 8 stages, order 16, symplectic",
-    setting="step",
-    ladder=(12, 10, 8, 6, 5, 4, 3),
-    source="J. C. Butcher, Math. Comp. 18 (1964) 50; J. M. Sanz-Serna, BIT 28 (1988) 877",
-    licence="this project's",
-    prepare=prepare,
-    formulations=("momentum", "spin", "space", "plane", "angles"),
-    dense=False,
-    requires=("numba",),
-    extra="methods",
-    order=2 * STAGES,
-    family=Family.GEOMETRIC,
-    libraries=("numpy", "numba", "mpmath"),
-    stability=((None, 1 / 20),),
-    long_runs=(("momentum", 4.0),),
+METHODS = (
+    fixed_step(
+        id="gauss_legendre",
+        title="Gauss-Legendre with 8 stages, order 16, symplectic",
+        ladder=(12, 10, 8, 6, 5, 4, 3),
+        source="J. C. Butcher, Math. Comp. 18 (1964) 50; J. M. Sanz-Serna, BIT 28 (1988) 877",
+        prepare=prepare,
+        formulations=("momentum", "spin", "space", "plane", "angles"),
+        order=2 * STAGES,
+        family=Family.GEOMETRIC,
+        libraries=("numpy", "numba", "mpmath"),
+        stability=((None, 1 / 20),),
+        long_runs=(("momentum", 4.0),),
+    ),
 )

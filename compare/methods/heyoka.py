@@ -9,8 +9,8 @@ Paris in double, 4e-16 against 5e-15 m in long double). Where more bits are avai
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, rea
 from reference.status import Status
 
 from ..rhs.problem import Array, Problem
-from .method import Exact, Family, Method, Outcome, Setting, Work, failed
+from .method import Exact, Family, Method, Outcome, Work, failed
 
 QUADRUPLE_BITS = 113
 SPARE_BITS = 64  # exact states are written with this many bits below the number type's epsilon
@@ -72,73 +72,54 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
     return work
 
 
-def _declared(
-    name: str,
-    title: str,
-    setting: Setting,
-    ladder: tuple[float, ...],
-    prepare: Callable[[Problem, float], Work],
-    first: str,
-    **more: Any,
-) -> Method:
-    return Method(
-        id=name,
-        title=title,
-        setting=setting,
-        ladder=ladder,
-        source="F. Biscani and D. Izzo, MNRAS 504 (2021) 2614; Jorba and Zou, Experimental Mathematics 14 (2005) 99",
-        licence="MPL-2.0",
-        prepare=prepare,
-        formulations=(first, *(word for word in FORMULATIONS if word != first)),
-        libraries=("numpy", "heyoka"),
-        **more,
-    )
-
+_heyoka = partial(
+    Method,
+    setting="tolerance",
+    source="F. Biscani and D. Izzo, MNRAS 504 (2021) 2614; Jorba and Zou, Experimental Mathematics 14 (2005) 99",
+    licence="MPL-2.0",
+    formulations=("space", *(word for word in FORMULATIONS if word != "space")),
+    family=Family.HEYOKA,
+    libraries=("numpy", "heyoka"),
+)
+_many_digits = partial(
+    _heyoka,
+    formulations=("momentum", *(word for word in FORMULATIONS if word != "momentum")),
+    family=Family.MANY_DIGITS,
+)
 
 METHODS = (
-    _declared(
-        "heyoka_double",
-        "Taylor series, adaptive step, heyoka in double",
-        "tolerance",
-        (1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14, 2.0**-52),
-        lambda problem, setting: prepare_in(problem, DOUBLE, setting),
-        "space",
-        family=Family.HEYOKA,
+    _heyoka(
+        id="heyoka_double",
+        title="Taylor series, adaptive step, heyoka in double",
+        ladder=(1e-6, 1e-7, 1e-8, 1e-10, 1e-12, 1e-14, 2.0**-52),
+        prepare=lambda problem, setting: prepare_in(problem, DOUBLE, setting),
         stability=tuple((word, 1e-12) for word in ("momentum", "space", "spin", "plane", "angles", "lagrangian")),
         long_runs=(("momentum", 2.0**-52), ("space", 2.0**-52)),
     ),
-    _declared(
-        "heyoka_long_double",
-        "Taylor series, adaptive step, heyoka in 80-bit long double",
-        "tolerance",
-        (1e-12, 1e-14, 1e-16, 1e-18, 2.0**-63),
-        lambda problem, setting: prepare_in(problem, LONG_DOUBLE, setting),
-        "space",
-        family=Family.HEYOKA,
+    _heyoka(
+        id="heyoka_long_double",
+        title="Taylor series, adaptive step, heyoka in 80-bit long double",
+        ladder=(1e-12, 1e-14, 1e-16, 1e-18, 2.0**-63),
+        prepare=lambda problem, setting: prepare_in(problem, LONG_DOUBLE, setting),
         number="long double",
         stability=(("momentum", 1e-16),),
         long_runs=(("momentum", 2.0**-63), ("space", 2.0**-63)),
     ),
-    _declared(
-        "heyoka_real128",
-        "Taylor series, adaptive step, heyoka in quadruple (113 bits)",
-        "tolerance",
-        (1e-20, 1e-24, 1e-28, 2.0**-112),
-        lambda problem, setting: prepare_in(problem, real(QUADRUPLE_BITS), setting),
-        "momentum",
-        family=Family.MANY_DIGITS,
+    _many_digits(
+        id="heyoka_real128",
+        title="Taylor series, adaptive step, heyoka in quadruple (113 bits)",
+        ladder=(1e-20, 1e-24, 1e-28, 2.0**-112),
+        prepare=lambda problem, setting: prepare_in(problem, real(QUADRUPLE_BITS), setting),
         number=f"{QUADRUPLE_BITS} bits",
         stability=(("momentum", 1e-28),),
         long_runs=(("momentum", 2.0**-112),),
     ),
-    _declared(
-        "heyoka_real",
-        "Taylor series, adaptive step, heyoka in MPFR",
-        "precision",
-        (64, 113, 160, 256, 512),
-        lambda problem, setting: prepare_in(problem, real(int(setting)), None),
-        "momentum",
-        family=Family.MANY_DIGITS,
+    _many_digits(
+        id="heyoka_real",
+        title="Taylor series, adaptive step, heyoka in MPFR",
+        setting="precision",
+        ladder=(64, 113, 160, 256, 512),
+        prepare=lambda problem, setting: prepare_in(problem, real(int(setting)), None),
         number="MPFR",
     ),
 )

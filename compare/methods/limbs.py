@@ -41,20 +41,22 @@ def prepare(problem: Problem, setting: float) -> Work:
     return work
 
 
-METHOD = Method(
-    id="limbs",
-    title="Taylor series, adaptive step, this project's limbs of 22 bits",
-    setting="precision",
-    ladder=(100, 150, 200),
-    source="this project's reference/engines/limbs",
-    licence="this project's",
-    prepare=prepare,
-    formulations=("momentum",),
-    requires=("reference.engines.limbs", "numba"),
-    extra="methods",
-    family=Family.MANY_DIGITS,
-    number="100 bits",
-    libraries=("numpy", "numba"),
-    stability=((None, 100),),
-    long_runs=(("momentum", 100),),
+METHODS = (
+    Method(
+        id="limbs",
+        title="Taylor series, adaptive step, this project's limbs of 22 bits",
+        setting="precision",
+        ladder=(100, 150, 200),
+        source="this project's reference/engines/limbs",
+        licence="this project's",
+        prepare=prepare,
+        formulations=("momentum",),
+        requires=("reference.engines.limbs", "numba"),
+        extra="methods",
+        family=Family.MANY_DIGITS,
+        number="100 bits",
+        libraries=("numpy", "numba"),
+        stability=((None, 100),),
+        long_runs=(("momentum", 100),),
+    ),
 )

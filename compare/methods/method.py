@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Literal
 
 import numpy as np
@@ -17,11 +17,14 @@ from reference.scene import Scene
 from reference.status import Status
 
 from ..rhs.problem import Array, Problem
+from ..runge_kutta.fixed_step import steps_through
+from ..runge_kutta.steps import Step
 
 Setting = Literal["step", "tolerance", "precision"]
 
 PARIS = Fraction("67") / Fraction("9.80665")  # l/g in s² of the pendulum for which ladders of steps are written
 TRACEABLE = ("momentum", "space", "spin", "plane", "angles")  # formulations that can be traced to straight-line code
+SPACE_FIRST = ("space", "momentum", "spin", "plane", "angles")  # the same, for methods that do best in `space`
 NINE_DIGITS = ((None, 1e-9),)  # the run in `Method.stability` of a method that has a tolerance
 TWO_HUNDRED_STEPS = ((None, 1 / 200),)  # the same of one whose step is fixed: steps in a swing
 UNITS: dict[Setting, str] = {"step": "s", "tolerance": "relative", "precision": "bits"}
@@ -204,3 +207,35 @@ def outcome(
 def failed(problem: Problem, reason: str) -> Outcome:
     """Return the outcome of a run that gave up and produced no state after the first."""
     return outcome(problem, problem.start[None, :], steps=None, rhs_evaluations=None, reason=reason)
+
+
+# a method of this project's that takes steps of a fixed size, compiled by numba
+fixed_step = partial(
+    Method,
+    setting="step",
+    licence="this project's",
+    dense=False,
+    requires=("numba",),
+    extra="methods",
+    libraries=("numpy", "numba"),
+)
+
+
+def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
+    """Return the `prepare` of a method that takes explicit steps of a fixed size in s.
+
+    Args:
+        step: of the method.
+        stages: evaluations of the right-hand side in a step.
+    """
+
+    def prepare(problem: Problem, setting: float) -> Work:
+        run = steps_through(problem, setting, step)
+
+        def work() -> Outcome:
+            states, steps = run()
+            return outcome(problem, states, steps=steps, rhs_evaluations=stages * steps)
+
+        return work
+
+    return prepare

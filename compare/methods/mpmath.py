@@ -55,17 +55,18 @@ def prepare(problem: Problem, setting: float) -> Work:
     return work
 
 
-METHOD = Method(
-    id="mpmath_odefun",
-    title="Taylor series from the right-hand side alone, mpmath",
-    setting="precision",
-    ladder=(53, 113),
-    source="F. Johansson et al., mpmath",
-    licence="BSD-3-Clause",
-    prepare=prepare,
-    formulations=("momentum", "space", "spin", "plane", "angles"),
-    longest_s=60.0,
-    family=Family.MANY_DIGITS,
-    number="mpf",
-    libraries=("numpy", "mpmath"),
+METHODS = (
+    Method(
+        id="mpmath_odefun",
+        title="Taylor series from the right-hand side alone, mpmath",
+        setting="precision",
+        ladder=(53, 113),
+        source="F. Johansson et al., mpmath",
+        licence="BSD-3-Clause",
+        prepare=prepare,
+        longest_s=60.0,
+        family=Family.MANY_DIGITS,
+        number="mpf",
+        libraries=("numpy", "mpmath"),
+    ),
 )

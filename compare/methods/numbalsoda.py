@@ -8,6 +8,7 @@ source, which needs a Fortran compiler.
 from __future__ import annotations
 
 import os
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ import numpy as np
 from reference.capture import captured
 
 from ..rhs.problem import Problem
-from .method import NINE_DIGITS, TRACEABLE, Family, Method, Outcome, Work, outcome
+from .method import NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
 
@@ -67,40 +68,35 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     return work
 
 
-def _declared(code: str, title: str, source: str, licence: str, ladder: tuple[float, ...], **more: Any) -> Method:
-    return Method(
-        id=f"numbalsoda_{code}",
-        title=title,
-        setting="tolerance",
-        ladder=ladder,
-        source=source,
-        licence=licence,
-        prepare=lambda problem, setting: prepare(problem, setting, code),
-        formulations=("space", *(word for word in TRACEABLE if word != "space")) if code == "dop853" else TRACEABLE,
-        requires=("numbalsoda", "numba"),
-        extra="methods-fortran",
-        family=Family.COMPILED,
-        libraries=("numpy", "numba", "numbalsoda"),
-        stability=NINE_DIGITS,
-        **more,
-    )
-
+_numbalsoda = partial(
+    Method,
+    setting="tolerance",
+    requires=("numbalsoda", "numba"),
+    extra="methods-fortran",
+    family=Family.COMPILED,
+    libraries=("numpy", "numba", "numbalsoda"),
+    stability=NINE_DIGITS,
+)
 
 METHODS = (
-    _declared(
-        "dop853",
-        "Dormand-Prince 8(5,3), numbalsoda",
-        "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
-        "MIT and BSD",
-        (1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
+    _numbalsoda(
+        id="numbalsoda_dop853",
+        title="Dormand-Prince 8(5,3), numbalsoda",
+        ladder=(1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
+        source="E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
+        licence="MIT and BSD",
+        prepare=partial(prepare, code="dop853"),
+        formulations=SPACE_FIRST,
+        order=8,
         long_runs=(("space", 1e-14),),
     ),
-    _declared(
-        "lsoda",
-        "Adams and BDF with automatic switching, numbalsoda",
-        "L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136; liblsoda",
-        "MIT",
-        (1e-7, 1e-8, 1e-10, 1e-12, 1e-13),
+    _numbalsoda(
+        id="numbalsoda_lsoda",
+        title="Adams and BDF with automatic switching, numbalsoda",
+        ladder=(1e-7, 1e-8, 1e-10, 1e-12, 1e-13),
+        source="L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136; liblsoda",
+        licence="MIT",
+        prepare=partial(prepare, code="lsoda"),
         stiff=True,
     ),
 )

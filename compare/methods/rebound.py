@@ -11,12 +11,13 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..rhs.problem import Array, Problem
-from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome
+from .method import NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 
 _POINTER = """
 @nb.extending.intrinsic
@@ -146,45 +147,35 @@ def _march(problem: Problem, simulation: Any, state: Callable[[], Any], data: Ar
     return outcome(problem, states[:rows], steps=steps, rhs_evaluations=int(data[-1]), reason=reason)
 
 
-def _declared(
-    name: str, title: str, source: str, ladder: tuple[float, ...], prepare: Callable[[Problem, float], Work],
-    formulations: tuple[str, ...], **more: Any,
-) -> Method:  # fmt: skip
-    return Method(
-        id=name,
-        title=title,
-        setting="tolerance",
-        ladder=ladder,
-        source=source,
-        licence="GPL-3.0",
-        prepare=prepare,
-        formulations=formulations,
-        dense=False,
-        requires=("rebound", "numba"),
-        extra="methods-gpl",
-        family=Family.REBOUND,
-        libraries=("numpy", "numba", "rebound"),
-        stability=NINE_DIGITS,
-        **more,
-    )
-
+_rebound = partial(
+    Method,
+    setting="tolerance",
+    licence="GPL-3.0",
+    dense=False,
+    requires=("rebound", "numba"),
+    extra="methods-gpl",
+    family=Family.REBOUND,
+    libraries=("numpy", "numba", "rebound"),
+    stability=NINE_DIGITS,
+)
 
 METHODS = (
-    _declared(
-        "rebound_bs",
-        "Gragg-Bulirsch-Stoer, REBOUND",
-        "H. Rein and S.-F. Liu, Astron. Astrophys. 537 (2012) A128",
-        (1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
-        prepare_bs,
-        ("space", "momentum", "spin", "plane", "angles"),
+    _rebound(
+        id="rebound_bs",
+        title="Gragg-Bulirsch-Stoer, REBOUND",
+        ladder=(1e-4, 1e-6, 1e-8, 1e-10, 1e-12),
+        source="H. Rein and S.-F. Liu, Astron. Astrophys. 537 (2012) A128",
+        prepare=prepare_bs,
+        formulations=SPACE_FIRST,
         long_runs=(("space", 1e-12),),
     ),
-    _declared(
-        "rebound_ias15",
-        "IAS15, Gauss-Radau of order 15, REBOUND",
-        "H. Rein and D. S. Spiegel, Mon. Not. R. Astron. Soc. 446 (2015) 1424",
-        (1e-1, 1e-3, 1e-6, 1e-9),
-        prepare_ias15,
-        ("space",),
+    _rebound(
+        id="rebound_ias15",
+        title="IAS15, Gauss-Radau of order 15, REBOUND",
+        ladder=(1e-1, 1e-3, 1e-6, 1e-9),
+        source="H. Rein and D. S. Spiegel, Mon. Not. R. Astron. Soc. 446 (2015) 1424",
+        prepare=prepare_ias15,
+        formulations=("space",),
+        order=15,
     ),
 )

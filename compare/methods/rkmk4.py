@@ -13,9 +13,8 @@ from typing import Any
 from reference.model.algebra import add, cross, dot, plus, product, scale, subtract
 from reference.model.constants import Vector, is_zero
 
-from ..rhs.problem import Problem
-from .fixed_step import Derivatives, combined, moved, prepare_fixed
-from .method import TWO_HUNDRED_STEPS, Family, Method, Work
+from ..runge_kutta.steps import Derivatives, combined, moved
+from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
 from .rk4 import TABLEAU
 
 
@@ -55,25 +54,16 @@ def _vector(parts: Sequence[Any]) -> Vector:
     return (plus(parts[0]), plus(parts[1]), plus(parts[2]))
 
 
-def prepare(problem: Problem, setting: float) -> Work:
-    """Compile the integration at a fixed step of `setting` seconds; the returned function runs it."""
-    return prepare_fixed(problem, setting, step, stages=len(TABLEAU.b))
-
-
-METHOD = Method(
-    id="rkmk4",
-    title="Runge-Kutta-Munthe-Kaas on the rotations, order 4",
-    setting="step",
-    ladder=(0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002),
-    source="H. Munthe-Kaas, BIT 38 (1998) 92, with the Cayley map",
-    licence="this project's",
-    prepare=prepare,
-    formulations=("momentum", "spin"),
-    dense=False,
-    requires=("numba",),
-    extra="methods",
-    order=TABLEAU.order,
-    family=Family.GEOMETRIC,
-    libraries=("numpy", "numba"),
-    stability=TWO_HUNDRED_STEPS,
+METHODS = (
+    fixed_step(
+        id="rkmk4",
+        title="Runge-Kutta-Munthe-Kaas on the rotations, order 4",
+        ladder=(0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002),
+        source="H. Munthe-Kaas, BIT 38 (1998) 92, with the Cayley map",
+        prepare=explicit(step, TABLEAU.stages),
+        formulations=("momentum", "spin"),
+        order=TABLEAU.order,
+        family=Family.GEOMETRIC,
+        stability=TWO_HUNDRED_STEPS,
+    ),
 )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from .fixed_step import nystrom_method
-from .tableau import NystromTableau, fractions, triangle
+from ..runge_kutta.steps import nystrom
+from ..runge_kutta.tableau import NystromTableau, fractions, triangle
+from .method import Family, explicit, fixed_step
 
 TABLEAU = NystromTableau(
     name="RKN-G-5(6)-8",
@@ -37,10 +38,15 @@ TABLEAU = NystromTableau(
 # the entry above, each must make the order conditions fail.
 MISPRINTS = (("position", 4, 0, "81/840"),)
 
-METHOD = nystrom_method(
-    "rkng56",
-    "Runge-Kutta-Nyström-Fehlberg RKN-G 5(6), order 5",
-    TABLEAU,
-    (1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01),
-    "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 5",
+METHODS = (
+    fixed_step(
+        id="rkng56",
+        title="Runge-Kutta-Nyström-Fehlberg RKN-G 5(6), order 5",
+        ladder=(1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01),
+        source="E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 5",
+        prepare=explicit(nystrom(TABLEAU), TABLEAU.stages),
+        formulations=("plane", "space"),
+        order=TABLEAU.order,
+        family=Family.PAPER,
+    ),
 )

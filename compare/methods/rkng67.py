@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from .fixed_step import nystrom_method
-from .method import TWO_HUNDRED_STEPS
-from .tableau import NystromTableau, fractions, triangle
+from ..runge_kutta.steps import nystrom
+from ..runge_kutta.tableau import NystromTableau, fractions, triangle
+from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
 
 TABLEAU = NystromTableau(
     name="RKN-G-6(7)-10",
@@ -79,12 +79,17 @@ MISPRINTS = (
     ("position", 9, 7, "1.6612294394931082916619461943874"),
 )
 
-METHOD = nystrom_method(
-    "rkng67",
-    "Runge-Kutta-Nyström-Fehlberg RKN-G 6(7), order 6",
-    TABLEAU,
-    (2, 1, 0.5, 0.2, 0.1, 0.05, 0.02),
-    "E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 6",
-    stability=TWO_HUNDRED_STEPS,
-    long_runs=(("plane", 0.25),),
+METHODS = (
+    fixed_step(
+        id="rkng67",
+        title="Runge-Kutta-Nyström-Fehlberg RKN-G 6(7), order 6",
+        ladder=(2, 1, 0.5, 0.2, 0.1, 0.05, 0.02),
+        source="E. Fehlberg, NASA TR R-432 (1974), and Computing 14 (1975) 371; Mathar, appendix A, option -R 6",
+        prepare=explicit(nystrom(TABLEAU), TABLEAU.stages),
+        formulations=("plane", "space"),
+        order=TABLEAU.order,
+        family=Family.PAPER,
+        stability=TWO_HUNDRED_STEPS,
+        long_runs=(("plane", 0.25),),
+    ),
 )

@@ -8,12 +8,13 @@ which does not. Output is each method's own dense output, through `t_eval`.
 from __future__ import annotations
 
 import warnings
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from ..rhs.problem import Problem
-from .method import NINE_DIGITS, TRACEABLE, Family, Method, Outcome, Work, outcome
+from .method import NINE_DIGITS, SPACE_FIRST, TRACEABLE, Family, Method, Outcome, Work, outcome
 
 LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning
 IMPLICIT = ("Radau", "BDF", "LSODA")
@@ -45,65 +46,59 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     return work
 
 
-def _declared(name: str, code: str, title: str, source: str, ladder: tuple[float, ...], *, stiff: bool) -> Method:
-    first = "momentum" if code == "LSODA" else "space"  # in `space` it mistakes rounding for stiffness
-    return Method(
-        id=name,
-        title=title,
-        setting="tolerance",
-        ladder=ladder,
-        source=source,
-        licence="BSD-3-Clause",
-        prepare=lambda problem, setting: prepare(problem, setting, code),
-        formulations=(first, *(word for word in TRACEABLE if word != first)),
-        stiff=stiff,
-        requires=("scipy", "numba"),
-        extra="methods",
-        family=Family.SCIPY,
-        libraries=("numpy", "numba", "scipy"),
-        stability=NINE_DIGITS,
-    )
-
+_scipy = partial(
+    Method,
+    setting="tolerance",
+    licence="BSD-3-Clause",
+    formulations=SPACE_FIRST,
+    requires=("scipy", "numba"),
+    extra="methods",
+    family=Family.SCIPY,
+    libraries=("numpy", "numba", "scipy"),
+    stability=NINE_DIGITS,
+)
 
 METHODS = (
-    _declared(
-        "scipy_rk45",
-        "RK45",
-        "Dormand-Prince 5(4), SciPy",
-        "J. R. Dormand and P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19",
-        (1e-7, 1e-8, 1e-9, 1e-10),
-        stiff=False,
+    _scipy(
+        id="scipy_rk45",
+        title="Dormand-Prince 5(4), SciPy",
+        ladder=(1e-7, 1e-8, 1e-9, 1e-10),
+        source="J. R. Dormand and P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19",
+        prepare=partial(prepare, code="RK45"),
+        order=5,
     ),
-    _declared(
-        "scipy_dop853",
-        "DOP853",
-        "Dormand-Prince 8(5,3), SciPy",
-        "E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
-        (1e-6, 1e-8, 1e-10, 1e-12, LEAST_RTOL),
-        stiff=False,
+    _scipy(
+        id="scipy_dop853",
+        title="Dormand-Prince 8(5,3), SciPy",
+        ladder=(1e-6, 1e-8, 1e-10, 1e-12, LEAST_RTOL),
+        source="E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
+        prepare=partial(prepare, code="DOP853"),
+        order=8,
     ),
-    _declared(
-        "scipy_radau",
-        "Radau",
-        "Radau IIA, order 5, implicit, SciPy",
-        "E. Hairer, G. Wanner, Solving Ordinary Differential Equations II",
-        (1e-6, 1e-7, 1e-8),
+    _scipy(
+        id="scipy_radau",
+        title="Radau IIA, order 5, implicit, SciPy",
+        ladder=(1e-6, 1e-7, 1e-8),
+        source="E. Hairer, G. Wanner, Solving Ordinary Differential Equations II",
+        prepare=partial(prepare, code="Radau"),
+        stiff=True,
+        order=5,
+    ),
+    _scipy(
+        id="scipy_bdf",
+        title="backward differentiation, orders 1 to 5, SciPy",
+        ladder=(1e-8, 1e-9, 1e-10),
+        source="L. F. Shampine and M. W. Reichelt, SIAM J. Sci. Comput. 18 (1997) 1",
+        prepare=partial(prepare, code="BDF"),
         stiff=True,
     ),
-    _declared(
-        "scipy_bdf",
-        "BDF",
-        "backward differentiation, orders 1 to 5, SciPy",
-        "L. F. Shampine and M. W. Reichelt, SIAM J. Sci. Comput. 18 (1997) 1",
-        (1e-8, 1e-9, 1e-10),
-        stiff=True,
-    ),
-    _declared(
-        "scipy_lsoda",
-        "LSODA",
-        "Adams and BDF with automatic switching, SciPy",
-        "L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136",
-        (1e-8, 1e-10, 1e-12),
+    _scipy(
+        id="scipy_lsoda",
+        title="Adams and BDF with automatic switching, SciPy",
+        ladder=(1e-8, 1e-10, 1e-12),
+        source="L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136",
+        prepare=partial(prepare, code="LSODA"),
+        formulations=TRACEABLE,  # in `space` it mistakes rounding for stiffness
         stiff=True,
     ),
 )

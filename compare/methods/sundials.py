@@ -7,6 +7,8 @@ times each variable's swing. Output is CVODE's own dense output.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from reference.capture import captured
@@ -47,26 +49,25 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     return work
 
 
-def _declared(code: str, title: str, *, stiff: bool) -> Method:
-    return Method(
-        id=f"cvode_{code.lower()}",
-        title=title,
-        setting="tolerance",
-        ladder=(1e-8, 1e-10, 1e-12, 1e-14),
-        source="A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363",
-        licence="BSD-3-Clause",
-        prepare=lambda problem, setting: prepare(problem, setting, code),
-        formulations=("momentum", "space", "spin", "plane", "angles"),
-        stiff=stiff,
-        requires=("sksundae", "numba"),
-        extra="methods",
-        family=Family.COMPILED,
-        libraries=("numpy", "numba", "scikit-sundae"),
-        stability=NINE_DIGITS,
-    )
-
+_cvode = partial(
+    Method,
+    setting="tolerance",
+    ladder=(1e-8, 1e-10, 1e-12, 1e-14),
+    source="A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363",
+    licence="BSD-3-Clause",
+    requires=("sksundae", "numba"),
+    extra="methods",
+    family=Family.COMPILED,
+    libraries=("numpy", "numba", "scikit-sundae"),
+    stability=NINE_DIGITS,
+)
 
 METHODS = (
-    _declared("Adams", "Adams, orders 1 to 12, CVODE", stiff=False),
-    _declared("BDF", "backward differentiation, orders 1 to 5, CVODE", stiff=True),
+    _cvode(id="cvode_adams", title="Adams, orders 1 to 12, CVODE", prepare=partial(prepare, code="Adams")),
+    _cvode(
+        id="cvode_bdf",
+        title="backward differentiation, orders 1 to 5, CVODE",
+        prepare=partial(prepare, code="BDF"),
+        stiff=True,
+    ),
 )

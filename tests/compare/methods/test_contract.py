@@ -11,7 +11,7 @@ import pytest
 from method_cases import case
 
 from compare.methods import METHODS, available
-from compare.methods.method import Method
+from compare.methods.method import Family, Method
 from compare.rhs.swing import suited
 from reference import InputError
 
@@ -87,7 +87,7 @@ def test_a_declaration_is_complete(name):
     assert not method.requires or method.extra
 
 
-@pytest.mark.parametrize("name", ["heyoka_long_double", "heyoka_real128", "heyoka_real", "limbs", "mpmath_odefun"])
+@pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.number != "double"])
 def test_exact_states_show_errors_far_below_a_doubles(name):
     if available(METHODS[name]):
         pytest.skip("not installed")
@@ -122,7 +122,7 @@ def test_steps_end_on_output_times_that_they_do_not_divide():
     assert METHODS["rk4"].prepare(problem, 3.0)().steps == 6 * 4  # 10 s in four steps
 
 
-@pytest.mark.parametrize("name", ["scipy_rk45", "scipy_dop853", "scipy_radau", "scipy_bdf", "scipy_lsoda"])
+@pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.family is Family.SCIPY])
 def test_scipy_reports_every_call_of_the_right_hand_side(name):
     if available(METHODS[name]):
         pytest.skip("not installed")
@@ -165,8 +165,15 @@ def test_the_registry_knows_every_id_of_the_issue():
 
 
 def test_an_unknown_method_is_refused_by_name():
-    with pytest.raises(InputError, match=r"runge.*Known ids: rk4"):
-        METHODS["runge"]
+    with pytest.raises(InputError, match=r"scipy_dop852.*the nearest first: scipy_dop853"):
+        METHODS["scipy_dop852"]
+    assert "scipy_dop852" not in METHODS
+
+
+def test_methods_are_listed_by_family_and_then_by_file():
+    families = [method.family for method in METHODS.values()]
+    assert families == sorted(families, key=list(Family).index)
+    assert list(METHODS)[:5] == ["rk4", "rkng56", "rkng67", "gauss_legendre", "rkmk4"]
 
 
 def test_declarations_load_no_library():

@@ -29,7 +29,7 @@ def checked(name):
     return METHODS[name]
 
 
-FIXED = ["rk4", "rkng56", "rkng67", "gauss_legendre"]
+FIXED = [name for name, method in METHODS.items() if method.setting == "step" and "plane" in method.formulations]
 
 
 @pytest.mark.parametrize("name", [*FIXED, "scipy_lsoda", "numbalsoda_lsoda", "rebound_bs"])

@@ -1,9 +1,7 @@
-"""Tableaux prove their order when they are made; their steps show it: the slope of error against step."""
+"""Methods of fixed step have the order that they claim: the slope of error against step; and keep what they should."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from fractions import Fraction
 from functools import cache
 
 import numpy as np
@@ -11,13 +9,11 @@ import pytest
 from small_scenes import make_scene
 
 import reference
-from compare.methods import METHODS, Problem, available, gauss_legendre, rk4, rkng56, rkng67
-from compare.methods.tableau import Tableau, TableauError, fractions, triangle
-from compare.methods.trees import trees
+from compare.methods import METHODS, Problem, available, gauss_legendre
 from reference.precision import real
 
 SPAN = 3.0
-NYSTROM = {"rkng56": rkng56, "rkng67": rkng67}
+EXPLICIT = [name for name, method in METHODS.items() if method.setting == "step" and name != "gauss_legendre"]
 needs_numba = pytest.mark.skipif(available(METHODS["rk4"]) is not None, reason="numba is not installed")
 
 
@@ -42,17 +38,29 @@ def fitted_order(prepare, formulation, counts):
 
 @needs_numba
 @pytest.mark.parametrize(
-    ("name", "formulation", "counts", "order"),
+    ("name", "formulation", "counts"),
     [
-        ("rk4", "plane", (200, 400, 800, 1600), 4),
-        ("rkng56", "space", (200, 400, 800), 5),
-        ("rkng67", "plane", (160, 240, 400), 6),
-        ("rkmk4", "momentum", (200, 400, 800, 1600), 4),
-        ("rkmk4", "spin", (200, 400, 800, 1600), 4),
+        ("rk4", "plane", (200, 400, 800, 1600)),
+        ("rkng56", "space", (200, 400, 800)),
+        ("rkng67", "plane", (160, 240, 400)),
+        ("rkmk4", "momentum", (200, 400, 800, 1600)),
+        ("rkmk4", "spin", (200, 400, 800, 1600)),
     ],
 )
-def test_the_error_falls_with_the_power_of_the_step_that_the_method_claims(name, formulation, counts, order):
-    assert abs(fitted_order(METHODS[name].prepare, formulation, counts) - order) < 0.2
+def test_the_error_falls_with_the_power_of_the_step_that_the_method_claims(name, formulation, counts):
+    assert abs(fitted_order(METHODS[name].prepare, formulation, counts) - METHODS[name].order) < 0.2
+
+
+@needs_numba
+@pytest.mark.parametrize("name", EXPLICIT)
+def test_the_error_falls_at_least_as_fast_as_the_claim_in_the_formulation_that_suits_it_best(name):
+    method = METHODS[name]
+    assert fitted_order(method.prepare, method.formulations[0], (160, 240, 400)) > method.order - 0.2
+
+
+def test_every_method_of_fixed_step_states_its_order_and_its_title_says_it():
+    for name in (*EXPLICIT, "gauss_legendre"):
+        assert METHODS[name].title.count(f"order {METHODS[name].order}") == 1
 
 
 @needs_numba
@@ -67,67 +75,6 @@ def test_gauss_legendre_has_twice_the_order_of_its_stages(stages, counts):
 @needs_numba
 def test_with_eight_stages_gauss_legendre_comes_near_to_order_sixteen_before_rounding():
     assert 15 < fitted_order(gauss_legendre.prepare, "momentum", (6, 8, 10)) < 16.2
-
-
-@pytest.mark.parametrize("name", NYSTROM)
-def test_a_misprint_of_a_public_copy_is_refused(name):
-    tableau = NYSTROM[name].TABLEAU
-    for table, row, column, printed in NYSTROM[name].MISPRINTS:
-        rows = [list(line) for line in getattr(tableau, table)]
-        if len(rows[row]) > column and rows[row][column] == 0:  # an entry in the wrong column leaves its own empty
-            where = rows[row].index(Fraction(printed))
-            rows[row][where] = Fraction(0)
-        rows[row][column] = Fraction(printed)
-        with pytest.raises(TableauError, match="misprint"):
-            replace(tableau, **{table: tuple(map(tuple, rows))})
-
-
-@pytest.mark.parametrize("name", NYSTROM)
-def test_any_wrong_coefficient_is_refused_even_where_row_sums_hide_it(name):
-    tableau, wrong = NYSTROM[name].TABLEAU, Fraction("1e-20")
-    for table in ("velocity", "position"):
-        for i, line in enumerate(getattr(tableau, table)):
-            if len(line) < 3 or (table, i, len(line)) == ("position", 0, 0):
-                continue
-            rows = [list(row) for row in getattr(tableau, table)]
-            rows[i][0] += wrong
-            rows[i][2] -= wrong
-            with pytest.raises(TableauError):
-                replace(tableau, **{table: tuple(map(tuple, rows))})
-    for table in ("velocity_weights", "position_weights"):
-        for i in range(len(tableau.c)):
-            weights = list(getattr(tableau, table))
-            weights[i] += wrong
-            with pytest.raises(TableauError):
-                replace(tableau, **{table: tuple(weights)})
-
-
-@pytest.mark.parametrize("name", NYSTROM)
-def test_a_nystrom_tableau_has_no_higher_order_than_it_claims(name):
-    tableau = NYSTROM[name].TABLEAU
-    with pytest.raises(TableauError) as caught:
-        replace(tableau, order=tableau.order + 1)
-    assert caught.value.order == tableau.order + 1
-
-
-def test_a_runge_kutta_tableau_is_checked_by_the_same_trees():
-    replace(rk4.TABLEAU, b=fractions("1/6", "1/3", "1/3", "1/6"))
-    with pytest.raises(TableauError):
-        replace(rk4.TABLEAU, b=fractions("1/6", "1/6", "1/2", "1/6"))
-    with pytest.raises(TableauError):
-        replace(rk4.TABLEAU, order=5)
-    with pytest.raises(TableauError):
-        Tableau(
-            "3/8 rule with a sign lost",
-            4,
-            triangle("", "1/3", "1/3 1", "1 -1 1"),
-            fractions("1/8", "3/8", "3/8", "1/8"),
-        )
-    Tableau("3/8 rule", 4, triangle("", "1/3", "-1/3 1", "1 -1 1"), fractions("1/8", "3/8", "3/8", "1/8"))
-
-
-def test_there_are_as_many_rooted_trees_as_cayley_counted():
-    assert [len(trees(order, second=False)) for order in range(1, 8)] == [1, 1, 2, 4, 9, 20, 48]
 
 
 @pytest.mark.parametrize("stages", [1, 2, 3, 8])

@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner
 
 from compare.methods import METHODS, gauss_legendre, rk4, rkng56, rkng67
-from compare.methods.tableau import TableauError
+from compare.runge_kutta.tableau import TableauError
 from compare.studies.character import character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.stability import Cell, cut, default_scenes, digits_asked, stability

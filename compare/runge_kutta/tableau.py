@@ -39,6 +39,11 @@ class Tableau:
     a: Matrix
     b: Vector
 
+    @property
+    def stages(self) -> int:
+        """Evaluations of the right-hand side in a step."""
+        return len(self.b)
+
     def __post_init__(self) -> None:
         c = tuple(sum(row, EXACT) for row in self.a)
         stages = Stages(c, _square(self.a, len(self.b)), ())
@@ -74,6 +79,11 @@ class NystromTableau:
     velocity_weights: Vector
     position_weights: Vector
     tolerance: Fraction = EXACT
+
+    @property
+    def stages(self) -> int:
+        """Evaluations of the right-hand side in a step."""
+        return len(self.c)
 
     def __post_init__(self) -> None:
         for node, velocity, position in zip(self.c, self.velocity, self.position, strict=True):

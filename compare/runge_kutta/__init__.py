@@ -1,0 +1,1 @@
+"""Explicit Runge-Kutta and Runge-Kutta-Nyström steps: tableaux that prove their order, traced and compiled."""
