@@ -13,8 +13,7 @@ import numpy.typing as npt
 
 from reference import InputError, Scene
 
-from .candidates.candidate import COLUMNS, candidate_of
-from .candidates.transit_times import checked_transits
+from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .score.judge import Score, judge
 
 

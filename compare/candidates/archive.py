@@ -11,9 +11,8 @@ import numpy as np
 from reference import InputError
 from reference.precision import Array
 
-from .candidate import COLUMNS, Candidate, candidate_of
+from .candidate import COLUMNS, Candidate, candidate_of, checked_transits
 from .lines import CHUNK, MAX_BYTES
-from .transit_times import checked_transits
 
 MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read, unpacked: two million rows of long doubles
 _KEYS = ("t", *COLUMNS, "transits")

@@ -12,7 +12,7 @@ from reference.precision import Array
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 LARGEST = 1e100  # a larger number means that the run has blown up; below, squares cannot overflow
-HEADER_ADVICE = "The first line names the columns, separated by commas: t, x, y and, if there, z, vx, vy, vz."
+ADVICE = "Wanted: t, x, y and, if there, z, vx, vy, vz."
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Candidate:
         """
         for required in ("x", "y"):
             if required not in columns:
-                raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {required}", HEADER_ADVICE)
+                raise InputError(name, f"columns t, {', '.join(columns)}", f"a column {required}", ADVICE)
         for word, column in (("t", t), *columns.items()):
             if column.ndim != 1 or len(column) != t.size:
                 expected = "a one-dimensional array" + ("" if word == "t" else f" of {t.size} numbers, as t")
@@ -94,3 +94,27 @@ def candidate_of(name: str, arrays: Mapping[str, Array], transits: Array | None 
                 low[key] = remainder
     columns = {key: near[key] for key in COLUMNS if key in near}
     return Candidate.of(name, near["t"], columns, low=low, transits=transits)
+
+
+def checked_transits(times: Array, name: str) -> Array:
+    """Check transit times and return them as doubles.
+
+    Raises:
+        InputError: they are not one-dimensional, not finite, negative, or do not increase.
+    """
+    if times.ndim != 1:
+        raise InputError(name, f"shape {times.shape}", "one-dimensional times in s")
+    if not np.isfinite(times).all():
+        row = int(np.argmin(np.isfinite(times)))
+        raise InputError(name, f"{times[row]} as transit {row + 1}", "finite times in s")
+    if len(times) and times[0] < 0:
+        raise InputError(name, f"{times[0]:.17g} as transit 1", "times from 0 on, in s")
+    unordered = np.diff(times) <= 0
+    if unordered.any():
+        row = int(np.argmax(unordered))
+        raise InputError(
+            name,
+            f"{times[row + 1]:.17g} as transit {row + 2} after {times[row]:.17g}",
+            "strictly increasing times in s",
+        )
+    return np.asarray(times, dtype=np.float64)

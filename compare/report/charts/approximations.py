@@ -64,7 +64,7 @@ def plot(rows: Sequence[TimeRow | SweepRow], what: str = "error_m", title: str =
         place(axes, lines, margin=True)
         place(axes, marks, lines)
         names = ", ".join(line.name.replace("\n", ", ") for line in lines)
-        return svg_text(figure, f"{over}-{what}", f"{_NAMES[what]}, against {over}, of {names}.")
+        return svg_text(figure, f"{over}-{what}", f"{_NAMES[what].capitalize()}, against {over}: {names}.")
 
 
 def _lines(rows: Sequence[TimeRow | SweepRow], what: str) -> list[Line]:

@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from places import ROOT
 
 from compare.candidates.archive import MAX_UNPACKED
-from compare.candidates.read import MAX_ROWS, read, read_stream, read_transits
+from compare.candidates.columns import MAX_ROWS
+from compare.candidates.read import read, read_stream, read_transits
 from reference import InputError
 
 ROWS = [
@@ -151,7 +152,7 @@ def test_a_number_is_split_over_two_chunks_without_harm(monkeypatch):
 @pytest.mark.parametrize(
     ("lines", "words"),
     [
-        ([], ("no header", "CSV")),
+        ([], ("no header", "CSV", "t, x, y and, if there, z, vx, vy, vz")),
         (["t,x,y"], ("no rows", "at least one")),
         (["t,x", "0,1"], ("header", "none", "column y")),
         (["t,x,y,x", "0,1,2,3"], ("header", "2 of them")),
@@ -245,8 +246,10 @@ def test_transits_need_the_column_t_only(tmp_path):
     [
         ("", "column t"),
         ("time\n1\n", "one column t"),
-        ("k,t\n1\n", "line 2"),
-        ("k,t\n1,2\n\n2,soon\n", "line 4"),
+        ("k,t\n1\n", "line 2: got '1 fields'"),
+        ("k,t\n1,2\n\n2,soon\n", "line 4: t: got 'soon'"),
+        ("k,t\n1,2\n2,3,4\n", "line 3: got '3 fields', expected 2"),
+        ("1 2 3 4\n", "one column t"),
         ("t\n2\n1\n", "1 as transit 2 after 2"),
         ("t\nnan\n", "nan as transit 1"),
         ("t\n-1\n", "from 0 on"),
@@ -354,6 +357,6 @@ def test_a_gigabyte_of_nothing_is_refused_in_bounded_memory(head, piece, said):
 
 
 def test_more_rows_than_are_judged_are_refused(monkeypatch):
-    monkeypatch.setattr("compare.candidates.text.MAX_ROWS", 2)
+    monkeypatch.setattr("compare.candidates.columns.MAX_ROWS", 2)
     refused(csv(), "more than 2 rows")
     assert MAX_ROWS >= 1_000_000
