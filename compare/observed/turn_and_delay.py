@@ -27,13 +27,16 @@ MOST_ROWS = 240  # rows of a part that are used at most: more add nothing new
 TURNS = 4  # Gauss-Newton steps: the turn found so far is applied exactly and the fit repeated, for large turns
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class SwingErrors:
     """Turn of the swing plane in radians (positive from east to north) and delay in s, for each part of the run."""
 
     t: Array
     turn: Array
     delay: Array
+
+    def __repr__(self) -> str:
+        return f"SwingErrors(largest_turn={self.largest_turn}, largest_delay={self.largest_delay})"
 
     @property
     def largest_turn(self) -> float | None:

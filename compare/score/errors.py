@@ -7,7 +7,7 @@ parts are subtracted.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from ..rhs.constants import constants_in_double
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TrajectoryErrors:
     """A candidate's errors at its own times.
 
@@ -41,13 +41,16 @@ class TrajectoryErrors:
         speed_m_s: the truth's largest speed in m/s, the scale of the digits of velocities.
     """
 
-    t: Array = field(repr=False)
-    components: dict[str, Array] = field(repr=False)
-    position: Array = field(repr=False)
-    truth: Dense = field(repr=False)
+    t: Array
+    components: dict[str, Array]
+    position: Array
+    truth: Dense
     bound_m: float
     amplitude_m: float
     speed_m_s: float
+
+    def __repr__(self) -> str:
+        return f"TrajectoryErrors({len(self.t)} rows, max_m={self.max_m:.2g}, rms_m={self.rms_m:.2g})"
 
     @property
     def max_m(self) -> float:

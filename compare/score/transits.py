@@ -19,7 +19,7 @@ from reference.precision import Array
 MOST_EXTRA = 1000  # extra transits at which the truth is evaluated; if there are more, none is excused
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class TransitErrors:
     """Errors of a candidate's transits.
 
@@ -32,12 +32,15 @@ class TransitErrors:
         undecided: times of missed and extra ones that a motion within the tolerance may or may not have.
     """
 
-    errors_s: Array = field(repr=False)
-    conditioned_m: Array = field(repr=False)
+    errors_s: Array
+    conditioned_m: Array
     missed: list[float]
     extra: list[float]
-    at: Array = field(repr=False)
+    at: Array
     undecided: list[float] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        return f"TransitErrors({self.matched} matched, {len(self.missed)} missed, {len(self.extra)} extra)"
 
     @property
     def matched(self) -> int:

@@ -101,8 +101,28 @@ def test_a_mistake_in_the_call_is_no_failed_assertion(t, rows, more, words):
 def test_the_names_of_the_package_are_there():
     for name in compare.__all__:
         assert getattr(compare, name)
-    with pytest.raises(AttributeError, match="nothing"):
-        _ = compare.nothing
+    assert set(compare.__all__) <= set(dir(compare))
+
+
+def test_an_unknown_name_is_answered_with_those_that_exist_the_nearest_first():
+    with pytest.raises(AttributeError, match="'compare' has no attribute 'jugde'; it has judge, ") as caught:
+        _ = compare.jugde
+    assert all(name in str(caught.value) for name in compare.__all__)
+
+
+def test_a_file_is_judged_by_path_and_id(golden, states, tmp_path):
+    path = tmp_path / "mine.csv"
+    rows = np.column_stack([golden.t, states])[:50]
+    rows[30, 2] += 1e-3
+    path.write_text("t,x,y\n" + "".join(",".join(map(repr, row[:3].tolist())) + "\n" for row in rows))
+    score = compare.judge(path, "paris", explain=False)
+    assert repr(score) == "Score(disagrees with paris: 0.001 m)"
+    assert repr(score.errors).startswith("TrajectoryErrors(50 rows, max_m=0.001,")
+    times = golden.transits["t"][golden.transits["t"] < 2940.0]
+    again = compare.judge(compare.read(path), load_scene("paris"), transits=np.delete(times, 5), explain=False)
+    assert np.array_equal(again.errors.position, score.errors.position)
+    assert repr(again.transits) == f"TransitErrors({len(times) - 1} matched, 1 missed, 0 extra)"
+    assert all(len(repr(part)) < 100 for part in (again.candidate, again.swing))
 
 
 OTHERS = """
