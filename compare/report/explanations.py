@@ -40,8 +40,8 @@ FORMULATIONS = (
     "equations that the computer derives from the Lagrangian (lagrangian)."
 )
 PRECISION = (
-    "CPU seconds against digits achieved, in numbers from double precision to many hundred bits. The broad grey line "
-    "is the power law fitted to those settings of heyoka_real whose error is above the bound of the reference."
+    "CPU seconds against digits achieved, in numbers from double precision to many hundred bits. A broad grey line is "
+    "the power law fitted to those settings of a method whose error is above the bound of the reference."
 )
 FRONT = "No other row is both cheaper and more accurate than one of these. Cheapest first."
 ROWS = (
