@@ -1,16 +1,15 @@
-"""Shared parts of the commands: comma-separated options, folders of results, their progress and their end."""
+"""Shared parts of the commands: comma-separated options, folders of results, and how a command ends."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import typer
 
 from reference import InputError
-from reference.commands.terminal import bar, emit
+from reference.commands.terminal import emit
 
 Document = dict[str, Any]
 
@@ -39,17 +38,6 @@ def numbers(text: str, field: str) -> list[float]:
 def inside(folder: Path | None, name: str) -> Path | None:
     """Return the path of a file in a folder of results; None if there is no folder."""
     return None if folder is None else folder / name
-
-
-@contextmanager
-def counting(label: str) -> Iterator[Callable[[int, int, str], None]]:
-    """Show a progress bar if stderr is a terminal; yield its update(completed, total, current item)."""
-    with bar(label, None) as update:
-        yield (
-            lambda completed, total, item: (
-                update(completed=completed, total=total, description=f"{label}: {item}") if update else None
-            )
-        )
 
 
 def announce(text: str) -> None:

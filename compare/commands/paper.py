@@ -8,9 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from reference.commands.terminal import AsJson
+from reference.commands.terminal import AsJson, progress
 
-from .options import counting, finish
+from .options import finish
 
 
 def command(
@@ -30,11 +30,8 @@ def command(
     from ..papers.page import document
     from ..report.folder import PAGE
 
-    with counting("judging") as count:
-
-        def report(place: str, completed: int, total: int) -> None:
-            count(completed, total, place)
-
+    with progress("judging", unit="rows") as count:
+        report = None if count is None else lambda place, completed, total: count(completed, total, place)
         judged = rows(report) if out is None else build(out, report)
     result = {"out": None if out is None else str(out), "rows": [document(row) for row in judged]}
     finish(result, _text, None if out is None else out / PAGE, as_json)

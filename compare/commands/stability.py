@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from reference import InputError
-from reference.commands.terminal import AsJson
+from reference.commands.terminal import AsJson, progress
 
-from .options import counting, finish, inside, listed
+from .options import finish, inside, listed
 
 
 def command(
@@ -36,7 +36,7 @@ def command(
     from ..report.folder import check_folder
     from ..report.stability import REPORT, document_of
     from ..studies.campaign import declared
-    from ..studies.long_runs import over_thirty_days
+    from ..studies.long_runs import long_runs
     from ..studies.stability import stability as measure
 
     if not 0 < limit < float("inf"):
@@ -44,10 +44,9 @@ def command(
     if out is not None:
         check_folder(out, REPORT.files)
     chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
-    if long:
-        declared(requested, "long_runs")  # refuses a method without long runs before the others take minutes
-    with counting("stability") as report:
+    items = declared(requested, "long_runs") if long else []
+    with progress("stability", unit="runs") as report:
         cells = measure(chosen, requested, limit_s=limit, journal_path=inside(out, "cells.jsonl"), report=report)
-        runs = over_thirty_days(requested, journal_path=inside(out, "long.jsonl"), report=report) if long else []
+        runs = long_runs(items, journal_path=inside(out, "long.jsonl"), report=report) if items else []
     document = document_of(cells, runs)
     finish(document, REPORT.text, None if out is None else REPORT.write(document, out), as_json)

@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from reference import InputError, Scene, load_scene
-from reference.commands.terminal import AsJson, Assignments, SceneWord
+from reference.commands.terminal import AsJson, Assignments, SceneWord, progress
 
-from .options import announce, counting, finish, inside, listed, numbers
+from .options import announce, finish, inside, listed, numbers
 
 
 def command(
@@ -77,7 +77,7 @@ def command(
         problem, digits = precision_scene(scene, bits, whole=t_end is not None)
     for program in run or ():
         items += [(f"{EXTERNAL}{program}", "momentum", setting) for setting in numbers(settings, "--settings")]
-    with counting(scene.id) as report:
+    with progress(scene.id, unit="runs") as report:
         study = measure(
             problem,
             items=items,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -13,7 +12,7 @@ from reference.status import Status
 
 from ..approximations import APPROXIMATIONS
 from ..studies.approximation_errors import error_table, quantity_table
-from ..studies.approximation_limits import LIMITS, SWEEP_S, LimitRow, limits, sweep
+from ..studies.approximation_limits import LIMITS, SWEEP_S, limits, sweep
 from .charts.approximations import plot
 from .folder import Report
 from .page import Column, Html, TableRow, figure, page, paragraph, section, table
@@ -131,9 +130,8 @@ def _limits(report: dict[str, Any], over: str) -> Html:
     return table(columns, body, f"Ranges of {over} in {unit}")
 
 
-def _intervals(row: dict[str, Any] | LimitRow) -> str:
-    good: Sequence[tuple[float, float]] = row["good"] if isinstance(row, dict) else row.good
-    return ", ".join(f"{low:.3g} to {high:.3g}" for low, high in good) or "nowhere"
+def _intervals(row: dict[str, Any]) -> str:
+    return ", ".join(f"{low:.3g} to {high:.3g}" for low, high in row["good"]) or "nowhere"
 
 
 def _quantities(report: dict[str, Any]) -> Html:

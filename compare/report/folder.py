@@ -42,15 +42,7 @@ class Report:
         return CSV, self.json, PAGE
 
     def write(self, document: dict[str, Any], out: Path) -> Path:
-        """Write the files, all or none, and return the path of the page.
-
-        Args:
-            document: with the rows of its table under `rows`, at least one.
-            out: folder, created if it does not exist.
-
-        Raises:
-            InputError: the folder cannot be written to, or `check_folder` refuses it.
-        """
+        """Write the files as `write_files` does, and return the path of the page; `document["rows"]` is the table."""
         rows = csv_text(document["rows"][0], document["rows"])
         write_files(out, {CSV: rows, self.json: json_text(document), PAGE: self.page(document)})
         return out / PAGE

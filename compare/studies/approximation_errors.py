@@ -17,7 +17,7 @@ from reference import FoucaultError, InputError, Scene, UnreachableError, trajec
 from reference.precision import Array
 from reference.status import Status
 
-from ..approximations import Motion, Quantity, approximation, motions, quantities
+from ..approximations import APPROXIMATIONS, Motion, Quantity, motions, quantities
 from ..observed.swing_plane import Gauge
 from ..position_error import difference, distance
 
@@ -118,7 +118,7 @@ def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
 
 def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
     """Return approximations of the motion by their ids, all if None; InputError names those of a single number."""
-    approximations = [approximation(word) for word in (motions() if ids is None else ids)]
+    approximations = [APPROXIMATIONS[word] for word in (motions() if ids is None else ids)]
     wrong = [one.id for one in approximations if not isinstance(one, Motion)]
     if wrong:
         raise InputError(
@@ -160,7 +160,7 @@ def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[Quant
     """Return approximate numbers (rest position, gravity, frequency, precession) beside the true ones, to 15 digits."""
     rows, known = [], dict[Any, Any]()
     for word in quantities() if ids is None else ids:
-        one = approximation(word)
+        one = APPROXIMATIONS[word]
         if not isinstance(one, Quantity):
             raise InputError("approximations", word, "an approximation of a number", "Motions stand in error_table.")
         try:

@@ -14,14 +14,14 @@ from typing import Any
 
 import numpy as np
 
-from reference import Golden, Scene, load, load_scene, parse_scene
+from reference import Scene, load, load_scene, parse_scene
 from reference.process import Emit
 from reference.status import Status
 
 from ..methods import METHODS, Problem, available
 from ..power_law import power_of_time
 from ..truth import golden_of
-from .campaign import Counted, campaign, declared
+from .campaign import Counted, campaign
 from .measure import FAILURES, failure, timed
 from .method_errors import GridTruth
 from .row import Record
@@ -79,42 +79,23 @@ class LongRun(Record):
         return asdict(self) | {"exponent": self.exponent, "law": self.law}
 
 
-def over_thirty_days(
-    methods: Sequence[str] | None = None, *, journal_path: Path | None = None, report: Counted | None = None
-) -> list[LongRun]:
-    """Measure the errors of methods on Paris over 30 days, and solve for the truth if needed.
-
-    Args:
-        methods: ids; all that declare such runs if None.
-        journal_path: a file to which results are appended, and whose results are not measured again.
-        report: called with the number of finished runs, of all runs, and the method that runs now.
-
-    Raises:
-        InputError: a method declares no such runs.
-    """
-    items = declared(methods, "long_runs")
-    scene = load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
-    golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)
-    return long_runs(scene, golden, items, journal_path=journal_path, report=report)
-
-
 def long_runs(
-    scene: Scene,
-    golden: Golden,
     items: Sequence[Item],
+    scene: Scene | None = None,
     *,
     journal_path: Path | None = None,
     report: Counted | None = None,
 ) -> list[LongRun]:
-    """Measure the errors of methods over a long run.
+    """Measure the errors of methods over a long run, and solve for the truth if needed.
 
     Args:
-        scene: its inputs read as binary64.
-        golden: its golden dataset.
-        items: method, formulation and setting of each run.
+        items: method, formulation and setting of each run; `declared(methods, "long_runs")` lists them.
+        scene: its inputs read as binary64; Paris over 30 days if None.
         journal_path: a file to which results are appended, and whose results are not measured again.
         report: called with the number of finished runs, of all runs, and the method that runs now.
     """
+    scene = scene or load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
+    golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)
     return campaign(
         errors_over_time,
         (scene.model_dump(exclude_none=True), golden.path),

@@ -58,10 +58,7 @@ class Bench:
     def row(self, method: Method, formulation: str | None, setting: float) -> Row:
         """Measure a method at a setting; a failure of any kind becomes the row's status and reason.
 
-        Args:
-            method: to be measured.
-            formulation: of the equations of motion; None for the first of the method's that can describe the motion.
-            setting: step in s, relative tolerance, or bits.
+        The formulation may be None: the first of the method's that can describe the motion.
         """
         base = Row(method.id, formulation or "", setting, method.setting, self.scene.inputs, Status.OK)
         missing = available(method)

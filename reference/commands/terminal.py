@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import partial
 from typing import Annotated, Any
 
 import typer
@@ -23,36 +22,26 @@ def emit(document: dict[str, Any]) -> None:
 
 
 @contextmanager
-def bar(label: str, total: float | None, count: str = "") -> Iterator[Callable[..., None] | None]:
-    """Show a bar on stderr; yield `rich.progress`'s function that updates it, or None without a terminal.
-
-    Args:
-        label: stands before the bar.
-        total: what `completed` comes to at the end; None if it is not known yet.
-        count: how `task.completed` and `task.total` are printed behind the bar; as "3/12" if empty.
-    """
+def progress(label: str, total: float = 0, unit: str = "s simulated") -> Iterator[Callable[..., None] | None]:
+    """Show a bar on stderr; yield the function of completed, total, item that moves it, or None without a terminal."""
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     console = Console(stderr=True)
     if not console.is_terminal:
         yield None
         return
-    counted = TextColumn(count) if count else MofNCompleteColumn()
-    columns = (TextColumn("{task.description}"), BarColumn(), counted, TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True) as shown:
-        yield partial(shown.update, shown.add_task(label, total=total))
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn(f"{{task.completed:,.0f}} of {{task.total:,.0f}} {unit}"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task(label, total=total)
 
+        def move(completed: float, total: float = total, item: str = "") -> None:
+            bar.update(task, completed=completed, total=total, description=f"{label}: {item}" if item else label)
 
-@contextmanager
-def progress(label: str, total: float) -> Iterator[Callable[[float], None] | None]:
-    """Show a bar with the simulated time on stderr; yield the function that moves it, or None without a terminal."""
-    with bar(label, total, "{task.completed:,.0f} of {task.total:,.0f} s simulated") as update:
-        yield None if update is None else lambda t: update(completed=t)
+        yield move
