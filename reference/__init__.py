@@ -3,20 +3,24 @@
 >>> import reference
 >>> paris = reference.load_scene("paris")
 >>> solution = reference.solve(paris, t_end="60", digits=20)
->>> len(solution.transits.values)
-7
+>>> solution
+Solution(paris: confirmed, 20 digits, 2 grid times, 7 transits)
+>>> round(float(solution.transits["t"][0]), 6)
+8.217792
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .errors import DatasetError, FoucaultError, InputError, IntegrationError, UnreachableError
+from .lazy import lazy
 from .scene import Scene, load_scene, parse_scene
 from .shipped import scene_ids
 
 if TYPE_CHECKING:
     from .dataset.read import Golden, load
+    from .dataset.write import write
     from .engines.trajectory import integrate, trajectory
     from .solver.solution import Solution
     from .solver.solve import solve
@@ -37,22 +41,18 @@ __all__ = [
     "scene_ids",
     "solve",
     "trajectory",
+    "write",
 ]
 
-_LAZY = {
-    "Golden": "dataset.read",
-    "Solution": "solver.solution",
-    "integrate": "engines.trajectory",
-    "load": "dataset.read",
-    "solve": "solver.solve",
-    "trajectory": "engines.trajectory",
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Import the solver and the reader at their first use: `foucault --help` needs neither."""
-    if name not in _LAZY:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
-
-    return getattr(import_module(f".{_LAZY[name]}", __name__), name)
+__getattr__, __dir__ = lazy(
+    __name__,
+    {
+        "Golden": "dataset.read",
+        "Solution": "solver.solution",
+        "integrate": "engines.trajectory",
+        "load": "dataset.read",
+        "solve": "solver.solve",
+        "trajectory": "engines.trajectory",
+        "write": "dataset.write",
+    },
+)

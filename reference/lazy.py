@@ -1,9 +1,10 @@
-"""Public names of a package that are imported at their first use, so that importing the package stays quick."""
+"""Public names that are imported at their first use, and the answer to a name that does not exist."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from difflib import get_close_matches
 from importlib import import_module
 from typing import Any
 
@@ -11,9 +12,7 @@ NEAR = 0.5  # of difflib's similarity, from 0 to 1: names at least as near stand
 
 
 def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return the functions `__getattr__` and `__dir__` of a package.
-
-    An unknown attribute raises an AttributeError that says which names there are, the nearest ones first.
+    """Return the functions `__getattr__` and `__dir__` of a package, which import its names at their first use.
 
     Args:
         package: the package's own name.
@@ -23,17 +22,19 @@ def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], 
     def attribute(name: str) -> Any:
         if name in homes:
             return getattr(import_module(f".{homes[name]}", package), name)
-        text = f"module {package!r} has no attribute {name!r}"
-        raise AttributeError(text if name.startswith("_") else f"{text}; it has {', '.join(_nearest_first(name))}")
-
-    def _nearest_first(name: str) -> list[str]:
-        from difflib import get_close_matches
-
-        public = sorted({*homes, *getattr(sys.modules[package], "__all__", ())})
-        near = get_close_matches(name, public, cutoff=NEAR)
-        return near + [one for one in public if one not in near]
+        raise no_attribute(f"module {package!r}", name, {*homes, *getattr(sys.modules[package], "__all__", ())})
 
     def names() -> list[str]:
         return sorted({*vars(sys.modules[package]), *homes})
 
     return attribute, names
+
+
+def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
+    """Return the error for an unknown attribute, which says what there is, the nearest names first."""
+    text = f"{owner} has no attribute {name!r}"
+    if name.startswith("_"):  # Python itself asks for such names, and wants no advice
+        return AttributeError(text)
+    known = sorted(names)
+    near = get_close_matches(name, known, cutoff=NEAR)
+    return AttributeError(f"{text}; it has {', '.join([*near, *(one for one in known if one not in near)])}")

@@ -23,27 +23,23 @@ LONG_DOUBLE_BITS = 64
 
 @dataclass(frozen=True)
 class NumberType:
-    """A number type: its name, and its precision in bits."""
+    """A number type: its name, its precision in bits, and whether the processor computes in it."""
 
     name: str
     prec: int
+    hardware: bool = False
 
     def __str__(self) -> str:
-        return f"{self.name}({self.prec})" if self.name in ("real", "limbs") else self.name
+        return self.name if self.hardware else f"{self.name}({self.prec})"
 
 
-DOUBLE = NumberType("double", DOUBLE_BITS)
-LONG_DOUBLE = NumberType("long_double", LONG_DOUBLE_BITS)
+DOUBLE = NumberType("double", DOUBLE_BITS, hardware=True)
+LONG_DOUBLE = NumberType("long_double", LONG_DOUBLE_BITS, hardware=True)
 
 
 def real(prec: int) -> NumberType:
     """Return the type of binary floating-point numbers (MPFR) with `prec` bits."""
     return NumberType("real", prec)
-
-
-def limbs(prec: int) -> NumberType:
-    """Return the type of radix-2**22 limbs that keep `prec` bits of a number as large as the swing: engines/limbs."""
-    return NumberType("limbs", prec)
 
 
 def cheapest_type(prec: int) -> NumberType:
@@ -81,9 +77,15 @@ def bits_of(digits: float) -> int:
     return math.ceil(digits * math.log2(10))
 
 
+def rounded(numerator: int, denominator: int) -> int:
+    """Return the integer nearest to a quotient, ties to even; the denominator is above zero."""
+    whole, remainder = divmod(numerator, denominator)
+    return whole + (2 * remainder > denominator or (2 * remainder == denominator and whole & 1))
+
+
 def fixed_decimal(value: Fraction, decimals: int) -> str:
     """Return `value`, rounded to nearest (ties to even), with `decimals` digits after the point; never "-0"."""
-    return with_decimal_point(round(value * 10**decimals), decimals)
+    return with_decimal_point(rounded(value.numerator * 10**decimals, value.denominator), decimals)
 
 
 def with_decimal_point(whole: int, decimals: int) -> str:

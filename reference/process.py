@@ -1,4 +1,4 @@
-"""Run a function of this package in a child process and stream its results back.
+"""A child process that runs a function of this project, takes objects while it works, and streams its results back.
 
 Not `multiprocessing`: its children import the caller's main script again, which then needs a guard against running
 twice. Here a script that just calls `reference.solve` works as it stands.
@@ -9,52 +9,82 @@ from __future__ import annotations
 import contextlib
 import os
 import pickle
+import queue
 import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator
 from importlib import import_module
-from typing import Any
+from typing import Any, BinaryIO, cast
 
 from .errors import FoucaultError, IntegrationError
 
-_START = "import pickle, sys; sys.path[:] = pickle.load(sys.stdin.buffer); from reference.process import serve; serve()"
-
 Emit = Callable[[Any], None]
+
+_START = "import sys; sys.path[:] = sys.argv[1:]; from reference.process import serve; serve()"
+_LENGTH = 8  # bytes that hold the length of an object sent to a child
+
+
+class Parent:
+    """A child's view of its parent: call it to send an object, iterate over it to take those that the parent sends."""
+
+    def __init__(self, results: BinaryIO, received: queue.SimpleQueue[Any]) -> None:
+        self._results, self._received = results, received
+
+    def __call__(self, item: Any) -> None:
+        """Send an object to the parent."""
+        self.send(False, item)
+
+    def __iter__(self) -> Iterator[Any]:
+        """Yield the objects that the parent sends, for as long as the parent wants them; the process ends with it."""
+        while True:
+            yield self._received.get()
+
+    def send(self, last: bool, item: Any) -> None:
+        """Send an object, the last one or not."""
+        pickle.dump((last, item), self._results, protocol=pickle.HIGHEST_PROTOCOL)
+        self._results.flush()
 
 
 class Worker:
-    """A child process that runs `function(emit, *arguments)`; iterating yields the emitted objects in order.
+    """A child process that runs `function(parent, *arguments)`; iterating yields the objects it sends, in order.
 
     Args:
-        function: stands at the top level of a module; its first argument, `emit`, sends an object to the parent.
+        function: stands at the top level of a module; its first argument is a `Parent`.
         arguments: any objects that can be pickled.
     """
 
     def __init__(self, function: Callable[..., None], *arguments: Any) -> None:
-        self._process = subprocess.Popen([sys.executable, "-c", _START], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-        assert self._process.stdin is not None
+        self._process = subprocess.Popen(
+            [sys.executable, "-c", _START, *sys.path], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+        )
         with contextlib.suppress(BrokenPipeError):  # the death of a child is noticed when its results are read
-            pickle.dump(sys.path, self._process.stdin)
-            pickle.dump((function.__module__, function.__qualname__, arguments), self._process.stdin)
-            self._process.stdin.flush()
+            self.send((function.__module__, function.__qualname__, arguments))
 
-    def __iter__(self) -> Iterator[Any]:
-        """Yield the objects that the function emits.
+    def send(self, item: Any) -> None:
+        """Send an object to the function; wait while the pipe is full."""
+        pipe = cast("BinaryIO", self._process.stdin)
+        data = pickle.dumps(item, protocol=pickle.HIGHEST_PROTOCOL)
+        pipe.write(len(data).to_bytes(_LENGTH, "little") + data)
+        pipe.flush()
+
+    def receive(self) -> Any:
+        """Return the next object that the function sends; None when it has returned.
 
         Raises:
             IntegrationError: the function failed, or the process ended before it returned.
         """
-        assert self._process.stdout is not None
-        while True:
-            try:
-                last, item = pickle.load(self._process.stdout)
-            except (EOFError, pickle.UnpicklingError):
-                raise IntegrationError("a child process of the solver ended without a result.") from None
-            if isinstance(item, BaseException):
-                raise item
-            if last:
-                return
+        try:
+            last, item = pickle.load(cast("BinaryIO", self._process.stdout))
+        except (EOFError, pickle.UnpicklingError):
+            raise IntegrationError("a child process of the solver ended without a result.") from None
+        if isinstance(item, BaseException):
+            raise item
+        return None if last else item
+
+    def __iter__(self) -> Iterator[Any]:
+        """Yield the objects that the function sends; raise as `receive`."""
+        while (item := self.receive()) is not None:
             yield item
 
     def stop(self) -> None:
@@ -74,23 +104,37 @@ def serve() -> None:
     """Run in the child: read the function and its arguments, call it, and end when the parent ends."""
     results = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # nothing that heyoka or others print may mix with the results
-    module, name, arguments = pickle.load(sys.stdin.buffer)
-    threading.Thread(target=_leave_with_parent, daemon=True).start()
-
-    def send(last: bool, item: Any) -> None:
-        pickle.dump((last, item), results, protocol=pickle.HIGHEST_PROTOCOL)
-        results.flush()
-
+    module, name, arguments = _item()
+    received: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    threading.Thread(target=_receive, args=(received,), daemon=True).start()
+    parent = Parent(results, received)
     try:
-        getattr(import_module(module), name)(lambda item: send(False, item), *arguments)
-        send(True, None)
+        getattr(import_module(module), name)(parent, *arguments)
+        parent.send(True, None)
     except FoucaultError as error:
-        send(True, IntegrationError(str(error)))
+        parent.send(True, IntegrationError(str(error)))
     except (BrokenPipeError, KeyboardInterrupt):
         os._exit(1)
 
 
-def _leave_with_parent() -> None:
-    while os.read(0, 1):  # not through sys.stdin, whose lock would block a normal exit
-        pass
+def _receive(received: queue.SimpleQueue[Any]) -> None:
+    """Take what the parent sends; leave with the parent, which has ended or closed the pipe when there is no more."""
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            received.put(_item())
     os._exit(0)
+
+
+def _item() -> Any:
+    return pickle.loads(_read(int.from_bytes(_read(_LENGTH), "little")))
+
+
+def _read(count: int) -> bytes:
+    """Read so many bytes of what the parent sends; not through sys.stdin, whose lock would block a normal exit."""
+    data = b""
+    while len(data) < count:
+        part = os.read(0, min(count - len(data), 1 << 20))
+        if not part:
+            raise EOFError
+        data += part
+    return data

@@ -1,82 +1,169 @@
-"""The fixed-point table: exact numbers as integers over a power of two, in named columns, each with a bound."""
+"""The fixed-point table: exact numbers as integers over a power of two, in named columns, with bounds on their errors.
+
+It tells the largest number of each column, how far two tables are apart, the decimals that print it, and whether the
+bounds decide every printed digit.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from typing import Protocol
 
 import numpy as np
 
-from .precision import Array
+from .columns import KINDS
+from .precision import Array, decimals_for, rounded, with_decimal_point
+
+NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
+
+
+class Interval(Protocol):
+    """A closed interval with exact ends."""
+
+    @property
+    def low(self) -> Fraction:
+        """The lower end."""
+
+    @property
+    def high(self) -> Fraction:
+        """The upper end."""
 
 
 @dataclass(frozen=True)
 class Table:
-    """Named columns of numbers, as integers over 2**bits, with an error bound on each of them in the same form.
+    """Named columns of numbers, as integers over 2**bits, with error bounds in the same form where they are known.
+
+    `table["x"]` is a column as the nearest doubles, `len(table)` the number of rows.
 
     Attributes:
         columns: names of the columns.
         bits: the unit of `values` and `errors` is 2**-bits.
         values: rows of integers.
-        errors: bounds on the errors of the values, of the same shape.
+        errors: bounds on the errors of the values, of the same shape; empty where none are known.
     """
 
     columns: tuple[str, ...]
     bits: int
     values: list[tuple[int, ...]] = field(repr=False)
-    errors: list[tuple[int, ...]] = field(repr=False)
+    errors: list[tuple[int, ...]] = field(default_factory=list, repr=False)
 
-    def exact(self, name: str) -> list[Fraction]:
-        """Return the values of a column, exactly as computed."""
-        return self._fractions(self.values, name)
+    @classmethod
+    def of_intervals(cls, columns: tuple[str, ...], rows: Iterable[Sequence[Interval]], bits: int) -> Table:
+        """Return the middles of intervals with their half-widths as errors, rounded outwards."""
+        values, errors = [], []
+        for row in rows:
+            lows = [(x.low.numerator << bits) // x.low.denominator for x in row]
+            highs = [-((-x.high.numerator << bits) // x.high.denominator) for x in row]
+            middles = tuple((low + high) // 2 for low, high in zip(lows, highs, strict=True))
+            values.append(middles)
+            errors.append(tuple(high - middle for high, middle in zip(highs, middles, strict=True)))
+        return cls(columns, bits, values, errors)
 
-    def bound(self, name: str) -> list[Fraction]:
-        """Return the bounds on the errors of a column's values."""
-        return self._fractions(self.errors, name)
+    def with_errors(self, errors: Mapping[str, Fraction] | Sequence[Mapping[str, Fraction]]) -> Table:
+        """Return the table with error bounds by column name, for all rows or one mapping a row, rounded up."""
 
-    def _fractions(self, rows: Sequence[tuple[int, ...]], name: str) -> list[Fraction]:
-        i = self.columns.index(name)
-        return [Fraction(row[i], 1 << self.bits) for row in rows]
+        def fixed(row: Mapping[str, Fraction]) -> tuple[int, ...]:
+            return tuple(math.ceil(row[name] * (1 << self.bits)) for name in self.columns)
 
-    def largest(self) -> tuple[Fraction, ...]:
-        """Return the largest absolute value of each column."""
-        return self._maxima(self.values)
+        rows = [fixed(errors)] * len(self) if isinstance(errors, Mapping) else [fixed(row) for row in errors]
+        return Table(self.columns, self.bits, self.values, rows)
 
-    def largest_bounds(self) -> tuple[Fraction, ...]:
-        """Return the largest bound of each column."""
-        return self._maxima(self.errors)
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.values)
 
-    def _maxima(self, rows: Sequence[tuple[int, ...]]) -> tuple[Fraction, ...]:
-        return tuple(
-            Fraction(max((abs(row[i]) for row in rows), default=0), 1 << self.bits) for i in range(len(self.columns))
-        )
+    def __getitem__(self, name: str) -> Array:
+        """Return a column as the nearest doubles, shape (rows,)."""
+        return self.array(name)
 
     def array(self, name: str) -> Array:
         """Return a column as the nearest doubles, shape (rows,)."""
-        i, unit = self.columns.index(name), 1 << self.bits
-        return np.array([row[i] / unit for row in self.values])
+        i, unit = self._place(name), 1 << self.bits
+        return np.array([row[i] / unit for row in self.values], dtype=np.float64)
+
+    def exact(self, name: str) -> list[Fraction]:
+        """Return the values of a column, exactly as computed."""
+        i = self._place(name)
+        return [Fraction(row[i], 1 << self.bits) for row in self.values]
+
+    def bound(self, name: str) -> list[Fraction]:
+        """Return the bounds on the errors of a column's values."""
+        i = self._place(name)
+        return [Fraction(row[i], 1 << self.bits) for row in self.errors]
+
+    def _place(self, name: str) -> int:
+        if name not in self.columns:
+            raise KeyError(f"{name!r} is no column; there are {', '.join(self.columns)}")
+        return self.columns.index(name)
+
+    def only(self, columns: tuple[str, ...]) -> Table:
+        """Return the table with just these columns."""
+        if columns == self.columns:
+            return self
+        places = [self._place(name) for name in columns]
+        values, errors = ([tuple(row[i] for i in places) for row in rows] for rows in (self.values, self.errors))
+        return Table(columns, self.bits, values, errors)
+
+    def distance(self, other: Table) -> Table:
+        """Return the absolute differences of two tables with as many rows, in this table's columns."""
+        others, bits = other.only(self.columns), max(self.bits, other.bits)
+        up, other_up = bits - self.bits, bits - other.bits
+        rows = zip(self.values, others.values, strict=True)
+        gaps = [tuple(abs((p << up) - (q << other_up)) for p, q in zip(a, b, strict=True)) for a, b in rows]
+        return Table(self.columns, bits, gaps)
+
+    def largest(self) -> dict[str, Fraction]:
+        """Return the largest absolute value of each column."""
+        return self._maxima(self.values)
+
+    def largest_bounds(self) -> dict[str, Fraction]:
+        """Return the largest bound of each column."""
+        return self._maxima(self.errors)
+
+    def _maxima(self, rows: Sequence[tuple[int, ...]]) -> dict[str, Fraction]:
+        unit, columns = 1 << self.bits, zip(*rows, strict=True) if rows else ((0,) for _ in self.columns)
+        return {name: Fraction(max(map(abs, column)), unit) for name, column in zip(self.columns, columns, strict=True)}
+
+    def printed(self, decimals: Mapping[str, int]) -> list[tuple[str, ...]]:
+        """Return the rows as text, each number rounded to its column's digits after the point."""
+        places = [decimals[name] for name in self.columns]
+        units, unit = [10**count for count in places], 1 << self.bits
+        return [
+            tuple(
+                with_decimal_point(rounded(value * ten, unit), count)
+                for value, ten, count in zip(row, units, places, strict=True)
+            )
+            for row in self.values
+        ]
+
+    def undecided(self, decimals: Mapping[str, int]) -> tuple[str, str] | None:
+        """Return the first number, as column and text, of which the bounds do not decide each printed digit, or None.
+
+        It is decided if every number within the bound is printed alike.
+        """
+        units, unit = [10 ** decimals[name] for name in self.columns], 1 << self.bits
+        for row, errors in zip(self.values, self.errors, strict=True):
+            for name, value, error, ten in zip(self.columns, row, errors, units, strict=True):
+                if rounded((value - error) * ten, unit) != rounded((value + error) * ten, unit):
+                    return name, with_decimal_point(rounded(value * ten, unit), decimals[name])
+        return None
 
 
-def largest_of(rows: Sequence[tuple[int, ...]], bits: int) -> tuple[Fraction, ...]:
-    """Return the largest absolute value of each column, for rows of integers over 2**bits."""
-    return tuple(Fraction(max(map(abs, column)), 2**bits) for column in zip(*rows, strict=True))
+def resolved(largest: Mapping[str, Fraction], errors: Mapping[str, Fraction]) -> dict[str, Fraction]:
+    """Return the size of each column: its largest number, or that of its kind if it is nothing but error.
 
-
-def disagreement(
-    a: Sequence[tuple[int, ...]], a_bits: int, b: Sequence[tuple[int, ...]], b_bits: int
-) -> tuple[Fraction, ...]:
-    """Return the largest absolute difference of two tables in each column.
-
-    The rows of `a` are integers over 2**a_bits, those of `b` over 2**b_bits; shapes are equal.
+    A coordinate that vanishes by symmetry comes out of a run as rounding noise, and noise has no significant digits.
     """
-    shift_a, shift_b = max(0, b_bits - a_bits), max(0, a_bits - b_bits)
-    columns = zip(zip(*a, strict=True), zip(*b, strict=True), strict=True)
-    common = 2 ** max(a_bits, b_bits)
-    return tuple(
-        Fraction(max(abs((p << shift_a) - (q << shift_b)) for p, q in zip(column_a, column_b, strict=True)), common)
-        for column_a, column_b in columns
-    )
+    sizes = {name: size if size > NOISE * errors[name] else Fraction(0) for name, size in largest.items()}
+    return {name: size or max(sizes.get(one, Fraction(0)) for one in KINDS[name]) for name, size in sizes.items()}
+
+
+def decimals_of(sizes: Mapping[str, Fraction], digits: int) -> dict[str, int]:
+    """Return the digits after the point that give the largest number of each column `digits` significant ones."""
+    return {name: decimals_for(size, digits) for name, size in sizes.items()}
 
 
 def bits_in(ratio: Fraction) -> int:

@@ -22,9 +22,9 @@ from collections.abc import Mapping
 from ..registry import Registry
 from ..rhs.problem import Problem
 from .external import external
-from .method import Exact, Family, Method, Outcome, Work, available
+from .method import Family, Method, Outcome, Work, available
 
-__all__ = ["EXTERNAL", "METHODS", "Exact", "Family", "Method", "Outcome", "Problem", "Work", "available", "external"]
+__all__ = ["EXTERNAL", "METHODS", "Family", "Method", "Outcome", "Problem", "Work", "available", "external"]
 
 EXTERNAL = "external: "  # begins the id of a method that is a command
 

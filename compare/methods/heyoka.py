@@ -15,14 +15,16 @@ from typing import Any
 
 import numpy as np
 
+from reference.columns import STATE
 from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, real
 from reference.status import Status
+from reference.table import Table
 
 from ..rhs.problem import Array, Problem
-from .method import Exact, Family, Method, Outcome, Work, failed
+from .method import Family, Method, Outcome, Work, failed
 
 QUADRUPLE_BITS = 113
 SPARE_BITS = 64  # exact states are written with this many bits below the number type's epsilon
@@ -54,10 +56,10 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
     def cartesian(states: Any) -> Array:
         return np.array([column.astype(float) for column in columns(states)]).T.copy()
 
-    def finer(states: Any) -> Exact:
+    def finer(states: Any) -> Table:
         bits = number.prec + SPARE_BITS
         fixed = [numbers.fixed(np.ascontiguousarray(column), bits) for column in columns(states)]
-        return Exact(bits, list(zip(*fixed, strict=True)))
+        return Table(STATE, bits, list(zip(*fixed, strict=True)))
 
     def work() -> Outcome:
         before = flow.steps

@@ -6,37 +6,32 @@ from fractions import Fraction
 
 import numpy as np
 
+from reference.columns import STATE
 from reference.status import Status
 
 from ..rhs.problem import Array, Problem
-from .method import Exact, Family, Method, Outcome, Work, failed
+from .method import Family, Method, Outcome, Work, failed
 
 
 def prepare(problem: Problem, setting: float) -> Work:
     """Compile the engine's kernels by a short first run; the returned function makes the whole run."""
-    from reference.engines import limbs
-    from reference.engines.plan import Plan
+    from reference.engines.registry import engines
     from reference.errors import IntegrationError
-    from reference.precision import NumberType
 
-    number = NumberType("limbs", int(setting))
+    limbs, inputs = engines()["limbs"], problem.scene.exact
     times = tuple(Fraction(t) for t in problem.times.tolist())
-    plan = Plan(problem.scene.exact, problem.formulation, number, times, transits=False)
-    limbs.run(Plan(plan.inputs, plan.formulation, number, times[:2], transits=False))
+    limbs.run(limbs.plan(inputs, int(setting), times[:2], transits=False))
 
     def work() -> Outcome:
         try:
-            finished_run = limbs.run(plan)
+            run = limbs.run(limbs.plan(inputs, int(setting), times, transits=False))
         except IntegrationError as error:
             return failed(problem, error.reason)
 
         def cartesian() -> Array:
-            return np.array([[value / (1 << finished_run.bits) for value in row[:6]] for row in finished_run.grid])
+            return np.column_stack([run.grid[name] for name in STATE])
 
-        def finer() -> Exact:
-            return Exact(finished_run.bits, [row[:6] for row in finished_run.grid])
-
-        return Outcome(Status.OK, "", float(problem.times[-1]), finished_run.steps, None, cartesian, finer)
+        return Outcome(Status.OK, "", float(times[-1]), run.steps, None, cartesian, lambda: run.grid.only(STATE))
 
     return work
 
@@ -51,7 +46,7 @@ METHODS = (
         licence="this project's",
         prepare=prepare,
         formulations=("momentum",),
-        requires=("reference.engines.limbs", "numba"),
+        requires=("numba",),
         extra="methods",
         family=Family.MANY_DIGITS,
         number="100 bits",

@@ -15,6 +15,7 @@ import numpy as np
 
 from reference.scene import Scene
 from reference.status import Status
+from reference.table import Table
 
 from ..rhs.problem import Array, Problem
 from ..runge_kutta.fixed_step import steps_through
@@ -44,14 +45,6 @@ class Family(StrEnum):
 
 
 @dataclass(frozen=True)
-class Exact:
-    """States finer than binary64: x, y, z in m, vx, vy, vz in m/s per row, as integers over 2**bits."""
-
-    bits: int
-    rows: list[tuple[int, ...]] = field(repr=False)
-
-
-@dataclass(frozen=True)
 class Outcome:
     """The result of a run. A numerical failure is an outcome too, with its reason and the states before it.
 
@@ -72,7 +65,7 @@ class Outcome:
     steps: int | None
     rhs_evaluations: int | None
     cartesian: Callable[[], Array] = field(repr=False)
-    finer: Callable[[], Exact] | None = field(default=None, repr=False)
+    finer: Callable[[], Table] | None = field(default=None, repr=False)
     cpu_s: float | None = None
 
     @cached_property
@@ -81,7 +74,7 @@ class Outcome:
         return self.cartesian()
 
     @cached_property
-    def exact(self) -> Exact | None:
+    def exact(self) -> Table | None:
         """The states as computed in a number type finer than binary64; None for binary64."""
         return None if self.finer is None else self.finer()
 

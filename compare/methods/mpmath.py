@@ -6,13 +6,15 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
+from reference.columns import STATE
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
 from reference.status import Status
+from reference.table import Table
 
 from ..rhs.problem import Array, Problem
-from .method import Exact, Family, Method, Outcome, Work
+from .method import Family, Method, Outcome, Work
 
 SPARE_BITS = 64  # exact states are written with this many bits below the precision
 
@@ -46,9 +48,9 @@ def prepare(problem: Problem, setting: float) -> Work:
         def cartesian() -> Array:
             return np.array([[float(value) for value in row] for row in rows()])
 
-        def fixed() -> Exact:
+        def fixed() -> Table:
             bits = prec + SPARE_BITS
-            return Exact(bits, [tuple(int(to_fraction(value) * 2**bits) for value in row) for row in rows()])
+            return Table(STATE, bits, [tuple(int(to_fraction(value) * 2**bits) for value in row) for row in rows()])
 
         return Outcome(Status.OK, "", float(problem.times[-1]), None, calls, cartesian, fixed)
 

@@ -25,7 +25,7 @@ def paris_day() -> Golden:
 @cache
 def transit_times() -> list[Any]:
     """Return the times of its transits in s."""
-    return [mpf(text) for text in paris_day().transits_text["t"]]
+    return [mpf(text) for text in paris_day().transits.decimals("t")]
 
 
 @cache

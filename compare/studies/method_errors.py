@@ -53,8 +53,7 @@ class GridTruth:
     @cached_property
     def transits_rounded_by(self) -> Array:
         """Distance of the doubles in `transits` from the printed times, in s."""
-        texts = self.golden.transits_text["t"][: len(self.transits)]
-        return difference(self.transits, [Fraction(text) for text in texts])
+        return difference(self.transits, self.golden.transits.exact("t")[: len(self.transits)])
 
     def position_errors(self, outcome: Outcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
@@ -97,5 +96,4 @@ def h_drift(scene: Scene, outcome: Outcome) -> float | None:
 
 def _column(outcome: Outcome, name: str) -> Column:
     """Return a column of the states that a run reached, exactly where its numbers are finer than doubles."""
-    i, finer = COLUMNS.index(name), outcome.exact
-    return outcome.states[:, i] if finer is None else [Fraction(row[i], 1 << finer.bits) for row in finer.rows]
+    return outcome.states[:, COLUMNS.index(name)] if outcome.exact is None else outcome.exact.exact(name)

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from ..engines import AUTO, engine_names
 from ..scene import LEVELS, load_scene
 from ..shipped import scene_ids
 from .terminal import AsJson, Assignments, SceneWord, emit, progress
@@ -15,12 +16,8 @@ from .terminal import AsJson, Assignments, SceneWord, emit, progress
 Level = StrEnum("Level", list(LEVELS))  # type: ignore[misc]  # the functional form is fine at run time
 
 
-class Engine(StrEnum):
-    """The integrator; auto chooses limbs where it is faster and numba is installed, else heyoka."""
-
-    auto = "auto"
-    heyoka = "heyoka"
-    limbs = "limbs"
+EngineName = StrEnum("EngineName", [AUTO, *engine_names()])  # type: ignore[misc]
+DEFAULT_ENGINE = EngineName(AUTO)
 
 
 def command(
@@ -33,8 +30,8 @@ def command(
     ] = None,
     level: Annotated[Level | None, typer.Option("--level", metavar="L", help=", ".join(LEVELS))] = None,
     engine: Annotated[
-        Engine, typer.Option("--engine", help="Choose the integrator; auto takes the faster one.")
-    ] = Engine.auto,
+        EngineName, typer.Option("--engine", help="Choose the integrator; auto takes the fastest that is installed.")
+    ] = DEFAULT_ENGINE,
     no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for transits, xdot = 0.")] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
@@ -42,7 +39,6 @@ def command(
     """Solve a scene and write its golden dataset."""
     from ..dataset.read import read_manifest
     from ..dataset.write import check_target, default_folder, write
-    from ..engines.registry import engine_of
 
     options = {"t_end": t_end, "digits": digits, "level": level, "transits": "false" if no_transits else None}
     changes = [*(set_ or ()), *(f"run.{key}={value}" for key, value in options.items() if value is not None)]
@@ -67,7 +63,7 @@ def command(
                 "out": str(folder),
                 "level": solution.level,
                 "digits": scene.run.digits,
-                "engine": engine_of(solution.run.number),
+                "engine": solution.run.engine,
                 "transits": count,
                 "bound_m": float(bound),
                 "cpu_s": solution.pilot_s + solution.run.cpu_s + checks_s,

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ..columns import STATE
 from ..errors import InputError
 from ..model.constants import Constants, constants
 from ..model.formulations import FORMULATIONS
 from ..precision import GUARD_BITS, LONG_DOUBLE, Array, NumberType, context, real
-from ..solver.solution import GRID_COLUMNS
 from .read import Golden
 
 TYPES = (LONG_DOUBLE, real(128), real(192), real(256))  # if one loses too many digits, the next is tried
@@ -199,7 +199,7 @@ def _speeds(anchors: Array, golden: Golden) -> tuple[Array, Array]:
 
 def _anchors(golden: Golden, numbers: Any, k: Constants) -> Any:
     """Return the golden states in the variables of `momentum`, in the run's number type, shape (grid times, 6)."""
-    columns = [_parsed(golden.decimals(name), numbers) / k.length for name in GRID_COLUMNS]
+    columns = [_parsed(golden.decimals(name), numbers) / k.length for name in STATE]
     start = FORMULATIONS["momentum"].start(tuple(columns[:3]), tuple(columns[3:]), k, np)
     return np.ascontiguousarray(np.array(start, dtype=numbers.dtype).T)
 

@@ -5,61 +5,125 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from pydantic import ValidationError
 
+from ..columns import POSITION, VELOCITY
 from ..errors import DatasetError, InputError
+from ..lazy import no_attribute
+from ..precision import Array
 from ..scene import Scene, is_scene_id, parse_scene
 from ..shipped import data_root
-from .manifest import Manifest
+from .manifest import Bounds, Manifest
 
 MANIFEST = "manifest.json"
 
 
-@dataclass(frozen=True)
-class Golden:
-    """A golden dataset, as read from disk.
+class PrintedTable:
+    """A CSV table of a dataset: columns of decimals, by name.
 
-    `golden.t`, `.x`, … are the grid as binary64 arrays; `golden.transits["t"]` the transits;
-    `golden.decimals("x")` the printed strings, `golden.exact("x")` the same as fractions;
-    `golden.manifest.bounds` bounds the error of each of them.
+    Attributes:
+        columns: their names, in order.
+    """
+
+    def __init__(self, texts: dict[str, list[str]], bounds: Bounds) -> None:
+        self.columns = tuple(texts)
+        self._texts, self._bounds = texts, bounds
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.decimals(self.columns[0]))
+
+    def __getitem__(self, name: str) -> Array:
+        """Return a column as the nearest doubles, shape (rows,)."""
+        return self.array(name)
+
+    def array(self, name: str) -> Array:
+        """Return a column as the nearest doubles, shape (rows,)."""
+        return np.array([float(text) for text in self.decimals(name)], dtype=np.float64)
+
+    def exact(self, name: str) -> list[Fraction]:
+        """Return the exact values of the printed decimals of a column."""
+        return [Fraction(text) for text in self.decimals(name)]
+
+    def bound(self, name: str) -> list[Fraction]:
+        """Return bounds on the errors of a column's printed values: of positions and velocities the manifest's own."""
+        if name == "t":
+            return self.exact("bound") if "bound" in self.columns else [Fraction(0)] * len(self)
+        kinds = dict.fromkeys(POSITION, self._bounds.position_m) | dict.fromkeys(VELOCITY, self._bounds.velocity_m_s)
+        if name not in kinds:
+            raise KeyError(f"a dataset bounds t, {', '.join(kinds)}, not {name!r}")
+        return [Fraction(kinds[name])] * len(self)
+
+    def decimals(self, name: str) -> list[str]:
+        """Return a column as printed."""
+        if name not in self._texts:
+            raise KeyError(f"{name!r} is no column; there are {', '.join(self.columns)}")
+        return self._texts[name]
+
+
+@dataclass(frozen=True, repr=False)
+class Golden:
+    """A golden dataset, as read from disk: the same columns as a `Solution`, as printed.
+
+    `golden.t`, `.x`, … are the grid as binary64 arrays of shape (rows,); both tables have `table["x"]`, the same,
+    `table.exact("x")` as fractions, `table.bound("x")`, and `table.decimals("x")`, the printed texts.
+
+    Attributes:
+        path: the folder.
+        manifest: its manifest.json.
+        grid: `grid.csv`.
+        transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically zero.
     """
 
     path: Path
     manifest: Manifest
-    grid_text: dict[str, list[str]] = field(repr=False)
-    transits_text: dict[str, list[str]] = field(repr=False)
+    grid: PrintedTable
+    transits: PrintedTable
 
     @cached_property
     def scene(self) -> Scene:
         """The scene that the dataset solves."""
         return scene_of(self.manifest)
 
-    @cached_property
-    def transits(self) -> dict[str, npt.NDArray[np.float64]]:
-        """Columns of `transits.csv` as the nearest doubles, shape (transits,)."""
-        return {name: np.array([float(text) for text in column]) for name, column in self.transits_text.items()}
+    @property
+    def times(self) -> tuple[Fraction, ...]:
+        """Grid times in s, exact."""
+        return tuple(self.grid.exact("t"))
+
+    @property
+    def directions(self) -> list[int]:
+        """+1 where xdot goes from - to +, per transit."""
+        return [int(text) for text in self.transits.decimals("direction")]
 
     def decimals(self, column: str) -> list[str]:
         """Return a grid column as printed."""
-        return self.grid_text[column]
+        return self.grid.decimals(column)
 
     def exact(self, column: str) -> list[Fraction]:
         """Return the exact values of the printed decimals of a grid column."""
-        return [Fraction(text) for text in self.grid_text[column]]
+        return self.grid.exact(column)
 
     def __getattr__(self, name: str) -> Any:
         """Return a grid column as the nearest doubles, shape (rows,)."""
-        if name.startswith("_") or name not in self.grid_text:
-            raise AttributeError(name)
-        return np.array([float(text) for text in self.grid_text[name]])
+        if not name.startswith("_") and name in self.grid.columns:
+            return self.grid[name]
+        raise no_attribute("a Golden", name, () if name.startswith("_") else {*self.grid.columns, *_NAMES})
+
+    def __repr__(self) -> str:
+        """Return id, level, digits, and the numbers of rows and transits."""
+        about, counts = self.manifest, self.manifest.counts
+        rows = f"{counts.grid} grid times, {counts.transits} transits"
+        return f"Golden({about.id}: {about.level}, {about.digits} digits, {rows})"
+
+
+_NAMES = ("path", "manifest", "grid", "transits", "scene", "times", "directions", "decimals", "exact")
 
 
 def scene_of(manifest: Manifest) -> Scene:
@@ -117,7 +181,8 @@ def load(name: str | Path) -> Golden:
     problems = changed_files(folder, manifest)
     if problems:
         raise DatasetError(str(folder), problems)
-    return Golden(folder, manifest, read_table(folder / "grid.csv"), read_table(folder / "transits.csv"))
+    tables = (PrintedTable(read_table(folder / f"{name}.csv"), manifest.bounds) for name in ("grid", "transits"))
+    return Golden(folder, manifest, *tables)
 
 
 def changed_files(folder: Path, manifest: Manifest) -> list[str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..engines.plan import Report
-from ..engines.registry import engine_of
 from ..solver.solve import solve
 from .read import read_manifest, scene_of
 from .render import render
@@ -18,9 +17,15 @@ def recompute(folder: Path, report: Report | None = None) -> list[str]:
         UnreachableError: the scene cannot be solved here.
     """
     manifest = read_manifest(folder)
-    files = render(solve(scene_of(manifest), engine=engine_of(manifest.run.number), report=report))
+    files = render(solve(scene_of(manifest), engine=_engine(manifest.command), report=report))
     return [
         f"{name}: recomputing gives other bytes"
         for name, text in files.items()
         if (folder / name).read_bytes() != text.encode()
     ]
+
+
+def _engine(command: str) -> str:
+    """Return the engine that the command of a dataset names."""
+    _, _, words = command.partition("--engine ")
+    return words.split()[0]

@@ -7,8 +7,8 @@ from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+from ..columns import POSITION, VELOCITY
 from ..engines.equations import lines_and_left_out
-from ..engines.registry import engine_of
 from ..precision import outward, rounded_up
 from ..scene import Scene, load_scene
 from ..shipped import scene_ids
@@ -39,8 +39,8 @@ def render(solution: Solution) -> dict[str, str]:
     grid, transits = grid_sheet(solution), transits_sheet(solution)
     scene, run = solution.scene, solution.run
     bounds = Bounds(
-        position_m=rounded_up(largest_bound(solution.grid, ("x", "y", "z"), grid.decimals)),
-        velocity_m_s=rounded_up(largest_bound(solution.grid, ("vx", "vy", "vz"), grid.decimals)),
+        position_m=rounded_up(largest_bound(solution.grid, POSITION, grid.decimals)),
+        velocity_m_s=rounded_up(largest_bound(solution.grid, VELOCITY, grid.decimals)),
         transit_s=max((row[-1] for row in transits.rows), key=Fraction, default=None),
     )
     completeness = _completeness(solution)
@@ -89,7 +89,7 @@ def render(solution: Solution) -> dict[str, str]:
         ],
         enclosure=_enclosure_record(solution),
         generator={name: _version(name) for name in ("foucault-reference", "heyoka", "mpmath")},
-        command=command(scene, run.number),
+        command=command(scene, run.engine),
         files={
             name: FileRecord(bytes=len(text.encode()), sha256=hashlib.sha256(text.encode()).hexdigest())
             for name, text in files.items()
@@ -130,12 +130,12 @@ def _version(package: str) -> str:
         return "unknown"
 
 
-def command(scene: Scene, number: str) -> str:
+def command(scene: Scene, engine: str) -> str:
     """Return the command that makes the dataset: of a shipped scene with its changed fields, or of the scene's file."""
     run, shipped = scene.run, scene.id in scene_ids()
     parts = ["foucault", "generate", scene.id if shipped else f"{scene.id}.toml"]
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
-    parts += ["--engine", engine_of(number)]
+    parts += ["--engine", engine]
     parts += [] if run.transits else ["--no-transits"]
     if shipped:
         parts += [word for change in _changes(scene, load_scene(scene.id)) for word in ("--set", change)]

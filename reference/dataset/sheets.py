@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 
+from ..columns import GRID, TRANSITS
 from ..precision import fixed_decimal, rounded_up
 from ..scene import Scene
-from ..solver.rounding import decimals_of, exact_decimals, printed_grid, printed_transits
+from ..solver.rounding import exact_decimals, grid_decimals, transit_decimals
 from ..solver.solution import Solution
 from ..table import Table
 
-GRID_HEADER = ("t", "x", "y", "z", "vx", "vy", "vz")
-TRANSITS_HEADER = ("k", "t", "direction", "x", "y", "z", "vy", "ax", "bound")
+GRID_HEADER = ("t", *GRID)
+TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")
 WORDS = frozenset({"k", "direction", "bound"})  # columns that are not decimals with a fixed number of digits
 
 
@@ -24,6 +26,12 @@ class Sheet:
     rows: list[tuple[str, ...]]
     decimals: dict[str, int]
 
+    def numbers(self, columns: tuple[str, ...]) -> Iterator[list[Fraction]]:
+        """Yield, row by row, the printed numbers of some columns."""
+        places = [self.header.index(name) for name in columns]
+        for row in self.rows:
+            yield [Fraction(row[i]) for i in places]
+
     def csv(self) -> str:
         """Return the text of the file: one header line, commas, LF."""
         return "".join(",".join(row) + "\n" for row in (self.header, *self.rows))
@@ -31,10 +39,10 @@ class Sheet:
 
 def grid_sheet(solution: Solution) -> Sheet:
     """Return `grid.csv`: exact times, and the state at each."""
-    decimals = {"t": exact_decimals(solution.times), **decimals_of(solution)[0]}
-    rounded = printed_grid(solution)
+    decimals = {"t": exact_decimals(solution.times), **grid_decimals(solution)}
     times = (fixed_decimal(t, decimals["t"]) for t in solution.times)
-    return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, rounded, strict=True)], decimals)
+    printed = solution.grid.printed(decimals)
+    return Sheet(GRID_HEADER, [(t, *row) for t, row in zip(times, printed, strict=True)], decimals)
 
 
 def transits_sheet(solution: Solution) -> Sheet:
@@ -42,13 +50,11 @@ def transits_sheet(solution: Solution) -> Sheet:
     table = solution.transits
     if table is None:
         return Sheet(TRANSITS_HEADER, [], {})
-    decimals = decimals_of(solution)[1]
+    decimals = transit_decimals(solution)
     half_unit = Fraction(1, 2 * 10 ** decimals["t"])
-    rows = []
-    rounded = printed_transits(solution)
-    for k, (row, errors, direction) in enumerate(zip(rounded, table.errors, solution.directions, strict=True), 1):
-        bound = rounded_up(Fraction(errors[0], 1 << table.bits) + half_unit)
-        rows.append((str(k), row[0], f"{direction:+d}", *row[1:], bound))
+    printed, rows = table.printed(decimals), []
+    for k, (row, error, direction) in enumerate(zip(printed, table.bound("t"), solution.directions, strict=True), 1):
+        rows.append((str(k), row[0], f"{direction:+d}", *row[1:], rounded_up(error + half_unit)))
     return Sheet(TRANSITS_HEADER, rows, decimals)
 
 

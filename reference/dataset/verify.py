@@ -8,6 +8,7 @@ from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 
+from ..columns import STATE, VELOCITY
 from ..errors import DatasetError, FoucaultError
 from ..model.constants import constants
 from ..model.force import invariant
@@ -96,8 +97,7 @@ def _sphere(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> I
     """Check |r| = l and r·v = 0 to within the bounds."""
     length = scene.exact.length
     dr, dv = _bounds(manifest)
-    for row in grid.rows:
-        x, y, z, vx, vy, vz = map(Fraction, row[1:])
+    for row, (x, y, z, vx, vy, vz) in zip(grid.rows, grid.numbers(STATE), strict=True):
         if abs(x * x + y * y + z * z - length**2) > 4 * length * dr + 3 * dr**2:
             yield f"grid.csv: t = {row[0]}: the bob is not at the distance {float(length)} m from the pivot"
         speed = abs(vx) + abs(vy) + abs(vz)
@@ -119,11 +119,11 @@ def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
     ctx = context(bits_of(scene.run.digits) + INVARIANT_BITS)
     k = constants(scene.exact, ctx)
 
-    def h_of(row: tuple[str, ...]) -> Fraction:
-        x, y, z, vx, vy, vz = (to_mpf(Fraction(text), ctx) / k.length for text in row[1:])
+    def h_of(row: list[Fraction]) -> Fraction:
+        x, y, z, vx, vy, vz = (to_mpf(value, ctx) / k.length for value in row)
         return to_fraction(invariant((x, y, z), (vx, vy, vz), k) + ctx.mpf(0))
 
-    values = [h_of(row) for row in grid.rows]
+    values = [h_of(row) for row in grid.numbers(STATE)]
     digits = scene.run.digits
     return fixed_decimal(values[0], digits), rounded_up(max(abs(value - values[0]) for value in values))
 
@@ -134,7 +134,7 @@ def invariant_tolerance(scene: Scene, manifest: Manifest, grid: Sheet) -> Fracti
     k = constants(scene.exact, ctx)
     length = scene.exact.length
     dr, dv = _bounds(manifest)
-    fastest = max(abs(Fraction(text)) for row in grid.rows for text in row[4:])
+    fastest = max(abs(number) for row in grid.numbers(VELOCITY) for number in row)
     reach = length * (to_fraction(k.axis_distance + ctx.mpf(0)) + 3) + 3 * dr
     slope = scene.exact.gravity + 4 * scene.exact.rotation_rate**2 * reach
     return Fraction(101, 100) * 2 * (slope * dr + 3 * (fastest + dv) * dv)
@@ -142,8 +142,9 @@ def invariant_tolerance(scene: Scene, manifest: Manifest, grid: Sheet) -> Fracti
 
 def _zeros(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> Iterator[str]:
     """Check that transits are in order and alternate, and that ax and the sign of vx on the grid agree with them."""
-    times = [Fraction(row[1]) for row in transits.rows]
-    directions = [int(row[2]) for row in transits.rows]
+    times, slopes, directions = (
+        [numbers[0] for numbers in transits.numbers((name,))] for name in ("t", "ax", "direction")
+    )
     if [row[0] for row in transits.rows] != [str(k + 1) for k in range(len(times))]:
         yield "transits.csv: k does not count from 1"
     if times and not (times[0] > 0 and times[-1] <= scene.exact.t_end):
@@ -154,20 +155,19 @@ def _zeros(scene: Scene, manifest: Manifest, grid: Sheet, transits: Sheet) -> It
     for k, (p, q) in enumerate(pairwise(directions), 1):
         if p == q and manifest.transits == "complete":
             yield f"transits.csv: transits {k} and {k + 1} do not alternate"
-    for row, direction in zip(transits.rows, directions, strict=True):
-        if abs(direction) != 1 or Fraction(row[7]) * direction < 0:
-            yield f"transits.csv: transit {row[0]}: direction {row[2]} contradicts ax = {row[7]}"
+    for k, (direction, ax) in enumerate(zip(directions, slopes, strict=True), 1):
+        if abs(direction) != 1 or ax * direction < 0:
+            yield f"transits.csv: transit {k}: direction {direction} contradicts ax = {float(ax):.17g}"
     if manifest.transits == "complete":
         yield from _signs_on_grid(grid, times, directions, _bounds(manifest)[1])
 
 
-def _signs_on_grid(grid: Sheet, times: list[Fraction], directions: list[int], dv: Fraction) -> Iterator[str]:
+def _signs_on_grid(grid: Sheet, times: list[Fraction], directions: list[Fraction], dv: Fraction) -> Iterator[str]:
     """Check the sign of vx between transits, in every grid row where the bound leaves it certain."""
     passed = 0
-    for row in grid.rows[1:]:
-        t, vx = Fraction(row[0]), Fraction(row[4])
+    for t, vx in list(grid.numbers(("t", "vx")))[1:]:
         while passed < len(times) and times[passed] <= t:
             passed += 1
         expected = directions[passed - 1] if passed else -directions[0] if directions else 0
         if expected and abs(vx) > dv and vx * expected < 0:
-            yield f"grid.csv: t = {row[0]}: the sign of vx contradicts the transits before it"
+            yield f"grid.csv: t = {float(t):.17g}: the sign of vx contradicts the transits before it"

@@ -63,13 +63,14 @@ def _workspace(folder: Path) -> Iterator[Path]:
         shutil.rmtree(work, ignore_errors=True)
 
 
-def write(solution: Solution, folder: Path) -> Path:
-    """Write a dataset beside `folder`, check it there, and put it in place at once.
+def write(solution: Solution, folder: str | Path) -> Path:
+    """Write a solution as a golden dataset: beside `folder`, where it is checked, and then put in place at once.
 
     Raises:
         InputError: the folder cannot be written.
         DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as it is.
     """
+    folder = Path(folder)
     check_target(folder)
     with _workspace(folder) as work:
         for name, text in render(solution).items():

@@ -2,12 +2,12 @@
 
 Trusted, and enough to believe a proof: `balls`, `bound`, `columns`, `transits`. Untrusted, because the bound measures
 whatever they get wrong: `approximant` and `frames`, which propose polynomials, `plan`, which chooses the precision, and
-`run` and `defect_process`, which pass steps on. `shapes` only declares. Endpoints of intervals are Fractions; no flint
+`run` and `defects`, which pass steps on. `shapes` only declares. Endpoints of intervals are Fractions; no flint
 object leaves this package.
 """
 
-from .approximant import TaylorStep, pair, turned
+from .approximant import pair, turned
 from .run import Enclosure, ProofCost, enclose
-from .shapes import EnclosedTransit, Interval, Step
+from .shapes import EnclosedTransit, Interval
 
-__all__ = ["EnclosedTransit", "Enclosure", "Interval", "ProofCost", "Step", "TaylorStep", "enclose", "pair", "turned"]
+__all__ = ["EnclosedTransit", "Enclosure", "Interval", "ProofCost", "enclose", "pair", "turned"]

@@ -1,4 +1,4 @@
-"""The approximant, the polynomials that a proof encloses: an integrator's Taylor coefficients as steps to prove.
+"""The approximant, the polynomials that a proof encloses: an integrator's Taylor steps in the axes of the proof.
 
 Untrusted: the bound measures whatever this module gets wrong. A Taylor expansion serves both sides of its centre, so
 only every second one of a chain has to be proved: `pair` joins two time steps into one.
@@ -7,52 +7,23 @@ only every second one of a chain has to be proved: `pair` joins two time steps i
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, NamedTuple, Protocol
+from functools import partial
+from typing import Any
 
 from flint import ctx, fmpz, fmpz_poly
 
 from ..packing import WORD_BITS, Words
+from ..taylor_step import EARTH, TaylorStep
 from .balls import dot, integer
 from .bound import World, scaled
-from .shapes import Step
 
 AXES_GUARD_BITS = 16  # precision of the scene's constants beyond the coefficients that they turn
 GRAIN = 64  # step sizes are rescaled by multiples of 1/GRAIN
 LOPSIDED = Fraction(33, 32)  # largest ratio of the time step before to its own that an expansion is stretched to cover
 
 
-class TaylorStep(NamedTuple):
-    """Taylor coefficients of n and h² λ about `t`, integers over 2^bits; of s = (time - t)/h, used from t to t + h."""
-
-    t: Fraction
-    h: Fraction
-    bits: int
-    coefficients: tuple[list[int], ...]
-
-
-class TaylorCoefficients(Protocol):
-    """Any engine's Taylor step; its coefficients are computed only when they are read."""
-
-    @property
-    def t(self) -> Fraction:
-        """Centre, in s."""
-
-    @property
-    def h(self) -> Fraction:
-        """Step size, in s."""
-
-    @property
-    def bits(self) -> int:
-        """Coefficients are integers over 2^bits."""
-
-    @property
-    def coefficients(self) -> Sequence[list[int]]:
-        """Four rows, x, m, w and h² λ, in the axes of `World`."""
-
-
-def polynomials(step: Step) -> Step:
+def polynomials(step: TaylorStep) -> TaylorStep:
     """Return the step with FLINT's polynomials, which are built faster from words than from large integers."""
     packed, unit = step.coefficients, fmpz(1) << WORD_BITS
     if not isinstance(packed, Words):
@@ -63,57 +34,37 @@ def polynomials(step: Step) -> Step:
         while words:
             polynomial = polynomial * unit + fmpz_poly(words.pop())
         rows.append(polynomial)
-    return step._replace(coefficients=rows)
+    return step._replace(rows=rows)
 
 
-@dataclass(frozen=True)
-class Turned:
-    """A Taylor step whose rows are n east, north and up, turned to the axes of the proof, with the λ that fits it."""
-
-    step: TaylorCoefficients
-    world: World
-
-    @property
-    def t(self) -> Fraction:
-        """Centre, in s."""
-        return self.step.t
-
-    @property
-    def h(self) -> Fraction:
-        """Step size, in s."""
-        return self.step.h
-
-    @property
-    def bits(self) -> int:
-        """Coefficients are integers over 2^bits."""
-        return self.step.bits
-
-    @property
-    def coefficients(self) -> tuple[list[int], ...]:
-        """Four rows, x, m, w and h² λ, computed when they are read."""
-        bits, (east, north, up) = self.bits, self.step.coefficients[:3]
-        with ctx.workprec(self.world.prec):
-            sin, cos = (int(integer(x, bits)) for x in self.world.tilt)
-        m = [(y * sin - z * cos) >> bits for y, z in zip(north, up, strict=True)]
-        w = [(y * cos + z * sin) >> bits for y, z in zip(north, up, strict=True)]
-        p, unit = [fmpz_poly(row) for row in (east, m, w)], fmpz(1) << bits
-        turn, _, _, cm, cw = scaled(self.world, self.h, bits).whole
-        V = [f.derivative() + g // unit for f, g in zip(p, (-turn * p[1], turn * p[0], fmpz_poly()), strict=True)]
-        tension = ((dot(V, V) + cm * p[1] + cw * p[2]) // unit).truncate(len(east))
-        return east, m, w, [int(c) for c in tension.coeffs()]
-
-
-def turned(inputs: Any, chain: Iterable[TaylorCoefficients]) -> Iterator[Turned]:
-    """Turn a run's Taylor steps (rows east, north, up) to the axes of the proof."""
+def turned(inputs: Any, chain: Iterable[TaylorStep]) -> Iterator[TaylorStep]:
+    """Turn Taylor steps whose rows are n east, north and up to the axes of the proof, with the λ that fits them."""
     world: World | None = None
     for e in chain:
+        if e.columns == EARTH:
+            yield e
+            continue
         world = world or World(inputs, e.bits + AXES_GUARD_BITS)
-        yield Turned(e, world)
+        yield e._replace(rows=partial(_turned_rows, e, world), columns=EARTH)
 
 
-def rescaled(e: TaylorCoefficients, ratio: Fraction) -> TaylorStep:
+def _turned_rows(e: TaylorStep, world: World) -> tuple[list[int], ...]:
+    """Return four rows, x, m, w and h² λ."""
+    bits, (east, north, up) = e.bits, e.coefficients[:3]
+    with ctx.workprec(world.prec):
+        sin, cos = (int(integer(x, bits)) for x in world.tilt)
+    m = [(y * sin - z * cos) >> bits for y, z in zip(north, up, strict=True)]
+    w = [(y * cos + z * sin) >> bits for y, z in zip(north, up, strict=True)]
+    p, unit = [fmpz_poly(row) for row in (east, m, w)], fmpz(1) << bits
+    turn, _, _, cm, cw = scaled(world, e.h, bits).whole
+    V = [f.derivative() + g // unit for f, g in zip(p, (-turn * p[1], turn * p[0], fmpz_poly()), strict=True)]
+    tension = ((dot(V, V) + cm * p[1] + cw * p[2]) // unit).truncate(len(east))
+    return east, m, w, [int(c) for c in tension.coeffs()]
+
+
+def rescaled(e: TaylorStep, ratio: Fraction) -> TaylorStep:
     """Return the same expansion as polynomials of s / ratio; the ratio is a multiple of 1/GRAIN."""
-    return TaylorStep(e.t, ratio * e.h, e.bits, stretched(e.coefficients, (0, 0, 0, 2), ratio))
+    return e._replace(h=ratio * e.h, rows=stretched(e.coefficients, (0, 0, 0, 2), ratio))
 
 
 def stretched(rows: Sequence[list[int]], powers: Iterable[int], ratio: Fraction) -> tuple[list[int], ...]:
@@ -126,28 +77,24 @@ def stretched(rows: Sequence[list[int]], powers: Iterable[int], ratio: Fraction)
     )
 
 
-def pair(chain: Iterable[TaylorCoefficients]) -> Iterator[Step]:
+def pair(chain: Iterable[TaylorStep]) -> Iterator[TaylorStep]:
     """Yield steps that cover the chain, each from one expansion, used on both sides where its neighbours allow it."""
-    before: TaylorCoefficients | None = None
+    before: TaylorStep | None = None
     for e in chain:
         if before is None:
             before = e
             continue
         ratio = before.h / e.h
         if ratio > LOPSIDED:
-            yield _one_sided(before)
+            yield before._replace(rows=before.coefficients)
             before = e
             continue
         if ratio > 1:
             ceiling = Fraction(-(-ratio.numerator * GRAIN // ratio.denominator), GRAIN)
             wide = rescaled(e, ceiling)
-            yield Step(e.t, wide.h, -before.h / wide.h, e.h / wide.h, e.bits, wide.coefficients)
+            yield wide._replace(low=-before.h / wide.h, high=e.h / wide.h)
         else:
-            yield Step(e.t, e.h, -ratio, Fraction(1), e.bits, e.coefficients)
+            yield e._replace(low=-ratio, rows=e.coefficients)
         before = None
     if before is not None:
-        yield _one_sided(before)
-
-
-def _one_sided(e: TaylorCoefficients) -> Step:
-    return Step(e.t, e.h, Fraction(0), Fraction(1), e.bits, e.coefficients)
+        yield before._replace(rows=before.coefficients)

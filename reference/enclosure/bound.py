@@ -9,8 +9,9 @@ from typing import Any
 
 from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
+from ..taylor_step import TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, dot, fixed, interval, norm, size, times, upper
-from .shapes import Interval, Sizes, Step, Tube
+from .shapes import Interval, Sizes, Tube
 
 
 class World:
@@ -86,7 +87,7 @@ scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each o
 class Piece:
     """A step with its polynomials p, p' and λ, used from `begin` to `end` (in s)."""
 
-    def __init__(self, world: World, step: Step) -> None:
+    def __init__(self, world: World, step: TaylorStep) -> None:
         if not -1 <= step.low < step.high <= 1 or step.h <= 0:
             raise ArithmeticError("a step must lie in -1 <= s <= 1, where its sizes hold")
         self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from flint import fmpz_poly
 
+from ..taylor_step import TaylorStep
 from .bound import World
 from .columns import FINE
-from .shapes import Step
 
 ORDER = 27  # of the columns' polynomials
 ILL = 10  # condition number above which the frame is made orthogonal
@@ -26,7 +26,7 @@ class ColumnSource:
         self.g, self.w0 = float(world.drag), float(world.w0)
         self.end: Any = np.eye(6)
 
-    def propose(self, step: Step, widths: Iterable[float]) -> list[list[list[int]]]:
+    def propose(self, step: TaylorStep, widths: Iterable[float]) -> list[list[list[int]]]:
         """Return integer polynomials over 2^FINE, column by column; `widths` are the logarithms of the z_j."""
         h, M = float(step.h), ORDER
         w, c, g = self.w * h, self.c * h * h, self.g * h

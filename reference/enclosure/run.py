@@ -19,13 +19,15 @@ from typing import Any, cast
 from flint import arb
 
 from ..errors import UnreachableError
+from ..process import Worker
+from ..taylor_step import TaylorStep
 from .approximant import polynomials
 from .bound import Piece, Radius, World, output
 from .columns import Columns
-from .defect_process import DefectProcess
+from .defects import compute_defects, unpacked
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, plan_for, short
-from .shapes import EnclosedTransit, Interval, Sizes, Step
+from .shapes import EnclosedTransit, Interval, Sizes
 from .transits import Scan
 
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
@@ -37,7 +39,7 @@ WORTH = 500  # duration times angular frequency below which a second process cos
 TINY = -1e9  # stands for the logarithm of a width that is 0
 PARTS = ("candidate", "defect", "bound", "transits")  # as datasets name them: the first is the approximant
 
-Approximant = Callable[[int], Iterable[Step]]
+Approximant = Callable[[int], Iterable[TaylorStep]]
 State = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
 
@@ -192,7 +194,7 @@ class _Run:
             self.times, rows, transits, world.still, bits, order, count, self.plan.method, position, velocity, cost
         )
 
-    def _until(self, steps: Iterator[Step]) -> Iterator[Step]:
+    def _until(self, steps: Iterator[TaylorStep]) -> Iterator[TaylorStep]:
         """Yield the steps up to the end of the run, the last one cut there."""
         for step in steps:
             if step.centre + step.h * step.high >= self.end:
@@ -203,7 +205,7 @@ class _Run:
             yield step
         raise UnreachableError(f"enclosure: the approximant ends before {float(self.end):g} s.")
 
-    def _steps(self, steps: Iterator[Step], scan: Scan | None) -> tuple[list[list[Interval]], int]:
+    def _steps(self, steps: Iterator[TaylorStep], scan: Scan | None) -> tuple[list[list[Interval]], int]:
         """Prove the steps one by one; return the states at the output times and the number of steps."""
         world, states, count, waiting = self.world, [], 0, deque(self.times)
         bound: Radius | Columns = Radius(world)
@@ -229,7 +231,7 @@ class _Run:
                 self.progress(float(piece.end / self.end) if self.end else 1.0)
         return states, count
 
-    def _with_sizes(self, steps: Iterator[Step]) -> Iterator[tuple[Piece, Sizes]]:
+    def _with_sizes(self, steps: Iterator[TaylorStep]) -> Iterator[tuple[Piece, Sizes]]:
         """Yield each step with its defect, computed here or in other processes."""
         world = self.world
         if self.workers < 2 or float(self.end) * float(world.w0) < WORTH:
@@ -240,16 +242,17 @@ class _Run:
                 self.clock.lap("defect")
                 yield piece, sizes
             return
-        processes = [DefectProcess(self.inputs, world.prec) for _ in range(self.workers - 1)]
+        processes = [Worker(compute_defects, self.inputs, world.prec) for _ in range(self.workers - 1)]
         try:
             yield from self._shared(steps, processes)
         finally:
             for process in processes:
+                process.kill()
                 process.stop()
 
-    def _shared(self, steps: Iterator[Step], processes: list[DefectProcess]) -> Iterator[tuple[Piece, Sizes]]:
+    def _shared(self, steps: Iterator[TaylorStep], processes: list[Worker]) -> Iterator[tuple[Piece, Sizes]]:
         """Send the steps to the processes in turn, and yield them with their defects in order."""
-        sent: deque[tuple[DefectProcess, list[Step]]] = deque()
+        sent: deque[tuple[Worker, list[TaylorStep]]] = deque()
         turn = 0
         while True:
             chunk = list(islice(steps, CHUNK))
@@ -265,12 +268,12 @@ class _Run:
             if chunk and len(sent) < AHEAD * len(processes) + 1:
                 continue
             process, chunk = sent.popleft()
-            sizes, cpu = process.receive()
+            rows, cpu = process.receive()
             self.clock.parts["defect"] += cpu
-            for step, row in zip(chunk, sizes, strict=True):
+            for step, sizes in zip(chunk, unpacked(rows), strict=True):
                 piece = Piece(self.world, polynomials(step))
                 self.clock.lap("defect")
-                yield piece, row
+                yield piece, sizes
 
 
 def _log(z: arb) -> float:

@@ -1,8 +1,7 @@
-"""Data types of the proof: intervals and transits that it gives, steps and bounds inside it. No arithmetic here."""
+"""Data types of the proof: intervals and transits that it gives, bounds inside it. No arithmetic here."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any, NamedTuple
@@ -35,20 +34,6 @@ class EnclosedTransit:
     def kind(self) -> str:
         """Kind of transit: "one" where it is proved to be a single zero, else "possible"."""
         return "one" if self.parity == "one" else "possible"
-
-
-class Step(NamedTuple):
-    """Polynomials to prove: n in the axes of `World` and h² λ, on [centre + h low, centre + h high].
-
-    Four rows of coefficients in s = (time - centre)/h, integers over 2^bits.
-    """
-
-    centre: Fraction
-    h: Fraction
-    low: Fraction  # -1 <= low < high <= 1
-    high: Fraction
-    bits: int
-    coefficients: Sequence[Any]  # lists of integers, or FLINT's polynomials
 
 
 class Sizes(NamedTuple):

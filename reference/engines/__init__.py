@@ -1,11 +1,21 @@
-"""The integrators, heyoka and limbs, and one run of a scene with its transits.
+"""The engines, integrators of the model, each in a folder; one run of a scene with its transits, and two at a time.
 
-- `plan`: the input of an engine, `Plan`, and its output, `Run`.
-- `registry`: which engine and number type a run takes.
-- `run`, `side_by_side`: one run, and two at the same time.
-- `transits`: guards around heyoka's event detection.
+- `plan`: the input of an engine, `Plan`, and its output, `Run`; `engine`: the interface.
+- `registry`: the engines by name, which of them a run takes, and the run itself.
+- `side_by_side`: two runs at the same time.
 - `equations`: the compiled equations of a scene, as text.
 - `trajectory`, `variants`: single unconfirmed runs as binary64, of any system and with changed constants.
 - `heyoka/`: everything that uses heyoka, in any number type.
 - `limbs/`: an integrator in machine code for many digits; needs numba.
 """
+
+from __future__ import annotations
+
+from pkgutil import iter_modules
+
+AUTO = "auto"  # the fastest engine that is installed
+
+
+def engine_names() -> tuple[str, ...]:
+    """Return the names of the engines: each is a folder here, and its `engine.py` declares it as `ENGINE`."""
+    return tuple(sorted(module.name for module in iter_modules(__path__) if module.ispkg))

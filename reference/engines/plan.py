@@ -1,4 +1,4 @@
-"""The input of an engine, `Plan`, and its output, `Run`: states and transits as integers over a power of two."""
+"""The input of an engine, `Plan`, and its output, `Run`: tables of states and transits."""
 
 from __future__ import annotations
 
@@ -8,8 +8,12 @@ from fractions import Fraction
 
 from ..precision import NumberType
 from ..scene import Inputs
+from ..table import Table
 
 Report = Callable[[float], None]  # called with the simulated time reached, in s
+
+AT_REST = "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
+MOST_TURN = 1.75  # longest step times the swing's frequency: a small swing's series reach further, bounds do not
 
 
 @dataclass(frozen=True)
@@ -19,9 +23,10 @@ class Plan:
     Attributes:
         inputs: the exact inputs of a scene.
         formulation: a name of `model.formulations.FORMULATIONS`.
-        number: type to compute in; its name tells the engine, see `registry`.
+        number: type to compute in.
         times: times of output in s, increasing, from 0.
         transits: whether to find the zeros of xdot.
+        engine: a name of `registry.ENGINES`.
     """
 
     inputs: Inputs
@@ -29,17 +34,17 @@ class Plan:
     number: NumberType
     times: tuple[Fraction, ...]
     transits: bool
+    engine: str = "heyoka"
 
 
 @dataclass(frozen=True)
 class Run:
-    """The states and transits of a run, as integers over 2**bits, and its cost.
+    """The states and transits of a run, exactly as it computed them, and its cost.
 
     Attributes:
         plan: the plan that was run.
-        bits: exponent of the power of two.
-        grid: per output time x, y, z (m), vx, vy, vz (m/s), ax (m/s²).
-        zeros: per transit t (s) followed by the same seven; None if not asked for, or if xdot is identically zero.
+        grid: `columns.RUN` at each output time, in SI units.
+        transits: t and `columns.RUN` at each zero of xdot; None if not asked for, or if xdot is identically zero.
         directions: sign of each crossing of xdot.
         order: order of the Taylor polynomials.
         steps: number of steps.
@@ -50,9 +55,8 @@ class Run:
     """
 
     plan: Plan
-    bits: int
-    grid: list[tuple[int, ...]] = field(repr=False)
-    zeros: list[tuple[int, ...]] | None = field(repr=False)
+    grid: Table
+    transits: Table | None
     directions: list[int] = field(repr=False)
     order: int
     steps: int

@@ -1,42 +1,50 @@
-"""Which engine and number type a run takes: heyoka in any type, or limbs, many times faster beyond long double."""
+"""The engines by name, which of them a run takes, and the run itself."""
 
 from __future__ import annotations
 
-from importlib.util import find_spec
+from collections.abc import Callable
+from functools import cache
+from importlib import import_module
+from typing import Any
 
 from ..errors import InputError
-from ..precision import LONG_DOUBLE, NumberType, cheapest_type, limbs
+from . import AUTO, engine_names
+from .engine import Engine
+from .plan import Plan, Report, Run
 
-HEYOKA, LIMBS, AUTO = "heyoka", "limbs", "auto"
+
+@cache
+def engines() -> dict[str, Engine]:
+    """Return every engine by its name, which is that of its folder."""
+    return {name: import_module(f".{name}.engine", __package__).ENGINE for name in engine_names()}
 
 
-def engine_named(engine: str | None) -> str:
-    """Return "heyoka" or "limbs"; for None or "auto" the faster one that is installed (limbs needs numba).
+def checked(name: str | None) -> str:
+    """Return the name of an installed engine, or "auto", also for None.
 
     Raises:
-        InputError: no such engine, or numba is not installed.
+        InputError: no such engine, or it is not installed.
     """
-    installed = find_spec("numba") is not None
-    if engine is None or engine == AUTO:
-        return LIMBS if installed else HEYOKA
-    if engine not in (HEYOKA, LIMBS):
-        raise InputError("engine", engine, f"one of {AUTO}, {HEYOKA}, {LIMBS}")
-    if engine == LIMBS and not installed:
-        advice = "Install it with pip install 'foucault-reference[methods]', or take --engine heyoka."
-        raise InputError("--engine", engine, "the package numba, which it needs", advice)
-    return engine
+    if name is None or name == AUTO:
+        return AUTO
+    if name not in engine_names():
+        raise InputError("engine", name, f"one of {', '.join((AUTO, *engine_names()))}")
+    engine = engines()[name]
+    if not engine.installed:
+        advice = f"Install it with pip install 'foucault-reference[{engine.extra}]', or take --engine heyoka."
+        raise InputError("--engine", name, f"the package {', '.join(engine.requires)}, which it needs", advice)
+    return name
 
 
-def fastest(prec: int, engine: str) -> tuple[str, NumberType]:
-    """Return formulation and number type of the cheapest run that has `prec` bits."""
-    if engine == LIMBS and prec > LONG_DOUBLE.prec:
-        from .limbs import most_bits
+def fastest(prec: int, name: str = AUTO) -> Engine:
+    """Return the engine with the least expected cost at `prec` bits: the named one, where it has so many.
 
-        if prec <= most_bits():
-            return "inertial", limbs(prec)
-    return "momentum", cheapest_type(prec)
+    Where that one does not serve, an installed one that does is taken.
+    """
+    serving = [engine for engine in engines().values() if engine.installed and prec in engine.bits]
+    return min(serving, key=lambda engine: (engine.name != name and name != AUTO, engine.expected_s(1, prec)))
 
 
-def engine_of(number: str) -> str:
-    """Return the engine of a run whose number type was written as `number`."""
-    return LIMBS if number.startswith(LIMBS) else HEYOKA
+def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
+    """Integrate a plan with its engine; for arguments and errors see `Engine.run`."""
+    return engines()[plan.engine].run(plan, report, look_ahead)

@@ -10,22 +10,23 @@ from typing import Any
 from ..errors import FoucaultError
 from ..process import Emit, Worker
 from .plan import Plan, Report, Run
-from .run import run
+from .registry import engines, run
 
 REPORT_S = 0.2  # seconds between two reports of progress from the child
 WORTH_A_PROCESS = 4.0  # estimated CPU seconds from which a child pays for its start
 
 
-def run_both(first: Plan, second: Plan, expected_s: float, report: Report | None = None) -> tuple[Run, Run]:
+def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None) -> tuple[Run, Run]:
     """Do two runs, at the same time if the machine has two cores and the work is worth a child process.
 
     Args:
         first: runs in this process.
         second: runs in a child if that pays.
-        expected_s: estimated CPU seconds of the longer one.
+        steps: about how many steps either takes.
         report: called with the simulated time, the mean of both.
     """
-    if (os.cpu_count() or 1) < 2 or expected_s < WORTH_A_PROCESS:
+    saved_s = min(engines()[plan.engine].expected_s(steps, plan.number.prec) for plan in (first, second))
+    if (os.cpu_count() or 1) < 2 or saved_s < WORTH_A_PROCESS:
         first_run = run(first, report and (lambda t: report(t / 2)))
         end = float(first.times[-1])
         return first_run, run(second, report and (lambda t: report((end + t) / 2)))

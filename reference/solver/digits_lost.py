@@ -8,12 +8,12 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import cast
 
+from ..columns import GRID
 from ..engines.plan import Plan
-from ..engines.run import run
+from ..engines.registry import run
 from ..errors import UnreachableError
 from ..precision import DOUBLE, LONG_DOUBLE, real
 from ..scene import Inputs
-from ..table import disagreement
 from .pilot import Pilot, run_pilot
 from .reach import MAX_PREC
 
@@ -45,9 +45,8 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], pilot: Pilot | None
             run(Plan(each, "momentum", number, times, transits=False))
             for each in (inputs, _perturbed_release(inputs, nudge), _perturbed_constants(inputs, nudge))
         )
-        changes = [disagreement(base.grid, base.bits, other.grid, other.bits) for other in perturbed]
-        sizes = pilot.sizes
-        worst = max(change[i] / size for change in changes for i, size in enumerate(sizes) if size)
+        changes = [base.grid.only(GRID).distance(other.grid).largest() for other in perturbed]
+        worst = max(change[name] / size for change in changes for name, size in pilot.sizes.items() if size)
         if worst <= DIVERGED:
             ratio = worst / nudge
             return max(0.0, math.log10(ratio.numerator) - math.log10(ratio.denominator)) if ratio else 0.0

@@ -6,21 +6,22 @@ detection, in the cheapest type that serves, must find the same transits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
+from ..columns import GRID, POSITION, TRANSITS, VELOCITY
 from ..engines.plan import Plan, Report, Run
-from ..engines.run import run
+from ..engines.registry import run
 from ..errors import InputError, IntegrationError, UnreachableError
 from ..precision import cheapest_type
 from ..scene import Scene
 from ..table import Table, bits_in
 from .approximant import COEFFICIENT_BITS, Feed
 from .pilot import Pilot, run_pilot
-from .rounding import UndecidedRounding, check_decided, grid_decimals
-from .solution import GRID_COLUMNS, TRANSIT_COLUMNS, XDOT, CrossCheck, Proof, Solution, Source
+from .rounding import UndecidedRounding, check_decided
+from .solution import CrossCheck, Proof, Solution, Source
 
 ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
 ROUNDING_TRIES = 3  # radii that are tried before giving up
@@ -81,14 +82,14 @@ def _scaled(report: Report, span: float) -> Callable[[float], None]:
 
 def _usual_unit(pilot: Pilot, digits: int) -> Fraction:
     """Return the unit of the last digit of the middle position or velocity column; smaller ones have smaller balls."""
-    decimals = grid_decimals(pilot.largest, pilot.errors, digits)
-    return Fraction(1, 10 ** max(sorted(decimals[:3])[1], sorted(decimals[3:])[1]))
+    decimals = pilot.decimals(digits)
+    return Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
 
 
 def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approximant: Run, pilot: Pilot) -> Solution:
     bits = enclosed.bits + TABLE_BITS
-    grid = _table(GRID_COLUMNS, enclosed.states, bits)
-    gaps = _checked_states(grid, times, approximant)
+    grid = Table.of_intervals(GRID, enclosed.states, bits)
+    gaps = _checked_states(grid, times, approximant).largest()
     checks = [replace(CrossCheck.of(approximant, gaps, None), cpu_s=0.0)]  # no further run, so no further cost
     decided: list[Any] = []
     undecided: list[Any] = []
@@ -96,11 +97,11 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
         (decided if transit.kind == "one" else undecided).append(transit)
     transits = None
     if enclosed.transits is not None:
-        transits = _table(TRANSIT_COLUMNS, [(z.t, z.x, z.y, z.z, z.vy, z.ax) for z in decided], bits)
+        transits = Table.of_intervals(TRANSITS, [[getattr(z, name) for name in TRANSITS] for z in decided], bits)
         checks.append(
             _transit_check(scene, times, grid, transits, [z.direction for z in decided], pilot, bool(undecided))
         )
-    size = max(pilot.largest[:3])
+    size, gap = (max(of[name] for name in POSITION) for of in (pilot.largest, gaps))
     proof = Proof(
         method=enclosed.method,
         prec=enclosed.bits,
@@ -109,7 +110,7 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
         position_radius=enclosed.position_radius,
         velocity_radius=enclosed.velocity_radius,
         transit_radius=None if transits is None else max(transits.bound("t"), default=None),
-        agreement_bits=-bits_in(max(gaps[:3]) / size) if any(gaps[:3]) else approximant.plan.number.prec,
+        agreement_bits=-bits_in(gap / size) if gap else approximant.plan.number.prec,
         cpu_s={part: float(seconds) for part, seconds in vars(enclosed.cpu_s).items()},
     )
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
@@ -120,33 +121,19 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     )
 
 
-def _table(columns: tuple[str, ...], rows: Sequence[Sequence[Any]], bits: int) -> Table:
-    """Return the middles and half-widths of intervals as a table, rounded outwards."""
-    values, errors = [], []
-    for row in rows:
-        lows = [(x.low.numerator << bits) // x.low.denominator for x in row]
-        highs = [-((-x.high.numerator << bits) // x.high.denominator) for x in row]
-        middles = tuple((low + high) // 2 for low, high in zip(lows, highs, strict=True))
-        values.append(middles)
-        errors.append(tuple(high - middle for high, middle in zip(highs, middles, strict=True)))
-    return Table(columns, bits, values, errors)
-
-
-def _checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> tuple[Fraction, ...]:
-    """Return how far the run's states are from the middles of the balls, at most, per column, in m and m/s.
+def _checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
+    """Return how far the run's states are from the middles of the balls.
 
     Raises:
         IntegrationError: one lies outside its ball by more than the rounding of its evaluation.
     """
-    rounding = max(grid.largest()) / 2 ** (approximant.plan.number.prec - EVALUATION_BITS)
-    gaps = [Fraction(0)] * len(GRID_COLUMNS)
-    for t, row, middles, errors in zip(times, approximant.grid, grid.values, grid.errors, strict=True):
-        for i, name in enumerate(GRID_COLUMNS):
-            gap = abs(Fraction(row[i], 2**approximant.bits) - Fraction(middles[i], 2**grid.bits))
-            gaps[i] = max(gaps[i], gap)
-            if gap > Fraction(errors[i], 2**grid.bits) + rounding:
+    rounding = max(grid.largest().values()) / 2 ** (approximant.plan.number.prec - EVALUATION_BITS)
+    gaps = grid.distance(approximant.grid)
+    for name in grid.columns:
+        for t, gap, radius in zip(times, gaps.exact(name), grid.bound(name), strict=True):
+            if gap > radius + rounding:
                 raise IntegrationError(f"the run is outside the enclosure at t = {float(t)} s in {name}.")
-    return tuple(gaps)
+    return gaps
 
 
 def _transit_check(
@@ -170,40 +157,26 @@ def _transit_check(
 
     event_run = run_with_events(USUAL_DIGITS)
     try:
-        gaps = _transit_gaps(event_run, transits, directions, pilot, any_undecided)
+        gap = _transit_gap(event_run, transits, directions, pilot, any_undecided)
     except IntegrationError:  # the motion amplifies errors too much for so few digits
         event_run = run_with_events(FINER_DIGITS)
-        gaps = _transit_gaps(event_run, transits, directions, pilot, any_undecided)
-    state = [max(column) for column in zip(*_state_gaps(grid, event_run), strict=True)]
-    return CrossCheck.of(event_run, state, gaps)
+        gap = _transit_gap(event_run, transits, directions, pilot, any_undecided)
+    return CrossCheck.of(event_run, grid.distance(event_run.grid).largest(), gap)
 
 
-def _transit_gaps(
-    event_run: Run, transits: Table, directions: list[int], pilot: Pilot, any_undecided: bool
-) -> list[tuple[Fraction, ...]]:
-    """Return how far the transits that a run found are from the enclosed ones, in s."""
-    detected = [
-        (Fraction(row[0], 2**event_run.bits), sign)
-        for row, sign in zip(event_run.zeros or (), event_run.directions, strict=True)
-    ]
-    if len(detected) != len(directions) and not any_undecided:
-        raise IntegrationError(f"heyoka finds {len(detected)} transits, the enclosure {len(directions)}.")
+def _transit_gap(event_run: Run, transits: Table, directions: list[int], pilot: Pilot, any_undecided: bool) -> Fraction:
+    """Return how far the transits that a run found are from the enclosed ones, at most, in s."""
+    found = [] if event_run.transits is None else event_run.transits.exact("t")
+    if len(found) != len(directions) and not any_undecided:
+        raise IntegrationError(f"heyoka finds {len(found)} transits, the enclosure {len(directions)}.")
     prec = event_run.plan.number.prec
-    xdot_error, rounding = pilot.estimates(prec)[XDOT], event_run.plan.times[-1] / 2 ** (prec - EVALUATION_BITS)
-    remaining = iter(detected)
-    gaps: list[tuple[Fraction, ...]] = []
+    xdot_error, rounding = pilot.estimates(prec)["vx"], event_run.plan.times[-1] / 2 ** (prec - EVALUATION_BITS)
+    remaining = iter(zip(found, event_run.directions, strict=True))
+    largest = Fraction(0)
     for k, (t, ax, direction) in enumerate(zip(transits.exact("t"), transits.exact("ax"), directions, strict=True), 1):
         allowed = xdot_error / abs(ax) + rounding
         gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= allowed), None)
         if gap is None:
             raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {float(t)} s.")
-        gaps.append((gap,))
-    return gaps
-
-
-def _state_gaps(grid: Table, other: Run) -> list[tuple[Fraction, ...]]:
-    """Return how far a run's states are from the middles of the balls, per time and column."""
-    return [
-        tuple(abs(Fraction(a, 2**grid.bits) - Fraction(b, 2**other.bits)) for a, b in zip(middles, row, strict=False))
-        for middles, row in zip(grid.values, other.grid, strict=True)
-    ]
+        largest = max(largest, gap)
+    return largest

@@ -13,15 +13,14 @@ from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
 
-from ..engines.plan import Plan, Run
-from ..engines.run import run
+from ..columns import GRID, HORIZONTAL, POSITION, VELOCITY
+from ..engines.plan import Plan
+from ..engines.registry import run
 from ..errors import UnreachableError
 from ..precision import DOUBLE, LONG_DOUBLE, NumberType, decimals_for, real
 from ..scene import Inputs
-from ..table import bits_in, disagreement, largest_of
+from ..table import Table, bits_in, decimals_of, resolved
 from .reach import MAX_PREC, MAX_STEPS, check_pace, effort
-from .rounding import NOISE, grid_decimals
-from .solution import STATE, XDOT
 
 if TYPE_CHECKING:
     from ..engines.heyoka.stepper import Stepper
@@ -42,39 +41,41 @@ class Pilot:
 
     Attributes:
         prec: bits of the coarser pilot run.
-        errors: its largest error per grid column, in m and m/s.
-        largest: largest number per grid column, in m and m/s.
+        errors: its largest error in each column of the grid, in SI units.
+        largest: largest number in each column of the grid.
         tension: least tension of the cord over l, in 1/s²; negative where a rod is pushed.
         cpu_s: CPU seconds of both runs.
         steps: steps of the coarser run.
     """
 
     prec: int
-    errors: tuple[Fraction, ...]
-    largest: tuple[Fraction, ...]
+    errors: dict[str, Fraction]
+    largest: dict[str, Fraction]
     tension: float
     cpu_s: float
     steps: int
 
     @property
-    def sizes(self) -> tuple[Fraction, ...]:
+    def sizes(self) -> dict[str, Fraction]:
         """Size of each column: its largest number, or that of its kind if the column is only rounding noise."""
-        resolved = [size if size > NOISE * error else 0 for size, error in zip(self.largest, self.errors, strict=True)]
-        return tuple(Fraction(size or max(resolved[i // 3 * 3 :][:3])) for i, size in enumerate(resolved))
+        return resolved(self.largest, self.errors)
 
     @property
-    def cautious(self) -> tuple[Fraction, ...]:
+    def cautious(self) -> dict[str, Fraction]:
         """Errors to assume where no second run checks them: with a safety factor, a floor, and the same for x and y."""
-        floored = [
-            ESTIMATE_FACTOR * max(error, LEAST_ULPS * largest / 2**self.prec)
-            for error, largest in zip(self.errors, self.largest, strict=True)
-        ]
-        x, y, z, vx, vy, vz = floored
-        return (max(x, y), max(x, y), z, max(vx, vy), max(vx, vy), vz)
+        floored = {
+            name: ESTIMATE_FACTOR * max(error, LEAST_ULPS * self.largest[name] / 2**self.prec)
+            for name, error in self.errors.items()
+        }
+        return {name: max(floored[one] for one in HORIZONTAL.get(name, (name,))) for name in floored}
 
-    def estimates(self, prec: int) -> tuple[Fraction, ...]:
+    def estimates(self, prec: int) -> dict[str, Fraction]:
         """Return the errors to state for a single run at a precision."""
-        return tuple(error * Fraction(2) ** (self.prec - prec) for error in self.cautious)
+        return {name: error * Fraction(2) ** (self.prec - prec) for name, error in self.cautious.items()}
+
+    def decimals(self, digits: int) -> dict[str, int]:
+        """Return the digits after the point that give the largest number of each column so many significant ones."""
+        return decimals_of(self.sizes, digits)
 
     def bits_for(self, digits: int, t_end: Fraction | None, *, checked: bool) -> int:
         """Return the bits with which every column's error stays `MARGIN_BITS` below its last digit.
@@ -86,15 +87,14 @@ class Pilot:
         """
         needed = 0
         expected = self.errors if checked else self.cautious
-        decimals = grid_decimals(self.largest, self.errors, digits)
-        for error, largest, places in zip(expected, self.largest, decimals, strict=True):
+        for name, places in self.decimals(digits).items():
             unit = Fraction(1, 10**places)
-            if error:
-                needed = max(needed, self.prec + bits_in(error / unit) + MARGIN_BITS)
-            elif largest:
-                needed = max(needed, bits_in(largest / unit) + MARGIN_BITS)
+            if expected[name]:
+                needed = max(needed, self.prec + bits_in(expected[name] / unit) + MARGIN_BITS)
+            elif self.largest[name]:
+                needed = max(needed, bits_in(self.largest[name] / unit) + MARGIN_BITS)
         if t_end is not None:
-            ratio = expected[XDOT] * 10 ** decimals_for(t_end, digits)
+            ratio = expected["vx"] * 10 ** decimals_for(t_end, digits)
             needed = max(needed, self.prec + bits_in(ratio) + CLOSE_TRANSIT_BITS)
         return needed
 
@@ -121,11 +121,12 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...]) -> Pilot:
                 "A length, force, rate or time of the scene is beyond the range of binary64."
             ) from None
         look_ahead, steps, prec = None, coarse.steps, pair[0].prec
-        errors = disagreement(coarse.grid, coarse.bits, fine.grid, fine.bits)[STATE]
-        largest = largest_of(fine.grid, fine.bits)[STATE]
+        grid = fine.grid.only(GRID)
+        gaps, largest = grid.distance(coarse.grid), grid.largest()
+        errors = gaps.largest()
         if not _lost(errors, largest, inputs.length, prec):
             return Pilot(prec, errors, largest, coarse.tension, coarse.cpu_s + fine.cpu_s, steps)
-        last, good_until = (last_prec, good_until), _good_until(coarse, fine, largest)
+        last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
         next_prec = max(2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1]))
         pair, last_prec = (real(next_prec), real(next_prec + PILOT_GAP_BITS)), prec
     raise UnreachableError(
@@ -135,9 +136,9 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...]) -> Pilot:
     )
 
 
-def _lost(errors: tuple[Fraction, ...], largest: tuple[Fraction, ...], length: Fraction, prec: int) -> bool:
+def _lost(errors: dict[str, Fraction], largest: dict[str, Fraction], length: Fraction, prec: int) -> bool:
     """Return whether position or velocity keeps no digit; one that shrinks with the precision is zero, not lost."""
-    parts = [(max(errors[i : i + 3]), max(largest[i : i + 3])) for i in (0, 3)]
+    parts = [tuple(max(of[name] for name in kind) for of in (errors, largest)) for kind in (POSITION, VELOCITY)]
     zero = length / 2 ** (prec // 2) if prec >= ZERO_PREC else Fraction(0)
     return any(error > size * LOST and size > zero for error, size in parts)
 
@@ -153,13 +154,10 @@ def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], en
     return math.ceil(more + (end - later) * (more - less) / (later - sooner))
 
 
-def _good_until(coarse: Run, fine: Run, largest: tuple[Fraction, ...]) -> Fraction:
+def _good_until(gaps: Table, times: tuple[Fraction, ...], largest: dict[str, Fraction]) -> Fraction:
     """Return the time in s until which both position and velocity keep a digit."""
-    sizes = [max(largest[i : i + 3]) for i in (0, 0, 0, 3, 3, 3)]
-    good_until = Fraction(0)
-    for t, a, b in zip(coarse.plan.times, coarse.grid, fine.grid, strict=True):
-        gaps = disagreement([a], coarse.bits, [b], fine.bits)
-        if any(gap > size * LOST for gap, size in zip(gaps, sizes, strict=False)):
-            break
-        good_until = t
-    return good_until
+    most = {name: LOST * max(largest[one] for one in kind) for kind in (POSITION, VELOCITY) for name in kind}
+    columns = [(gaps.exact(name), limit) for name, limit in most.items()]
+    lost = (i for i in range(len(times)) if any(column[i] > limit for column, limit in columns))
+    first = next(lost, len(times))
+    return times[first - 1] if first else Fraction(0)

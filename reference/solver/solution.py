@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from ..columns import GRID, POSITION, VELOCITY
 from ..engines.plan import Run
+from ..lazy import no_attribute
 from ..precision import Array
 from ..scene import Level, Scene
 from ..table import Table
-
-GRID_COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
-TRANSIT_COLUMNS = ("t", "x", "y", "z", "vy", "ax")
-STATE = slice(len(GRID_COLUMNS))  # these columns in a row of a run's grid, which ends with ax
-XDOT = GRID_COLUMNS.index("vx")
 
 
 @dataclass(frozen=True)
@@ -34,26 +31,25 @@ class CrossCheck:
     cpu_s: float
 
     @classmethod
-    def of(
-        cls, witness: Run, grid_gap: Sequence[Fraction], zero_gap: Sequence[tuple[Fraction, ...]] | None
-    ) -> CrossCheck:
-        """Build from a run and its differences, per grid column and per transit."""
+    def of(cls, witness: Run, gaps: Mapping[str, Fraction], transit_s: Fraction | None) -> CrossCheck:
+        """Build from a run, its largest difference in each column of the grid, and that of the transits' times."""
         return cls(
             formulation=witness.plan.formulation,
             number=str(witness.plan.number),
             order=witness.order,
             steps=witness.steps,
-            position_m=max(grid_gap[:3]),
-            velocity_m_s=max(grid_gap[3:]),
-            transit_s=max((row[0] for row in zero_gap), default=Fraction(0)) if zero_gap is not None else None,
+            position_m=max(gaps[name] for name in POSITION),
+            velocity_m_s=max(gaps[name] for name in VELOCITY),
+            transit_s=transit_s,
             cpu_s=witness.cpu_s,
         )
 
 
 @dataclass(frozen=True)
 class Source:
-    """The run that published numbers come from: formulation, number type, order, steps, cost."""
+    """The run that published numbers come from: engine, formulation, number type, order, steps, cost."""
 
+    engine: str
     formulation: str
     number: str
     order: int
@@ -64,7 +60,8 @@ class Source:
     @classmethod
     def of(cls, run: Run) -> Source:
         """Build from a run."""
-        return cls(run.plan.formulation, str(run.plan.number), run.order, run.steps, run.cpu_s, run.compile_s)
+        plan = run.plan
+        return cls(plan.engine, plan.formulation, str(plan.number), run.order, run.steps, run.cpu_s, run.compile_s)
 
 
 @dataclass(frozen=True)
@@ -82,16 +79,15 @@ class Proof:
     cpu_s: dict[str, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Solution:
     """A solved scene.
 
     Attributes:
         scene: the scene as solved.
         times: grid times in s, exact.
-        grid: x, y, z in m and vx, vy, vz in m/s at those times.
-        transits: t in s, x, y, z in m, vy in m/s, ax in m/s² of every zero of xdot; None if not asked for, or if
-            xdot is identically zero.
+        grid: `columns.GRID` at those times, in SI units.
+        transits: `columns.TRANSITS` of every zero of xdot; None if not asked for, or if xdot is identically zero.
         directions: +1 where xdot goes from - to +, per transit.
         run: the run that the numbers come from.
         checks: runs that agree with it.
@@ -99,7 +95,8 @@ class Solution:
         proof: the enclosure, at the level enclosed.
         possible: intervals in s, each with a parity, that may hold transits which the proof could not decide.
 
-    `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,).
+    `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,); both tables have
+    `table["x"]`, the same, `table.exact("x")` as fractions, and `table.bound("x")`.
     """
 
     scene: Scene
@@ -125,6 +122,11 @@ class Solution:
 
     def __getattr__(self, name: str) -> Any:
         """Return a grid column by name."""
-        if name in ("x", "y", "z", "vx", "vy", "vz"):
-            return self.grid.array(name)
-        raise AttributeError(name)
+        if name in GRID:
+            return self.grid[name]
+        raise no_attribute("a Solution", name, {*GRID, "t", *(one.name for one in fields(self))})
+
+    def __repr__(self) -> str:
+        """Return scene, level, digits, and the numbers of rows and transits."""
+        run, transits = self.scene.run, f"{len(self.directions)} transits"
+        return f"Solution({self.scene.id}: {run.level}, {run.digits} digits, {len(self.times)} grid times, {transits})"

@@ -8,30 +8,26 @@ run. For `computed` there is one run only, and for `enclosed` a proof (`enclosed
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from dataclasses import replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 
-from ..engines import registry as engines
+from ..columns import GRID, TRANSITS
 from ..engines.plan import Plan, Report, Run
-from ..engines.run import run
+from ..engines.registry import checked, fastest, run
 from ..engines.side_by_side import run_both
 from ..errors import UnreachableError
 from ..precision import LONG_DOUBLE, real
 from ..scene import Scene
-from ..table import Table, bits_in, disagreement, largest_of
+from ..table import Table, bits_in, decimals_of, resolved
 from .pilot import MARGIN_BITS, Pilot, run_pilot
 from .reach import MAX_PREC, MAX_STEPS, effort
-from .rounding import grid_decimals, transit_decimals
-from .solution import GRID_COLUMNS, STATE, TRANSIT_COLUMNS, CrossCheck, Solution, Source
+from .solution import CrossCheck, Solution, Source
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
 MAX_RAISES = 6  # pairs of runs before giving up
-
-_ZERO_TO_TRANSIT = (0, 1, 2, 3, 5, 7)  # columns t, x, y, z, vy, ax of a run's zeros (t, x, y, z, vx, vy, vz, ax)
 
 
 def confirming_formulation(pilot: Pilot) -> str:
@@ -57,8 +53,8 @@ def solve(
         level: one of `scene.LEVELS`.
         t_end: end of the run in s, as a decimal string.
         transits: whether to find every zero of xdot.
-        engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for limbs where numba is installed. At the
-            level confirmed the run that confirms is always heyoka's.
+        engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that is installed. At
+            the level confirmed the run that confirms is always heyoka's.
         report: called with the simulated time reached, in s.
 
     Returns:
@@ -72,7 +68,7 @@ def solve(
     scene = scene.with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
     inputs, settings = scene.exact, scene.run
     times = tuple(inputs.grid)
-    engine = engines.engine_named(engine)
+    engine = checked(engine)
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
 
@@ -87,39 +83,39 @@ def _computed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: s
     """Solve by a single run, whose errors are estimated from the pilot's."""
     prec = pilot.bits_for(scene.run.digits, _span(scene), checked=False)
     _check_reach(pilot, prec, scene.run.digits)
-    formulation, number = engines.fastest(_rounded(prec) if prec > LONG_DOUBLE.prec else prec, engine)
-    single = run(Plan(scene.exact, formulation, number, times, scene.run.transits), report)
-    return _assemble(scene, times, single, pilot.estimates(number.prec), None, (), pilot)
+    prec = _rounded(prec) if prec > LONG_DOUBLE.prec else prec
+    single = run(fastest(prec, engine).plan(scene.exact, prec, times, scene.run.transits), report)
+    return _assemble(scene, times, single, pilot.estimates(single.plan.number.prec), None, (), pilot)
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
     """Solve by two runs, at a precision that is raised until they agree."""
-    confirmed = scene.run.level == "confirmed"
-    confirming = confirming_formulation(pilot)
-    prec = _rounded(max(pilot.bits_for(scene.run.digits, _span(scene), checked=True), LONG_DOUBLE.prec))
-    _check_reach(pilot, prec, scene.run.digits)
+    inputs, transits, digits = scene.exact, scene.run.transits, scene.run.digits
+    prec = _rounded(max(pilot.bits_for(digits, _span(scene), checked=True), LONG_DOUBLE.prec))
+    _check_reach(pilot, prec, digits)
     last_gap: Fraction | None = None
     for _ in range(MAX_RAISES):
-        formulation, number = engines.fastest(prec + FINER_BITS, engine)
-        fine = Plan(scene.exact, formulation, number, times, scene.run.transits)
-        formulation, number = (confirming, real(prec)) if confirmed else engines.fastest(prec, engine)
-        coarse = replace(fine, formulation=formulation, number=number)
-        published, witness = run_both(fine, coarse, _expected_s(pilot, fine), report)
-        missing, grid_gap, zero_gap = _missing_bits(published, witness, scene.run.digits)
-        if not missing:
-            errors = tuple(2 * gap for gap in grid_gap)
-            check = CrossCheck.of(witness, grid_gap, zero_gap)
-            zero_errors = None if zero_gap is None else [tuple(2 * gap for gap in row) for row in zero_gap]
-            return _assemble(scene, times, published, errors, zero_errors, (check,), pilot)
-        if last_gap is not None and max(grid_gap) >= last_gap > 0:
+        fine_prec = prec + FINER_BITS
+        fine = fastest(fine_prec, engine).plan(inputs, fine_prec, times, transits)
+        coarse = fastest(prec, engine).plan(inputs, prec, times, transits)
+        if scene.run.level == "confirmed":
+            coarse = Plan(inputs, confirming_formulation(pilot), real(prec), times, transits)
+        published, witness = run_both(fine, coarse, pilot.steps, report)
+        gap = _Gap.between(published, witness, digits)
+        if not gap.missing_bits:
+            transit_s = None if gap.transits is None else gap.transits.largest()["t"]
+            check = CrossCheck.of(witness, gap.grid, transit_s)
+            errors = {name: 2 * size for name, size in gap.grid.items()}
+            return _assemble(scene, times, published, errors, gap.transits, (check,), pilot)
+        largest = max(gap.grid.values())
+        if last_gap is not None and largest >= last_gap > 0:
             raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
-        last_gap = max(grid_gap)
-        next_prec = _rounded(prec + missing)
+        last_gap, next_prec = largest, _rounded(prec + gap.missing_bits)
         if _out_of_reach(pilot, next_prec):
             break
         prec = next_prec
     raise UnreachableError(
-        f"Two runs up to {prec} bits do not agree to {scene.run.digits} digits.",
+        f"Two runs up to {prec} bits do not agree to {digits} digits.",
         "Ask for fewer digits or a shorter run; a transit that only grazes xdot = 0 cannot be decided this way.",
     )
 
@@ -146,38 +142,44 @@ def _rounded(prec: int) -> int:
     return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
 
 
-def _expected_s(pilot: Pilot, plan: Plan) -> float:
-    """Estimate the CPU seconds of heyoka's run from the pilot's steps: 0.6 ms a step at 160 bits, growing as bits²."""
-    return 0.0 if plan.number.name == "limbs" else pilot.steps * 6e-4 * (plan.number.prec / 160) ** 2
+@dataclass(frozen=True)
+class _Gap:
+    """How far two runs are apart.
+
+    Attributes:
+        missing_bits: that they lack to agree to a quarter of the last digit; 0 if they do agree.
+        grid: largest difference in each column of the grid.
+        transits: differences of each transit; None where they are not to be compared.
+    """
+
+    missing_bits: int
+    grid: dict[str, Fraction]
+    transits: Table | None
+
+    @classmethod
+    def between(cls, published: Run, witness: Run, digits: int) -> _Gap:
+        """Compare a run with its witness; the decimals are those that the published one gets."""
+        states = published.grid.only(GRID)
+        gaps = states.distance(witness.grid).largest()
+        decimals = decimals_of(resolved(states.largest(), gaps), digits)
+        missing = _bits_lacking(gaps, decimals)
+        if published.transits is None or witness.transits is None:
+            return cls(missing, gaps, None)
+        if published.directions != witness.directions:
+            return cls(witness.plan.number.prec // 2, gaps, None)
+        transits = published.transits.only(TRANSITS)
+        apart = transits.distance(witness.transits)
+        decimals = decimals_of(transits.largest(), digits) | {
+            name: places for name, places in decimals.items() if name in TRANSITS
+        }
+        return cls(max(missing, _bits_lacking(apart.largest(), decimals)), gaps, apart)
 
 
-def _missing_bits(
-    published: Run, witness: Run, digits: int
-) -> tuple[int, tuple[Fraction, ...], list[tuple[Fraction, ...]] | None]:
-    """Return the bits that two runs lack to agree to a quarter of the last digit, and how far apart they are."""
-    gaps = disagreement(published.grid, published.bits, witness.grid, witness.bits)[STATE]
-    decimals = grid_decimals(largest_of(published.grid, published.bits)[STATE], gaps, digits)
-    missing = _bits_lacking(gaps, decimals)
-    if published.zeros is None or witness.zeros is None:
-        return missing, gaps, None
-    if published.directions != witness.directions:
-        return witness.plan.number.prec // 2, gaps, None
-    if not published.zeros:
-        return missing, gaps, []
-    rows = [
-        tuple(disagreement([a], published.bits, [b], witness.bits)[i] for i in _ZERO_TO_TRANSIT)
-        for a, b in zip(published.zeros, witness.zeros, strict=True)
-    ]
-    t, *_, ax = largest_of(published.zeros, published.bits)
-    worst = tuple(map(max, zip(*rows, strict=True)))
-    return max(missing, _bits_lacking(worst, transit_decimals(decimals, t, ax, digits))), gaps, rows
-
-
-def _bits_lacking(gaps: Sequence[Fraction], decimals: Sequence[int]) -> int:
+def _bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> int:
     """Return the bits by which a gap exceeds one unit of its last digit, and a margin; 0 if all keep to `AGREEMENT`."""
     lacking = 0
-    for gap, places in zip(gaps, decimals, strict=True):
-        ratio = gap * 10**places
+    for name, gap in gaps.items():
+        ratio = gap * 10 ** decimals[name]
         if ratio > AGREEMENT:
             lacking = max(lacking, bits_in(ratio) + MARGIN_BITS)
     return lacking
@@ -187,38 +189,28 @@ def _assemble(
     scene: Scene,
     times: tuple[Fraction, ...],
     published: Run,
-    errors: tuple[Fraction, ...],
-    zero_errors: list[tuple[Fraction, ...]] | None,
+    errors: Mapping[str, Fraction],
+    apart: Table | None,
     checks: tuple[CrossCheck, ...],
     pilot: Pilot,
 ) -> Solution:
-    """Return a run with its bounds as a `Solution`."""
-
-    def fixed(values: Sequence[Fraction]) -> tuple[int, ...]:
-        return tuple(math.ceil(value * 2**published.bits) for value in values)
-
-    states = [row[STATE] for row in published.grid]
-    grid = Table(GRID_COLUMNS, published.bits, states, [fixed(errors)] * len(states))
-    transits: Table | None = None
-    if published.zeros is not None:
-        rows = [tuple(row[i] for i in _ZERO_TO_TRANSIT) for row in published.zeros]
-        row_errors = [
-            _transit_errors(row, published.bits, errors, zero_errors[i] if zero_errors else None)
-            for i, row in enumerate(rows)
-        ]
-        transits = Table(TRANSIT_COLUMNS, published.bits, rows, [fixed(row) for row in row_errors])
+    """Return a run with its bounds as a `Solution`; `apart` are the differences of its transits from a second run's."""
+    grid = published.grid.only(GRID).with_errors(errors)
+    transits = None if published.transits is None else published.transits.only(TRANSITS)
+    if transits is not None:
+        transits = transits.with_errors(_transit_errors(transits, errors, apart))
     return Solution(scene, times, grid, transits, published.directions, Source.of(published), checks, pilot.cpu_s)
 
 
-def _transit_errors(
-    row: tuple[int, ...], bits: int, errors: tuple[Fraction, ...], measured: tuple[Fraction, ...] | None
-) -> tuple[Fraction, ...]:
-    """Return the errors of a transit, none less than the two runs differ.
+def _transit_errors(transits: Table, errors: Mapping[str, Fraction], apart: Table | None) -> list[dict[str, Fraction]]:
+    """Return the errors of each transit, none less than twice what the two runs differ by.
 
     That of its time is the error of xdot over |ax|; that of ax is taken to be as large as that of vx.
     """
-    x, y, z, vx, vy, _ = errors
-    ax = abs(Fraction(row[TRANSIT_COLUMNS.index("ax")], 2**bits))
-    t = vx / ax if ax else Fraction(10) ** 9  # where xdot only grazes zero, the time is as good as unknown
-    expected = (t, x, y, z, vy, vx)
-    return tuple(map(max, expected, measured)) if measured else expected
+    measured = [{name: apart.exact(name) for name in TRANSITS}] if apart is not None else []
+    rows = []
+    for i, ax in enumerate(transits.exact("ax")):
+        # where xdot only grazes zero, the time is as good as unknown
+        own = {**errors, "t": errors["vx"] / abs(ax) if ax else Fraction(10) ** 9, "ax": errors["vx"]}
+        rows.append({name: max([own[name], *(2 * gaps[name][i] for gaps in measured)]) for name in TRANSITS})
+    return rows

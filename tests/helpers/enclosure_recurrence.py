@@ -9,12 +9,12 @@ from operator import mul
 from flint import ctx, fmpz_poly
 
 from reference.enclosure import Enclosure, enclose
-from reference.enclosure.approximant import GRAIN, TaylorStep, pair, stretched
+from reference.enclosure.approximant import GRAIN, pair, stretched
 from reference.enclosure.balls import cross, integer
 from reference.enclosure.bound import World
 from reference.enclosure.run import SCENE_GUARD_BITS
-from reference.enclosure.shapes import Step
 from reference.scene import Inputs
+from reference.taylor_step import TaylorStep
 
 GUARD_BITS = 16  # carried below the last bit of the coefficients, for the rounding of the recurrence
 SLACK_BITS = 12  # rounding of coefficient k enters the defect k times: the last terms need not be smaller than that
@@ -23,10 +23,10 @@ POWERS = (0, 0, 0, 1, 1, 1, 2, 1)  # of h in x, m, w, V, λ, j
 BLOCK = 18  # orders summed term by term before the products are taken as polynomials
 
 
-def recurrence(inputs: Inputs) -> Callable[[int], Iterator[Step]]:
+def recurrence(inputs: Inputs) -> Callable[[int], Iterator[TaylorStep]]:
     """Return a scene's approximant: a function of the bits of the coefficients that gives steps without end."""
 
-    def steps(bits: int) -> Iterator[Step]:
+    def steps(bits: int) -> Iterator[TaylorStep]:
         order = max(LEAST_ORDER, round(ORDER_PER_BIT * bits))
         first = coarse(Fraction(1 / (4 * float(World(inputs, 128).w0))))
         return pair(Recurrence(World(inputs, bits + SCENE_GUARD_BITS), bits, order).chain(first))
@@ -72,9 +72,8 @@ class Recurrence:
             if target < h:
                 part = Fraction(max(int(target / h * GRAIN), 1), GRAIN)
                 rows, length = stretched(rows, POWERS, part), h * part
-            yield TaylorStep(
-                t, length, self.bits, tuple([c >> GUARD_BITS for c in row] for row in (*rows[:3], rows[6]))
-            )
+            shortened = tuple([c >> GUARD_BITS for c in row] for row in (*rows[:3], rows[6]))
+            yield TaylorStep(t, length, Fraction(0), Fraction(1), self.bits, shortened)
             self._move(rows, length)
             t, before = t + length, reach
             h = h if h <= target < h * Fraction(17, 16) else coarse(min(target, 2 * h))

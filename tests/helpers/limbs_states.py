@@ -9,8 +9,9 @@ import numpy.typing as npt
 
 from reference.engines.limbs.integration import Integration
 from reference.engines.limbs.lanes import LANES
-from reference.engines.limbs.limb import LIMB_BITS, RADIX, UNIT, Array
+from reference.engines.limbs.limb import RADIX, UNIT, Array
 from reference.engines.limbs.problem import limb_problem
+from reference.engines.limbs.size import LIMB_BITS
 from reference.errors import InputError
 from reference.scene import Inputs
 

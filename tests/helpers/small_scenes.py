@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from reference.engines.plan import Run
+from reference.engines.registry import engines
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.precision import GUARD_BITS, NumberType
@@ -19,6 +21,12 @@ def model_at(scene: Scene, prec: int) -> tuple[Any, Any, Any, Any]:
     """Return context, constants, n and v of a scene at a precision in bits."""
     start = Start.of(scene.exact, prec)
     return start.ctx, start.k, start.n, start.v
+
+
+def run_in_limbs(scene: Scene, prec: int, times: Any, transits: bool = True, report: Any = None) -> Run:
+    """Return a run of the engine limbs at a precision in bits."""
+    limbs = engines()["limbs"]
+    return limbs.run(limbs.plan(scene.exact, prec, times, transits), report)
 
 
 def start_for(scene: Scene, number: NumberType) -> Start:

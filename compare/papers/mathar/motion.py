@@ -8,7 +8,7 @@ import numpy as np
 
 from reference import load_scene
 
-from ...approximations import Motion, approximation
+from ...approximations import APPROXIMATIONS, Motion
 from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, Vector, add, degrees, mpf, norm, shown
 from ..first_principles import rest
@@ -18,7 +18,7 @@ from .frequency import STILL, VII, day_frequency, planar_period, released
 
 
 def _transit(column: str) -> list[Any]:
-    return [mpf(text) for text in paris_day().transits_text[column]]
+    return [mpf(text) for text in paris_day().transits.decimals(column)]
 
 
 def _frame_5() -> Any:
@@ -92,7 +92,7 @@ def _north_east_to_east() -> Finding:
 
 def _coupling_is_ahead() -> Finding:
     scene, at = load_scene("paris"), np.array([0.0, 12000.0])
-    simpler = approximation("mathar_item_2")
+    simpler = APPROXIMATIONS["mathar_item_2"]
     assert isinstance(simpler, Motion)
     ahead = lead(simpler.trajectory(scene, at)[-1], path_in(scene, at)[-1])
     return Finding(0 < ahead < 1, f"{ahead:.9f} s ahead at 12000 s (double run)")

@@ -4,9 +4,11 @@ heyoka's traps are dealt with here: constants enter in the run's own precision a
 its only sign of a lost root, are caught; outcome codes are checked; arrays of `real` leak without the custom memory
 handler; the disk cache never hits beyond 128 bits and is switched off for `real`.
 
+- `engine`: its declaration; `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof.
 - `numbers`: its number types, and exact conversions.
 - `system`: a formulation as its expressions.
 - `stepper`: one scene, step by step, with events, dense output and Taylor coefficients.
+- `transits`: guards around its event detection.
 - `propagator`: any system without events, in one call.
 - `log`: its log, captured.
 """

@@ -12,11 +12,11 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from ...precision import NumberType
+from ...precision import DOUBLE, LONG_DOUBLE, NumberType
 
 hy.install_custom_numpy_mem_handler()
 
-_TYPES = {"double": float, "long_double": np.longdouble, "real": hy.real}
+_HARDWARE = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}  # type, and that of arrays
 
 
 class Numbers:
@@ -24,9 +24,10 @@ class Numbers:
 
     def __init__(self, number: NumberType) -> None:
         self.number = number
-        self.type: Any = _TYPES[number.name]
-        self.dtype: Any = {"double": np.float64, "long_double": np.longdouble, "real": hy.real}[number.name]
-        self.keywords: dict[str, Any] = {"prec": number.prec} if number.name == "real" else {}
+        self.type: Any
+        self.dtype: Any
+        self.type, self.dtype = _HARDWARE.get(number, (hy.real, hy.real))
+        self.keywords: dict[str, Any] = {} if number.hardware else {"prec": number.prec}
         self._twos: dict[int, Any] = {}
 
     def of(self, value: Any) -> Any:
@@ -37,10 +38,10 @@ class Numbers:
             sign, mantissa, exponent, _ = value._mpf_
             mantissa = -int(mantissa) if sign else int(mantissa)
             top, bottom = (mantissa << exponent, 1) if exponent >= 0 else (mantissa, 1 << -exponent)
-        if self.number.name == "double":
+        if self.number == DOUBLE:
             return top / bottom
         rounded, shift = _rounded(top, bottom, self.number.prec)
-        if self.number.name == "real":
+        if not self.number.hardware:
             return hy.real(rounded, self.number.prec) * hy.real(2, self.number.prec) ** shift
         high = rounded >> 32 << 32
         return np.ldexp(np.longdouble(high) + np.longdouble(rounded - high), shift)

@@ -49,7 +49,7 @@ class Propagator:
         keywords = dict(self.numbers.keywords)
         if tolerance is not None:
             keywords["tol"] = self.numbers.of(Fraction(tolerance))
-        hy.llvm_state.set_diskcache_enabled(number.name != "real")
+        hy.llvm_state.set_diskcache_enabled(number.hardware)
         started = time.process_time()
         zeros = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)
         self._ta: Any = hy.taylor_adaptive(system, zeros, fp_type=self.numbers.type, **keywords)

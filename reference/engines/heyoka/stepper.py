@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import heyoka as hy
 import numpy as np
 
+from ...columns import RUN
 from ...errors import IntegrationError
 from ...model.force import acceleration, tension
 from ...model.formulations import Formulation
 from ...model.start import Start
 from ...precision import NumberType
+from ...table import Table
 from .numbers import Numbers
 from .system import System
 
@@ -30,32 +32,6 @@ class Zero:
     t: Any
     direction: int
     state: Any
-
-
-@dataclass(frozen=True)
-class HeyokaTaylorStep:
-    """Taylor polynomials of one step of `momentum`: n and h H as polynomials of s = (time - t)/h.
-
-    Attributes:
-        t: start of the step in s, exact.
-        h: its length in s, exact.
-        bits: coefficients are integers over 2**bits.
-        scaled: coefficients times 2**bits, not yet integers, shape (6, order + 1).
-    """
-
-    t: Fraction
-    h: Fraction
-    bits: int
-    scaled: Any = field(repr=False)
-
-    @property
-    def coefficients(self) -> tuple[list[int], ...]:
-        """Six rows of integers, lowest order first; computed at every access, which costs a sixth of a step."""
-        return tuple([int(c) for c in row] for row in self.scaled)
-
-    def log2_largest(self, order: int) -> int:
-        """Return the power of two above the coefficients of an order."""
-        return max(abs(int(c)).bit_length() for c in self.scaled[:, order]) - self.bits
 
 
 class Stepper:
@@ -93,7 +69,7 @@ class Stepper:
             event = hy.nt_event(system.xdot, callback=record, fp_type=self.numbers.type)
             keywords["nt_events"] = [event]
         state = [self.numbers.of(value) for value in start.state(formulation)]
-        hy.llvm_state.set_diskcache_enabled(number.name != "real")
+        hy.llvm_state.set_diskcache_enabled(number.hardware)
         started = time.process_time()
         self._ta: Any = hy.taylor_adaptive(
             system.equations, np.array(state, dtype=self.numbers.dtype), fp_type=self.numbers.type, **keywords
@@ -162,14 +138,18 @@ class Stepper:
         self.back(start)
         return coefficients, h
 
-    def expand(self, limit: Any, bits: int) -> HeyokaTaylorStep:
-        """Take one step, at most `limit` seconds long, and return its Taylor polynomials, with its times exact."""
-        t = self._exact_time()
+    def expand(self, limit: Any, bits: int) -> tuple[Fraction, Fraction, Any]:
+        """Take one step, at most `limit` seconds long; return its start and length in s, both exact, and its series.
+
+        The series, of s = (time - start)/length, is that of `momentum`: n, and length times H, each times 2**bits and
+        not yet integer, shape (6, order + 1).
+        """
+        start = self._exact_time()
         self._count_step(self._ta.step(limit, True)[0])
-        h = self._exact_time() - t
+        h = self._exact_time() - start
         if (h, bits) != self._powers[0]:
             self._powers = ((h, bits), self._row_powers(h, bits))
-        return HeyokaTaylorStep(t, h, bits, self._ta.tc * self._powers[1])
+        return start, h, self._ta.tc * self._powers[1]
 
     def _row_powers(self, h: Fraction, bits: int) -> Any:
         """Return h**k 2**bits for the coefficients of n and h**(k+1) 2**bits for those of H, shape (6, order + 1)."""
@@ -220,28 +200,16 @@ class Stepper:
         return states
 
 
-@dataclass(frozen=True)
-class Samples:
-    """Cartesian states of a run, exactly as it computed them, as integers over 2**bits.
-
-    Attributes:
-        rows: per time x, y, z (m), vx, vy, vz (m/s) and ax (m/s²).
-    """
-
-    bits: int
-    rows: list[tuple[int, ...]] = field(repr=False)
-
-
-def cartesian(stepper: Stepper, states: Any, bits: int) -> Samples:
-    """Return x, y, z, vx, vy, vz, ax in SI units, from states of shape (rows, variables)."""
+def cartesian(stepper: Stepper, states: Any, bits: int) -> Table:
+    """Return `columns.RUN` in SI units over 2**bits, from states of shape (rows, variables)."""
     if len(states) == 0:
-        return Samples(bits, [])
+        return Table(RUN, bits, [])
     columns = tuple(np.ascontiguousarray(states.T))
     n, v = stepper.formulation.cartesian(columns, stepper.constants, np)
     ax = acceleration(n, v, stepper.constants)[0]
     length = stepper.constants.length
     fixed = [stepper.numbers.fixed(np.asarray(column) * length, bits) for column in (*n, *v, ax)]
-    return Samples(bits, list(zip(*fixed, strict=True)))
+    return Table(RUN, bits, list(zip(*fixed, strict=True)))
 
 
 def least_tension(stepper: Stepper, states: Any) -> float:

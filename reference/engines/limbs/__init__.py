@@ -2,11 +2,11 @@
 
 A number is held in limbs of radix 2**22 (GMP's word), each an integer in a double. A day with many digits takes a
 fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are the same on every machine.
-`run` fills a plan as `reference.engines.run.run` does; `taylor_steps` gives a proof the polynomials of each step.
+
+- `engine`: its declaration; `size`: limbs for a precision.
+- `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof; `integration`, in progress.
+- `problem`, `output_times`: a scene and its times in limbs.
+- `march`, `step`, `series`, `unrolled`: steps, the Taylor coefficients of one, and their sums written out.
+- `limb`, `lanes`: numbers of limbs, eight side by side.
+- `zeros`, `polish`, `polynomial`, `xdot`: the zeros of xdot on a step; `dense_output`: the state inside a step.
 """
-
-from .problem import most_bits
-from .run import run
-from .taylor_step import LimbsTaylorStep, taylor_steps
-
-__all__ = ["LimbsTaylorStep", "most_bits", "run", "taylor_steps"]

@@ -10,13 +10,13 @@ import numpy.typing as npt
 
 from ...errors import InputError, IntegrationError
 from ...model.vanishing import xdot_vanishes, zero_at_release
-from ..plan import Plan, Report
-from ..transits import AT_REST
+from ..plan import AT_REST, Plan, Report
 from .lanes import LANES
-from .limb import Array, aligned, fraction_bits, joined
+from .limb import Array, aligned, joined
 from .march import COLUMNS, DOUBTFUL, GOOD, STUCK, TIME, ZEROS, MarchState, Outputs, march, state_at_release
 from .output_times import limbs_of_fractions
-from .problem import LimbProblem, limb_problem, most_bits
+from .problem import LimbProblem, limb_problem
+from .size import MOST_BITS, fraction_bits
 from .zeros import MOST_ZEROS
 
 STEPS_PER_CALL = 1024
@@ -120,9 +120,9 @@ def integration_of(plan: Plan, polynomials: int = 0, order: int | None = None) -
     Raises:
         InputError: more bits than limbs can hold.
     """
-    if plan.number.prec > most_bits():
+    if plan.number.prec > MOST_BITS:
         raise InputError(
-            "precision", plan.number.prec, f"at most {most_bits()} bits", "Use the engine heyoka for more digits."
+            "precision", plan.number.prec, f"at most {MOST_BITS} bits", "Use the engine heyoka for more digits."
         )
     problem = limb_problem(plan.inputs, plan.number.prec, order)
     whole, remainders = limbs_of_fractions(plan.times, problem.grain, problem.model.limb_count)

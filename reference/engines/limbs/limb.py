@@ -19,21 +19,15 @@ import numpy.typing as npt
 
 from ...precision import to_fraction
 from .lanes import LANES, compiled, inlined, load, nearest, plus_product, spread, store
+from .size import LIMB_BITS, fraction_bits
 
 Array = npt.NDArray[np.float64]
 
-LIMB_BITS = 22
 RADIX = 2.0**LIMB_BITS
 INVERSE = 2.0**-LIMB_BITS
 UNIT = 2.0 ** (LIMB_BITS - 1)  # the first limb of 1
 DOUBLED = 2.0  # the product of limbs p and q of two numbers counts twice in limb p + q + 1
 LARGEST = 2.0 ** (LIMB_BITS + 1)  # a first limb above this (the number 4) might spoil exactness
-MOST_LIMBS = 18  # with more, and the order that goes with them, sums could pass 2**53
-
-
-def fraction_bits(limb_count: int) -> int:
-    """Return b such that a number of `limb_count` limbs is an integer over 2**b."""
-    return LIMB_BITS * limb_count - 1
 
 
 def split(value: int, limb_count: int) -> list[float]:

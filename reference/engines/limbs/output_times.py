@@ -8,7 +8,8 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from .limb import LIMB_BITS, Array, fraction_bits
+from .limb import Array
+from .size import LIMB_BITS, fraction_bits
 
 Counts = npt.NDArray[np.int64]
 

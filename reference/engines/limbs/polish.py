@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from .dense_output import evaluate
 from .lanes import LANES, compiled, load, store
-from .limb import LIMB_BITS, Array, add_double, carry_scalar, double_of, set_double
+from .limb import Array, add_double, carry_scalar, double_of, set_double
 from .series import LinearTerms, Series, taylor_coefficients
+from .size import LIMB_BITS
 from .step import Model
 from .xdot import xddot_of, xdot_of
 from .zeros import EDGE, NEAR, NEWTON_STEPS, Search, near_order

@@ -18,15 +18,15 @@ from ...model.constants import Vector
 from ...model.start import Start
 from ...precision import GUARD_BITS
 from ...scene import Inputs
-from .limb import LIMB_BITS, MOST_LIMBS, Array, fraction_bits, rows_of
+from ..plan import MOST_TURN
+from .limb import Array, rows_of
 from .series import LinearTerms
+from .size import MOST_BITS, limb_count_for
 from .step import GRAINS, MOST_GRAINS, Model
 
-ROUNDING_BITS = 9  # the limbs go this much below the precision, as the sums of a step round at the last limb
 TAIL_BITS = 9  # a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
 ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
 MOST_SWING_BITS = 64  # bits added at most for a swing smaller than l; none are added where there is no swing
-MOST_TURN = 1.75  # longest step times the swing's frequency: its square is h² λ at rest, which limbs hold up to 4
 GUESS = 0.5  # first step, of the time in which the pendulum changes: no series is known yet
 
 
@@ -54,24 +54,14 @@ class LimbProblem:
         return self.unit / GRAINS
 
 
-def limb_count_for(prec: int) -> int:
-    """Return how many limbs keep `prec` bits of numbers up to 1 through a step."""
-    return max(3, -(-(prec + ROUNDING_BITS + 1) // LIMB_BITS))
-
-
-def most_bits() -> int:
-    """Return the highest precision that limbs can have, in bits."""
-    return fraction_bits(MOST_LIMBS) - ROUNDING_BITS
-
-
 def limb_problem(inputs: Inputs, prec: int, order: int | None = None) -> LimbProblem:
     """Return a scene's problem, in which numbers as large as the swing keep about `prec` bits a step.
 
     `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer steps.
     """
-    start = Start.of(inputs, most_bits() + 2 * GUARD_BITS)
+    start = Start.of(inputs, MOST_BITS + 2 * GUARD_BITS)
     ctx, k, n = start.ctx, start.k, start.n
-    prec = min(prec + _swing_bits(start), most_bits())
+    prec = min(prec + _swing_bits(start), MOST_BITS)
     limb_count = limb_count_for(prec)
     unit, first = _unit_of_time(start)
     h = ctx.mpf(unit.numerator) / unit.denominator

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 import time
 from bisect import bisect_right
-from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from ...columns import RUN, STATE
 from ...model.force import tension
+from ...table import Table
 from ..plan import Plan, Report, Run
 from .integration import Integration, integration_of
-from .limb import fraction_bits
-from .march import COLUMNS, STEPS
+from .march import STEPS
 from .problem import LimbProblem
+from .size import fraction_bits
 
 SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
 PRODUCTS, PRODUCTS_WITH_DRAG = 9, 25  # per coefficient: three or four convolutions, the others by constants
 
 
 def run(plan: Plan, report: Report | None = None) -> Run:
-    """Integrate a plan in limbs: `plan.number` is `limbs(prec)`; the formulation is always `inertial`.
+    """Integrate a plan in limbs, in `inertial` whatever its formulation; `plan.number` tells the precision.
 
     Args:
         plan: what to run; times increasing from 0 on.
@@ -43,18 +44,17 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
     problem, bits = integration.problem, fraction_bits(integration.problem.model.limb_count)
     si_bits = bits + SPARE_BITS
     table = integration.table(integration.out.states, len(plan.times))
-    grid = list(zip(*_si(table, plan.inputs.length, problem.unit, bits, si_bits), strict=True))
-    zeros, signs = _transits(integration, plan, bits, si_bits) if integration.seek else (None, [])
+    grid = Table(RUN, si_bits, list(zip(*_si(table, plan.inputs.length, problem.unit, bits, si_bits), strict=True)))
+    transits, signs = _transits(integration, plan, bits, si_bits) if integration.seek else (None, [])
     return Run(
         plan=plan,
-        bits=si_bits,
         grid=grid,
-        zeros=zeros,
+        transits=transits,
         directions=signs,
         order=problem.model.order,
         steps=int(integration.state.counts[STEPS]),
         terms=PRODUCTS_WITH_DRAG if problem.model.drag else PRODUCTS,
-        tension=_least_tension(problem, grid, si_bits),
+        tension=_least_tension(problem, grid),
         compile_s=integration.compile_s,
         cpu_s=time.process_time() - cpu_start,
     )
@@ -62,7 +62,7 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
 
 def _si(table: Any, length: Fraction, unit: Fraction, bits: int, si_bits: int) -> list[Any]:
     """Return columns of integers over 2**bits, in l and the unit of time, as integers over 2**si_bits in SI units."""
-    return [_scaled(table[:, i], length / unit ** (i // 3) * 2 ** (si_bits - bits)) for i in range(COLUMNS)]
+    return [_scaled(table[:, i], length / unit ** (i // 3) * 2 ** (si_bits - bits)) for i in range(len(RUN))]
 
 
 def _scaled(column: Any, factor: Fraction) -> Any:
@@ -71,19 +71,18 @@ def _scaled(column: Any, factor: Fraction) -> Any:
     return product if factor.denominator == 1 else product // factor.denominator
 
 
-def _transits(integration: Integration, plan: Plan, bits: int, si_bits: int) -> tuple[list[tuple[int, ...]], list[int]]:
-    """Return the zeros up to the last output time, t first, and the signs of the crossings."""
+def _transits(integration: Integration, plan: Plan, bits: int, si_bits: int) -> tuple[Table, list[int]]:
+    """Return the zeros up to the last output time, and the signs of the crossings."""
     problem = integration.problem
     times, table, signs = integration.zeros()
     count = bisect_right(times, int(plan.times[-1] / problem.grain * 2**bits))
     moments = _scaled(times[:count], problem.grain * 2 ** (si_bits - bits))
     columns = _si(table[:count], plan.inputs.length, problem.unit, bits, si_bits)
-    return list(zip(moments, *columns, strict=True)), signs[:count]
+    return Table(("t", *RUN), si_bits, list(zip(moments, *columns, strict=True))), signs[:count]
 
 
-def _least_tension(problem: LimbProblem, grid: Sequence[tuple[int, ...]], si_bits: int) -> float:
+def _least_tension(problem: LimbProblem, grid: Table) -> float:
     """Return the least tension of the cord over l on the grid, in 1/s², in binary64."""
     k = problem.start.k.converted(float)
-    unit = float(problem.start.k.length) * 2.0**si_bits
-    x, y, z, vx, vy, vz = (np.array([row[i] / unit for row in grid]) for i in range(6))
+    x, y, z, vx, vy, vz = (grid[name] / k.length for name in STATE)
     return float(np.min(tension((x, y, z), (vx, vy, vz), k)))

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from .lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
-from .limb import DOUBLED, INVERSE, LIMB_BITS, RADIX, UNIT, Array, carry, carry_scalar, clear, divide, double_of_lane
+from .limb import DOUBLED, INVERSE, RADIX, UNIT, Array, carry, carry_scalar, clear, divide, double_of_lane
 from .series import SPIN, TENSION, LinearTerms, Series
+from .size import LIMB_BITS
 
 GRAINS = 1024
 MOST_GRAINS = 4 * GRAINS

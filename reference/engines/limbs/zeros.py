@@ -13,9 +13,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .lanes import LANES, compiled
-from .limb import LIMB_BITS, Array, add_double, double_of_lane, set_double
+from .limb import Array, add_double, double_of_lane, set_double
 from .polynomial import CONVEX, FREE, UNDECIDED, classify, crossing, extremum, recentre, value_at
 from .series import Counts, LinearTerms, Series, X, empty_series
+from .size import LIMB_BITS
 from .step import Model
 from .xdot import xddot_of, xdot_at
 

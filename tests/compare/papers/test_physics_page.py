@@ -79,7 +79,7 @@ NUMBERS = {
     "ellipse": f"{fixed(half_axes()[0], 3)} m long and {fixed(1000 * half_axes()[1], 3)} mm wide",
     "tilt": f"hangs {fixed(degrees(rest_angle(P)), 4)}° south of straight down, which at 67 m is",
     "aside": f"{fixed(-100 * rest(P)[1], 1)} cm",
-    "rise": f"ends {fixed(1000 * (mpf(paris_day().transits_text['z'][0]) - released()[2]), 2)} mm *higher*",
+    "rise": f"ends {fixed(1000 * (mpf(paris_day().transits.decimals('z')[0]) - released()[2]), 2)} mm *higher*",
     "away": f"0.5 m from the one and {fixed(half_axes()[0], 3)} m from the other",
     "leans": f"leans {fixed(degrees(rest_angle(P)), 4)}°",
     "apparent": f"apparent gravity is {fixed(pull_at_rest(P), 5)} m/s²",

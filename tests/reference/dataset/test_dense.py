@@ -9,10 +9,10 @@ import pytest
 from small_scenes import make_scene
 
 from reference import InputError, load, solve
+from reference.columns import STATE
 from reference.dataset.dense import dense
 from reference.dataset.write import write
 from reference.precision import LONG_DOUBLE
-from reference.solver.solution import GRID_COLUMNS
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def test_velocities_agree_as_well(decimal_grid):
 def test_at_a_golden_time_it_is_the_golden_state(decimal_grid):
     k = 10  # 0.1 * 10 is a double
     evaluated = dense(decimal_grid, [1.0], 2.0**-110)
-    for i, name in enumerate(GRID_COLUMNS):
+    for i, name in enumerate(STATE):
         printed = decimal_grid.exact(name)[k]
         assert abs(Fraction(evaluated.states[0, i]) + Fraction(evaluated.low[0, i]) - printed) < Fraction(
             evaluated.bound_m

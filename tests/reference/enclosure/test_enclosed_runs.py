@@ -12,12 +12,12 @@ from enclosure_recurrence import Recurrence, prove, recurrence
 from flint import ctx, fmpz_poly
 
 from reference.enclosure import enclose, turned
-from reference.enclosure.approximant import TaylorStep, pair, polynomials
+from reference.enclosure.approximant import pair, polynomials
 from reference.enclosure.balls import integer
 from reference.enclosure.bound import World
-from reference.enclosure.shapes import Step
 from reference.errors import UnreachableError
 from reference.packing import Words
+from reference.taylor_step import LOCAL, TaylorStep
 
 WANTED = Fraction(1, 10**40)
 HARD = {
@@ -131,8 +131,8 @@ def test_coefficients_of_an_integrator_are_an_approximant():
         x, m, w, _ = e.coefficients
         y = [(a * sin + b * cos) >> bits for a, b in zip(m, w, strict=True)]
         z = [(b * sin - a * cos) >> bits for a, b in zip(m, w, strict=True)]
-        rows.append(TaylorStep(e.t, e.h, bits, (x, y, z)))
-        if e.t > 60:
+        rows.append(TaylorStep(e.centre, e.h, e.low, e.high, bits, (x, y, z), LOCAL))
+        if e.centre > 60:
             break
     proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=lambda _bits: pair(turned(PARIS, rows)))
     (exact,) = truth(PARIS, [Fraction(60)])
@@ -143,7 +143,7 @@ def test_uneven_chains_are_covered_without_gap():
     lengths = [Fraction(n, 32) for n in (32, 33, 40, 39, 20, 21, 60, 1, 2, 30)]
     t, chain = Fraction(0), []
     for h in lengths:
-        chain.append(TaylorStep(t, h, 64, tuple([1, 2, 3] for _ in range(4))))
+        chain.append(TaylorStep(t, h, Fraction(0), Fraction(1), 64, tuple([1, 2, 3] for _ in range(4))))
         t += h
     got = list(pair(chain))
     ends = [(s.centre + s.h * s.low, s.centre + s.h * s.high) for s in got]
@@ -197,8 +197,8 @@ def test_words_are_the_integers_that_they_stand_for():
     rows = [[-(2**196), 2**196 - 1, 0, -1, 1, 2**60, -(2**60)], [5] * 7, [-7] * 7, [2**59 - 1] * 7]
     table = [[[n >> 60 * w & 2**60 - 1 for n in row] for w in range(3)] + [[n >> 180 for n in row]] for row in rows]
     words = Words(np.array(table, dtype=np.int64))
-    step = Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 197, words)
+    step = TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 197, words)
     assert list(words) == rows
     assert polynomials(step).coefficients == [fmpz_poly(row) for row in rows]
-    plain = step._replace(coefficients=rows)
+    plain = step._replace(rows=rows)
     assert polynomials(plain) is plain

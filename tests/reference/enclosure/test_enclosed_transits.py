@@ -12,8 +12,9 @@ from flint import arb, ctx
 from scipy.integrate import solve_ivp
 
 from reference.enclosure.bound import Piece, World
-from reference.enclosure.shapes import Leaf, Step, Tube
+from reference.enclosure.shapes import Leaf, Tube
 from reference.enclosure.transits import Scan, Slope, contract
+from reference.taylor_step import TaylorStep
 
 
 def scan(inputs, proposal, columns=False):
@@ -152,7 +153,7 @@ def parabola(delta, u):
     bits = 200
     rows = [[0, Fraction(1, 9) + delta, Fraction(-1, 3), Fraction(1, 3)], *[[0]] * 3]
     whole = tuple([int(c * 2**bits) for c in r] for r in rows)
-    step = Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, whole)
+    step = TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, whole)
     world = World(scene(vx="1"), 264)
     out = Scan(world)
     out.advance(Piece(world, step), Tube(arb(u), arb(u), arb(u) * 10))
@@ -177,7 +178,7 @@ def test_two_zeros_that_are_close_are_told_apart():
 
 def test_a_step_shorter_than_the_precision_is_refused():
     world, third = World(scene(), 128), Fraction(1, 3)
-    step = Step(Fraction(1), Fraction(1), third, third + Fraction(1, 2**200), 128, ([0, 1 << 128], *[[0]] * 3))
+    step = TaylorStep(Fraction(1), Fraction(1), third, third + Fraction(1, 2**200), 128, ([0, 1 << 128], *[[0]] * 3))
     with pytest.raises(ArithmeticError, match="too short"):
         Scan(world).advance(Piece(world, step), Tube(arb(0), arb(0), arb(0)))
 
@@ -186,7 +187,7 @@ def test_newton_asks_nothing_about_times_outside_of_its_leaves():
     world = World(scene(), 128)
     with ctx.workprec(world.prec):
         row = [0, 1 << 128, 1 << 127]  # xdot = 1 + s
-        piece = Piece(world, Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
+        piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
         slope, third = Slope(piece, Tube(arb(0), arb(0), arb(0))), arb(1) / 3
         # a leaf narrower than a ball: whether the middle of the ball lies in it is not known
         leaf, time = Leaf(1, third, third, slope), 1 + third

@@ -11,7 +11,8 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 
 from reference.enclosure.bound import Piece, Radius, Scaled, World
 from reference.enclosure.columns import CUT, FINE, Columns, cut, residuals
-from reference.enclosure.shapes import Sizes, Step
+from reference.enclosure.shapes import Sizes
+from reference.taylor_step import TaylorStep
 
 
 def exact(x):
@@ -62,7 +63,7 @@ def anything(rng):
         for i, row in enumerate(rows):
             row[0] = 2**bits if i == rng.randrange(3) else 0
     rows.append([round(2**bits * rng.choice((0, 0, 1)) * 10 ** rng.uniform(-3, 2))])
-    return Piece(world, Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, tuple(rows)))
+    return Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, tuple(rows)))
 
 
 def defects(piece, s):

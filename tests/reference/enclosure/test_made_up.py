@@ -12,8 +12,9 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, World
-from reference.enclosure.shapes import Leaf, Step, Tube
+from reference.enclosure.shapes import Leaf, Tube
 from reference.enclosure.transits import Scan, Slope, touched
+from reference.taylor_step import TaylorStep
 
 BITS = 200
 MOVING = scene(vx="1")
@@ -34,7 +35,7 @@ def made_up(edges, xdot, u, rng):
         off = rational(u * Fraction(rng.randint(-8, 8), 9))  # half of it shift, half of it slope
         moved = (local + fmpq_poly([off / 2, off / 2])).integral()
         row = [int(q * (1 << BITS)) for q in ([Fraction(int(q.p), int(q.q)) for q in moved.coeffs()])]
-        step = Step(c, h, (a - c) / h, (b - c) / h, BITS, (row, *[[0]] * 3))
+        step = TaylorStep(c, h, (a - c) / h, (b - c) / h, BITS, (row, *[[0]] * 3))
         with ctx.workprec(64):
             tube = Tube(arb(0), (ball(u) + arb(2) ** -180).upper(), (ball(u) + arb(2) ** -180).upper())
         scan.advance(Piece(world, step), tube)
@@ -94,7 +95,7 @@ def test_the_third_derivative_holds_for_every_state_in_the_tube():
     world = World(inputs, 128)
     for _ in range(40):
         rows = tuple([rng.randint(-(2**64), 2**64) for _ in range(4)] for _ in range(4))
-        piece = Piece(world, Step(Fraction(0), Fraction(1, 2), Fraction(-1), Fraction(1), 64, rows))
+        piece = Piece(world, TaylorStep(Fraction(0), Fraction(1, 2), Fraction(-1), Fraction(1), 64, rows))
         tube = Tube(*(arb(10) ** -rng.randint(1, 6) for _ in range(3)))
         s = Fraction(rng.randint(-8, 8), 8)
         with ctx.workprec(128):
@@ -141,7 +142,7 @@ def test_from_rest_the_third_derivative_must_keep_its_sign_on_the_whole_leaf():
     tiny = arb(2) ** -180
     scan = Scan(world)
     scan.advance(
-        Piece(world, Step(Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, rows)), Tube(tiny, tiny, tiny)
+        Piece(world, TaylorStep(Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, rows)), Tube(tiny, tiny, tiny)
     )
     assert any(f.t.low <= Fraction(1, 4) <= f.t.high for f in scan.finish())
 
@@ -152,7 +153,7 @@ def test_at_a_boundary_both_steps_are_asked():
     with ctx.workprec(128):
         for low, high, y in ((Fraction(0), third, 0), (third, Fraction(1), 1)):
             rows = ([0, -(2**128) // 3, 2**127], [y << 120], [0], [0])  # xdot = s - 1/3
-            piece = Piece(world, Step(Fraction(0), Fraction(1), low, high, 128, rows))
+            piece = Piece(world, TaylorStep(Fraction(0), Fraction(1), low, high, 128, rows))
             slope = Slope(piece, Tube(*[arb(2) ** -100] * 3))
             leaves.append(Leaf(1, ball(low), ball(high), slope))
         assert len(touched(leaves, ball(third))) == 2
@@ -177,14 +178,14 @@ def test_at_a_boundary_both_steps_are_asked():
 ])  # fmt: skip
 def test_constants_below_the_last_bit_still_count(changes, rows, least):
     world = World(scene(length="1", **changes), 192)
-    piece = Piece(world, Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 64, rows))
+    piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 64, rows))
     assert piece.sizes().d2 >= ball(least)
 
 
 def test_sides_that_contradict_a_cluster_are_refused():
     world = World(MOVING, 128)
     piece = Piece(
-        world, Step(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, ([0, 2**130, 2**126], *[[0]] * 3))
+        world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, ([0, 2**130, 2**126], *[[0]] * 3))
     )
     scan = Scan(world)  # xdot = 4 + s/8
     with ctx.workprec(128):

@@ -9,7 +9,8 @@ from flint import arb, ctx, fmpz_poly
 
 from reference.enclosure.balls import ball, fixed, integer, interval, norm, size, upper
 from reference.enclosure.bound import Piece, Radius, World, output
-from reference.enclosure.shapes import Step, Tube
+from reference.enclosure.shapes import Tube
+from reference.taylor_step import TaylorStep
 
 WIDE = arb(1, 0.5)  # all of [1/2, 3/2]
 
@@ -45,9 +46,8 @@ def test_ends_of_what_is_useless_are_refused(useless):
 
 def piece_at(world, x, low=0, high=1):
     row = [int(Fraction(q) * 2**64) for q in x]
-    return Piece(
-        world, Step(Fraction(0), Fraction(1), Fraction(low), Fraction(high), 64, ([row[0]], [row[1]], [row[2]], [0]))
-    )
+    rows = (*([c] for c in row), [0])
+    return Piece(world, TaylorStep(Fraction(0), Fraction(1), Fraction(low), Fraction(high), 64, rows))
 
 
 def test_a_join_counts_the_gap_and_the_radius_of_what_is_joined():

@@ -125,7 +125,7 @@ def sabotage(rng, inputs, end):
     else:  # λ without its last terms
         for _, c in rows:
             del c[3][rng.randint(2, 30) :]
-    fixed = [s._replace(coefficients=tuple(c)) for s, c in rows]
+    fixed = [s._replace(rows=tuple(c)) for s, c in rows]
     if kind == 5:  # other steps need not join: refused, or joined by hand
         for i in range(1, len(fixed)):
             at = fixed[i - 1].centre + fixed[i - 1].h * fixed[i - 1].high

@@ -13,9 +13,9 @@ from reference.engines.heyoka.log import watched_log
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.heyoka.stepper import Stepper
 from reference.engines.heyoka.system import System
+from reference.engines.heyoka.transits import march, quiet_start
 from reference.engines.plan import Plan
-from reference.engines.run import run
-from reference.engines.transits import march, quiet_start
+from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.model.vanishing import xdot_vanishes, zero_at_release
 from reference.precision import DOUBLE, LONG_DOUBLE, real
@@ -122,8 +122,8 @@ def test_guard_xdot_identically_zero_is_known_from_the_exact_inputs(sections, va
     assert xdot_vanishes(start_for(scene, DOUBLE)) == vanishes
     if vanishes:
         done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
-        assert done.zeros is None
-        assert all(row[0] == done.grid[0][0] for row in done.grid)
+        assert done.transits is None
+        assert len(set(done.grid.exact("x"))) == 1
 
 
 class LosesEvents(Stepper):
@@ -197,19 +197,17 @@ def test_events_that_contradict_each_other_for_good_stop_the_run(paris):
 def test_the_transits_of_a_day_are_those_of_other_steps_and_another_form(paris):
     times = (Fraction(0), Fraction(86400))
     runs = [run(Plan(paris.exact, name, LONG_DOUBLE, times, transits=True)) for name in ("momentum", "space")]
-    assert [len(one.zeros or ()) for one in runs] == [10514, 10514]
+    assert [len(one.transits) for one in runs] == [10514, 10514]
     assert runs[0].directions == runs[1].directions == [1, -1] * 5257
-    scale = runs[0].bits
-    moments = [[Fraction(row[0], 2**scale) for row in one.zeros] for one in runs]
-    slopes = [abs(Fraction(row[7], 2**scale)) for row in runs[0].zeros]
-    worst = max(abs(a - b) * slope for a, b, slope in zip(*moments, slopes, strict=True))
+    late, slopes = runs[0].transits.distance(runs[1].transits).exact("t"), runs[0].transits.exact("ax")
+    worst = max(gap * abs(slope) for gap, slope in zip(late, slopes, strict=True))
     assert worst < 1e-13  # 64 bits, a phase of 3.3e4 rad and 0.2 m/s leave 4e-16 m/s, times the roundings met
 
 
 def test_the_time_of_a_transit_near_the_north_south_passage_is_worse_than_the_others(paris):
     times = (Fraction(0), Fraction(86400))
     done = run(Plan(paris.exact, "momentum", DOUBLE, times, transits=True))
-    slopes = sorted(abs(row[7]) / 2**done.bits for row in done.zeros)
+    slopes = sorted(abs(done.transits["ax"]))
     assert slopes[0] < slopes[len(slopes) // 2] / 1000
 
 
@@ -232,17 +230,16 @@ def test_a_release_at_rest_in_the_meridian_has_its_first_transit_where_the_proof
     """y0 = 0.5 m: the first transit is proved to be at 8.2266590196580988 s; there must be no spurious one at 0."""
     scene = make_scene(release={"x": "0", "y": "0.5"})
     done = run(Plan(scene.exact, "momentum", number, (Fraction(0), Fraction(60)), transits=True))
-    first = Fraction(done.zeros[0][0], 2**done.bits)
-    assert abs(first - Fraction("8.2266590196580988")) < (1e-9 if number is DOUBLE else 1e-15)
+    assert abs(done.transits.exact("t")[0] - Fraction("8.2266590196580988")) < (1e-9 if number is DOUBLE else 1e-15)
 
 
 def test_a_moving_release_may_have_a_transit_in_its_first_step():
     """xdot(0) = 0.067 m/s: the first transit is proved to be at 1.38290078 s."""
     scene = make_scene(release={"x": "0.3", "y": "0.4", "vx": "0.067"})
     done = run(Plan(scene.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
-    assert abs(done.zeros[0][0] / 2**done.bits - 1.38290078) < 1e-8
+    assert abs(done.transits["t"][0] - 1.38290078) < 1e-8
 
 
 def test_a_run_shorter_than_the_quiet_start_has_no_transit(paris):
     done = run(Plan(paris.exact, "momentum", real(160), (Fraction(0), Fraction(1, 10)), transits=True))
-    assert done.zeros == []
+    assert len(done.transits) == 0

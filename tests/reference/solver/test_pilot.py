@@ -11,8 +11,9 @@ import pytest
 from small_scenes import make_scene
 
 import reference
+from reference.columns import STATE
 from reference.engines.plan import Plan
-from reference.engines.run import run
+from reference.engines.registry import run
 from reference.errors import IntegrationError, UnreachableError
 from reference.precision import DOUBLE
 from reference.scene import load_scene
@@ -178,8 +179,9 @@ def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(monkeypatc
 
 def test_a_column_that_is_only_rounding_is_measured_by_its_kind():
     one, tiny = Fraction(1), Fraction(1, 10**20)
-    pilot = Pilot(53, (tiny,) * 6, (one, tiny, 2 * one, tiny, tiny, tiny), (0.0), 0.0, 1)
-    assert pilot.sizes == (1, 2, 2, 0, 0, 0)
+    largest = dict(zip(STATE, (one, tiny, 2 * one, tiny, tiny, tiny), strict=True))
+    pilot = Pilot(53, dict.fromkeys(STATE, tiny), largest, 0.0, 0.0, 1)
+    assert list(pilot.sizes.values()) == [1, 2, 2, 0, 0, 0]
 
 
 @pytest.mark.parametrize("power", [-2000, -3, 0, 1, 5, 3000])

@@ -15,17 +15,16 @@ import numba
 
 from reference.engines.limbs.lanes import LANES
 from reference.engines.limbs.limb import (
-    LIMB_BITS,
     add_product,
     aligned,
     carry,
     divide,
-    fraction_bits,
     joined,
     nearest_whole,
     rows_of,
     split,
 )
+from reference.engines.limbs.size import LIMB_BITS, fraction_bits
 from reference.precision import context
 
 LIMB_COUNT = 7

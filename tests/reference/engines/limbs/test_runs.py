@@ -14,15 +14,14 @@ import pytest
 pytest.importorskip("numba")
 
 from limbs_states import states
-from small_scenes import make_scene
+from small_scenes import make_scene, run_in_limbs
 
-from reference.engines.limbs import most_bits
-from reference.engines.limbs import run as run_in_limbs
+from reference.columns import POSITION, STATE, VELOCITY
+from reference.engines.limbs.size import MOST_BITS
 from reference.engines.plan import Plan
-from reference.engines.run import run
+from reference.engines.registry import run
 from reference.errors import InputError, IntegrationError
-from reference.precision import limbs, real
-from reference.table import disagreement, largest_of
+from reference.precision import real
 
 PARIS = {"release": {"x": "0.3", "y": "0.4"}}
 SCENES = {
@@ -63,36 +62,36 @@ FLOOR_BITS = 6
 def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
     scene, prec = make_scene(**SCENES[name]), int(digits * 3.33) + 4
     times = tuple(t / 10 for t in TIMES) if name in FAST else TIMES
-    ours = run_in_limbs(Plan(scene.exact, "momentum", limbs(prec), times, transits=True))
+    ours = run_in_limbs(scene, prec, times)
     same, finer = (
         run(Plan(scene.exact, "momentum", real(bits), times, transits=transits))
         for bits, transits in ((prec, False), (prec + 40, True))
     )
-    lost = disagreement(same.grid, same.bits, finer.grid, finer.bits)
-    gaps = disagreement(ours.grid, ours.bits, finer.grid, finer.bits)
-    sizes = largest_of(finer.grid, finer.bits)
-    allowed = [
-        SPARE * max(lost[i : i + 3]) + max(sizes[i : i + 3]) * Fraction(2) ** (FLOOR_BITS - prec) for i in (0, 3)
-    ]
-    if name == "tiny":  # z is of the size of l, and its error is x's
-        allowed = [SPARE * max(lost[:2]) + max(sizes[:2]) * Fraction(2) ** (FLOOR_BITS - prec), allowed[1]]
-    assert max(gaps[:3]) <= allowed[0]
-    assert max(gaps[3:6]) <= allowed[1]
+    lost, gaps = (finer.grid.distance(one.grid).largest() for one in (same, ours))
+    sizes = finer.grid.largest()
+
+    def allowed(columns):
+        return SPARE * max(lost[c] for c in columns) + max(sizes[c] for c in columns) * Fraction(2) ** (
+            FLOOR_BITS - prec
+        )
+
+    position = allowed(POSITION[:2] if name == "tiny" else POSITION)  # z is of the size of l, and its error is x's
+    assert max(gaps[c] for c in POSITION) <= position
+    assert max(gaps[c] for c in VELOCITY) <= allowed(VELOCITY)
     assert ours.directions == finer.directions
-    assert ours.zeros is not None
-    assert finer.zeros is not None
-    for one, other in zip(ours.zeros, finer.zeros, strict=True):
-        late, ax = abs(Fraction(one[0], 2**ours.bits) - Fraction(other[0], 2**finer.bits)), one[7] / 2**ours.bits
-        assert late <= 4 * allowed[1] / abs(Fraction(ax)) + times[-1] * Fraction(2) ** (FLOOR_BITS - prec)
+    late = finer.transits.distance(ours.transits).exact("t")
+    for gap, ax in zip(late, ours.transits.exact("ax"), strict=True):
+        assert gap <= 4 * allowed(VELOCITY) / abs(ax) + times[-1] * Fraction(2) ** (FLOOR_BITS - prec)
 
 
 @pytest.mark.slow
 def test_an_hour_of_paris_keeps_32_digits_and_all_transits():
     scene = make_scene(**PARIS)
     times = tuple(Fraction(60 * k) for k in range(61))
-    ours = run_in_limbs(Plan(scene.exact, "momentum", limbs(113), times, transits=True))
+    ours = run_in_limbs(scene, 113, times)
     theirs = run(Plan(scene.exact, "momentum", real(144), times, transits=True))
-    assert max(disagreement(ours.grid, ours.bits, theirs.grid, theirs.bits)[:3]) < Fraction(1, 10**34)
+    gaps = theirs.grid.distance(ours.grid).largest()
+    assert max(gaps[c] for c in POSITION) < Fraction(1, 10**34)
     assert ours.directions == theirs.directions
     assert len(ours.directions) == 438
 
@@ -107,8 +106,8 @@ def test_a_quarter_period_is_that_of_the_elliptic_integral():
     ctx.dps = 60
     quarter = ctx.sqrt(ctx.mpf(2) / ctx.mpf("9.81")) * ctx.ellipk(ctx.sinpi(ctx.mpf(75) / 180) ** 2)
     time = Fraction(int(ctx.floor(quarter * 2**190)), 2**190)
-    result = run_in_limbs(Plan(scene.exact, "momentum", limbs(160), (Fraction(0), time), transits=False))
-    x, y, z = (ctx.mpf(value) / 2**result.bits for value in result.grid[1][:3])
+    result = run_in_limbs(scene, 160, (Fraction(0), time), transits=False)
+    x, y, z = (ctx.mpf(value) / 2**result.grid.bits for value in result.grid.only(POSITION).values[1])
     assert abs(x) < 1e-44
     assert y == 0
     assert abs(z + 2) < 1e-44
@@ -116,24 +115,24 @@ def test_a_quarter_period_is_that_of_the_elliptic_integral():
 
 def test_xdot_identically_zero_gives_no_transits():
     scene = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.5"})
-    result = run_in_limbs(Plan(scene.exact, "momentum", limbs(113), TIMES, transits=True))
-    assert result.zeros is None
-    assert all(row[0] == 0 for row in result.grid)
+    result = run_in_limbs(scene, 113, TIMES)
+    assert result.transits is None
+    assert not any(result.grid["x"])
 
 
 def test_a_transit_after_the_last_time_is_not_reported():
     scene = make_scene(**PARIS)
-    every = run_in_limbs(Plan(scene.exact, "momentum", limbs(113), TIMES, transits=True))
-    third = Fraction(every.zeros[2][0], 2**every.bits)
+    every = run_in_limbs(scene, 113, TIMES)
+    third = every.transits.exact("t")[2]
     for end, count in ((third - Fraction(1, 10**9), 2), (third + Fraction(1, 10**9), 3)):
-        cut = run_in_limbs(Plan(scene.exact, "momentum", limbs(113), (Fraction(0), end), transits=True))
-        assert len(cut.zeros) == count
+        cut = run_in_limbs(scene, 113, (Fraction(0), end))
+        assert len(cut.transits) == count
 
 
 def test_more_bits_than_there_can_be_are_refused():
     scene = make_scene(**PARIS)
     with pytest.raises(InputError, match="heyoka"):
-        run_in_limbs(Plan(scene.exact, "momentum", limbs(most_bits() + 1), TIMES, transits=False))
+        run_in_limbs(scene, MOST_BITS + 1, TIMES, transits=False)
 
 
 def test_a_transit_that_only_grazes_is_refused():
@@ -142,13 +141,13 @@ def test_a_transit_that_only_grazes_is_refused():
         site={"latitude": "90", "rotation_rate": "1e-300"}, release={"x": "0", "y": "0.5"}, pendulum={"length": "2"}
     )
     with pytest.raises(IntegrationError):
-        run_in_limbs(Plan(scene.exact, "momentum", limbs(113), TIMES, transits=True))
+        run_in_limbs(scene, 113, TIMES)
 
 
 def test_the_report_says_how_far_a_run_is():
     reports = []
     times = tuple(Fraction(3000 * k) for k in range(5))
-    run_in_limbs(Plan(make_scene(**PARIS).exact, "momentum", limbs(80), times, transits=False), reports.append)
+    run_in_limbs(make_scene(**PARIS), 80, times, transits=False, report=reports.append)
     assert reports == sorted(reports)
     assert 0 < reports[0] < reports[-1] < 12000
 
@@ -160,11 +159,11 @@ def test_states_are_double_doubles_of_a_finer_run():
     assert high.shape == low.shape == (1001, 6)
     assert (np.abs(low) <= np.spacing(np.abs(high))).all()
     times = tuple(Fraction(float(t)) for t in moments)
-    fine = run_in_limbs(Plan(scene.exact, "momentum", limbs(150), times, transits=False))
-    for i in range(0, 1001, 10):
-        for j in range(6):
+    fine = run_in_limbs(scene, 150, times, transits=False)
+    for j, name in enumerate(STATE):
+        for i, value in list(enumerate(fine.grid.exact(name)))[::10]:
             exact = Fraction(float(high[i, j])) + Fraction(float(low[i, j]))
-            assert abs(exact - Fraction(fine.grid[i][j], 2**fine.bits)) < Fraction(1, 10**28)
+            assert abs(exact - value) < Fraction(1, 10**28)
 
 
 @pytest.mark.parametrize("times", [[], [1.0, 1.0], [-1.0, 2.0], [0.0, float("nan")], [[1.0]]])
@@ -176,12 +175,11 @@ def test_times_that_are_no_increasing_list_are_refused(times):
 SHORT = """
 from fractions import Fraction
 from reference import load_scene
-from reference.engines.limbs import run as run_in_limbs
-from reference.engines.plan import Plan
-from reference.precision import limbs
+from reference.engines.registry import engines
 times = tuple(Fraction(7 * k, 5) for k in range(40))
-result = run_in_limbs(Plan(load_scene("paris").exact, "momentum", limbs(113), times, transits=True))
-print((result.grid, result.zeros, result.steps))
+limbs = engines()["limbs"]
+result = limbs.run(limbs.plan(load_scene("paris").exact, 113, times, transits=True))
+print((result.grid.values, result.transits.values, result.steps))
 """
 
 

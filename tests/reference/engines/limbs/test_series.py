@@ -13,20 +13,17 @@ pytest.importorskip("numba")
 from small_scenes import make_scene
 from taylor_of_model import Polynomial, taylor
 
-from reference.engines.limbs import taylor_steps
-from reference.engines.plan import Plan
+from reference.engines.registry import engines
 from reference.model.force import tension
 from reference.model.formulations import FORMULATIONS
-from reference.precision import limbs
 
 BITS = 150
-ORDER = 30  # of the comparison; the series goes further
+ORDER, SERIES_ORDER = 30, 73  # of the comparison; the series goes further
 LAST_PLACES = 64  # units of the last limb: a coefficient is divided once an order
 
 
 def first_step(scene):
-    plan = Plan(scene.exact, "momentum", limbs(BITS), (Fraction(0),), transits=False)
-    return next(taylor_steps(plan))
+    return next(engines()["limbs"].taylor_steps(scene.exact, (Fraction(0),), BITS, 2 * SERIES_ORDER))
 
 
 def assert_same_coefficients(scene, formulation="momentum"):

@@ -4,77 +4,60 @@ from __future__ import annotations
 
 import time
 from collections.abc import Generator
-from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from ...packing import WORD_BITS, Words
+from ...taylor_step import TaylorStep
 from ..plan import Plan, Run
 from .integration import integration_of
 from .lanes import LANES, entry
-from .limb import LIMB_BITS, Array, fraction_bits
+from .limb import Array
 from .run import result
 from .series import TENSION, M, W, X
+from .size import LIMB_BITS, fraction_bits
 
 ROWS = np.array((X, M, W, TENSION))
+ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since every step must be proved
 POLYNOMIALS_PER_CALL = 64
 FOR_EVER = 1 << 62  # in grains
 
 
-@dataclass(frozen=True)
-class LimbsTaylorStep:
-    """Taylor polynomials of n and h² λ at t, of s = (time - t)/h, to be used up to t + h, in the axes of `series`.
-
-    Attributes:
-        t: centre in s, exact.
-        h: step in s, exact.
-        limb_count: limbs of a coefficient.
-    """
-
-    t: Fraction
-    h: Fraction
-    limb_count: int
-    _series: Array = field(repr=False)
-
-    @property
-    def bits(self) -> int:
-        """Coefficients are integers over 2**bits."""
-        return fraction_bits(self.limb_count)
-
-    @property
-    def coefficients(self) -> Words:
-        """Rows x, m, w and h² λ, lowest order first; computed on request, as a proof needs every second step only."""
-        words, orders = LIMB_BITS * self.limb_count // WORD_BITS + 1, len(self._series) // (LANES * self.limb_count)
-        table = np.empty((len(ROWS), words, orders), dtype=np.int64)
-        write_words(table, self._series, ROWS, self.limb_count)
-        return Words(table)
-
-
-def taylor_steps(plan: Plan, order: int | None = None) -> Generator[LimbsTaylorStep, None, Run]:
+def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
     """Yield the Taylor steps of a run in order from t = 0, up to one beyond the last time; return its `Run`.
 
     Args:
         plan: as for `run`.
-        order: of the series; None for the one that is cheapest to compute.
+        coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits, which the order follows.
     """
-    integration, ahead = integration_of(plan, POLYNOMIALS_PER_CALL, order), False
+    integration = integration_of(plan, POLYNOMIALS_PER_CALL, round(ORDER_PER_BIT * coefficient_bits))
     integration.until = FOR_EVER
-    spent = 0.0
-    grain, model, last = integration.problem.grain, integration.problem.model, plan.times[-1]
+    spent, ahead = 0.0, False
+    grain, limb_count, last = integration.problem.grain, integration.problem.model.limb_count, plan.times[-1]
+    start, end, bits = Fraction(0), Fraction(1), fraction_bits(limb_count)
     while not ahead:
         cpu_start = time.process_time()
         integration.advance(POLYNOMIALS_PER_CALL)
         spent += time.process_time() - cpu_start
         series = integration.out.series.reshape(POLYNOMIALS_PER_CALL, -1).copy()
-        for (start, length), of_step in zip(integration.out.steps.reshape(-1, 2).tolist(), series, strict=True):
-            t = start * grain
-            yield LimbsTaylorStep(t, length * grain, model.limb_count, of_step)
+        for (grains, length), of_step in zip(integration.out.steps.reshape(-1, 2).tolist(), series, strict=True):
+            t = grains * grain
+            yield TaylorStep(t, length * grain, start, end, bits, partial(_words, of_step, limb_count))
             if t > last:
                 ahead = True
                 break
     return result(integration, plan, time.process_time() - spent)
+
+
+def _words(series: Array, limb_count: int) -> Words:
+    """Return the rows x, m, w and h² λ of a step, lowest order first."""
+    words, orders = LIMB_BITS * limb_count // WORD_BITS + 1, len(series) // (LANES * limb_count)
+    table = np.empty((len(ROWS), words, orders), dtype=np.int64)
+    write_words(table, series, ROWS, limb_count)
+    return Words(table)
 
 
 @entry

@@ -27,16 +27,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import IntegrationError
+from ...errors import IntegrationError
+from ..plan import AT_REST
 
 if TYPE_CHECKING:
-    from ..capture import Capture
-    from .heyoka.stepper import Stepper, Zero
+    from ...capture import Capture
+    from .stepper import Stepper, Zero
 
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up
 SHORTER = Fraction(79, 128)  # a step taken again is cut by this factor: no simple ratio, so that no edge returns
 MINIMUM_BISECTIONS = 60  # the minimum of |xdot| is found to this many bits of a step
-AT_REST = "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
 
 
 class _Contradiction(Exception):

@@ -1,0 +1,74 @@
+"""The interface of an integrator: each folder beside this file that has an `engine.py` declares one as `ENGINE`."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Generator
+from fractions import Fraction
+from importlib.util import find_spec
+from typing import Any, ClassVar
+
+from ..scene import Inputs
+from ..taylor_step import TaylorStep
+from .plan import Plan, Report, Run
+
+
+class Engine(ABC):
+    """An integrator of the model that finds the zeros of xdot, in number types of its own.
+
+    Attributes:
+        name: its name on the command line and in datasets.
+        formulation: the formulation that suits it best.
+        requires: modules that must be installed.
+        extra: the extra of `pip install 'foucault-reference[…]'` that installs them.
+        bits: lowest and highest precision that it is chosen for.
+        own_process: whether a proof has it compute in a child process; else it costs too little for that.
+    """
+
+    name: ClassVar[str]
+    formulation: ClassVar[str]
+    requires: ClassVar[tuple[str, ...]]
+    extra: ClassVar[str]
+    bits: ClassVar[range]
+    own_process: ClassVar[bool]
+
+    @property
+    def installed(self) -> bool:
+        """Whether the modules that it requires are installed."""
+        return all(find_spec(module) is not None for module in self.requires)
+
+    @abstractmethod
+    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
+        """Return the cheapest run with at least `prec` bits."""
+
+    @abstractmethod
+    def run(self, plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
+        """Integrate a plan.
+
+        Args:
+            plan: the run to do.
+            report: called with the simulated time reached, in s.
+            look_ahead: called before the first step, to refuse a run that would take too long; it leaves the stepper
+                as it was, or raises. Only heyoka calls it.
+
+        Raises:
+            InputError: more bits than the engine has.
+            IntegrationError: the integrator stopped, or its transits are in doubt. No numbers then.
+        """
+
+    @abstractmethod
+    def taylor_steps(
+        self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
+    ) -> Generator[TaylorStep, None, Run]:
+        """Yield the Taylor steps of a run from t = 0 to one step beyond the last time, in order; return the run.
+
+        Args:
+            inputs: the exact inputs of a scene.
+            times: times of output in s, increasing, from 0.
+            prec: precision of the run in bits.
+            coefficient_bits: the coefficients are wanted to about 2**-coefficient_bits.
+        """
+
+    @abstractmethod
+    def expected_s(self, steps: int, prec: int) -> float:
+        """Return about how many CPU seconds a run takes that would be `steps` steps in double."""

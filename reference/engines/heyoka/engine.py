@@ -1,0 +1,52 @@
+"""heyoka as an engine: any formulation, any precision."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from fractions import Fraction
+from typing import Any
+
+from ...precision import LONG_DOUBLE_BITS, cheapest_type
+from ...scene import Inputs
+from ...taylor_step import TaylorStep
+from ..engine import Engine
+from ..plan import Plan, Report, Run
+
+STEP_S = 6e-4  # CPU seconds of a step at 160 bits; a step's cost grows with the square of the bits
+HARDWARE_STEP_S = 4e-5  # in double and long double
+
+
+class Heyoka(Engine):
+    """Taylor series of adaptive order and step, compiled from expressions; heyoka is imported when it runs."""
+
+    name = "heyoka"
+    formulation = "momentum"
+    requires = ("heyoka",)
+    extra = ""
+    bits = range(1, 1 << 30)
+    own_process = True
+
+    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
+        """Return the run of `momentum` in the cheapest type with `prec` bits."""
+        return Plan(inputs, self.formulation, cheapest_type(prec), times, transits, self.name)
+
+    def run(self, plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
+        """Integrate a plan; see `Engine.run`."""
+        from .run import run
+
+        return run(plan, report, look_ahead)
+
+    def taylor_steps(
+        self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
+    ) -> Generator[TaylorStep, None, Run]:
+        """Yield the Taylor steps of a run of `momentum` in MPFR: n east, north, up, then h H; return the run."""
+        from .taylor_steps import taylor_steps
+
+        return taylor_steps(inputs, times, prec, coefficient_bits)
+
+    def expected_s(self, steps: int, prec: int) -> float:
+        """Return about how many CPU seconds so many steps take."""
+        return steps * (HARDWARE_STEP_S if prec <= LONG_DOUBLE_BITS else STEP_S * (prec / 160) ** 2)
+
+
+ENGINE = Heyoka()

@@ -1,0 +1,80 @@
+"""One run of heyoka: a scene integrated in one formulation and one number type, with its transits if wanted."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ...errors import IntegrationError
+from ...model.formulations import FORMULATIONS
+from ...model.start import Start
+from ...model.vanishing import xdot_vanishes, zero_at_release
+from ...precision import GUARD_BITS
+from ...table import Table
+from ..plan import Plan, Report, Run
+from .log import watched_log
+from .stepper import Stepper, Zero, cartesian, least_tension
+from .transits import march, quiet_start
+
+SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
+
+
+def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Stepper], None] | None = None) -> Run:
+    """Integrate a plan; see `Engine.run`.
+
+    Raises:
+        IntegrationError: the integrator warned or stopped, or transits contradict each other.
+    """
+    start = Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
+    watching = plan.transits and not xdot_vanishes(start)
+    stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, events=watching)
+    times = [stepper.numbers.of(t) for t in plan.times]
+    if look_ahead is not None:
+        look_ahead(stepper)
+    zeros: list[Zero] = []
+    with watched_log() as watch:
+        multiplicity = zero_at_release(start)
+        quiet = quiet_start(stepper, multiplicity) if watching and multiplicity else None
+        started = time.process_time()
+        if watching:
+            states, zeros = march(stepper, times, watch, quiet, report)
+        else:
+            states = stepper.propagate(times, report)
+            if watch.fresh():
+                raise IntegrationError("heyoka wrote a warning to its log during a run without events.")
+    return result(plan, stepper, states, zeros if watching else None, started)
+
+
+def result(plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, started: float) -> Run:
+    """Return the states and zeros of a stepper that has reached the end, in SI units.
+
+    Args:
+        plan: the plan that was run.
+        stepper: after its last step.
+        states: at the plan's times, shape (times, variables).
+        zeros: of xdot; None if not looked for.
+        started: `time.process_time()` when the steps began.
+    """
+    bits = plan.number.prec + SMALL_SWING_BITS
+    return Run(
+        plan=plan,
+        grid=cartesian(stepper, states, bits),
+        transits=None if zeros is None else _transits(stepper, zeros, bits),
+        directions=[zero.direction for zero in zeros or ()],
+        order=stepper.order,
+        steps=stepper.steps,
+        terms=stepper.terms,
+        tension=least_tension(stepper, states),
+        compile_s=stepper.compile_s,
+        cpu_s=time.process_time() - started,
+    )
+
+
+def _transits(stepper: Stepper, zeros: list[Zero], bits: int) -> Table:
+    dtype = stepper.numbers.dtype
+    states = cartesian(stepper, np.array([zero.state for zero in zeros], dtype=dtype), bits)
+    times = stepper.numbers.fixed(np.array([zero.t for zero in zeros], dtype=dtype), bits)
+    return Table(("t", *states.columns), bits, [(t, *row) for t, row in zip(times, states.values, strict=True)])

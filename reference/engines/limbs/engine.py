@@ -1,0 +1,52 @@
+"""limbs as an engine: always `inertial`, beyond long double."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+from fractions import Fraction
+from typing import Any
+
+from ...precision import LONG_DOUBLE_BITS, NumberType
+from ...scene import Inputs
+from ...taylor_step import TaylorStep
+from ..engine import Engine
+from ..plan import Plan, Report, Run
+from .size import MOST_BITS
+
+STEP_S = 1.2e-5  # CPU seconds of a step at 160 bits: a fiftieth of heyoka's; it grows with the square of the bits
+
+
+class Limbs(Engine):
+    """Taylor series of fixed order and adaptive step in compiled multiprecision; numba is imported when it runs."""
+
+    name = "limbs"
+    formulation = "inertial"
+    requires = ("numba",)
+    extra = "methods"
+    bits = range(LONG_DOUBLE_BITS + 1, MOST_BITS + 1)
+    own_process = False
+
+    def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
+        """Return the run that keeps `prec` bits of a number as large as the swing."""
+        return Plan(inputs, self.formulation, NumberType("limbs", prec), times, transits, self.name)
+
+    def run(self, plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
+        """Integrate a plan; see `Engine.run`. It is in `inertial` whatever formulation the plan names."""
+        from .run import run
+
+        return run(plan, report)
+
+    def taylor_steps(
+        self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
+    ) -> Generator[TaylorStep, None, Run]:
+        """Yield the Taylor steps of a run, in the axes of a proof; return the run."""
+        from .taylor_steps import taylor_steps
+
+        return taylor_steps(self.plan(inputs, prec, times, transits=False), coefficient_bits)
+
+    def expected_s(self, steps: int, prec: int) -> float:
+        """Return about how many CPU seconds a run takes that would be `steps` steps in double."""
+        return steps * STEP_S * (prec / 160) ** 2
+
+
+ENGINE = Limbs()

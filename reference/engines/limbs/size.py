@@ -1,0 +1,20 @@
+"""How many limbs a precision takes, and the highest precision that limbs have; needs no compiler."""
+
+from __future__ import annotations
+
+LIMB_BITS = 22
+MOST_LIMBS = 18  # with more, and the order that goes with them, sums could pass 2**53
+ROUNDING_BITS = 9  # the limbs go this much below the precision, as the sums of a step round at the last limb
+
+
+def fraction_bits(limb_count: int) -> int:
+    """Return b such that a number of `limb_count` limbs is an integer over 2**b."""
+    return LIMB_BITS * limb_count - 1
+
+
+def limb_count_for(prec: int) -> int:
+    """Return how many limbs keep `prec` bits of numbers up to 1 through a step."""
+    return max(3, -(-(prec + ROUNDING_BITS + 1) // LIMB_BITS))
+
+
+MOST_BITS = fraction_bits(MOST_LIMBS) - ROUNDING_BITS  # the highest precision
