@@ -12,6 +12,7 @@ import numpy as np
 _WIDE, _TALL = 0.64, 1.25  # size of a character over the font size: slightly too large, to allow for other fonts
 _GAP = 5.0  # between a marker and its name, in points
 _MARGIN, _APART = 24.0, 3.0  # between the axes and names in the margin, and between these names, in points
+_MOST = 0.45  # of the figure's width, for names in the margin
 _MARKER = 2.5  # half the size of a marker, in points: names keep this distance from lines
 _EVERY = 3.0  # spacing, in points, of the samples that represent a line
 _OUTSIDE, _ON_NAME, _ON_LINE, _AWAY, _CROSSED = 1e6, 1e4, 40.0, 8.0, 1e3  # penalties of a place
@@ -77,8 +78,8 @@ def place(
         return
     figure = axes.figure
     if margin:
-        room = _MARGIN + max(_size(line, size)[0] for line in lines)
-        figure.get_layout_engine().set(rect=(0, 0, 1 - room / 72 / figure.get_figwidth(), 1))
+        room = (_MARGIN + max(_size(line, size)[0] for line in lines)) / 72 / figure.get_figwidth()
+        figure.get_layout_engine().set(rect=(0, 0, 1 - min(room, _MOST), 1))
     figure.get_layout_engine().execute(figure)
     scale = 72 / figure.dpi  # points in a pixel
     frame = axes.get_window_extent().extents * scale

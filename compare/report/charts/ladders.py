@@ -21,7 +21,7 @@ from .labels import Line
 Coordinate = Callable[[Row], float | None]
 
 CPU, ERROR = "CPU seconds", "largest error of position in m"
-_NARROW = 0.1  # a band below this part of the height of the axes has its text above it
+_NARROW = 0.06  # a band below this part of the height of the axes has its text above it
 _BLUE, _VERMILLION, _GREEN, _PURPLE, _ORANGE, _SKY, _INK = COLOURS
 FAMILY_COLOURS = {
     Family.PAPER: _INK,

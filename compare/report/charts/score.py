@@ -12,7 +12,9 @@ from reference import InputError
 from reference.precision import Array
 
 from ...score.judge import Score
-from .drawing import BAND, COLOURS, GUIDE, check_matplotlib, line_style, picture, sheet
+from .drawing import COLOURS, GUIDE, check_matplotlib, line_style, logarithmic, picture, sheet
+from .labels import Line, draw, place
+from .ladders import band
 
 SUFFIXES = (".svg", ".png", ".pdf")
 
@@ -42,19 +44,23 @@ def error_picture(scores: Sequence[Score], path: Path) -> None:
 
 
 def _draw(axes: Any, scores: Sequence[Score]) -> None:
-    bound = max(score.errors.bound_m for score in scores)
+    bound, tolerance = max(score.errors.bound_m for score in scores), min(score.tolerance_m for score in scores)
     top = max([10 * bound, *(score.errors.max_m for score in scores)])
+    lines = []
     for i, score in enumerate(scores):
         t, error = _thinned(score.errors.t, np.maximum(score.errors.position, bound / 30))
-        style = line_style(COLOURS[i % len(COLOURS)], i) | {"marker": ""}
-        axes.plot(t, error, label=Path(score.candidate.name).name, **style)
-    axes.axhspan(bound / 30, bound, color=BAND, label=f"bound of the reference, {bound:.1e} m")
-    tolerance = min(score.tolerance_m for score in scores)
+        style = line_style(COLOURS[i % len(COLOURS)], i)
+        lines.append(Line(Path(score.candidate.name).name, t.tolist(), error.tolist(), style))
+    end = max(line.x[-1] for line in lines)
     if tolerance < 100 * top:
-        axes.axhline(tolerance, label=f"tolerance, {tolerance:.1e} m", **GUIDE)
-    axes.set(yscale="log", ylim=(bound / 30, 3 * top), xlabel="t in s", ylabel="position error in m")
+        lines.append(Line(f"tolerance, {tolerance:.1e} m", [0, end], [tolerance, tolerance], GUIDE))
+        top = max(top, tolerance)
+    logarithmic(axes, "y", bound / 30, 3 * top, 12)
+    axes.set(xlim=(0, end or 1), xlabel="t in s", ylabel="position error in m")
     axes.set_title(f"{scores[0].scene.id}: error against time")
-    axes.legend(fontsize="small", loc="best")
+    band(axes, bound)
+    draw(axes, lines)
+    place(axes, lines, margin=True)
 
 
 def _thinned(t: Array, error: Array, points: int = 2000) -> tuple[Array, Array]:
