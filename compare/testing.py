@@ -67,14 +67,12 @@ def assert_agrees(
 def message(result: Score) -> str:
     """Return the message of a failed assertion."""
     errors, transits = result.errors, result.transits
-    row, component = errors.worst
-    expected = float(errors.truth.states[row, "xyz".index(component)])
-    got = float(result.candidate.columns[component][row])
+    worst = result.worst
     lines = [
-        f"{result.scene.id}: {component} at t = {float(errors.t[row])!r} s (row {row}):",
-        f"  expected   {expected!r}",
-        f"  got        {got!r}",
-        f"  difference {float(errors.components[component][row]):+.3e} m",
+        f"{result.scene.id}: {worst.component} at t = {worst.t!r} s (row {errors.worst[0]}):",
+        f"  expected   {worst.expected!r}",
+        f"  got        {worst.got!r}",
+        f"  difference {worst.difference:+.3e} m",
         f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
     ]
     if transits is not None and (transits.missed or transits.extra or transits.max_conditioned_m > result.allowed_m):

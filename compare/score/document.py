@@ -11,10 +11,7 @@ from .judge import Score
 def document(score: Score) -> dict[str, Any]:
     """Return a score as a JSON document; its keys are part of the command line's contract."""
     errors, transits = score.errors, score.transits
-    row, component = errors.worst
     turn = score.swing.largest_turn
-    column = score.candidate.columns[component]
-    expected = errors.truth.states[row, "xyz".index(component)]
     fields: dict[str, Any] = {
         "scene": score.scene.id,
         "candidate": score.candidate.name,
@@ -39,13 +36,7 @@ def document(score: Score) -> dict[str, Any]:
         "phase_error_s": score.swing.largest_delay,
         "h_drift_m2_s2": score.drifts.get("h_m2_s2"),
         "length_drift_m": score.drifts.get("length_m"),
-        "worst": {
-            "t": float(errors.t[row]),
-            "component": component,
-            "expected": float(expected),
-            "got": float(column[row]),
-            "difference": float(errors.components[component][row]),
-        },
+        "worst": score.worst._asdict(),
         "transits": None,
         "reference": {"level": score.golden.manifest.level, "bound_m": errors.bound_m},
         "diagnosis": None,

@@ -13,12 +13,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 from reference import Golden, InputError, Scene, UnreachableError, load_scene
 from reference.dataset.dense import WITHIN
 from reference.precision import Array
 
-from ..candidates.candidate import Candidate
+from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
@@ -31,6 +32,16 @@ from .input_floor import input_floor
 from .transits import TransitErrors, transit_errors
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
+
+
+class Worst(NamedTuple):
+    """One number of a candidate: its time in s and column, the truth, what it says, and their difference."""
+
+    t: float
+    component: str
+    expected: float
+    got: float
+    difference: float
 
 
 @dataclass(frozen=True, repr=False)
@@ -74,6 +85,14 @@ class Score:
     def input_floor_m(self) -> float:
         """Distance in m by which rounding the inputs to binary64 moves the bob; computed at the first use."""
         return input_floor(self.scene, float(self.candidate.t[-1]))
+
+    @property
+    def worst(self) -> Worst:
+        """The component in which the largest position error shows most."""
+        row, name = self.errors.worst
+        expected, got = self.errors.truth.states[row, COLUMNS.index(name)], self.candidate.columns[name][row]
+        difference = self.errors.components[name][row]
+        return Worst(float(self.errors.t[row]), name, float(expected), float(got), float(difference))
 
     @property
     def allowed_m(self) -> float:

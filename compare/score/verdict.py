@@ -21,10 +21,9 @@ def lines(score: Score) -> Iterator[str]:
     yield from _row("digits", _one_decimal(errors.digits), scale)
     mixed = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"
     yield from _row("scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed)
-    row, component = errors.worst
-    expected = float(errors.truth.states[row, "xyz".index(component)])
-    got = float(score.candidate.columns[component][row])
-    yield from _row("worst", f"{component} at t = {errors.t[row]:.10g} s", f"expected {expected:.17g}, got {got:.17g}")
+    worst = score.worst
+    numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
+    yield from _row("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
         yield from _row("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
