@@ -12,8 +12,9 @@ from reference import InputError
 from reference.precision import Array
 
 from ...power_law import largest_so_far
-from .drawing import BAND, COLOURS, GUIDE, line_style, logarithmic, sheet, svg_text
+from .drawing import COLOURS, GUIDE, line_style, logarithmic, sheet, svg_text
 from .labels import Line, draw, place
+from .ladders import band
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
 _POINTS = 240  # points of a line
@@ -38,25 +39,22 @@ class ErrorHistory:
     error: Array
     exponent: float | None = None
 
-    def line(self, colour: str, place: int) -> Line:
+    def line(self, colour: str, index: int) -> Line:
         """Return the largest error so far as a line, with the exponent in its name."""
         positive = (self.t > 0) & (np.maximum.accumulate(self.error) > 0)
         if not positive.any():
             raise InputError("growth", self.label, "an error above zero at a time above zero")
         t, largest = largest_so_far(self.t[positive], self.error[positive], _POINTS)
         power = "" if self.exponent is None else f", t^{self.exponent:.2f}"
-        return Line(f"{self.label}{power}", t.tolist(), largest.tolist(), line_style(colour, place))
+        return Line(f"{self.label}{power}", t.tolist(), largest.tolist(), line_style(colour, index))
 
 
-def error_growth(
-    histories: Sequence[ErrorHistory], bound_m: float, *, quantity: str = "largest error of position so far in m"
-) -> str:
+def error_growth(histories: Sequence[ErrorHistory], bound_m: float) -> str:
     """Draw errors over time, log-log, with fans of slopes 1, 1.5 (Brouwer's law) and 2 and each line's own exponent.
 
     Args:
         histories: one for each method, at least one.
         bound_m: bound of the reference in m, drawn as a band.
-        quantity: label of the vertical axis.
 
     Raises:
         InputError: there is nothing to draw.
@@ -70,10 +68,9 @@ def error_growth(
         logarithmic(axes, "x", min(line.x[0] for line in lines), max(line.x[-1] for line in lines))
         lowest = min(line.y[0] for line in lines)
         logarithmic(axes, "y", lowest / 5, 5 * max(line.y[-1] for line in (*lines, *guides)), 16)
-        if axes.get_ylim()[0] < bound_m:
-            axes.axhspan(axes.get_ylim()[0], bound_m, color=BAND, linewidth=0, zorder=0)
+        band(axes, bound_m)
         draw(axes, [*lines, *guides])
-        axes.set(xlabel="time in s", ylabel=quantity)
+        axes.set(xlabel="time in s", ylabel="largest error of position so far in m")
         place(axes, lines, margin=True)
         place(axes, [replace(one, x=one.x[-1:], y=one.y[-1:]) for one in guides], [*lines, *guides])
         names = ", ".join(one.label for one in histories)

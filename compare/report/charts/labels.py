@@ -161,12 +161,7 @@ def _penalty(option: _Place, placed: Sequence[tuple[float, Any]], samples: Any, 
     """Return the penalty of a place: outside the axes, on other names, on lines, and far from the line's end."""
     box = option.box
     outside = box[1] < frame[1] or box[3] > frame[3]
-    covered = sum(_overlap(box, other) for _, other in placed)
-    low, high = box[:2] - _MARKER, box[2:] + _MARKER
-    inside = ((samples > low) & (samples < high)).all(axis=1)
+    shared = [np.minimum(box[2:], other[2:]) - np.maximum(box[:2], other[:2]) for _, other in placed]
+    covered = sum(np.prod(sides.clip(0)) for sides in shared)
+    inside = ((samples > box[:2] - _MARKER) & (samples < box[2:] + _MARKER)).all(axis=1)
     return float(_OUTSIDE * outside + _ON_NAME * covered + _ON_LINE * inside.sum() + option.away)
-
-
-def _overlap(a: Any, b: Any) -> float:
-    """Return the area that two boxes share."""
-    return float(max(0.0, min(a[2], b[2]) - max(a[0], b[0])) * max(0.0, min(a[3], b[3]) - max(a[1], b[1])))
