@@ -49,7 +49,8 @@ class Registry(Mapping[str, D]):
     def __getitem__(self, word: str) -> D:
         if word not in self._by_id:
             nearest_first = get_close_matches(word, self._by_id, n=len(self._by_id), cutoff=0.0)
-            raise InputError(self._what, word, "a known id", f"Known, the nearest first: {', '.join(nearest_first)}.")
+            known = f"Known ids, the nearest first: {', '.join(nearest_first)}."
+            raise InputError(self._what, word, f"the id of a declared {self._what}", known)
         return self._by_id[word]
 
     def __contains__(self, word: object) -> bool:

@@ -22,7 +22,6 @@ __all__ = [
     "Order",
     "Printed",
     "Quantity",
-    "approximation",
     "motions",
     "quantities",
 ]
@@ -30,15 +29,6 @@ __all__ = [
 APPROXIMATIONS: Mapping[str, Approximation] = Registry(
     __name__, "APPROXIMATIONS", "approximation", lambda declared: isinstance(declared, Quantity)
 )
-
-
-def approximation(word: str) -> Approximation:
-    """Return the approximation with this id.
-
-    Raises:
-        InputError: there is no such id.
-    """
-    return APPROXIMATIONS[word]
 
 
 def motions() -> tuple[str, ...]:

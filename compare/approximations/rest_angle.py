@@ -65,6 +65,12 @@ def _triangle(scene: Scene) -> Any:
     return case.ctx.asin(case.outward * case.sin / case.apparent_gravity)
 
 
+def _pulled(scene: Scene) -> str | None:
+    return under_gravity(scene) or (
+        None if Case.of_scene(scene).apparent_gravity else "Gravity and centrifugal force cancel: there is no triangle"
+    )
+
+
 def _not_at_a_pole(scene: Scene) -> str | None:
     pole = abs(scene.exact.latitude) == 90
     return (
@@ -117,6 +123,7 @@ APPROXIMATIONS = (
         where="Mathar (48)-(50)",
         drops="the cord: N + h stands for N + h - l, the distance of the bob",
         orders=(Order("rotation_rate", 2, _RATES), Order("length", 1, (10, 20, 40, 80))),
+        refuses=_pulled,
         formula=_triangle,
     ),
 )

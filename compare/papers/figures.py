@@ -10,7 +10,7 @@ import numpy as np
 from reference import load_scene
 from reference.precision import Array
 
-from ..approximations import Motion, approximation
+from ..approximations import APPROXIMATIONS, Motion
 from ..observed.swing_plane import rest_in_metres
 from ..position_error import difference, distance
 from ..report.charts.drawing import COLOURS, FAINT, picture, sheet
@@ -139,7 +139,7 @@ def figure_7(figure: Any) -> None:
 
 
 def _path(name: str, times: Array) -> Array:
-    motion = approximation(name)
+    motion = APPROXIMATIONS[name]
     assert isinstance(motion, Motion)
     return motion.trajectory(load_scene("paris"), times)[1:]
 

@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from compare.approximations import approximation, motions
+from compare.approximations import APPROXIMATIONS, motions
 from compare.approximations.case import Case
 from compare.approximations.gastebois_small import small_angles
 from compare.approximations.linear_3d import plumb_line, stiffness
@@ -92,8 +92,8 @@ def test_each_item_changes_the_equations_only_where_it_says(item):
 # Harmonic pendulum on a turntable --------------------------------------------------------------------------------
 @pytest.mark.parametrize("word", ["method_1", "method_2", "method_3"])
 def test_the_three_methods_are_one_motion(word):
-    expected = approximation("linear_g").trajectory(MOVING, DAY)
-    assert np.max(np.abs(approximation(word).trajectory(MOVING, DAY) - expected)) < 3e-11
+    expected = APPROXIMATIONS["linear_g"].trajectory(MOVING, DAY)
+    assert np.max(np.abs(APPROXIMATIONS[word].trajectory(MOVING, DAY) - expected)) < 3e-11
 
 
 def test_the_solution_6_1_solves_the_system_of_section_5():
@@ -107,13 +107,13 @@ def test_the_solution_6_1_solves_the_system_of_section_5():
         return vx, vy, -square * x + 2 * turning * vy, -square * y - 2 * turning * vx
 
     states = integrate(("x", "y", "vx", "vy"), section_5, (*place[:2], *speed[:2]), DAY)
-    rows = approximation("gastebois_6_1").trajectory(MOVING, DAY)
+    rows = APPROXIMATIONS["gastebois_6_1"].trajectory(MOVING, DAY)
     along = np.column_stack([np.asarray(part, dtype=float) for part in plumb.inward(tuple(rows.T[:3]))])
     assert np.max(np.abs(along[:, :2] - states[:, :2])) < 1e-10
 
 
 def test_6_3_is_6_1_for_a_release_at_rest():
-    general, released = (approximation(f"gastebois_6_{i}").trajectory(PARIS, DAY) for i in (1, 3))
+    general, released = (APPROXIMATIONS[f"gastebois_6_{i}"].trajectory(PARIS, DAY) for i in (1, 3))
     assert np.max(np.abs(general - released)) < 1e-11
 
 
@@ -126,7 +126,7 @@ def test_6_2_is_6_1_for_its_own_launch():
             "release": {"x": "0.5", "y": "0", "vy": "-2.5e-5"},
         }
     )
-    general, simple = (approximation(f"gastebois_6_{i}").trajectory(scene, DAY) for i in (1, 2))
+    general, simple = (APPROXIMATIONS[f"gastebois_6_{i}"].trajectory(scene, DAY) for i in (1, 2))
     assert np.max(np.abs(general - simple)) < 1e-11
     # It swings through the plumb line in a plane that turns at -Ωz.
     slowly = np.exp(1j * 5e-5 * DAY) * (simple[:, 0] + 1j * simple[:, 1])
@@ -158,7 +158,7 @@ def test_his_general_system_is_that_of_the_angles_of_7_2():
 
     times = np.linspace(0.0, 600.0, 301)
     theta, phi, _, _ = integrate(("theta", "phi", "theta_rate", "phi_rate"), section_7_2, start, times).T
-    rows = approximation("gastebois_general").trajectory(scene, times)
+    rows = APPROXIMATIONS["gastebois_general"].trajectory(scene, times)
     along = plumb.inward(tuple(rows.T[:3]))
     expected = 67 * np.array([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), -np.cos(theta)])
     assert np.max(np.abs(np.array([np.asarray(part, dtype=float) for part in along]) - expected)) < 1e-10
@@ -180,13 +180,13 @@ def test_the_fourier_series_are_jacobis_functions(modulus):
 def test_the_plane_pendulum_is_the_reference_without_rotation_at_any_amplitude(angle):
     scene = parse_scene({"id": "plane", "site": {"rotation_rate": "0"}, "release": {"angle": angle, "azimuth": "127"}})
     times = np.linspace(0.0, 200.0, 401)
-    gap = np.abs(approximation("planar").trajectory(scene, times) - trajectory(scene, times))
+    gap = np.abs(APPROXIMATIONS["planar"].trajectory(scene, times) - trajectory(scene, times))
     assert np.max(gap) < 1e-9  # near the top a rounding of the release grows a thousandfold
 
 
 def test_the_conical_pendulum_goes_round_either_way():
     times = np.linspace(0.0, 100.0, 201)
-    rows = approximation("conical").trajectory(CONE, times)
+    rows = APPROXIMATIONS["conical"].trajectory(CONE, times)
     assert np.allclose(rows[:, 0], 7.35 * np.cos(times), atol=1e-12)
     assert np.allclose(rows[:, 1], -7.35 * np.sin(times), atol=1e-12)
     assert np.max(np.abs(rows - trajectory(CONE, times))) < 1e-11
@@ -201,7 +201,7 @@ def test_the_linear_solution_is_the_exponential_of_its_matrix():
     ctx = case.ctx
     matrix = ctx.matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-a, 0, 0, 2 * turn], [0, -b, -2 * turn, 0]])
     times = np.array([0.0, 3.0, 70.0])
-    rows = approximation("linear_3d").trajectory(scene, times)
+    rows = APPROXIMATIONS["linear_3d"].trajectory(scene, times)
     for t, row in zip(times, rows, strict=True):
         x, y, vx, vy = ctx.expm(matrix * ctx.mpf(t)) * ctx.matrix(start)
         got = plumb.inward(tuple(row[:3])), plumb.inward(tuple(row[3:]))
@@ -242,7 +242,7 @@ def test_a_motion_starts_at_the_release_stays_on_the_sphere_and_moves_with_its_v
     step, times = 2e-3, np.array([0.0, 1.7, 40.0, 333.0])
     around = np.unique(np.concatenate([times[1:] + shift * step for shift in (-2, -1, 1, 2)]))
     every = np.unique(np.concatenate((times, around)))
-    rows = dict(zip(every.tolist(), approximation(word).trajectory(scene, every), strict=True))
+    rows = dict(zip(every.tolist(), APPROXIMATIONS[word].trajectory(scene, every), strict=True))
     length = float(scene.exact.length)
     truth = trajectory(scene, [0.0])[0]
     assert rows[0.0][:3] == pytest.approx(truth[:3], abs=1e-13)
@@ -262,14 +262,14 @@ def test_a_motion_starts_at_the_release_stays_on_the_sphere_and_moves_with_its_v
 @pytest.mark.parametrize("word", motions())
 def test_rows_do_not_depend_on_which_other_times_are_asked_for(word):
     scene = scene_for(word)
-    rows = approximation(word).trajectory(scene, [0.0, 5.0, 300.0])
-    assert approximation(word).trajectory(scene, [300.0])[0] == pytest.approx(rows[2], abs=1e-11)
+    rows = APPROXIMATIONS[word].trajectory(scene, [0.0, 5.0, 300.0])
+    assert APPROXIMATIONS[word].trajectory(scene, [300.0])[0] == pytest.approx(rows[2], abs=1e-11)
 
 
 def test_the_sense_of_rotation_follows_the_hemisphere():
     for scene, sense in ((load_scene("paris"), -1), (load_scene("southern"), 1)):
         for word in ("linear_recentred", "gastebois_6_1", "linear_3d", "gastebois_general"):
-            rows = approximation(word).trajectory(scene, np.linspace(0.0, 7200.0, 4001))
+            rows = APPROXIMATIONS[word].trajectory(scene, np.linspace(0.0, 7200.0, 4001))
             north = float(Case.of_scene(scene).rest[1] * 67)
             far = np.argsort(-np.hypot(rows[:, 0], rows[:, 1] - north))[:200]
             azimuth = np.unwrap(2 * np.arctan2(rows[far, 1] - north, rows[far, 0])[np.argsort(far)]) / 2

@@ -8,16 +8,7 @@ import sys
 import numpy as np
 import pytest
 
-from compare.approximations import (
-    APPROXIMATIONS,
-    Approximation,
-    Motion,
-    Quantity,
-    approximation,
-    mathar_items,
-    motions,
-    quantities,
-)
+from compare.approximations import APPROXIMATIONS, Approximation, Motion, Quantity, mathar_items, motions, quantities
 from compare.foucpend.march import ITEMS
 from reference import InputError, UnreachableError, load_scene
 
@@ -34,8 +25,8 @@ def test_every_declaration_is_filled_in():
         assert isinstance(declared, Approximation)
         assert declared.id == word
         assert all((declared.title, declared.where, declared.domain, declared.drops, declared.orders)), word
-    assert all(isinstance(approximation(word), Motion) for word in motions())
-    assert all(isinstance(approximation(word), Quantity) for word in quantities())
+    assert all(isinstance(APPROXIMATIONS[word], Motion) for word in motions())
+    assert all(isinstance(APPROXIMATIONS[word], Quantity) for word in quantities())
 
 
 def test_the_reports_of_approximations_load_no_heavy_library():
@@ -49,7 +40,7 @@ def test_the_reports_of_approximations_load_no_heavy_library():
 
 def test_an_unknown_word_is_answered_with_the_known_ones():
     with pytest.raises(InputError, match="the nearest first: linear_g, linear_3d"):
-        approximation("linear")
+        APPROXIMATIONS["linear"]
 
 
 def test_the_bits_of_the_papers_program_name_motions():
@@ -77,7 +68,7 @@ def test_the_bits_of_the_papers_program_name_motions():
     ],
 )
 def test_a_scene_outside_the_domain_is_refused_with_the_reason(word, change, reason):
-    declared, scene = approximation(word), PARIS.with_values([change])
+    declared, scene = APPROXIMATIONS[word], PARIS.with_values([change])
     with pytest.raises(InputError, match=reason) as refused:
         declared.trajectory(scene, [0.0, 1.0]) if isinstance(declared, Motion) else declared.value(scene)
     assert word in str(refused.value)
@@ -86,23 +77,28 @@ def test_a_scene_outside_the_domain_is_refused_with_the_reason(word, change, rea
 @pytest.mark.parametrize("word", ["linear_g", "mathar_item_1", "linear_3d", "gastebois_6_1", "conical"])
 def test_above_the_suspension_the_plane_forms_say_so(word):
     with pytest.raises(InputError, match="below the suspension"):
-        approximation(word).trajectory(load_scene("two_radians"), [0.0])
+        APPROXIMATIONS[word].trajectory(load_scene("two_radians"), [0.0])
 
 
 @pytest.mark.parametrize("times", [[], [-1.0, 0.0], [0.0, 0.0], [[0.0]], [0.0, float("nan")]])
 def test_times_must_increase_from_zero_or_later(times):
     with pytest.raises(InputError, match="increasing"):
-        approximation("linear_g").trajectory(PARIS, times)
+        APPROXIMATIONS["linear_g"].trajectory(PARIS, times)
 
 
 def test_a_motion_that_leaves_the_sphere_gives_no_numbers():
     thrown = PARIS.with_values(["release.vx=40"])
     with pytest.raises(UnreachableError, match="sphere"):
-        approximation("linear_g").trajectory(thrown, np.linspace(0.0, 20.0, 50))
+        APPROXIMATIONS["linear_g"].trajectory(thrown, np.linspace(0.0, 20.0, 50))
     with pytest.raises(UnreachableError, match="horizontal"):
-        approximation("mathar_item_1").trajectory(thrown, np.linspace(0.0, 20.0, 50))
+        APPROXIMATIONS["mathar_item_1"].trajectory(thrown, np.linspace(0.0, 20.0, 50))
+
+
+def test_gravity_that_the_centrifugal_force_cancels_leaves_no_triangle_of_forces():
+    with pytest.raises(InputError, match=r"rest_triangle.*cancel"):
+        APPROXIMATIONS["rest_triangle"].value(load_scene("weightless"))
 
 
 def test_gravity_that_the_centrifugal_force_cancels_leaves_no_swing():
     with pytest.raises(UnreachableError, match="cancel"):
-        approximation("linear_apparent").trajectory(load_scene("weightless"), [0.0, 1.0])
+        APPROXIMATIONS["linear_apparent"].trajectory(load_scene("weightless"), [0.0, 1.0])

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from compare.approximations import APPROXIMATIONS, Motion, approximation
+from compare.approximations import APPROXIMATIONS, Motion
 from compare.approximations.case import Case
 from compare.approximations.gastebois_small import small_angles
 from compare.observed.apsides import frequency, precession_period
@@ -35,7 +35,7 @@ def gastebois(sidereal_hours="23.93", latitude="48.87"):
 
 
 def printed_value(word, scene, decimals, unit=1):
-    return f"{float(approximation(word).value(scene)) / unit:.{decimals}f}"
+    return f"{float(APPROXIMATIONS[word].value(scene)) / unit:.{decimals}f}"
 
 
 # Mathar, section VII -----------------------------------------------------------------------------------------------
@@ -54,18 +54,18 @@ def test_the_frequencies_of_section_vii(word, printed):
 
 
 def test_the_period_of_the_plane_pendulum_and_the_apparent_gravity_of_48():
-    assert 1 / float(approximation("frequency_planar").value(PARIS)) == pytest.approx(16.423225, abs=5e-7)
+    assert 1 / float(APPROXIMATIONS["frequency_planar"].value(PARIS)) == pytest.approx(16.423225, abs=5e-7)
     assert printed_value("apparent_gravity", PARIS, 5) == "9.79195"
 
 
 def test_the_frequency_of_the_reference_is_the_papers_cut_off_after_nine_decimals():
     hertz = frequency(PARIS, 1000)
     assert math.floor(hertz * 1e9) == 60843633
-    assert float(approximation("frequency_anharmonic").value(PARIS)) == pytest.approx(hertz, rel=1e-8)
+    assert float(APPROXIMATIONS["frequency_anharmonic"].value(PARIS)) == pytest.approx(hertz, rel=1e-8)
 
 
 def test_the_papers_point_of_rest_is_right_to_four_digits_only():
-    angle = approximation("rest_equation").value(PARIS)
+    angle = APPROXIMATIONS["rest_equation"].value(PARIS)
     north = -67 * math.sin(angle)
     assert north == pytest.approx(-0.115202, abs=5e-6)
     assert abs(north + 0.115202) > 1e-6
@@ -73,32 +73,32 @@ def test_the_papers_point_of_rest_is_right_to_four_digits_only():
 
 
 def test_the_series_47_comes_nearer_with_every_order():
-    truth = approximation("rest_equation").value(PARIS)
-    gaps = [abs(approximation(f"rest_series_{i}").value(PARIS) / truth - 1) for i in (1, 2, 3)]
+    truth = APPROXIMATIONS["rest_equation"].value(PARIS)
+    gaps = [abs(APPROXIMATIONS[f"rest_series_{i}"].value(PARIS) / truth - 1) for i in (1, 2, 3)]
     assert [f"{float(gap):.0e}" for gap in gaps] == ["1e-03", "1e-06", "1e-09"]
-    assert float(approximation("rest_triangle").value(PARIS) / truth - 1) == pytest.approx(67 / 6390000, rel=0.02)
+    assert float(APPROXIMATIONS["rest_triangle"].value(PARIS) / truth - 1) == pytest.approx(67 / 6390000, rel=0.02)
 
 
 # Gastebois -----------------------------------------------------------------------------------------------------------
 def test_the_periods_of_precession_of_6_3():
     assert printed_value("precession_sine", gastebois(), 2, HOUR) == "31.77"
-    assert float(approximation("precession_tilted").value(gastebois("23.9345"))) / HOUR == pytest.approx(
+    assert float(APPROXIMATIONS["precession_tilted"].value(gastebois("23.9345"))) / HOUR == pytest.approx(
         31.74, abs=0.02
     )
-    drift = approximation("precession_spherical").value(gastebois()) / approximation("precession_tilted").value(
+    drift = APPROXIMATIONS["precession_spherical"].value(gastebois()) / APPROXIMATIONS["precession_tilted"].value(
         gastebois()
     )
     assert f"{31.74 * float(drift):.2f}" == "31.85"
-    assert f"{float(approximation('precession_spherical').value(gastebois())) / HOUR:.1f}" == "31.8"
+    assert f"{float(APPROXIMATIONS['precession_spherical'].value(gastebois())) / HOUR:.1f}" == "31.8"
 
 
 def test_the_swing_plane_turns_by_11_3_degrees_an_hour_in_paris():
-    assert f"{360 * HOUR / float(approximation('precession_sine').value(PARIS)):.1f}" == "11.3"
+    assert f"{360 * HOUR / float(APPROXIMATIONS['precession_sine'].value(PARIS)):.1f}" == "11.3"
     assert f"{360 * HOUR / precession_period(PARIS):.1f}" == "11.3"
 
 
 def test_at_49_degrees_the_plane_comes_round_in_31_hours_and_48_minutes():
-    hours = float(approximation("precession_sine").value(gastebois("24", "49"))) / HOUR
+    hours = float(APPROXIMATIONS["precession_sine"].value(gastebois("24", "49"))) / HOUR
     assert (int(hours), round(hours % 1 * 60)) == (31, 48)
 
 
@@ -118,7 +118,7 @@ def test_the_offset_at_the_first_passage_and_after_one_swing_is_that_of_6_3():
     scene = gastebois().with_values(["site.equatorial_radius=0"])
     _, omega, turn = (float(v) if i else v for i, v in enumerate(small_angles(Case.of_scene(scene))))
     period = 2 * math.pi / omega
-    rows = approximation("gastebois_6_3").trajectory(scene, [0.0, period / 4, period])
+    rows = APPROXIMATIONS["gastebois_6_3"].trajectory(scene, [0.0, period / 4, period])
     assert rows[1, 1] * 1e3 == pytest.approx(0.93, abs=0.01)
     assert rows[2, 1] * 1e3 == pytest.approx(-5.88, abs=0.02)
     assert omega**2 - turn**2 == pytest.approx(9.81 / 67, rel=1e-12)
@@ -128,7 +128,7 @@ def test_the_spherical_drift_is_nearer_to_the_truth_at_the_pole_than_without():
     scene = load_scene("pantheon", ["site.latitude=90"])
     truth = precession_period(scene)
     gaps = {
-        w: abs(float(approximation(w).value(scene)) / truth - 1) for w in ("precession_tilted", "precession_spherical")
+        w: abs(float(APPROXIMATIONS[w].value(scene)) / truth - 1) for w in ("precession_tilted", "precession_spherical")
     }
     assert gaps["precession_tilted"] == pytest.approx(3 / 8 * (6.5 / 67) ** 2, rel=0.01)
     assert gaps["precession_spherical"] < 0.02 * gaps["precession_tilted"]
@@ -140,7 +140,7 @@ TIMES = np.linspace(0.0, 3600.0, 3601)
 
 
 def printed_motion(word, scene, times=TIMES):
-    declared = approximation(word)
+    declared = APPROXIMATIONS[word]
     assert isinstance(declared, Motion)
     return declared.printed.compute(scene, times), declared.trajectory(scene, times)
 
@@ -195,11 +195,11 @@ def test_with_the_sign_of_the_conclusion_method_3_turns_the_wrong_way():
 
 
 def test_printed_numbers_miss_by_their_lost_factor():
-    declared = approximation("frequency_anharmonic")
+    declared = APPROXIMATIONS["frequency_anharmonic"]
     assert float(declared.value(PARIS) / declared.printed.compute(PARIS)) == pytest.approx(2 * math.pi, rel=1e-14)
-    declared = approximation("precession_tilted")
+    declared = APPROXIMATIONS["precession_tilted"]
     assert float(declared.printed.compute(PARIS)) == pytest.approx(16.4358 / math.sin(math.radians(48.9446)), rel=1e-4)
-    declared, outward = approximation("apparent_gravity"), Case.of_scene(PARIS).outward
+    declared, outward = APPROXIMATIONS["apparent_gravity"], Case.of_scene(PARIS).outward
     missing = declared.printed.compute(PARIS) ** 2 - declared.value(PARIS) ** 2
     assert float(missing) == pytest.approx(float(outward - outward**2), rel=1e-14)
 
@@ -213,6 +213,6 @@ def test_the_printed_45_has_no_solution_in_paris():
         inner = ctx.sqrt(cord**2 - y**2) * (y - R * s - 2 * y * c**2) + c * (R * y + (cord**2 - 2 * y**2) * s)
         return inner * case.rate**2 / case.gravity
 
-    rest = -cord * ctx.sin(approximation("rest_equation").value(PARIS))
+    rest = -cord * ctx.sin(APPROXIMATIONS["rest_equation"].value(PARIS))
     assert abs(right_side(rest) - rest) < 1e-50
     assert all(right_side(y) < y**2 for y in ctx.linspace(-cord, cord, 401))

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from compare.approximations import Motion, approximation
+from compare.approximations import APPROXIMATIONS, Motion
 from compare.candidates.read import read_stream
 from compare.commands.pend import command
 from compare.foucpend import Options, lines
@@ -188,7 +188,7 @@ def test_transits_of_the_paper_s_step_are_right_to_ten_nanoseconds() -> None:
 @pytest.mark.parametrize(("bits", "word"), [(1, "mathar_item_2"), (2, "mathar_item_1"), (3, "mathar_items_1_2")])
 def test_the_bits_drop_what_the_approximations_of_section_vi_drop(bits: int, word: str) -> None:
     table = snapshots(output(**PARIS, T="600", t="0.05", s="1200", R="6", a=str(bits)))
-    simpler = approximation(word)
+    simpler = APPROXIMATIONS[word]
     assert isinstance(simpler, Motion)
     expected = simpler.trajectory(load_scene("paris"), table[:, 0])
     assert table[:, 1:4] == pytest.approx(expected[:, :3], abs=1e-9)

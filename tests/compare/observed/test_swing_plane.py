@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from compare.approximations import approximation
+from compare.approximations import APPROXIMATIONS
 from compare.observed.apsides import PER_SWING, apsides, frequency, precession_period
 from compare.observed.swing_plane import Gauge, rest_in_metres
 from reference import UnreachableError, load_scene, parse_scene, trajectory
@@ -95,7 +95,7 @@ def test_what_does_not_swing_or_turn_is_refused():
 
 
 def test_an_approximation_swings_about_its_own_point_of_rest():
-    motion = approximation("linear_g")
+    motion = APPROXIMATIONS["linear_g"]
     gauge = Gauge.of(PARIS, motion.rest(PARIS))
     plane = gauge.swing_plane(motion.trajectory(PARIS, np.linspace(0.0, 20.0, 41)))
     assert plane[0] == pytest.approx(math.atan2(0.4, 0.3), abs=1e-6)

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from compare.approximations import approximation, motions, quantities
+from compare.approximations import APPROXIMATIONS, motions, quantities
 from compare.studies.approximation_errors import TIMES, ReferenceMotion, error_table, quantity_table
 from compare.studies.approximation_limits import LIMITS, limits, sweep, sweep_values
 from compare.studies.approximation_limits import _below as below
@@ -32,7 +32,7 @@ def test_a_row_for_every_approximation_and_time():
 def test_errors_are_those_of_the_motions_and_never_shrink():
     rows = error_table(PARIS, ["linear_anharmonic"], 3600.0, times=(20.0, 1000.0))
     fine = np.linspace(0.0, 3600.0, 36001)
-    gap = approximation("linear_anharmonic").trajectory(PARIS, fine)[:, :3] - trajectory(PARIS, fine)[:, :3]
+    gap = APPROXIMATIONS["linear_anharmonic"].trajectory(PARIS, fine)[:, :3] - trajectory(PARIS, fine)[:, :3]
     for row in rows:
         worst = np.max(np.linalg.norm(gap[fine <= row.t], axis=1))
         assert row.error_m == pytest.approx(worst, rel=0.02)
@@ -111,7 +111,7 @@ def test_limits_over_time_are_where_the_error_passes_them():
     for row in rows:
         _, quantity, limit = next(entry for entry in LIMITS if entry[0] == row.limit)
         (start, end), index = row.good[0], ("error_m", "plane_error_arcsec").index(quantity)
-        errors = truth.errors(approximation(row.approximation))
+        errors = truth.errors(APPROXIMATIONS[row.approximation])
         assert start == 0.0
         assert errors.at(end)[index] <= limit
         if end < 7200.0:
