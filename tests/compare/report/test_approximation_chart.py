@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ET
 
 import pytest
@@ -36,6 +37,15 @@ def test_a_sweep_is_drawn_over_its_own_axis():
     words = texts(plot(rows, "plane_error_arcsec"))
     assert "latitude, degrees" in words
     assert "planar" in words
+
+
+def test_two_charts_fit_into_one_page():
+    rows = [SweepRow("planar", "latitude", value, 60.0, 1e-3 * (1 + value), 1.0) for value in (0.0, 45.0, 90.0)]
+    svgs = plot(rows), plot(rows, "plane_error_arcsec")
+    ids = [set(re.findall(r' id="([^"]+)"', svg)) for svg in svgs]
+    assert all(svg.startswith("<svg") for svg in svgs)
+    assert ids[0]
+    assert not ids[0] & ids[1]
 
 
 def test_nothing_to_draw_is_said():

@@ -8,9 +8,11 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 
-from compare.methods import METHODS, Family
+from compare.methods import METHODS
+from compare.methods.method import Family
 from compare.report import charts
 from compare.report.charts.drawing import COLOURS, line_style, power_of_ten, sheet
+from compare.report.charts.heat_map import LETTERS
 from compare.report.charts.labels import Line, place
 from compare.report.charts.ladders import FAMILY_COLOURS, family_of, ladders
 from compare.report.pareto import cost_of, curves
@@ -112,6 +114,13 @@ def test_ids_are_unique_over_all_pictures_of_a_page_and_every_reference_is_met(p
     assert references == set(ids)
 
 
+def test_the_darkest_lines_follow_a_dark_page(pictures):
+    seven = [charts.ErrorHistory(f"line {i}", t, 1e-16 * (i + 1) * t) for i in range(7)]
+    for svg in (pictures["overview"], charts.error_growth(seven, BOUND)):
+        assert "stroke: var(--ink, #1b1b1b)" in svg
+        assert "stroke: #000000" not in svg
+
+
 def test_every_measured_method_is_named_in_the_overview(pictures):
     named = texts(pictures["overview"])
     for curve in curves(ROWS):
@@ -161,7 +170,7 @@ def test_digits_are_rounded_down_in_the_map():
 
 
 def test_letters_of_the_map_are_all_different():
-    letters = [letter for letter, _ in charts.CLASSES.values()]
+    letters = list(LETTERS.values())
     assert len(set(letters)) == len(letters)
 
 
