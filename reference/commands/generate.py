@@ -37,7 +37,8 @@ def command(
     as_json: AsJson = False,
 ) -> None:
     """Solve a scene and write its golden dataset."""
-    from ..dataset.read import read_manifest
+    from ..columns import POSITION
+    from ..dataset.sheets import grid_bound
     from ..dataset.write import check_target, default_folder, write
 
     options = {"t_end": t_end, "digits": digits, "level": level, "transits": "false" if no_transits else None}
@@ -52,7 +53,7 @@ def command(
         solution = solve(scene, engine=engine.value, report=report)
     write(solution, folder)
     count = len(solution.directions)
-    bound = read_manifest(folder).bounds.position_m
+    bound = grid_bound(solution, POSITION)
     checks_s = sum(check.cpu_s for check in solution.checks) + sum(
         (solution.proof.cpu_s if solution.proof else {}).values()
     )

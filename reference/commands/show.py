@@ -70,12 +70,10 @@ def command(
 
 def _derived(scene: Scene) -> dict[str, str]:
     """Return distance from the axis, apparent gravity at the pivot, small-swing period, rest position; 15 digits."""
-    from ..model.constants import constants
-    from ..model.force import rest_position
-    from ..precision import context
+    from ..model.start import Start
 
-    ctx = context(DERIVED_PREC)
-    k = constants(scene.exact, ctx)
+    start = Start.of(scene.exact, DERIVED_PREC)
+    ctx, k = start.ctx, start.k
 
     def text(value: Any) -> str:
         return str(ctx.nstr(ctx.mpf(value), 15))
@@ -86,7 +84,7 @@ def _derived(scene: Scene) -> dict[str, str]:
     if strength:
         derived["small_swing_period_s"] = text(2 * ctx.pi / ctx.sqrt(strength))
     try:
-        _, y, z = rest_position(k, ctx)
+        _, y, z = start.rest
     except ValueError:
         return derived
     return derived | {"rest_y_m": text(y * k.length), "rest_z_m": text(z * k.length)}

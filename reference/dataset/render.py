@@ -27,7 +27,7 @@ from .manifest import (
     RunRecord,
 )
 from .read import MANIFEST
-from .sheets import binary64_sheet, grid_sheet, largest_bound, scene_inputs, transits_sheet
+from .sheets import binary64_sheet, grid_bound, grid_sheet, scene_inputs, transits_sheet
 from .verify import invariant_drift
 
 FRAME = "topocentric, axes x east, y north, z up, origin at the suspension, z < 0 below it"
@@ -39,8 +39,8 @@ def render(solution: Solution) -> dict[str, str]:
     grid, transits = grid_sheet(solution), transits_sheet(solution)
     scene, run = solution.scene, solution.run
     bounds = Bounds(
-        position_m=rounded_up(largest_bound(solution.grid, POSITION, grid.decimals)),
-        velocity_m_s=rounded_up(largest_bound(solution.grid, VELOCITY, grid.decimals)),
+        position_m=grid_bound(solution, POSITION),
+        velocity_m_s=grid_bound(solution, VELOCITY),
         transit_s=max((row[-1] for row in transits.rows), key=Fraction, default=None),
     )
     completeness = _completeness(solution)

@@ -11,7 +11,6 @@ from ..precision import fixed_decimal, rounded_up
 from ..scene import Scene
 from ..solver.rounding import exact_decimals, grid_decimals, transit_decimals
 from ..solver.solution import Solution
-from ..table import Table
 
 GRID_HEADER = ("t", *GRID)
 TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")
@@ -70,12 +69,10 @@ def binary64_sheet(sheet: Sheet) -> Sheet:
     return Sheet((*sheet.header, *(f"{name}_hex" for name in names)), rows, {})
 
 
-def largest_bound(table: Table, columns: tuple[str, ...], decimals: dict[str, int]) -> Fraction:
-    """Return the largest bound of some columns, rounding to the printed digits included."""
-    return max(
-        (max(table.bound(name), default=Fraction(0)) + Fraction(1, 2 * 10 ** decimals[name]) for name in columns),
-        default=Fraction(0),
-    )
+def grid_bound(solution: Solution, columns: tuple[str, ...]) -> str:
+    """Return the largest bound of some columns of the grid as text, rounding to the printed digits included."""
+    bounds, decimals = solution.grid.largest_bounds(), grid_decimals(solution)
+    return rounded_up(max(bounds[name] + Fraction(1, 2 * 10 ** decimals[name]) for name in columns))
 
 
 def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:

@@ -5,8 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 
-from ..precision import NumberType
+import numpy as np
+
+from ..columns import STATE
+from ..model.force import tension
+from ..model.start import Start
+from ..precision import DOUBLE_BITS, GUARD_BITS, NumberType
 from ..scene import Inputs
 from ..table import Table
 
@@ -49,7 +55,6 @@ class Run:
         order: order of the Taylor polynomials.
         steps: number of steps.
         terms: elementary operations in the compiled Taylor decomposition.
-        tension: least tension of the cord over l on the grid, 1/s²; negative where a rod is pushed.
         compile_s: CPU seconds of compiling.
         cpu_s: CPU seconds of the run without compiling.
     """
@@ -61,6 +66,12 @@ class Run:
     order: int
     steps: int
     terms: int
-    tension: float
     compile_s: float
     cpu_s: float
+
+    @cached_property
+    def tension(self) -> float:
+        """Least tension of the cord over l on the grid, in 1/s², computed in double; negative where a rod is pushed."""
+        k = Start.of(self.plan.inputs, DOUBLE_BITS + GUARD_BITS).k.converted(float)
+        x, y, z, vx, vy, vz = (self.grid[name] / k.length for name in STATE)
+        return float(np.min(tension((x, y, z), (vx, vy, vz), k)))

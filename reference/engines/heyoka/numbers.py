@@ -6,12 +6,14 @@ installed: without it arrays of `real` leak.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
 import heyoka as hy
 import numpy as np
 
+from ...errors import IntegrationError
 from ...precision import DOUBLE, LONG_DOUBLE, NumberType
 
 hy.install_custom_numpy_mem_handler()
@@ -55,6 +57,20 @@ class Numbers:
     def fixed(self, values: Any, bits: int) -> list[int]:
         """Return each number of an array as an integer over 2**bits, cut off towards zero."""
         return [int(value) for value in (values * self.power_of_two(bits)).ravel()]
+
+    def propagated(self, integrator: Any, times: Sequence[Any], **options: Any) -> tuple[Any, int]:
+        """Return the states of a heyoka integrator at increasing times from its own on, and the number of steps.
+
+        Raises:
+            IntegrationError: it stopped before the last time, or a state is not finite.
+        """
+        grid = np.array(times, dtype=self.dtype)
+        outcome, _, _, steps, _, states = integrator.propagate_grid(grid, **options)
+        if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
+            raise IntegrationError(f"heyoka stopped at t = {float(integrator.time)} s with outcome {outcome}.")
+        if not np.isfinite(states.astype(float)).all():
+            raise IntegrationError("the state became infinite or not a number.")
+        return states, int(steps)
 
 
 def _rounded(top: int, bottom: int, prec: int) -> tuple[int, int]:

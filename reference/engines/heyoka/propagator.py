@@ -10,7 +10,6 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from ...errors import IntegrationError
 from ...precision import NumberType
 from .numbers import Numbers
 from .system import as_pairs
@@ -73,12 +72,6 @@ class Propagator:
             ta.pars[:] = parameters
         if len(times) == 1:
             return ta.state.copy()[None, :]
-        outcome, _, _, steps, _, states = ta.propagate_grid(
-            np.array(times, dtype=self.numbers.dtype), max_steps=max_steps
-        )
-        self.steps += int(steps)
-        if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
-            raise IntegrationError(f"heyoka stopped at t = {float(ta.time)} s with outcome {outcome}.")
-        if not np.isfinite(states.astype(float)).all():
-            raise IntegrationError("the state became infinite or not a number.")
+        states, steps = self.numbers.propagated(ta, times, max_steps=max_steps)
+        self.steps += steps
         return states

@@ -16,7 +16,7 @@ from ...precision import GUARD_BITS
 from ...table import Table
 from ..plan import Plan, Report, Run
 from .log import watched_log
-from .stepper import Stepper, Zero, cartesian, least_tension
+from .stepper import Stepper, Zero, cartesian
 from .transits import march, quiet_start
 
 SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
@@ -67,7 +67,6 @@ def result(plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, 
         order=stepper.order,
         steps=stepper.steps,
         terms=stepper.terms,
-        tension=least_tension(stepper, states),
         compile_s=stepper.compile_s,
         cpu_s=time.process_time() - started,
     )

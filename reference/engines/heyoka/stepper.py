@@ -13,7 +13,7 @@ import numpy as np
 
 from ...columns import RUN
 from ...errors import IntegrationError
-from ...model.force import acceleration, tension
+from ...model.force import acceleration
 from ...model.formulations import Formulation
 from ...model.start import Start
 from ...precision import NumberType
@@ -189,14 +189,8 @@ class Stepper:
                 report(float(integrator.time))
             return True
 
-        grid = np.array(times, dtype=self.numbers.dtype)
-        keywords = {} if report is None else {"callback": progress}
-        outcome, _, _, steps, _, states = self._ta.propagate_grid(grid, **keywords)
-        self.steps += int(steps)
-        if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
-            raise IntegrationError(f"heyoka stopped at t = {float(self.time)} s with outcome {outcome}.")
-        if not np.isfinite(states.astype(float)).all():
-            raise IntegrationError("the state became infinite or not a number.")
+        states, steps = self.numbers.propagated(self._ta, times, **({} if report is None else {"callback": progress}))
+        self.steps += steps
         return states
 
 
@@ -210,10 +204,3 @@ def cartesian(stepper: Stepper, states: Any, bits: int) -> Table:
     length = stepper.constants.length
     fixed = [stepper.numbers.fixed(np.asarray(column) * length, bits) for column in (*n, *v, ax)]
     return Table(RUN, bits, list(zip(*fixed, strict=True)))
-
-
-def least_tension(stepper: Stepper, states: Any) -> float:
-    """Return the least tension of the cord, v·v + n·F in 1/s², over states of shape (rows, variables)."""
-    columns = tuple(np.ascontiguousarray(states.T))
-    n, v = stepper.formulation.cartesian(columns, stepper.constants, np)
-    return float(np.min(np.asarray(tension(n, v, stepper.constants)).astype(float)))

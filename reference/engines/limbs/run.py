@@ -1,4 +1,4 @@
-"""Run a plan in limbs: integrate it, and give states, transits and least tension in SI units as a `Run`."""
+"""Run a plan in limbs: integrate it, and give states and transits in SI units as a `Run`."""
 
 from __future__ import annotations
 
@@ -7,15 +7,11 @@ from bisect import bisect_right
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
-from ...columns import RUN, STATE
-from ...model.force import tension
+from ...columns import RUN
 from ...table import Table
 from ..plan import Plan, Report, Run
 from .integration import Integration, integration_of
 from .march import STEPS
-from .problem import LimbProblem
 from .size import fraction_bits
 
 SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
@@ -54,7 +50,6 @@ def result(integration: Integration, plan: Plan, cpu_start: float) -> Run:
         order=problem.model.order,
         steps=int(integration.state.counts[STEPS]),
         terms=PRODUCTS_WITH_DRAG if problem.model.drag else PRODUCTS,
-        tension=_least_tension(problem, grid),
         compile_s=integration.compile_s,
         cpu_s=time.process_time() - cpu_start,
     )
@@ -79,10 +74,3 @@ def _transits(integration: Integration, plan: Plan, bits: int, si_bits: int) -> 
     moments = _scaled(times[:count], problem.grain * 2 ** (si_bits - bits))
     columns = _si(table[:count], plan.inputs.length, problem.unit, bits, si_bits)
     return Table(("t", *RUN), si_bits, list(zip(moments, *columns, strict=True))), signs[:count]
-
-
-def _least_tension(problem: LimbProblem, grid: Table) -> float:
-    """Return the least tension of the cord over l on the grid, in 1/s², in binary64."""
-    k = problem.start.k.converted(float)
-    x, y, z, vx, vy, vz = (grid[name] / k.length for name in STATE)
-    return float(np.min(tension((x, y, z), (vx, vy, vz), k)))

@@ -12,7 +12,7 @@ from small_scenes import make_scene, model_at, stepper_of
 
 from reference.columns import STATE
 from reference.engines.heyoka.log import watched_log
-from reference.engines.heyoka.stepper import cartesian, least_tension
+from reference.engines.heyoka.stepper import cartesian
 from reference.engines.heyoka.system import System, equations_text
 from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
@@ -107,7 +107,6 @@ def test_one_time_is_the_release_itself(paris):
     stepper = stepper_of(paris, DOUBLE)
     states = stepper.propagate([0.0])
     assert states.shape == (1, 6)
-    assert least_tension(stepper, states) > 0
 
 
 def test_what_others_print_during_a_run_is_passed_on_and_heyokas_log_is_not(capfd):
