@@ -53,6 +53,10 @@ class Registry(Mapping[str, D]):
             raise InputError(self._what, word, f"the id of a declared {self._what}", known)
         return self._by_id[word]
 
+    def get(self, word: str, default: Any = None) -> Any:
+        """Return a declaration, or the default where there is none of that id."""
+        return self._by_id.get(word, default)
+
     def __contains__(self, word: object) -> bool:
         return word in self._by_id
 
@@ -61,3 +65,6 @@ class Registry(Mapping[str, D]):
 
     def __len__(self) -> int:
         return len(self._by_id)
+
+    def __repr__(self) -> str:
+        return f"{len(self)} {self._what}s: {', '.join(self)}"

@@ -53,7 +53,7 @@ class Printed:
     compute: Callable[..., Any] | None = None
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Approximation:
     """An analytic or truncated model from the source papers.
 
@@ -77,6 +77,9 @@ class Approximation:
     refuses: Callable[[Scene], str | None] = lambda scene: None
     printed: Printed | None = None
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.id}: {self.title})"
+
     def check(self, scene: Scene) -> None:
         """Raise InputError if the scene is outside the domain in which the formulas have a meaning."""
         reason = self.refuses(scene)
@@ -84,7 +87,7 @@ class Approximation:
             raise InputError("scene", scene.id, f"a scene that {self.id} applies to", f"{reason}.")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Motion(Approximation):
     """An approximation of the whole motion.
 
@@ -120,7 +123,7 @@ class Motion(Approximation):
         return rows
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Quantity(Approximation):
     """An approximation of one number.
 

@@ -7,7 +7,6 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
 import typer
 
 from reference import InputError, Scene, load_scene
@@ -143,6 +142,8 @@ def _run(words: str, scene: Scene, timeout: float, repeats: int) -> tuple[Candid
 
 def _approximate(word: str, scene: Scene) -> Candidate:
     """Return the motion of an approximation at the scene's grid times."""
+    import numpy as np
+
     from ..approximations import APPROXIMATIONS, Motion, motions
     from ..candidates.candidate import COLUMNS, candidate_of
 

@@ -82,7 +82,7 @@ class Outcome:
 Work = Callable[[], Outcome]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Method:
     """An integrator.
 
@@ -129,6 +129,9 @@ class Method:
     libraries: tuple[str, ...] = ("numpy",)
     stability: tuple[tuple[str | None, float], ...] = ()
     long_runs: tuple[tuple[str, float], ...] = ()
+
+    def __repr__(self) -> str:
+        return f"Method({self.id}: {self.title})"
 
     def settings(self, scene: Scene) -> tuple[float, ...]:
         """Return the ladder for a scene: steps in proportion to its period, other settings unchanged.
