@@ -11,8 +11,6 @@ import typer
 from reference import InputError
 from reference.commands.terminal import emit
 
-Document = dict[str, Any]
-
 
 def listed(text: str | None, field: str) -> list[str] | None:
     """Split a comma-separated option into words."""
@@ -45,7 +43,7 @@ def announce(text: str) -> None:
     typer.echo(text, err=True)
 
 
-def finish(document: Document, text: Callable[[Document], str], page: Path | None, as_json: bool) -> None:
+def finish(document: dict[str, Any], text: Callable[[dict[str, Any]], str], page: Path | None, as_json: bool) -> None:
     """Print a result as a JSON document, or as text with the path of the page that was written."""
     if as_json:
         emit(document)

@@ -33,7 +33,6 @@ def command(
 
     For each: digits kept, or the way it failed; with the same --out a study resumes.
     """
-    from ..report.folder import check_folder
     from ..report.stability import REPORT, document_of
     from ..studies.campaign import declared
     from ..studies.long_runs import long_runs
@@ -41,12 +40,11 @@ def command(
 
     if not 0 < limit < float("inf"):
         raise InputError("--limit", f"{limit:g}", "a positive number of seconds")
-    if out is not None:
-        check_folder(out, REPORT.files)
+    REPORT.check(out)
     chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
     items = declared(requested, "long_runs") if long else []
     with progress("stability", unit="runs") as report:
         cells = measure(chosen, requested, limit_s=limit, journal_path=inside(out, "cells.jsonl"), report=report)
         runs = long_runs(items, journal_path=inside(out, "long.jsonl"), report=report) if items else []
     document = document_of(cells, runs)
-    finish(document, REPORT.text, None if out is None else REPORT.write(document, out), as_json)
+    finish(document, REPORT.text, REPORT.write(document, out), as_json)

@@ -60,13 +60,11 @@ def command(
         _study_approximations(scene, out, as_json)
         return
     from ..methods import EXTERNAL
-    from ..report.folder import check_folder
     from ..report.study import REPORT
     from ..studies.study import plan
     from ..studies.study import study as measure
 
-    if out is not None:
-        check_folder(out, REPORT.files)
+    REPORT.check(out)
     problem, digits = scene, None
     items = plan(scene, listed(methods, "--methods"), not no_formulations)
     if precisions is not None:
@@ -88,11 +86,13 @@ def command(
             announce=announce,
         )
     document = study.document()
-    finish(document, REPORT.text, None if out is None else REPORT.write(document, out), as_json)
+    finish(document, REPORT.text, REPORT.write(document, out), as_json)
 
 
 def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None:
     from ..report.approximations import document_of, report_of
 
-    document, report = document_of(scene), report_of(scene)
-    finish(document, report.text, None if out is None else report.write(document, out), as_json)
+    report = report_of(scene)
+    report.check(out)
+    document = document_of(scene)
+    finish(document, report.text, report.write(document, out), as_json)

@@ -36,13 +36,15 @@ class Report:
     text: Callable[[dict[str, Any]], str]
     page: Callable[[dict[str, Any]], str]
 
-    @property
-    def files(self) -> tuple[str, ...]:
-        """Names of the files."""
-        return CSV, self.json, PAGE
+    def check(self, out: Path | None) -> None:
+        """Refuse a folder before the work, as `check_folder` does; None is no folder."""
+        if out is not None:
+            check_folder(out, (CSV, self.json, PAGE))
 
-    def write(self, document: dict[str, Any], out: Path) -> Path:
+    def write(self, document: dict[str, Any], out: Path | None) -> Path | None:
         """Write the files as `write_files` does, and return the path of the page; `document["rows"]` is the table."""
+        if out is None:
+            return None
         rows = csv_text(document["rows"][0], document["rows"])
         write_files(out, {CSV: rows, self.json: json_text(document), PAGE: self.page(document)})
         return out / PAGE

@@ -40,7 +40,8 @@ def bits_of(text: str) -> list[int]:
 
 def precision_items(bits: Sequence[int]) -> list[Item]:
     """List the runs: heyoka in double and long double if asked for, in MPFR beyond them, and `limbs` for comparison."""
-    return [(name, "momentum", setting) for name in METHODS for setting in _settings(METHODS[name], bits)]
+    methods = sorted(METHODS.values(), key=lambda method: method.setting == "precision")  # the processor's types first
+    return [(method.id, "momentum", setting) for method in methods for setting in _settings(method, bits)]
 
 
 def _settings(method: Method, bits: Sequence[int]) -> list[float]:

@@ -1,8 +1,8 @@
 """Error against run time: every method over its ladder of settings on one scene.
 
 >>> from compare.studies.study import study
->>> study("paris", ["rk4", "heyoka_double"], t_end=60, formulations=False)
-Study(paris, 60 s: 15 of 15 rows measured)
+>>> study("paris", ["rk4"], t_end=60)
+Study(paris, 60 s: 7 of 7 rows measured)
 """
 
 from __future__ import annotations

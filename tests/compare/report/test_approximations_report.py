@@ -25,6 +25,13 @@ def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path, mo
     assert all(row["approximation"] in page for row in document["rows"])
 
 
+def test_a_folder_of_somebody_elses_is_refused_before_the_work(tmp_path: Path) -> None:
+    (tmp_path / "rows.csv").write_text("mine")
+    result = CliRunner().invoke(app, ["study", "paris", "--approximations", "--out", str(tmp_path), "--t-end", "60"])
+    assert isinstance(result.exception, InputError)
+    assert (tmp_path / "rows.csv").read_text() == "mine"
+
+
 def test_an_approximation_is_scored_like_a_program() -> None:
     arguments = ["score", "paris", "--approximation", "linear_3d", "--json", "--no-diagnosis"]
     result = CliRunner().invoke(app, [*arguments, "--set", "run.t_end=3600"])

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import doctest
 import itertools
 import json
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -62,6 +64,12 @@ def test_a_run_beyond_the_limit_is_extrapolated_and_says_so(short: Scene) -> Non
     assert row.status == "extrapolated"
     assert row.reached_t is not None and row.reached_t < 600
     assert row.reason.startswith("measured to t = ")
+
+
+def test_a_study_is_one_call_and_says_in_a_line_what_it_holds(bench: Bench) -> None:
+    assert doctest.testmod(import_module("compare.studies.study")).failed == 0
+    row = bench.row(METHODS["rk4"], "plane", 4.0)
+    assert repr(row).startswith("Row(rk4 in plane at 4: missed_transits, ")
 
 
 def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
