@@ -11,9 +11,6 @@ from __future__ import annotations
 
 from fractions import Fraction
 from functools import partial
-from typing import Any
-
-import numpy as np
 
 from reference.columns import STATE
 from reference.errors import IntegrationError
@@ -23,7 +20,7 @@ from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, rea
 from reference.status import Status
 from reference.table import Table
 
-from ..rhs.problem import Array, Problem
+from ..rhs.problem import Problem
 from .method import Family, Method, Outcome, Work, failed
 
 QUADRUPLE_BITS = 113
@@ -38,38 +35,32 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
         number: type to compute in.
         tolerance: relative error of a step; the type's epsilon if None.
     """
-    from reference.engines.heyoka.numbers import Numbers
-    from reference.engines.heyoka.propagator import Propagator
-    from reference.engines.heyoka.system import rates
+    from reference.engines.heyoka.model import Model
 
-    model, numbers = FORMULATIONS[problem.formulation], Numbers(number)
-    exact = Start.of(problem.scene.exact, number.prec + GUARD_BITS)
-    k = exact.k.converted(numbers.of)
-    flow = Propagator(model.variables, rates(model, k), number, tolerance=tolerance)
-    start = [numbers.of(value) for value in exact.state(model)]
-    times = [numbers.of(Fraction(t)) for t in problem.times.tolist()]
-
-    def columns(states: Any) -> list[Any]:
-        position, velocity = model.cartesian(tuple(np.ascontiguousarray(states.T)), k, np)
-        return [np.broadcast_to(part * k.length, len(states)) for part in (*position, *velocity)]
-
-    def cartesian(states: Any) -> Array:
-        return np.array([column.astype(float) for column in columns(states)]).T.copy()
-
-    def finer(states: Any) -> Table:
-        bits = number.prec + SPARE_BITS
-        fixed = [numbers.fixed(np.ascontiguousarray(column), bits) for column in columns(states)]
-        return Table(STATE, bits, list(zip(*fixed, strict=True)))
+    start = Start.of(problem.scene.exact, number.prec + GUARD_BITS)
+    model = Model(FORMULATIONS[problem.formulation], start.k, number)
+    propagator, release = model.propagator(tolerance), model.release(start)
+    times = [model.numbers.of(Fraction(t)) for t in problem.times.tolist()]
 
     def work() -> Outcome:
-        before = flow.steps
+        before = propagator.steps
         try:
-            states = flow.from_zero(start, times)
+            states = propagator.from_zero(release, times)
         except IntegrationError as error:
             return failed(problem, error.reason)
-        exactly = None if number == DOUBLE else lambda: finer(states)
-        steps = flow.steps - before
-        return Outcome(Status.OK, "", float(problem.times[-1]), steps, None, lambda: cartesian(states), exactly)
+
+        def finer() -> Table:
+            return model.table(states, number.prec + SPARE_BITS).only(STATE)
+
+        return Outcome(
+            status=Status.OK,
+            reason="",
+            reached_t=float(problem.times[-1]),
+            steps=propagator.steps - before,
+            rhs_evaluations=None,
+            cartesian=lambda: model.doubles(states),
+            finer=None if number == DOUBLE else finer,
+        )
 
     return work
 

@@ -99,14 +99,12 @@ class _Evaluation:
     def __init__(
         self, golden: Golden, grid: list[Fraction], requested: Array, number: NumberType, tolerance: float | None
     ) -> None:
-        from ..engines.heyoka.numbers import Numbers
-        from ..engines.heyoka.propagator import Propagator
-        from ..engines.heyoka.system import rates
+        from ..engines.heyoka.model import Model
 
-        self._numbers = Numbers(number)
-        self._k = constants(golden.scene.exact, context(number.prec + GUARD_BITS)).converted(self._numbers.of)
-        self._model = FORMULATIONS["momentum"]
-        self._propagator = Propagator(self._model.variables, rates(self._model, self._k), number, tolerance=tolerance)
+        k = constants(golden.scene.exact, context(number.prec + GUARD_BITS))
+        self._model = Model(FORMULATIONS["momentum"], k, number)
+        self._numbers, self._k = self._model.numbers, self._model.k
+        self._propagator = self._model.propagator(tolerance)
         self._grid, self._requested = grid, requested
         self._nearest = np.array([float(t) for t in grid])
         self._widened = _widened(self._nearest, self._numbers)
@@ -174,9 +172,7 @@ class _Evaluation:
 
     def _in_doubles(self, states: Any) -> tuple[Array, Array]:
         """Return x, y, z (m), vx, vy, vz (m/s) as nearest doubles and their low parts, each of shape (rows, 6)."""
-        columns = tuple(np.ascontiguousarray(states.T))
-        position, velocity = self._model.cartesian(columns, self._k, np)
-        rows = np.array([np.asarray(part * self._k.length) for part in (*position, *velocity)]).T
+        rows = np.array(self._model.columns(states)).T
         nearest = rows.astype(np.float64)
         return nearest, (rows - nearest.astype(self._numbers.dtype)).astype(np.float64)
 

@@ -76,20 +76,11 @@ def trajectory(
     """
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
-    from .heyoka.numbers import Numbers
-    from .heyoka.propagator import Propagator
-    from .heyoka.system import rates
+    from .heyoka.model import Model
 
-    model = FORMULATIONS[formulation]
-    numbers = Numbers(number)
-    rounded = start.k.converted(numbers.of)
-    propagator = Propagator(model.variables, rates(model, rounded), number, tolerance=tolerance)
-    state = [numbers.of(value) for value in start.state(model)]
-    states = propagator.from_zero(state, [numbers.of(_exact(t)) for t in times])
-    columns = tuple(np.ascontiguousarray(states.T))
-    position, velocity = model.cartesian(columns, rounded, np)
-    rows = np.array([np.broadcast_to(part * rounded.length, len(states)) for part in (*position, *velocity)])
-    return np.asarray(rows.T.astype(float))
+    model = Model(FORMULATIONS[formulation], start.k, number)
+    moments = [model.numbers.of(_exact(t)) for t in times]
+    return model.doubles(model.propagator(tolerance).from_zero(model.release(start), moments))
 
 
 def _exact(value: Any) -> Any:

@@ -7,6 +7,7 @@ handler; the disk cache never hits beyond 128 bits and is switched off for `real
 - `engine`: its declaration; `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof.
 - `numbers`: its number types, and exact conversions.
 - `system`: a formulation as its expressions.
+- `model`: a formulation with a scene's constants in a number type; its states in SI units.
 - `stepper`: one scene, step by step, with events, dense output and Taylor coefficients.
 - `transits`: guards around its event detection.
 - `propagator`: any system without events, in one call.

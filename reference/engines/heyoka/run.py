@@ -16,7 +16,7 @@ from ...precision import GUARD_BITS
 from ...table import Table
 from ..plan import Plan, Report, Run
 from .log import watched_log
-from .stepper import Stepper, Zero, cartesian
+from .stepper import Stepper, Zero
 from .transits import march, quiet_start
 
 SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
@@ -61,7 +61,7 @@ def result(plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, 
     bits = plan.number.prec + SMALL_SWING_BITS
     return Run(
         plan=plan,
-        grid=cartesian(stepper, states, bits),
+        grid=stepper.model.table(states, bits),
         transits=None if zeros is None else _transits(stepper, zeros, bits),
         directions=[zero.direction for zero in zeros or ()],
         order=stepper.order,
@@ -74,6 +74,6 @@ def result(plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, 
 
 def _transits(stepper: Stepper, zeros: list[Zero], bits: int) -> Table:
     dtype = stepper.numbers.dtype
-    states = cartesian(stepper, np.array([zero.state for zero in zeros], dtype=dtype), bits)
+    states = stepper.model.table(np.array([zero.state for zero in zeros], dtype=dtype), bits)
     times = stepper.numbers.fixed(np.array([zero.t for zero in zeros], dtype=dtype), bits)
     return Table(("t", *states.columns), bits, [(t, *row) for t, row in zip(times, states.values, strict=True)])

@@ -1,4 +1,4 @@
-"""heyoka's integrator of one scene, step by step: events, dense output, Taylor coefficients, cartesian states."""
+"""heyoka's integrator of one scene, step by step: events, dense output, Taylor coefficients."""
 
 from __future__ import annotations
 
@@ -11,14 +11,11 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from ...columns import RUN
 from ...errors import IntegrationError
-from ...model.force import acceleration
 from ...model.formulations import Formulation
 from ...model.start import Start
 from ...precision import NumberType
-from ...table import Table
-from .numbers import Numbers
+from .model import Model
 from .system import System
 
 STEPS_PER_REPORT = 64  # steps between two reports of progress
@@ -52,11 +49,11 @@ class Stepper:
         *,
         events: bool = False,
     ) -> None:
-        self.number, self.numbers, self.formulation = number, Numbers(number), formulation
-        self.constants = start.k.converted(self.numbers.of)
+        self.number, self.model = number, Model(formulation, start.k, number)
+        self.numbers = self.model.numbers
         self.zeros: list[Zero] = []
         self.steps = 0
-        system = System.build(formulation, self.constants)
+        system = System.build(formulation, self.model.k)
         self._variables = [name for name, _ in system.equations]
         keywords = dict(self.numbers.keywords)
         if events:
@@ -68,12 +65,10 @@ class Stepper:
 
             event = hy.nt_event(system.xdot, callback=record, fp_type=self.numbers.type)
             keywords["nt_events"] = [event]
-        state = [self.numbers.of(value) for value in start.state(formulation)]
         hy.llvm_state.set_diskcache_enabled(number.hardware)
+        state = np.array(self.model.release(start), dtype=self.numbers.dtype)
         started = time.process_time()
-        self._ta: Any = hy.taylor_adaptive(
-            system.equations, np.array(state, dtype=self.numbers.dtype), fp_type=self.numbers.type, **keywords
-        )
+        self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
         if events:
             outputs = [system.xdot, system.xddot]
             self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **self.numbers.keywords)
@@ -192,15 +187,3 @@ class Stepper:
         states, steps = self.numbers.propagated(self._ta, times, **({} if report is None else {"callback": progress}))
         self.steps += steps
         return states
-
-
-def cartesian(stepper: Stepper, states: Any, bits: int) -> Table:
-    """Return `columns.RUN` in SI units over 2**bits, from states of shape (rows, variables)."""
-    if len(states) == 0:
-        return Table(RUN, bits, [])
-    columns = tuple(np.ascontiguousarray(states.T))
-    n, v = stepper.formulation.cartesian(columns, stepper.constants, np)
-    ax = acceleration(n, v, stepper.constants)[0]
-    length = stepper.constants.length
-    fixed = [stepper.numbers.fixed(np.asarray(column) * length, bits) for column in (*n, *v, ax)]
-    return Table(RUN, bits, list(zip(*fixed, strict=True)))

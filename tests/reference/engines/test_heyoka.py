@@ -12,7 +12,6 @@ from small_scenes import make_scene, model_at, stepper_of
 
 from reference.columns import STATE
 from reference.engines.heyoka.log import watched_log
-from reference.engines.heyoka.stepper import cartesian
 from reference.engines.heyoka.system import System, equations_text
 from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
@@ -22,7 +21,7 @@ from reference.precision import DOUBLE, LONG_DOUBLE, real
 def end_of(scene, number, name="momentum", t_end=60):
     stepper = stepper_of(scene, number, name)
     states = stepper.propagate([stepper.numbers.of(0), stepper.numbers.of(t_end)])
-    table = cartesian(stepper, states, 300)
+    table = stepper.model.table(states, 300)
     return [table.exact(name)[-1] for name in STATE]
 
 
@@ -73,7 +72,7 @@ def test_drag_is_in_the_equations_when_the_scene_has_it():
 def test_no_python_float_stands_in_a_real_system(paris):
     """A float is a double for ever; every constant of the compiled lines must carry the run's digits."""
     stepper = stepper_of(paris, real(200))
-    lines = System.build(FORMULATIONS["momentum"], stepper.constants).equations
+    lines = System.build(FORMULATIONS["momentum"], stepper.model.k).equations
     numbers = [word.strip("()-") for _, rate in lines for word in str(rate).split()]
     constants = [word for word in numbers if word[:1].isdigit()]
     assert constants
@@ -130,4 +129,4 @@ def test_the_disk_cache_is_off_for_real_where_it_never_hits(paris):
 
 def test_no_states_give_no_rows(paris):
     stepper = stepper_of(paris, DOUBLE)
-    assert len(cartesian(stepper, np.array([]), 100)) == 0
+    assert len(stepper.model.table(np.array([]), 100)) == 0
