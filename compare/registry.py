@@ -9,7 +9,7 @@ from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any, Protocol, TypeVar
 
-from reference.errors import InputError
+from reference import InputError
 
 
 class Declaration(Protocol):

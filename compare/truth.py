@@ -86,8 +86,7 @@ def _shortened(scene: Scene, until: float | None) -> Scene:
 
 
 def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, report: Report | None) -> Path:
-    from reference import solve
-    from reference.dataset.write import write
+    from reference import solve, write
 
     folder = cache.writable("golden")
     if announce is not None:

@@ -102,6 +102,51 @@ def test_a_library_has_one_door(library, door):
     assert all(user.startswith(door) for user in users), users
 
 
+# the names of reference that compare uses: what changes here, changes for others too
+PUBLIC = {
+    "reference": "DatasetError FoucaultError Golden InputError IntegrationError Scene Solution UnreachableError "
+    "integrate load load_scene parse_scene scene_ids solve trajectory write",
+    "reference.capture": "captured",
+    "reference.columns": "STATE",
+    "reference.commands.terminal": "AsJson Assignments SceneWord emit progress",
+    "reference.dataset.dense": "Dense WITHIN dense",
+    "reference.engines.heyoka.model": "Model",
+    "reference.engines.registry": "engines",
+    "reference.engines.variants": "Variants",
+    "reference.lazy": "lazy",
+    "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
+    "reference.model.constants": "Constants Vector constants is_zero",
+    "reference.model.earth": "axis_distance",
+    "reference.model.force": "acceleration invariant rest_position tension",
+    "reference.model.formulations": "FORMULATIONS",
+    "reference.model.start": "Start scaled",
+    "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
+    "context fixed_decimal real to_fraction to_mpf",
+    "reference.process": "Emit Worker",
+    "reference.scene": "Inputs MAX_ROWS RunTable",
+    "reference.shipped": "data_root",
+    "reference.solver.sensitivity": "Sensitivity sensitivity with_value",
+    "reference.status": "Status",
+    "reference.table": "Table",
+}
+
+
+def test_compare_uses_the_public_names_of_reference_alone():
+    used: dict[str, set[str]] = {}
+    for path in SOURCES:
+        if path.is_relative_to(ROOT / "compare"):
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Import):
+                    assert not [one.name for one in node.names if one.name.startswith("reference")], path
+                elif (
+                    isinstance(node, ast.ImportFrom) and node.level == 0 and (node.module or "").startswith("reference")
+                ):
+                    used.setdefault(str(node.module), set()).update(one.name for one in node.names)
+    assert {module: " ".join(sorted(names)) for module, names in used.items()} == {
+        module: " ".join(sorted(names.split())) for module, names in PUBLIC.items()
+    }
+
+
 HEAVY = ("heyoka", "flint", "scipy", "matplotlib", "numba")
 
 

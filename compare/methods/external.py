@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.errors import InputError
-from reference.scene import Scene
+from reference import InputError, Scene
 from reference.status import Status
 
 from ..rhs.problem import Array, Problem

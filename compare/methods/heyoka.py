@@ -12,8 +12,8 @@ from __future__ import annotations
 from fractions import Fraction
 from functools import partial
 
+from reference import IntegrationError
 from reference.columns import STATE
-from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, real

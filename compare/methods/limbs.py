@@ -15,8 +15,8 @@ from .method import Family, Method, Outcome, Work, failed
 
 def prepare(problem: Problem, setting: float) -> Work:
     """Compile the engine's kernels by a short first run; the returned function makes the whole run."""
+    from reference import IntegrationError
     from reference.engines.registry import engines
-    from reference.errors import IntegrationError
 
     limbs, inputs = engines()["limbs"], problem.scene.exact
     times = tuple(Fraction(t) for t in problem.times.tolist())

@@ -13,7 +13,7 @@ from typing import Literal
 
 import numpy as np
 
-from reference.scene import Scene
+from reference import Scene
 from reference.status import Status
 from reference.table import Table
 

@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from reference.errors import InputError
+from reference import InputError, Scene
 from reference.model.constants import Constants, is_zero
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
-from reference.scene import Scene
 
 from .program import Program
 from .swing import Swing

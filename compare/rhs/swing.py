@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from reference import Scene
 from reference.model.start import Start
 from reference.precision import DOUBLE_BITS, GUARD_BITS
-from reference.scene import Scene
 
 Array = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from reference.errors import FoucaultError
+from reference import FoucaultError
 
 from .trees import Matrix, Stages, Vector, worst_residual
 
