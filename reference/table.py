@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import Protocol
+from typing import Any
 
 import numpy as np
 
@@ -18,18 +18,6 @@ from .columns import KINDS
 from .precision import Array, decimals_for, rounded, with_decimal_point
 
 NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
-
-
-class Interval(Protocol):
-    """A closed interval with exact ends."""
-
-    @property
-    def low(self) -> Fraction:
-        """The lower end."""
-
-    @property
-    def high(self) -> Fraction:
-        """The upper end."""
 
 
 @dataclass(frozen=True)
@@ -51,8 +39,8 @@ class Table:
     errors: list[tuple[int, ...]] = field(default_factory=list, repr=False)
 
     @classmethod
-    def of_intervals(cls, columns: tuple[str, ...], rows: Iterable[Sequence[Interval]], bits: int) -> Table:
-        """Return the middles of intervals with their half-widths as errors, rounded outwards."""
+    def of_intervals(cls, columns: tuple[str, ...], rows: Iterable[Sequence[Any]], bits: int) -> Table:
+        """Return the middles of intervals, whose ends `low` and `high` are exact, and half-widths as errors, rounded up."""
         values, errors = [], []
         for row in rows:
             lows = [(x.low.numerator << bits) // x.low.denominator for x in row]

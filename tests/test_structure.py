@@ -110,7 +110,7 @@ PUBLIC = {
     "reference.columns": "STATE",
     "reference.commands.terminal": "AsJson Assignments SceneWord emit progress",
     "reference.dataset.dense": "Dense WITHIN dense",
-    "reference.engines.heyoka.model": "Model",
+    "reference.engines.heyoka.model": "RoundedModel",
     "reference.engines.registry": "engines",
     "reference.engines.variants": "Variants",
     "reference.lazy": "lazy",

@@ -35,10 +35,10 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
         number: type to compute in.
         tolerance: relative error of a step; the type's epsilon if None.
     """
-    from reference.engines.heyoka.model import Model
+    from reference.engines.heyoka.model import RoundedModel
 
     start = Start.of(problem.scene.exact, number.prec + GUARD_BITS)
-    model = Model(FORMULATIONS[problem.formulation], start.k, number)
+    model = RoundedModel(FORMULATIONS[problem.formulation], start.k, number)
     propagator, release = model.propagator(tolerance), model.release(start)
     times = [model.numbers.of(Fraction(t)) for t in problem.times.tolist()]
 

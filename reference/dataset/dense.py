@@ -99,10 +99,10 @@ class _Evaluation:
     def __init__(
         self, golden: Golden, grid: list[Fraction], requested: Array, number: NumberType, tolerance: float | None
     ) -> None:
-        from ..engines.heyoka.model import Model
+        from ..engines.heyoka.model import RoundedModel
 
         k = constants(golden.scene.exact, context(number.prec + GUARD_BITS))
-        self._model = Model(FORMULATIONS["momentum"], k, number)
+        self._model = RoundedModel(FORMULATIONS["momentum"], k, number)
         self._numbers, self._k = self._model.numbers, self._model.k
         self._propagator = self._model.propagator(tolerance)
         self._grid, self._requested = grid, requested

@@ -76,9 +76,9 @@ def trajectory(
     """
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
-    from .heyoka.model import Model
+    from .heyoka.model import RoundedModel
 
-    model = Model(FORMULATIONS[formulation], start.k, number)
+    model = RoundedModel(FORMULATIONS[formulation], start.k, number)
     moments = [model.numbers.of(_exact(t)) for t in times]
     return model.doubles(model.propagator(tolerance).from_zero(model.release(start), moments))
 

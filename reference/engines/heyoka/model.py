@@ -18,7 +18,7 @@ from .propagator import Propagator
 from .system import rates
 
 
-class Model:
+class RoundedModel:
     """A formulation of the equations of motion, with constants rounded once to a number type.
 
     Args:

@@ -15,7 +15,7 @@ from ...errors import IntegrationError
 from ...model.formulations import Formulation
 from ...model.start import Start
 from ...precision import NumberType
-from .model import Model
+from .model import RoundedModel
 from .system import System
 
 STEPS_PER_REPORT = 64  # steps between two reports of progress
@@ -49,7 +49,7 @@ class Stepper:
         *,
         events: bool = False,
     ) -> None:
-        self.number, self.model = number, Model(formulation, start.k, number)
+        self.number, self.model = number, RoundedModel(formulation, start.k, number)
         self.numbers = self.model.numbers
         self.zeros: list[Zero] = []
         self.steps = 0
