@@ -40,7 +40,7 @@ class Table:
 
     @classmethod
     def of_intervals(cls, columns: tuple[str, ...], rows: Iterable[Sequence[Any]], bits: int) -> Table:
-        """Return the middles of intervals, whose ends `low` and `high` are exact, and half-widths as errors, rounded up."""
+        """Return the middles of intervals (exact ends `low`, `high`), and their half-widths as errors, rounded up."""
         values, errors = [], []
         for row in rows:
             lows = [(x.low.numerator << bits) // x.low.denominator for x in row]

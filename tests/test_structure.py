@@ -12,6 +12,7 @@ import structure
 from places import ROOT
 
 from reference import load_scene
+from reference.engines import engine_names
 
 SOURCES = structure.sources(ROOT)
 
@@ -31,7 +32,7 @@ FLOORS = {
     "reference/engines": [
         ["side_by_side"],
         ["registry", "trajectory", "variants", "equations"],
-        ["heyoka", "limbs"],
+        [*engine_names()],
         ["engine"],
         ["plan"],
     ],
