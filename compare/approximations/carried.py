@@ -7,16 +7,15 @@ instead of one for each latitude, and compiling costs thirty times as much as th
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 from reference import integrate
 from reference.model.algebra import Functions, State
-from reference.model.constants import Constants, is_zero
+from reference.model.constants import Constants
 
 from .approximation import Array
 
-_GROUPS = {"turn": 3, "pull": 3, "centrifugal": 4, "drag": 1}  # constants of the equations of motion: entries of each
+_USED = ("turn", "pull", "centrifugal", "drag")  # any other would take part in the step size, for nothing
 
 Derivatives = Callable[[State, Constants, Functions], State]
 
@@ -37,22 +36,10 @@ def integrated(
     Returns:
         Shape (times, variables).
     """
-    flat = [(name, i, _entries(k, name)[i]) for name, size in _GROUPS.items() for i in range(size)]
-    carried = [(name, i, value) for name, i, value in flat if not is_zero(value)]
-    count = len(variables)
+    carried, count = k.entries(*_USED), len(variables)
 
     def rates(state: State, functions: Functions) -> State:
-        groups: dict[str, list[Any]] = {name: [0] * size for name, size in _GROUPS.items()}
-        for (name, i, _), value in zip(carried, state[count:], strict=True):
-            groups[name][i] = value
-        drag = groups.pop("drag")[0]
-        constants = replace(k, drag=drag, **{name: tuple(values) for name, values in groups.items()})
+        constants = Constants.of(dict(zip(carried, state[count:], strict=True)))
         return (*derivatives(state[:count], constants, functions), *(0 for _ in carried))
 
-    names = [*variables, *(f"{name}_{i}" for name, i, _ in carried)]
-    return integrate(names, rates, [*start, *(value for _, _, value in carried)], times)[:, :count]
-
-
-def _entries(k: Constants, name: str) -> tuple[Any, ...]:
-    value = getattr(k, name)
-    return value if isinstance(value, tuple) else (value,)
+    return integrate([*variables, *carried], rates, [*start, *carried.values()], times)[:, :count]

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from reference import InputError, IntegrationError
-from reference.model.constants import Constants, is_zero
 from reference.precision import Array
 
 from ..approximations.mathar_items import VARIABLES, derivatives, truncated
@@ -59,20 +59,5 @@ def _problem(options: Options, step: float) -> Problem:
     if not options.bits:
         return problem
     items = ITEMS[options.bits]
-    return replace(problem, system=_system(truncated(problem.constants, items), items))
-
-
-def _system(k: Constants, items: frozenset[Any]) -> FirstOrderSystem:
-    """Return (43) without the terms that -a drops; constants left are parameters, so that compiled code is shared."""
-    groups = {"turn": k.turn, "pull": k.pull, "centrifugal": k.centrifugal}
-    values = {
-        f"{name}_{i}": value for name, group in groups.items() for i, value in enumerate(group) if not is_zero(value)
-    }
-
-    def rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
-        fields = {
-            name: tuple(parameters.get(f"{name}_{i}", 0) for i in range(len(group))) for name, group in groups.items()
-        }
-        return derivatives(state, replace(k, **fields), functions, items)
-
-    return FirstOrderSystem(VARIABLES, rates, values)
+    k = truncated(problem.constants, items)
+    return replace(problem, system=FirstOrderSystem.of(VARIABLES, partial(derivatives, items=items), k))

@@ -12,9 +12,10 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
-from reference.model.constants import Constants, is_zero
+from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
+from reference.precision import DOUBLE_BITS, GUARD_BITS
 
 from .program import Program
 from .swing import Swing
@@ -23,8 +24,7 @@ from .tracing import record
 
 Array = npt.NDArray[np.float64]
 Rates = Callable[[Sequence[Any], Any, Mapping[str, Any]], Sequence[Any]]
-
-CONSTANT_BITS = 200  # constants are computed in this precision and rounded once, far below any method's error
+Derivatives = Callable[[Sequence[Any], Constants, Any], Sequence[Any]]
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,21 @@ class FirstOrderSystem:
     variables: tuple[str, ...]
     rates: Rates
     parameters: Mapping[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, variables: tuple[str, ...], derivatives: Derivatives, k: Constants) -> FirstOrderSystem:
+        """Return equations of motion as a system whose parameters are the constants in double that they use.
+
+        Compiled code is shared by all scenes with the same constants other than zero.
+        """
+
+        def rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
+            return derivatives(state, Constants.of(parameters), functions)
+
+        complete = cls(variables, rates, k.entries())
+        symbols = zip(complete.inputs[len(variables) :], complete.parameters.items(), strict=True)
+        used = complete.program.used
+        return cls(variables, rates, dict(parameter for symbol, parameter in symbols if symbol in used))
 
     @cached_property
     def program(self) -> Program:
@@ -76,7 +91,7 @@ class Problem:
     Attributes:
         scene: its exact inputs, in the scene's own reading.
         formulation: a key of `reference.model.formulations.FORMULATIONS`.
-        constants: of the model, computed in 200 bits and rounded once.
+        constants: of the model, each rounded once.
         start: state at t = 0, rounded once, shape (variables,).
         times: output times in s, increasing, from 0, shape (rows,).
         sizes: bound on each variable's swing, from the energy; absolute tolerances are parts of it.
@@ -98,7 +113,7 @@ class Problem:
         Raises:
             InputError: the formulation cannot express the release, or the times do not increase from 0.
         """
-        model, start = FORMULATIONS[formulation], Start.of(scene.exact, CONSTANT_BITS)
+        model, start = FORMULATIONS[formulation], Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)
         try:
             state = start.state(model)
         except ValueError as error:
@@ -113,7 +128,7 @@ class Problem:
             start=np.array([float(value) for value in state]),
             times=_increasing(times),
             sizes=Swing.of(start).sizes(len(model.variables)),
-            system=_model_system(formulation, rounded),
+            system=FirstOrderSystem.of(model.variables, model.derivatives, rounded),
         )
 
     @property
@@ -202,37 +217,3 @@ def _increasing(times: npt.ArrayLike) -> Array:
     if len(t) == 0 or t[0] != 0 or not np.isfinite(t).all() or not (np.diff(t) > 0).all():
         raise InputError("times", t.tolist() if len(t) < 9 else "an array", "finite times increasing from 0")
     return t
-
-
-def _model_system(formulation: str, k: Constants) -> FirstOrderSystem:
-    """Return the model's equations, with the constants that they use as named parameters."""
-    model = FORMULATIONS[formulation]
-    named: dict[str, float] = {}
-
-    def name_of(value: Any, name: str) -> Any:
-        if isinstance(value, tuple):
-            return tuple(name_of(part, f"{name}_{i}") for i, part in enumerate(value))
-        if is_zero(value):
-            return 0
-        named[name] = value
-        return name
-
-    names = {key: name_of(value, key) for key, value in vars(k).items()}
-
-    def rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
-        def number(name: Any) -> Any:
-            return tuple(map(number, name)) if isinstance(name, tuple) else (parameters[name] if name else 0)
-
-        return model.derivatives(state, Constants(**{key: number(name) for key, name in names.items()}), functions)
-
-    full_system = FirstOrderSystem(model.variables, rates, named)
-    used = {operand for line in full_system.program.lines for operand in line.operands} | set(
-        full_system.program.outputs
-    )
-    inputs = dict(zip(full_system.inputs[len(model.variables) :], named, strict=True))
-    used_constants = {name: named[name] for symbol, name in inputs.items() if symbol in used}
-
-    def used_rates(state: Sequence[Any], functions: Any, parameters: Mapping[str, Any]) -> Sequence[Any]:
-        return rates(state, functions, dict.fromkeys(named, 0) | dict(parameters))
-
-    return FirstOrderSystem(model.variables, used_rates, used_constants)

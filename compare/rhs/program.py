@@ -37,6 +37,11 @@ class Program:
     lines: tuple[CodeLine, ...] = field(repr=False)
     outputs: tuple[str, ...]
 
+    @property
+    def used(self) -> set[str]:
+        """Names and literals that the operations and the results use."""
+        return {operand for line in self.lines for operand in line.operands} | set(self.outputs)
+
     def source(self, name: str) -> str:
         """Return the source of a Python function of the inputs, which returns the tuple of the outputs."""
         body = [f"{line.name} = {line.expression}" for line in self.lines]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,11 +25,12 @@ class Variants:
     """
 
     _MODEL = FORMULATIONS["spin"]
+    _PARAMETERS = ("turn_1", "turn_2", "pull_1", "pull_2", *(f"centrifugal_{i}" for i in range(4)), "drag")
 
     def __init__(self) -> None:
         from .heyoka.propagator import Propagator
 
-        self._propagator = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=9)
+        self._propagator = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=len(self._PARAMETERS))
 
     def states(self, inputs: Inputs, times: Array, alter: Callable[[Constants], Constants] | None = None) -> Array:
         """Return the states of one run.
@@ -51,14 +51,14 @@ class Variants:
             raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
         start = Start.of(inputs, DOUBLE.prec + GUARD_BITS)
         k = (start.k if alter is None else alter(start.k)).converted(float)
-        state = [float(value) for value in replace(start, k=k).state(self._MODEL)]
-        parameters = [float(value) for value in (*k.turn[1:], *k.pull[1:], *k.centrifugal, k.drag)]
+        state = [float(value) for value in start.state(self._MODEL)]
+        entries = k.entries()
+        parameters = [entries.get(name, 0.0) for name in self._PARAMETERS]
         rows = self._propagator.from_zero(state, times, parameters, MAX_STEPS)
         n_rows, spin = rows[:, :3], rows[:, 3:]
         return np.hstack([n_rows, np.cross(spin, n_rows)]) * float(k.length)
 
     @classmethod
     def _rates(cls, state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
-        turn_y, turn_z, pull_y, pull_z, xx, yy, yz, zz, drag = parameters
-        k = Constants(turn=(0, turn_y, turn_z), pull=(0, pull_y, pull_z), centrifugal=(xx, yy, yz, zz), drag=drag)
+        k = Constants.of(dict(zip(cls._PARAMETERS, parameters, strict=True)))
         return cls._MODEL.derivatives(state, k, functions)

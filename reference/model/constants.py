@@ -7,9 +7,9 @@ equator, without rotation, without drag) is the int 0, and its terms drop out of
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from typing import Any, Self
 
 from ..precision import to_mpf
 from ..scene import Inputs
@@ -46,17 +46,31 @@ class Constants:
     sin: Any = 0
     cos: Any = 0
 
-    def converted(self, convert: Callable[[Any], Any]) -> Constants:
+    @classmethod
+    def of(cls, entries: Mapping[str, Any]) -> Self:
+        """Return the constants that have these `entries`, in any number type; those not named are exactly zero."""
+
+        def value(name: str, default: Any) -> Any:
+            if isinstance(default, tuple):
+                return tuple(entries.get(f"{name}_{i}", 0) for i in range(len(default)))
+            return entries.get(name, default)
+
+        return cls(**{field.name: value(field.name, field.default) for field in fields(cls)})
+
+    def entries(self, *names: str) -> dict[str, Any]:
+        """Return all numbers here that are not exactly zero, or those of some constants: "drag", "turn_1", "turn_2"."""
+        found: dict[str, Any] = {}
+        for name in names or vars(self):
+            value = getattr(self, name)
+            if isinstance(value, tuple):
+                found |= {f"{name}_{i}": part for i, part in enumerate(value)}
+            else:
+                found[name] = value
+        return {name: value for name, value in found.items() if not is_zero(value)}
+
+    def converted(self, convert: Callable[[Any], Any]) -> Self:
         """Return the same constants in another number type; exact zeros stay the int 0."""
-
-        def one(value: Any) -> Any:
-            return value if is_zero(value) else convert(value)
-
-        entries = {
-            name: tuple(map(one, value)) if isinstance(value, tuple) else one(value)
-            for name, value in vars(self).items()
-        }
-        return replace(self, **entries)
+        return self.of({name: convert(value) for name, value in self.entries().items()})
 
 
 def is_zero(value: Any) -> bool:

@@ -27,7 +27,7 @@ _PREC = 320  # bits
 _NUDGE = Fraction(1, 1 << 100)  # central differences in 320 bits: exact to about 2**-200
 _TOLERANCE = 1e-11  # of the variational equations, whose results are used to three digits
 _MODEL = FORMULATIONS["momentum"]
-_CONSTANTS = 5  # Ωy, Ωz, cy, cz, γ
+_CONSTANTS = ("turn_1", "turn_2", "pull_1", "pull_2", "drag")
 
 
 @dataclass(frozen=True)
@@ -91,23 +91,24 @@ class Sensitivity:
     def _propagator(self) -> Any:
         from ..engines.heyoka.propagator import Propagator
 
-        count = 1 + 2 * _CONSTANTS
+        count = 1 + 2 * len(_CONSTANTS)
         return Propagator(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True)
 
 
 def _rates(state: Sequence[Any], functions: Any, parameters: Sequence[Any]) -> Sequence[Any]:
     """Return the rates of `momentum` with constants c + ε d as parameters, also those that are zero in the scene."""
-    epsilon, values, direction = parameters[0], parameters[1 : 1 + _CONSTANTS], parameters[1 + _CONSTANTS :]
-    turn_y, turn_z, pull_y, pull_z, drag = (c + epsilon * d for c, d in zip(values, direction, strict=True))
-    k = Constants(turn=(0, turn_y, turn_z), pull=(0, pull_y, pull_z), drag=drag)
-    return _MODEL.derivatives(state, k, functions)
+    epsilon, *pairs = parameters
+    values, direction = pairs[: len(_CONSTANTS)], pairs[len(_CONSTANTS) :]
+    varied = {name: c + epsilon * d for name, c, d in zip(_CONSTANTS, values, direction, strict=True)}
+    return _MODEL.derivatives(state, Constants.of(varied), functions)
 
 
 def _parts(inputs: Inputs) -> list[Any]:
-    """Return start (n, H), constants (Ωy, Ωz, cy, cz, γ) and length that follow from the inputs."""
+    """Return start (n, H), constants and length that follow from the inputs."""
     start = Start.of(inputs, _PREC)
-    k = start.k
-    return [start.ctx.mpf(part) for part in (*start.state(_MODEL), *k.turn[1:], *k.pull[1:], k.drag, k.length)]
+    entries = start.k.entries()
+    k = (entries.get(name, 0) for name in (*_CONSTANTS, "length"))
+    return [start.ctx.mpf(part) for part in (*start.state(_MODEL), *k)]
 
 
 def with_value(inputs: Inputs, name: str, value: Fraction) -> Inputs:
