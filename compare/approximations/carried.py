@@ -15,7 +15,8 @@ from reference.model.constants import Constants
 
 from .approximation import Array
 
-_USED = ("turn", "pull", "centrifugal", "drag")  # any other would take part in the step size, for nothing
+_USED = ("turn", "pull", "centrifugal", "drag")  # another would only take part in the choice of steps
+MAX_STEPS = 3_000_000  # 30 days of Paris take 1.2 million; towards a singularity steps shrink without end
 
 Derivatives = Callable[[State, Constants, Functions], State]
 
@@ -35,6 +36,9 @@ def integrated(
 
     Returns:
         Shape (times, variables).
+
+    Raises:
+        IntegrationError: the motion comes to a singularity, or needs more than `MAX_STEPS` steps.
     """
     carried, count = k.entries(*_USED), len(variables)
 
@@ -42,4 +46,4 @@ def integrated(
         constants = Constants.of(dict(zip(carried, state[count:], strict=True)))
         return (*derivatives(state[:count], constants, functions), *(0 for _ in carried))
 
-    return integrate([*variables, *carried], rates, [*start, *carried.values()], times)[:, :count]
+    return integrate([*variables, *carried], rates, [*start, *carried.values()], times, max_steps=MAX_STEPS)[:, :count]

@@ -27,6 +27,7 @@ def integrate(
     *,
     number: NumberType = DOUBLE,
     tolerance: float | None = None,
+    max_steps: int = 0,
 ) -> Array:
     """Solve an autonomous system with heyoka's Taylor method.
 
@@ -37,18 +38,20 @@ def integrate(
         times: increasing, from 0, in s.
         number: type to compute in.
         tolerance: relative error of a step, the type's epsilon if None.
+        max_steps: most steps; 0 for any number.
 
     Returns:
         The states as binary64, shape (times, variables).
 
     Raises:
-        IntegrationError: heyoka stops before the last time, or a state is not finite.
+        IntegrationError: heyoka stops before the last time, also because `max_steps` do not suffice, or a state is
+            not finite.
     """
     from .heyoka.propagator import Propagator
 
     propagator = Propagator(variables, derivatives, number, tolerance=tolerance)
     of = propagator.numbers.of
-    states = propagator.from_zero([of(_exact(v)) for v in start], [of(_exact(t)) for t in times])
+    states = propagator.from_zero([of(_exact(v)) for v in start], [of(_exact(t)) for t in times], max_steps=max_steps)
     return np.asarray(states.astype(float))
 
 

@@ -8,9 +8,18 @@ import sys
 import numpy as np
 import pytest
 
-from compare.approximations import APPROXIMATIONS, Approximation, Motion, Quantity, mathar_items, motions, quantities
+from compare.approximations import (
+    APPROXIMATIONS,
+    Approximation,
+    Motion,
+    Quantity,
+    carried,
+    mathar_items,
+    motions,
+    quantities,
+)
 from compare.foucpend.march import ITEMS
-from reference import InputError, UnreachableError, load_scene
+from reference import InputError, IntegrationError, UnreachableError, load_scene
 
 PARIS = load_scene("paris")
 
@@ -51,6 +60,13 @@ def test_the_bits_of_the_papers_program_name_motions():
     # Its first bit is item 2, its second item 1.
     assert names[1] == "mathar_item_2"
     assert names[2] == "mathar_item_1"
+
+
+def test_a_motion_that_comes_to_the_horizontal_comes_to_an_end(monkeypatch):
+    monkeypatch.setattr(carried, "MAX_STEPS", 20_000)  # without a limit it takes smaller and smaller steps for ever
+    scene = load_scene("weightless").with_values(["site.latitude=60"])
+    with pytest.raises(IntegrationError, match="only until the bob comes to the horizontal"):
+        APPROXIMATIONS["mathar_item_3"].trajectory(scene, [0.0, 60.0])
 
 
 @pytest.mark.parametrize(

@@ -13,11 +13,14 @@ from hypothesis import strategies as st
 from small_scenes import make_scene
 
 import compare.rhs.tracing
+from compare.rhs.constants import constants_in_double
 from compare.rhs.problem import FirstOrderSystem, Problem
 from compare.rhs.tangent import differentiated
 from compare.rhs.tracing import TracingError, record
 from reference import InputError, load_scene
+from reference.model.constants import constants
 from reference.model.formulations import FORMULATIONS
+from reference.precision import context
 
 TRACED = ["momentum", "space", "spin", "plane", "angles"]
 
@@ -130,12 +133,12 @@ def test_scenes_of_one_kind_share_their_code():
     assert problem("momentum").system.program == problem("momentum", site={"latitude": "-33"}).system.program
 
 
-def test_constants_are_rounded_once():
-    example = Problem.of(load_scene("paris"), "momentum")
-    exact = -9.80665 + 7.292115e-5**2 * 4.2e6 * 0.66
-    assert example.constants.pull[2] == pytest.approx(exact / 67, rel=1e-3)
-    assert example.constants.length == 67
-    assert all(isinstance(value, float) for value in example.system.parameters.values())
+@pytest.mark.parametrize("scene", ["paris", "pole_near", "equator_near", "weightless", "damped"])
+def test_constants_are_rounded_once(scene):
+    exact = load_scene(scene).exact
+    k = Problem.of(load_scene(scene), "momentum").constants
+    assert k == constants_in_double(exact) == constants(exact, context(500)).converted(float)
+    assert all(isinstance(value, float) for value in k.entries().values())
 
 
 def test_a_system_of_somebody_else_is_compiled_too():

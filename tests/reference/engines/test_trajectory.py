@@ -51,6 +51,13 @@ def test_a_solution_that_escapes_gives_no_numbers():
         integrate(("q",), lambda state, _: (state[0] * state[0],), (1.0,), [0.0, 2.0])  # 1/(1 - t)
 
 
+def test_a_run_ends_after_its_most_steps():
+    system = ("q", "p"), lambda state, _: (state[1], -state[0]), (1.0, 0.0), TIMES
+    assert len(integrate(*system, max_steps=1000)) == len(TIMES)
+    with pytest.raises(IntegrationError, match="step_limit"):
+        integrate(*system, max_steps=10)
+
+
 @pytest.mark.parametrize("formulation", ["space", "spin", "plane", "angles", "lagrangian"])
 def test_every_formulation_gives_the_same_motion(paris, formulation):
     expected = trajectory(paris, TIMES, number=LONG_DOUBLE)

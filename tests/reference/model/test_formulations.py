@@ -12,7 +12,7 @@ from small_scenes import make_scene, model_at
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.heyoka.system import System
 from reference.model.algebra import cross, dot, minus, plus, product
-from reference.model.constants import constants
+from reference.model.constants import Constants, constants
 from reference.model.earth import axis_distance
 from reference.model.force import acceleration, force, invariant, rest_position, tension
 from reference.model.formulations import FORMULATIONS
@@ -200,6 +200,15 @@ def test_a_vanishing_constant_is_exactly_zero(sections, zeros):
     seen = {"turn_y": k.turn[1], "turn_z": k.turn[2], "pull_y": k.pull[1]}
     seen |= {"turn": max(map(abs, k.turn)), "centrifugal": max(map(abs, k.centrifugal))}
     assert {name for name, value in seen.items() if isinstance(value, int) and value == 0} >= zeros
+
+
+def test_constants_are_their_entries_and_exact_zeros():
+    _, k, _, _ = model_at(make_scene(site={"latitude": "90"}), 100)
+    assert k.entries("turn", "pull", "drag") == {"turn_2": k.turn[2], "pull_2": k.pull[2]}
+    names = ["length", "turn_2", "pull_2", "centrifugal_0", "centrifugal_1", "gravity", "rate", "sin"]
+    assert list(k.entries()) == names
+    assert Constants.of(k.entries()) == k
+    assert Constants.of({"turn_1": 3, "drag": 2}) == Constants(turn=(0, 3, 0), drag=2)
 
 
 def test_the_distance_from_the_axis_is_wgs84s_prime_vertical_radius():
