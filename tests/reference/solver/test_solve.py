@@ -12,7 +12,7 @@ import pytest
 from small_scenes import make_scene
 
 import reference
-from reference.columns import STATE
+from reference.columns import GRID
 from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.engines import side_by_side
 from reference.engines.plan import Plan
@@ -27,7 +27,7 @@ from reference.solver import solve as solver
 def by_higher_precision(scene, prec=256):
     """x, y, z, vx, vy, vz at the end from one run far finer than any under test, in yet another formulation."""
     done = run(Plan(scene.exact, "spin", real(prec), tuple(scene.exact.grid), transits=False))
-    return [done.grid.exact(name)[-1] for name in STATE]
+    return [done.grid.exact(name)[-1] for name in GRID]
 
 
 HARD = {
