@@ -16,7 +16,7 @@ class Status(StrEnum):
     meaning: str
     advice: str
 
-    def __new__(cls, word: str, meaning: str, advice: str = "") -> Status:
+    def __new__(cls, word: str, meaning: str = "", advice: str = "") -> Status:
         """Make a member from its word, its meaning and its advice."""
         member = str.__new__(cls, word)
         member._value_, member.meaning, member.advice = word, meaning, advice
@@ -29,10 +29,10 @@ class Status(StrEnum):
         "Allow more CPU seconds (--limit) to have the whole span measured.",
     )
     INVALID = "invalid", "the scene has a wrong field", "Correct the field that the reason names."
-    REFUSED = "refused", "refused", "Read the reason: the method or formulation cannot describe this motion."
+    REFUSED = "refused", "refused", "Take another formulation or method: this one cannot describe the motion."
     NOT_INSTALLED = "not_installed", "not installed", "Install the extra that the reason names."
     NOT_FINITE = "not_finite", "NaN or infinity", "Shorten the step or tighten the tolerance."
-    GAVE_UP = "gave_up", "gave up", "Read the reason, which is the library's own where it gave one."
+    GAVE_UP = "gave_up", "gave up", "Shorten the step or change the tolerance; the reason is as the library gave it."
     OUT_OF_TIME = "out_of_time", "out of time", "Allow more CPU seconds (--limit), or ask for a shorter span."
     MISSED_TRANSITS = "missed_transits", "missed transits", "Shorten the step or tighten the tolerance."
     SILENTLY_WRONG = (

@@ -16,7 +16,7 @@ class Record:
     def parsed(cls, document: dict[str, Any]) -> Self:
         """Read a result from its JSON document; keys that it does not have are left out."""
         values = {one.name: document[one.name] for one in fields(cls) if one.name in document}
-        return cls(**values | {"status": Status(values["status"])})  # type: ignore[call-arg]
+        return cls(**values | {"status": Status(values["status"])})
 
 
 @dataclass(frozen=True)

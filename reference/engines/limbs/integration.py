@@ -16,7 +16,7 @@ from .limb import Array, aligned, joined
 from .march import COLUMNS, DOUBTFUL, GOOD, STUCK, TIME, ZEROS, MarchState, Outputs, march, state_at_release
 from .output_times import limbs_of_fractions
 from .problem import LimbProblem, limb_problem
-from .size import MOST_BITS, fraction_bits
+from .size import MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS
 
 STEPS_PER_CALL = 1024
@@ -120,9 +120,9 @@ def integration_of(plan: Plan, polynomials: int = 0, order: int | None = None) -
     Raises:
         InputError: more bits than limbs can hold.
     """
-    if plan.number.prec > MOST_BITS:
+    if plan.number.prec > MOST_PREC:
         raise InputError(
-            "precision", plan.number.prec, f"at most {MOST_BITS} bits", "Use the engine heyoka for more digits."
+            "precision", plan.number.prec, f"at most {MOST_PREC} bits", "Use the engine heyoka for more digits."
         )
     problem = limb_problem(plan.inputs, plan.number.prec, order)
     whole, remainders = limbs_of_fractions(plan.times, problem.grain, problem.model.limb_count)

@@ -21,7 +21,7 @@ from ...scene import Inputs
 from ..plan import MOST_TURN
 from .limb import Array, rows_of
 from .series import LinearTerms
-from .size import MOST_BITS, limb_count_for
+from .size import MOST_PREC, limb_count_for
 from .step import GRAINS, MOST_GRAINS, Model
 
 TAIL_BITS = 9  # a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
@@ -59,9 +59,9 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None) -> LimbPro
 
     `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer steps.
     """
-    start = Start.of(inputs, MOST_BITS + 2 * GUARD_BITS)
+    start = Start.of(inputs, MOST_PREC + 2 * GUARD_BITS)
     ctx, k, n = start.ctx, start.k, start.n
-    prec = min(prec + _swing_bits(start), MOST_BITS)
+    prec = min(prec + _swing_bits(start), MOST_PREC)
     limb_count = limb_count_for(prec)
     unit, first = _unit_of_time(start)
     h = ctx.mpf(unit.numerator) / unit.denominator

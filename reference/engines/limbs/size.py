@@ -17,4 +17,4 @@ def limb_count_for(prec: int) -> int:
     return max(3, -(-(prec + ROUNDING_BITS + 1) // LIMB_BITS))
 
 
-MOST_BITS = fraction_bits(MOST_LIMBS) - ROUNDING_BITS  # the highest precision
+MOST_PREC = fraction_bits(MOST_LIMBS) - ROUNDING_BITS  # the highest precision

@@ -17,7 +17,7 @@ from limbs_states import states
 from small_scenes import make_scene, run_in_limbs
 
 from reference.columns import POSITION, STATE, VELOCITY
-from reference.engines.limbs.size import MOST_BITS
+from reference.engines.limbs.size import MOST_PREC
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import InputError, IntegrationError
@@ -132,7 +132,7 @@ def test_a_transit_after_the_last_time_is_not_reported():
 def test_more_bits_than_there_can_be_are_refused():
     scene = make_scene(**PARIS)
     with pytest.raises(InputError, match="heyoka"):
-        run_in_limbs(scene, MOST_BITS + 1, TIMES, transits=False)
+        run_in_limbs(scene, MOST_PREC + 1, TIMES, transits=False)
 
 
 def test_a_transit_that_only_grazes_is_refused():
