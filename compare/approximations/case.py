@@ -73,18 +73,6 @@ class Case(Start):
         return self.ctx.atan2(self.outward * self.sin, self.gravity - self.outward * self.cos)
 
     @cached_property
-    def rest(self) -> Vector:
-        """Direction n of the full model's rest position, Mathar (46).
-
-        Raises:
-            UnreachableError: there is none, or the iteration does not converge.
-        """
-        try:
-            return super().rest
-        except (ValueError, ZeroDivisionError):
-            raise UnreachableError("the scene has no rest position to swing about.") from None
-
-    @cached_property
     def apparent_latitude(self) -> Any:
         """Apparent latitude λ_a = λ + α, Gastebois 4.2."""
         return self.ctx.atan2(self.sin, self.cos) + self.tilt

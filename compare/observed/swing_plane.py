@@ -53,7 +53,8 @@ class Gauge:
         Raises:
             UnreachableError: there is no rest position, or nothing pulls the bob back to it.
         """
-        start, hanging = _hanging(scene)
+        start = Start.of(scene.exact, PREC)
+        hanging = start.rest
         turn = -start.ctx.mpf(start.k.turn[1]) * hanging[1] - start.ctx.mpf(start.k.turn[2]) * hanging[2]
         square = tension(hanging, (0, 0, 0), start.k) + turn**2
         if not square > 0:
@@ -87,14 +88,5 @@ def rest_in_metres(scene: Scene) -> Array:
     Raises:
         UnreachableError: no rest position is singled out.
     """
-    start, hanging = _hanging(scene)
-    return np.array([float(part * start.k.length) for part in hanging])
-
-
-def _hanging(scene: Scene) -> tuple[Start, Vector]:
-    """Return the start of a scene and its rest position over l."""
     start = Start.of(scene.exact, PREC)
-    try:
-        return start, start.rest
-    except (ValueError, ZeroDivisionError):
-        raise UnreachableError("the scene has no rest position to swing about.") from None
+    return np.array([float(part * start.k.length) for part in start.rest])

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..errors import UnreachableError
 from ..scene import Scene, load_scene
 from ..shipped import flag_meanings
 from .terminal import AsJson, Assignments, SceneWord, emit
@@ -85,6 +86,6 @@ def _derived(scene: Scene) -> dict[str, str]:
         derived["small_swing_period_s"] = text(2 * ctx.pi / ctx.sqrt(strength))
     try:
         _, y, z = start.rest
-    except ValueError:
+    except UnreachableError:
         return derived
     return derived | {"rest_y_m": text(y * k.length), "rest_z_m": text(z * k.length)}

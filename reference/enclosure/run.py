@@ -182,7 +182,7 @@ class _Run:
         self.clock.lap("transits")
         widths = [[(i.high - i.low) / 2 for i in row] for row in states]
         position = max(max(row[:3]) for row in widths)
-        velocity = max(max(row[3:]) for row in widths)
+        velocity = max(max(row[3:6]) for row in widths)
         if max(position, velocity) > radius:
             ratio = max(position, velocity) / radius
             more = 8 * ceil((ratio.numerator.bit_length() - ratio.denominator.bit_length() + 6) / 8)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
+from ..errors import UnreachableError
 from ..precision import context, to_mpf
 from ..scene import Inputs
 from .constants import Constants, Vector, constants
@@ -53,8 +54,15 @@ class Start:
 
     @cached_property
     def rest(self) -> Vector:
-        """Rest position over l, n = (0, sin θ, -cos θ); raise as `force.rest_position` where there is none."""
-        return rest_position(self.k, self.ctx)
+        """Rest position over l, n = (0, sin θ, -cos θ), Mathar (46).
+
+        Raises:
+            UnreachableError: there is none, or the iteration does not converge.
+        """
+        try:
+            return rest_position(self.k, self.ctx)
+        except (ValueError, ZeroDivisionError):
+            raise UnreachableError("the scene has no rest position to swing about.") from None
 
     def state(self, formulation: Formulation) -> Sequence[Any]:
         """Return the state at t = 0 in a formulation's variables; ValueError where it cannot express the release."""
