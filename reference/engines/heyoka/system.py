@@ -13,6 +13,12 @@ from ...model.constants import Constants
 from ...model.force import acceleration
 from ...model.formulations import Formulation, Lagrangian
 
+NAMES = {
+    "turn_1": "Omega_y", "turn_2": "Omega_z", "pull_1": "c_y", "pull_2": "c_z", "centrifugal_0": "Omega2",
+    "centrifugal_1": "Omega_z2", "centrifugal_2": "minus_Omega_yz", "centrifugal_3": "Omega_y2", "drag": "gamma",
+    "length": "l", "gravity": "g_l", "axis_distance": "R_l", "rate": "Omega", "sin": "sin_lat", "cos": "cos_lat",
+}  # fmt: skip
+
 
 @dataclass(frozen=True)
 class System:
@@ -60,23 +66,5 @@ def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -
 
 def equations_text(formulation: Formulation, constants: Constants) -> list[str]:
     """Return the lines "name' = …" that are compiled, constants by name and exact zeros left out."""
-    names: dict[str, Any] = {
-        "turn": ("", "Omega_y", "Omega_z"),
-        "pull": ("", "c_y", "c_z"),
-        "centrifugal": ("Omega2", "Omega_z2", "minus_Omega_yz", "Omega_y2"),
-        "drag": "gamma",
-        "length": "l",
-        "gravity": "g_l",
-        "axis_distance": "R_l",
-        "rate": "Omega",
-        "sin": "sin_lat",
-        "cos": "cos_lat",
-    }
-
-    def symbol(value: Any, name: Any) -> Any:
-        if isinstance(name, tuple):
-            return tuple(map(symbol, value, name))
-        return value if isinstance(value, int) else hy.make_vars(name)
-
-    named = Constants(**{key: symbol(value, names[key]) for key, value in vars(constants).items()})
+    named = Constants.of({name: hy.make_vars(NAMES[name]) for name in constants.entries()})
     return [f"{name}' = {rate}" for name, rate in System.build(formulation, named).equations]
