@@ -122,8 +122,33 @@ def test_a_dataset_is_read_back_as_arrays_strings_and_fractions(dataset, solutio
     assert abs(golden.exact("x")[3] - solution.grid.exact("x")[3]) <= Fraction(1, 2 * 10**25)
     assert len(golden.transits["t"]) == 36
     assert golden.scene == solution.scene
-    with pytest.raises(AttributeError):
-        _ = golden.nonsense
+    with pytest.raises(AttributeError, match=r"a Golden has no attribute 'transit'; it has transits, "):
+        _ = golden.transit
+
+
+def test_a_solution_and_its_dataset_have_the_same_columns(dataset, solution):
+    golden = load(dataset)
+    assert golden.times == solution.times
+    assert golden.directions == solution.directions
+    for table, printed in ((solution.grid, golden.grid), (solution.transits, golden.transits)):
+        assert len(table) == len(printed)
+        assert set(table.columns) <= set(printed.columns)
+        for name in table.columns:
+            unit = Fraction(1, 10 ** len(printed.decimals(name)[0].partition(".")[2]))
+            exact = zip(table.exact(name), printed.exact(name), strict=True)
+            assert all(abs(one - other) <= unit / 2 for one, other in exact)
+            assert np.allclose(table[name], printed[name], rtol=1e-15, atol=float(unit))
+            if name != "ax":  # of which no bound is published
+                bounds = zip(table.bound(name), printed.bound(name), strict=True)
+                assert all(one <= other for one, other in bounds)
+    with pytest.raises(KeyError, match="'w' is no column"):
+        golden.grid["w"]
+
+
+def test_a_dataset_and_a_solution_say_in_a_line_what_they_hold(dataset, solution):
+    held = "paris: confirmed, 25 digits, 6 grid times, 36 transits"
+    assert repr(solution) == f"Solution({held})"
+    assert repr(load(dataset)) == f"Golden({held})"
 
 
 def test_what_has_no_transits_says_why(tmp_path):

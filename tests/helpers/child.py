@@ -1,0 +1,24 @@
+"""Functions that tests run in a child process."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from reference.errors import InputError
+
+
+def doubled(parent: Any, factor: int) -> None:
+    """Send back what arrives, times a factor, for as long as anything arrives."""
+    for item in parent:
+        parent(item * factor)
+
+
+def count_to(parent: Any, last: int) -> None:
+    """Send the numbers from 1 on and return."""
+    for i in range(1, last + 1):
+        parent(i)
+
+
+def refuse(parent: Any) -> None:
+    """Raise an error that a user would see."""
+    raise InputError("length", "-1", "a length above 0")

@@ -1,0 +1,43 @@
+"""A child process: it takes objects while it works, streams its results, and ends with its parent."""
+
+from __future__ import annotations
+
+import pytest
+from child import count_to, doubled, refuse
+
+from reference.errors import IntegrationError
+from reference.process import Worker
+
+
+def test_results_come_in_order_and_end_with_the_function():
+    worker = Worker(count_to, 5)
+    assert list(worker) == [1, 2, 3, 4, 5]
+    worker.stop()
+    assert worker._process.returncode == 0
+
+
+def test_a_child_takes_objects_while_it_works_and_ends_when_its_parent_stops():
+    worker = Worker(doubled, 3)
+    worker.send(2)
+    worker.send("ab" * 500_000)  # more than a pipe holds
+    assert worker.receive() == 6
+    assert worker.receive() == "ab" * 1_500_000
+    worker.send(5)
+    assert worker.receive() == 15
+    worker.stop()
+    assert worker._process.poll() is not None
+
+
+def test_an_error_of_the_function_arrives_as_an_integration_error():
+    worker = Worker(refuse)
+    with pytest.raises(IntegrationError, match="a length above 0"):
+        worker.receive()
+    worker.stop()
+
+
+def test_a_child_that_is_killed_is_an_error_and_no_silence():
+    worker = Worker(doubled, 1)
+    worker.kill()
+    with pytest.raises(IntegrationError, match="ended without a result"):
+        list(worker)
+    worker.stop()
