@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -15,7 +16,7 @@ LARGEST = 1e100  # a larger number means that the run has blown up; below, squar
 ADVICE = "Wanted: t, x, y and, if there, z, vx, vy, vz."
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Candidate:
     """A trajectory to be judged.
 
@@ -34,6 +35,9 @@ class Candidate:
     low: dict[str, Array] = field(default_factory=dict, repr=False)
     transits: Array | None = field(default=None, repr=False)
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"Candidate({Path(self.name).name}: {len(self.t)} rows of t, {', '.join(self.columns)})"
 
     @property
     def extended(self) -> bool:
