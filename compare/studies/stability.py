@@ -37,9 +37,8 @@ WRONG = 1000  # an error above this multiple of the requested one is a failure
 LOST_BITS = 20  # a method of fixed precision may lose this many bits to rounding
 TRUTH_DIGITS = 34  # six more than are asked of the finest method
 
-Item = tuple[
-    str, str | None, float, str
-]  # method, formulation, setting, scene: the first three as a method declares them
+# method, formulation and setting as the method declares them, and the scene
+Item = tuple[str, str | None, float, str]
 Problems = dict[str, tuple[dict[str, Any], Path]]  # document and golden folder of each scene
 
 
