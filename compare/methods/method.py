@@ -101,7 +101,7 @@ class Method:
         requires: modules that must be installed.
         extra: the extra of `pip install 'foucault-reference[…]'` that installs them; None if nothing is needed.
         longest_s: simulated time in s beyond which a run would take unreasonably long.
-        order: of a method of fixed order, proved by its tableau if it is this project's; None where the method chooses it.
+        order: where it is fixed, proved by the tableau of this project's methods; None where the method chooses it.
         family: methods of a family share a colour and a panel in reports.
         number: number type that it computes in, as tables print it.
         libraries: distributions whose versions a study records.
