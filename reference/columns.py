@@ -10,6 +10,6 @@ RUN = (*STATE, "ax")  # an engine's results at each output time, and after t at 
 GRID = STATE  # of grid.csv, after t
 TRANSITS = ("t", "x", "y", "z", "vy", "ax")  # of transits.csv, beside number, direction and bound
 
-KINDS = {"t": ("t",), "ax": ("ax",)} | dict.fromkeys(POSITION, POSITION) | dict.fromkeys(VELOCITY, VELOCITY)
-HORIZONTAL = {"x": ("x", "y"), "y": ("x", "y"), "vx": ("vx", "vy"), "vy": ("vx", "vy")}
-UNITS = {"t": "s", "ax": "m/s^2"} | dict.fromkeys(POSITION, "m") | dict.fromkeys(VELOCITY, "m/s")
+UNITS = {("t",): "s", POSITION: "m", VELOCITY: "m/s", ("ax",): "m/s^2"}  # of the columns of each kind
+KINDS = {name: kind for kind in UNITS for name in kind}  # the columns of a column's kind, whose sizes are alike
+HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair}  # the same errors are assumed of both

@@ -7,7 +7,7 @@ from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from ..columns import POSITION, VELOCITY
+from ..columns import POSITION, UNITS, VELOCITY
 from ..engines.equations import lines_and_left_out
 from ..precision import outward, rounded_up
 from ..scene import Scene, load_scene
@@ -31,7 +31,6 @@ from .sheets import binary64_sheet, grid_bound, grid_sheet, scene_inputs, transi
 from .verify import invariant_drift
 
 FRAME = "topocentric, axes x east, y north, z up, origin at the suspension, z < 0 below it"
-UNITS = {"t": "s", "x, y, z": "m", "vx, vy, vz": "m/s", "ax": "m/s^2", "bound": "s", "angles": "degrees"}
 
 
 def render(solution: Solution) -> dict[str, str]:
@@ -62,7 +61,7 @@ def render(solution: Solution) -> dict[str, str]:
         scene=scene_inputs(scene),
         inputs=scene.inputs,
         frame=FRAME,
-        units=UNITS,
+        units={", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"},
         level=scene.run.level,
         digits=scene.run.digits,
         decimals={"grid": grid.decimals, "transits": transits.decimals},

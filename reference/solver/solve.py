@@ -207,10 +207,12 @@ def _transit_errors(transits: Table, errors: Mapping[str, Fraction], apart: Tabl
 
     That of its time is the error of xdot over |ax|; that of ax is taken to be as large as that of vx.
     """
-    measured = [{name: apart.exact(name) for name in TRANSITS}] if apart is not None else []
     rows = []
-    for i, ax in enumerate(transits.exact("ax")):
+    for ax in transits.exact("ax"):
         # where xdot only grazes zero, the time is as good as unknown
-        own = {**errors, "t": errors["vx"] / abs(ax) if ax else Fraction(10) ** 9, "ax": errors["vx"]}
-        rows.append({name: max([own[name], *(2 * gaps[name][i] for gaps in measured)]) for name in TRANSITS})
+        rows.append({**errors, "t": errors["vx"] / abs(ax) if ax else Fraction(10) ** 9, "ax": errors["vx"]})
+    if apart is not None:
+        for name in TRANSITS:
+            for row, gap in zip(rows, apart.exact(name), strict=True):
+                row[name] = max(row[name], 2 * gap)
     return rows

@@ -100,4 +100,4 @@ def test_a_column_of_rounding_noise_takes_the_digits_of_its_kind():
 def test_every_column_has_a_kind_and_a_unit():
     for name in {*RUN, *GRID, *TRANSITS}:
         assert name in KINDS[name]
-        assert UNITS[name]
+        assert UNITS[KINDS[name]]
