@@ -9,7 +9,7 @@ class Status(StrEnum):
     """Outcome of a run; equal to its word, so that it stands in JSON and CSV as it is.
 
     Attributes:
-        meaning: a phrase for tables and keys, such as "out of time".
+        meaning: a phrase that says what happened, such as "stopped by itself, without a result".
         advice: a sentence that says what to do; empty where nothing has to be done.
     """
 
@@ -29,22 +29,39 @@ class Status(StrEnum):
         "Allow more CPU seconds (--limit) to have the whole span measured.",
     )
     INVALID = "invalid", "the scene has a wrong field", "Correct the field that the reason names."
-    REFUSED = "refused", "refused", "Take another formulation or method: this one cannot describe the motion."
-    NOT_INSTALLED = "not_installed", "not installed", "Install the extra that the reason names."
-    NOT_FINITE = "not_finite", "NaN or infinity", "Shorten the step or tighten the tolerance."
-    GAVE_UP = "gave_up", "gave up", "Shorten the step or change the tolerance; the reason is as the library gave it."
-    OUT_OF_TIME = "out_of_time", "out of time", "Allow more CPU seconds (--limit), or ask for a shorter span."
-    MISSED_TRANSITS = "missed_transits", "missed transits", "Shorten the step or tighten the tolerance."
+    REFUSED = "refused", "cannot describe the motion", "Take another formulation or method."
+    NOT_INSTALLED = "not_installed", "its library is missing", "Install the extra that the reason names."
+    NOT_FINITE = "not_finite", "ended in NaN or infinity", "Shorten the step or tighten the tolerance."
+    GAVE_UP = (
+        "gave_up",
+        "stopped by itself, without a result",
+        "Shorten the step or change the tolerance; the reason is as the library gave it.",
+    )
+    OUT_OF_TIME = (
+        "out_of_time",
+        "took longer than allowed",
+        "Allow more CPU seconds (--limit), or ask for a shorter span.",
+    )
+    MISSED_TRANSITS = (
+        "missed_transits",
+        "missed, doubled or misplaced a transit",
+        "Shorten the step or tighten the tolerance.",
+    )
     SILENTLY_WRONG = (
         "silently_wrong",
-        "silently wrong",
-        "Do not trust this method here: it reports success with an error far above what was asked for.",
+        "reports success with an error far above what was asked for",
+        "Do not trust this method here.",
     )
     ILL_CONDITIONED = (
         "ill_conditioned",
-        "ill-conditioned",
-        "The motion itself magnifies errors: no method in this number type can do better.",
+        "the motion itself magnifies errors",
+        "Take a number type with more digits: in this one no method can do better.",
     )
-    DOUBTFUL = "doubtful", "doubtful", "Two computations disagree: ask for a higher level."
-    UNREACHABLE = "unreachable", "out of reach", "Ask for fewer digits or a shorter run."
-    CRASHED = "crashed", "crashed", "The process died: run it alone to see why."
+    DOUBTFUL = "doubtful", "two computations disagree", "Ask for a higher level."
+    UNREACHABLE = "unreachable", "asks for more than can be computed", "Ask for fewer digits or a shorter run."
+    CRASHED = "crashed", "its process died", "Run it alone to see why."
+
+    @property
+    def words(self) -> str:
+        """Return the word as it is read, such as "out of time"."""
+        return self.value.replace("_", " ")

@@ -20,7 +20,7 @@ from .charts import ErrorHistory, Field, error_growth, heat_map
 from .charts.heat_map import LETTERS
 from .folder import Report
 from .page import Column, Html, TableRow, facts, figure, findings, page, paragraph, section, table
-from .tables import advice, word, words
+from .tables import advice, words
 
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
@@ -80,7 +80,7 @@ def _parsed(document: dict[str, Any]) -> tuple[list[Cell], list[LongRun]]:
 def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
     cells, runs = _parsed(document)
-    letters = "; ".join(f"{letter}: {status.meaning}" for status, letter in LETTERS.items())
+    letters = "; ".join(f"{letter}: {status.words}" for status, letter in LETTERS.items())
     squares = [Field(cell.scene, f"{cell.method} {_short(cell.precision)}", cell.status, cell.digits) for cell in cells]
     failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
     wrong = [cell for cell in failures if cell.status == Status.SILENTLY_WRONG]
@@ -129,7 +129,7 @@ def _reasons(cells: Sequence[Cell]) -> Html:
     rows = [
         TableRow(
             (
-                cell.scene, cell.method, cell.precision, word(cell.status),
+                cell.scene, cell.method, cell.precision, cell.status.words,
                 "" if cell.digits is None else f"{max(cell.digits, 0):.1f}", f"{cell.asked:.1f}", cell.reason,
             )
         )
@@ -158,7 +158,7 @@ def text_table(document: dict[str, Any]) -> str:
     lines = [
         *headlines(cells),
         "",
-        f"{'method':20}{'precision':24}" + "".join(f"{word(one):>16}" for one in present),
+        f"{'method':20}{'precision':24}" + "".join(f"{one.words:>16}" for one in present),
     ]
     for method, precision in names:
         counts = Counter(cell.status for cell in cells if (cell.method, cell.precision) == (method, precision))

@@ -69,7 +69,7 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
             kinds = ["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * (not row.measured)
             cells = [
                 FRONT_MARK if row.key in best else "", row.method, row.formulation, setting(row),
-                word(row.status), number(row.error_m), number(row.end_error_m), number(row.transit_error_s),
+                row.status.words, number(row.error_m), number(row.end_error_m), number(row.transit_error_s),
                 number(row.h_drift), cost(row), "" if row.cpu_spread is None else f"{100 * row.cpu_spread:.0f} %",
                 cpu(row.compile_s), count(row.rhs_evaluations), count(row.steps),
                 "" if row.reached_t is None else f"{row.reached_t:g}", row.reason,
@@ -91,7 +91,7 @@ def failures(rows: Sequence[Row]) -> Html | None:
     for (label, status, reason), group in groups.items():
         reached = {f"{row.reached_t:g}" for row in group if row.reached_t is not None}
         settings = ", ".join(setting(row) for row in group)
-        body.append(TableRow([label, settings, word(status), ", ".join(sorted(reached)), reason], "failed"))
+        body.append(TableRow([label, settings, status.words, ", ".join(sorted(reached)), reason], "failed"))
     columns = [
         Column("method"),
         Column("settings", "prose"),
@@ -105,17 +105,12 @@ def failures(rows: Sequence[Row]) -> Html | None:
 def words(statuses: Collection[Status]) -> Html:
     """Return the meaning of the words that stand for these statuses, and what to do about each."""
     columns = [Column("word"), Column("meaning", "prose"), Column("what to do", "prose")]
-    return table(columns, [TableRow([word(one), one.meaning, one.advice]) for one in Status if one in statuses])
+    return table(columns, [TableRow([one.words, one.meaning, one.advice]) for one in Status if one in statuses])
 
 
 def advice(statuses: Collection[Status]) -> list[str]:
     """Return what to do about each of these statuses, as lines of text."""
-    return [f"{word(one)}: {one.advice}" for one in Status if one in statuses and one.advice]
-
-
-def word(status: Status) -> str:
-    """Return the word of a status as it is read."""
-    return status.replace("_", " ")
+    return [f"{one.words}: {one.advice}" for one in Status if one in statuses and one.advice]
 
 
 def methods(rows: Sequence[Row]) -> Html:
@@ -163,7 +158,7 @@ def text_table(document: dict[str, Any]) -> str:
 
 def _why(row: Row) -> str:
     """Return status and reason, or the reason alone if it begins with the status."""
-    status = word(row.status)
+    status = row.status.words
     return row.reason if row.reason.startswith(status) else f"{status}: {row.reason}"
 
 

@@ -116,9 +116,9 @@ def _key(axes: Any, y: float, wide: float, present: set[Status], steps: Sequence
     axes.text(len(steps) + 1.3, y + 0.5, "digits kept, at least", fontsize=8, va="center_baseline", color=INK)
     x = 0.0
     for status in [one for one in LETTERS if one in present]:
-        needs = 1.7 + _CHARACTER * len(status.meaning)
+        needs = 1.7 + _CHARACTER * len(status.words)
         if x == 0.0 or x + needs > wide:
             x, y = 0.0, y + 1.2
         _field(axes, x, y, LETTERS[status], *_colours(Field("", "", status), steps))
-        axes.text(x + 1.2, y + 0.5, status.meaning, fontsize=8, va="center_baseline", color=INK)
+        axes.text(x + 1.2, y + 0.5, status.words, fontsize=8, va="center_baseline", color=INK)
         x += needs
