@@ -25,7 +25,7 @@ class Capture:
         return changed
 
     def words(self, longest: int = 300) -> str:
-        """Return the output on one line, cut to so many characters, for a message that quotes it."""
+        """Return the output on one line, cut to `longest` characters, to be quoted in a message."""
         return " ".join(self.data.decode(errors="replace").split())[:longest]
 
 

@@ -130,7 +130,7 @@ def _item() -> Any:
 
 
 def _read(count: int) -> bytes:
-    """Read so many bytes of what the parent sends; not through sys.stdin, whose lock would block a normal exit."""
+    """Read `count` bytes from the parent; not through sys.stdin, whose lock would block a normal exit."""
     data = b""
     while len(data) < count:
         part = os.read(0, min(count - len(data), 1 << 20))

@@ -16,7 +16,7 @@ from reference import IntegrationError
 from reference.columns import STATE
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
-from reference.precision import DOUBLE, GUARD_BITS, LONG_DOUBLE, NumberType, real
+from reference.precision import DOUBLE, DOUBLE_BITS, GUARD_BITS, LONG_DOUBLE, LONG_DOUBLE_BITS, NumberType, real
 from reference.status import Status
 from reference.table import Table
 
@@ -88,6 +88,7 @@ METHODS = (
         prepare=lambda problem, setting: prepare_in(problem, DOUBLE, setting),
         stability=tuple((word, 1e-12) for word in ("momentum", "space", "spin", "plane", "angles", "lagrangian")),
         long_runs=(("momentum", 2.0**-52), ("space", 2.0**-52)),
+        precision_runs=lambda bits: [2.0**-52] if DOUBLE_BITS in bits else [],
     ),
     _heyoka(
         id="heyoka_long_double",
@@ -97,6 +98,7 @@ METHODS = (
         number="long double",
         stability=(("momentum", 1e-16),),
         long_runs=(("momentum", 2.0**-63), ("space", 2.0**-63)),
+        precision_runs=lambda bits: [2.0**-63] if LONG_DOUBLE_BITS in bits else [],
     ),
     _many_digits(
         id="heyoka_real128",
@@ -114,5 +116,6 @@ METHODS = (
         ladder=(64, 113, 160, 256, 512),
         prepare=lambda problem, setting: prepare_in(problem, real(int(setting)), None),
         number="MPFR",
+        precision_runs=lambda bits: [float(prec) for prec in bits if prec > LONG_DOUBLE_BITS],
     ),
 )

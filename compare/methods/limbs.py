@@ -12,6 +12,8 @@ from reference.status import Status
 from ..rhs.problem import Array, Problem
 from .method import Family, Method, Outcome, Work, failed
 
+LADDER = (100, 150, 200)  # precisions in bits
+
 
 def prepare(problem: Problem, setting: float) -> Work:
     """Compile the engine's kernels by a short first run; the returned function makes the whole run."""
@@ -41,7 +43,7 @@ METHODS = (
         id="limbs",
         title="Taylor series, adaptive step, this project's limbs of 22 bits",
         setting="precision",
-        ladder=(100, 150, 200),
+        ladder=LADDER,
         source="this project's reference/engines/limbs",
         licence="this project's",
         prepare=prepare,
@@ -53,5 +55,6 @@ METHODS = (
         libraries=("numpy", "numba"),
         stability=((None, 100),),
         long_runs=(("momentum", 100),),
+        precision_runs=lambda bits: [setting for setting in LADDER if setting <= bits[-1]],
     ),
 )

@@ -6,14 +6,13 @@ import math
 from collections.abc import Sequence
 
 from reference import InputError, Scene
-from reference.precision import DOUBLE_BITS, LONG_DOUBLE_BITS
+from reference.precision import DOUBLE_BITS
 
-from ..methods import METHODS, Method
+from ..methods import METHODS
 
 SPAN_S = 600  # longer scenes are cut to this, unless an end is given: 512 bits take a thousand times as long as double
 MOST_BITS = 4096
 SPARE_DIGITS = 8  # digits of the truth beyond those of the finest run
-HARDWARE = {"double": DOUBLE_BITS, "long double": LONG_DOUBLE_BITS}  # number types of the processor
 
 Item = tuple[str, str, float]  # method, formulation, setting
 
@@ -39,19 +38,9 @@ def bits_of(text: str) -> list[int]:
 
 
 def precision_items(bits: Sequence[int]) -> list[Item]:
-    """List the runs: heyoka in double and long double if asked for, in MPFR beyond them, and `limbs` for comparison."""
-    methods = sorted(METHODS.values(), key=lambda method: method.setting == "precision")  # the processor's types first
-    return [(method.id, "momentum", setting) for method in methods for setting in _settings(method, bits)]
-
-
-def _settings(method: Method, bits: Sequence[int]) -> list[float]:
-    if "heyoka" not in method.libraries:
-        fast = method.setting == "precision" and method.longest_s is None
-        return [setting for setting in method.ladder if fast and setting <= bits[-1]]
-    if method.setting == "precision":
-        return [float(prec) for prec in bits if prec > LONG_DOUBLE_BITS]
-    own = HARDWARE.get(method.number, MOST_BITS + 1)
-    return [2.0 ** (1 - own)] if own in bits else []
+    """List the runs that the methods declare for these precisions, those of the processor's number types first."""
+    methods = sorted(METHODS.values(), key=lambda method: method.setting == "precision")
+    return [(method.id, "momentum", setting) for method in methods for setting in method.precision_runs(bits)]
 
 
 def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Scene, int]:

@@ -37,9 +37,10 @@ def checked(name: str | None) -> str:
 
 
 def fastest(prec: int, name: str = AUTO) -> Engine:
-    """Return the engine with the least expected cost at `prec` bits: the named one, where it has so many.
+    """Return the engine to compute with at `prec` bits.
 
-    Where that one does not serve, an installed one that does is taken.
+    The engine called `name` is taken if it is installed and can compute at this precision. Otherwise, or if `name` is
+    "auto", it is the one with the least expected cost among the installed engines that can.
     """
     serving = [engine for engine in engines().values() if engine.installed and prec in engine.bits]
     return min(serving, key=lambda engine: (engine.name != name and name != AUTO, engine.expected_s(1, prec)))

@@ -74,7 +74,7 @@ class Pilot:
         return {name: error * Fraction(2) ** (self.prec - prec) for name, error in self.cautious.items()}
 
     def decimals(self, digits: int) -> dict[str, int]:
-        """Return the digits after the point that give the largest number of each column so many significant ones."""
+        """Return the decimals of each column with which its largest number has `digits` significant digits."""
         return decimals_of(self.sizes, digits)
 
     def bits_for(self, digits: int, t_end: Fraction | None, *, checked: bool) -> int:

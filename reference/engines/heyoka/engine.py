@@ -45,7 +45,7 @@ class Heyoka(Engine):
         return taylor_steps(inputs, times, prec, coefficient_bits)
 
     def expected_s(self, steps: int, prec: int) -> float:
-        """Return about how many CPU seconds so many steps take."""
+        """Return the expected CPU seconds of `steps` steps at `prec` bits."""
         return steps * (HARDWARE_STEP_S if prec <= LONG_DOUBLE_BITS else STEP_S * (prec / 160) ** 2)
 
 

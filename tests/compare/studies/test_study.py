@@ -141,8 +141,11 @@ def test_the_precision_ladder_gains_digits_with_bits() -> None:
     bits = bits_of("53,64,113,160")
     scene, digits = precision_scene(load_scene("paris"), bits, whole=False)
     assert (scene.run.t_end, digits) == ("600", 57)
-    items = [item for item in precision_items(bits) if item[0].startswith("heyoka")]
-    assert [item[0] for item in items] == ["heyoka_double", "heyoka_long_double", "heyoka_real", "heyoka_real"]
+    listed = [(method, setting) for method, _, setting in precision_items(bits)]
+    mpfr = [("heyoka_real", 113), ("heyoka_real", 160)]
+    processor = [("heyoka_double", 2.0**-52), ("heyoka_long_double", 2.0**-63)]
+    assert listed == [*processor, *mpfr, ("limbs", 100), ("limbs", 150)]
+    items = [item for item in precision_items(bits) if item[0] != "limbs"]
     result = study(scene.with_values(["run.t_end=60"]), items=items, digits=digits)
     errors = [row.error_m for row in result.rows]
     assert all(
