@@ -9,20 +9,19 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
-from typing import Annotated, Any, Literal, cast, get_args
+from typing import Annotated, Any, Literal, get_args
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError
 
 from .errors import InputError
+from .inputs import Inputs
 from .shipped import data_root, scene_ids
 
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
-SAME_TIME = Fraction(1, 1 << 30)  # of a grid step: times nearer than this differ only by the rounding of the inputs
 MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
@@ -164,8 +163,31 @@ class Scene(_Table):
 
     @property
     def exact(self) -> Inputs:
-        """The scene's numbers as exact fractions, in the reading that `inputs` names."""
-        return Inputs.of(self)
+        """The scene's numbers as exact fractions, each rounded to binary64 first if `inputs` says so."""
+
+        def read(text: str | None) -> Fraction:
+            value = Fraction(text or "0")
+            return Fraction(float(value)) if self.inputs == "binary64" else value
+
+        site, release = self.site, self.release
+        inverse = site.inverse_flattening
+        cartesian = release.angle is None
+        position = read(release.x), read(release.y), read(release.vx), read(release.vy)
+        angles = read(release.angle), read(release.azimuth), read(release.angle_rate), read(release.azimuth_rate)
+        return Inputs(
+            length=read(self.pendulum.length),
+            drag=read(self.pendulum.drag),
+            latitude=read(site.latitude),
+            altitude=read(site.altitude),
+            gravity=read(site.gravity),
+            rotation_rate=read(site.rotation_rate),
+            equatorial_radius=read(site.equatorial_radius),
+            flattening=Fraction(0) if inverse == "inf" else 1 / read(inverse),
+            position=position if cartesian else None,
+            angles=None if cartesian else angles,
+            t_end=read(self.run.t_end),
+            grid_step=read(self.run.grid_step),
+        )
 
     def with_values(self, assignments: Iterable[str]) -> Scene:
         """Return the scene with fields replaced, each assignment written `section.key=value`."""
@@ -173,74 +195,6 @@ class Scene(_Table):
         for assignment in assignments:
             _assign(document, assignment)
         return parse_scene(document)
-
-
-@dataclass(frozen=True)
-class Inputs:
-    """The exact numbers of a scene: SI units, angles in degrees; `flattening` is 0 for a sphere.
-
-    Exactly one of `position` (x, y, vx, vy) and `angles` (angle, azimuth, angle_rate, azimuth_rate)
-    is set, the one that the scene contains.
-    """
-
-    length: Fraction
-    drag: Fraction
-    latitude: Fraction
-    altitude: Fraction
-    gravity: Fraction
-    rotation_rate: Fraction
-    equatorial_radius: Fraction
-    flattening: Fraction
-    position: tuple[Fraction, Fraction, Fraction, Fraction] | None
-    angles: tuple[Fraction, Fraction, Fraction, Fraction] | None
-    t_end: Fraction
-    grid_step: Fraction
-
-    @classmethod
-    def of(cls, scene: Scene) -> Inputs:
-        """Read every number of `scene`, each rounded to binary64 first if the scene says so."""
-
-        def read(text: str | None) -> Fraction:
-            value = Fraction(text or "0")
-            return Fraction(float(value)) if scene.inputs == "binary64" else value
-
-        site, release = scene.site, scene.release
-        inverse = site.inverse_flattening
-        cartesian = release.angle is None
-        position = tuple(map(read, (release.x, release.y, release.vx, release.vy)))
-        angles = tuple(map(read, (release.angle, release.azimuth, release.angle_rate, release.azimuth_rate)))
-        return cls(
-            length=read(scene.pendulum.length),
-            drag=read(scene.pendulum.drag),
-            latitude=read(site.latitude),
-            altitude=read(site.altitude),
-            gravity=read(site.gravity),
-            rotation_rate=read(site.rotation_rate),
-            equatorial_radius=read(site.equatorial_radius),
-            flattening=Fraction(0) if inverse == "inf" else 1 / read(inverse),
-            position=cast("tuple[Fraction, Fraction, Fraction, Fraction]", position) if cartesian else None,
-            angles=None if cartesian else cast("tuple[Fraction, Fraction, Fraction, Fraction]", angles),
-            t_end=read(scene.run.t_end),
-            grid_step=read(scene.run.grid_step),
-        )
-
-    @property
-    def grid(self) -> list[Fraction]:
-        """Output times in s: 0, grid_step, 2 grid_step, …, and t_end as the last.
-
-        Read as binary64, the last step may miss t_end by rounding alone: then t_end takes its place.
-        """
-        whole = int(self.t_end / self.grid_step)
-        times = [k * self.grid_step for k in range(whole + 1)]
-        if whole and self.t_end - times[-1] < self.grid_step * SAME_TIME:
-            times.pop()
-        return [*times, self.t_end]
-
-    @property
-    def at_rest(self) -> bool:
-        """True if the bob is released without any velocity."""
-        moving = self.position[2:] if self.position else (self.angles or ())[2:]
-        return not any(moving)
 
 
 def _assign(document: dict[str, Any], assignment: str) -> None:

@@ -26,7 +26,7 @@ FLOORS = {
         ["engines", "enclosure"],
         ["model"],
         ["scene", "table", "process", "packing", "capture", "taylor_step"],
-        ["precision", "shipped", "columns"],
+        ["inputs", "precision", "shipped", "columns"],
         ["errors", "status", "lazy"],
     ],
     "reference/engines": [
@@ -114,6 +114,7 @@ PUBLIC = {
     "reference.engines.heyoka.model": "RoundedModel",
     "reference.engines.registry": "engines",
     "reference.engines.variants": "Variants",
+    "reference.inputs": "Inputs",
     "reference.lazy": "lazy",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.constants": "Constants Vector constants is_zero",
@@ -124,7 +125,7 @@ PUBLIC = {
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
     "reference.process": "Emit Worker",
-    "reference.scene": "Inputs MAX_ROWS RunTable",
+    "reference.scene": "MAX_ROWS RunTable",
     "reference.shipped": "data_root",
     "reference.solver.sensitivity": "Sensitivity sensitivity with_value",
     "reference.status": "Status",

@@ -19,8 +19,8 @@ import numpy.typing as npt
 
 from reference import FoucaultError, Scene
 from reference.engines.variants import Variants
+from reference.inputs import Inputs
 from reference.precision import Array
-from reference.scene import Inputs
 from reference.solver.sensitivity import Sensitivity, sensitivity, with_value
 
 from ..candidates.candidate import Candidate

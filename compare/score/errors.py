@@ -13,10 +13,10 @@ import numpy as np
 
 from reference import Golden, Scene
 from reference.dataset.dense import Dense
+from reference.inputs import Inputs
 from reference.model.constants import Constants
 from reference.model.force import acceleration, invariant
 from reference.precision import Array
-from reference.scene import Inputs
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..observed.turn_and_delay import SwingErrors, swing_errors

@@ -16,9 +16,9 @@ import numpy as np
 
 from reference import Scene
 from reference.engines.variants import Variants
+from reference.inputs import Inputs
 from reference.model.constants import Constants
 from reference.precision import Array, context, to_fraction
-from reference.scene import Inputs
 
 SOLAR_DAY = 86400  # s
 MEAN_RADIUS = 6371000  # m, the sphere of the textbooks

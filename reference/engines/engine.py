@@ -8,7 +8,7 @@ from fractions import Fraction
 from importlib.util import find_spec
 from typing import Any, ClassVar
 
-from ..scene import Inputs
+from ..inputs import Inputs
 from ..taylor_step import TaylorStep
 from .plan import Plan, Report, Run
 

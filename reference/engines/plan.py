@@ -10,10 +10,10 @@ from functools import cached_property
 import numpy as np
 
 from ..columns import STATE
+from ..inputs import Inputs
 from ..model.force import tension
 from ..model.start import Start
 from ..precision import DOUBLE_BITS, GUARD_BITS, NumberType
-from ..scene import Inputs
 from ..table import Table
 
 Report = Callable[[float], None]  # called with the simulated time reached, in s

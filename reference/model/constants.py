@@ -11,8 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
+from ..inputs import Inputs
 from ..precision import to_mpf
-from ..scene import Inputs
 from .earth import axis_distance
 
 Vector = tuple[Any, Any, Any]

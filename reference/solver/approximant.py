@@ -16,8 +16,8 @@ from ..engines import AUTO
 from ..engines.plan import Run
 from ..engines.registry import engines, fastest
 from ..errors import IntegrationError
+from ..inputs import Inputs
 from ..process import Emit, Worker
-from ..scene import Inputs
 from ..taylor_step import TaylorStep
 
 COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing

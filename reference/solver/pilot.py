@@ -17,8 +17,8 @@ from ..columns import GRID, HORIZONTAL, POSITION, VELOCITY
 from ..engines.plan import Plan
 from ..engines.registry import run
 from ..errors import UnreachableError
+from ..inputs import Inputs
 from ..precision import DOUBLE, LONG_DOUBLE, NumberType, decimals_for, real
-from ..scene import Inputs
 from ..table import Table, bits_in, decimals_of, resolved
 from .reach import MAX_PREC, MAX_STEPS, check_pace, effort
 

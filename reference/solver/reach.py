@@ -7,9 +7,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 from ..errors import UnreachableError
+from ..inputs import Inputs
 from ..model.constants import constants
 from ..precision import LONG_DOUBLE, context
-from ..scene import Inputs
 
 if TYPE_CHECKING:
     from ..engines.heyoka.stepper import Stepper

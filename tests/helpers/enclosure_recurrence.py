@@ -13,7 +13,7 @@ from reference.enclosure.approximant import GRAIN, pair, stretched
 from reference.enclosure.balls import cross, integer
 from reference.enclosure.bound import World
 from reference.enclosure.run import SCENE_GUARD_BITS
-from reference.scene import Inputs
+from reference.inputs import Inputs
 from reference.taylor_step import TaylorStep
 
 GUARD_BITS = 16  # carried below the last bit of the coefficients, for the rounding of the recurrence

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from small_scenes import make_scene
 
 from reference.errors import InputError
-from reference.scene import Inputs, is_scene_id, load_scene, parse_scene
+from reference.inputs import Inputs
+from reference.scene import is_scene_id, load_scene, parse_scene
 from reference.shipped import scene_ids
 
 

@@ -6,8 +6,8 @@ from collections.abc import Callable, Generator
 from fractions import Fraction
 from typing import Any
 
+from ...inputs import Inputs
 from ...precision import LONG_DOUBLE_BITS, cheapest_type
-from ...scene import Inputs
 from ...taylor_step import TaylorStep
 from ..engine import Engine
 from ..plan import Plan, Report, Run

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from ...inputs import Inputs
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start
 from ...precision import GUARD_BITS, real
-from ...scene import Inputs
 from ...taylor_step import LOCAL, TaylorStep
 from ..plan import MOST_TURN, Plan, Run
 from .run import result

@@ -15,7 +15,7 @@ import pytest
 
 from foucault import main
 from reference import Scene, Solution, load_scene, parse_scene, scene_ids, solve
-from reference.scene import Inputs
+from reference.inputs import Inputs
 
 MP = mpmath.mp.clone()
 MP.dps = 60
