@@ -23,6 +23,7 @@ Emit = Callable[[Any], None]
 
 _START = "import sys; sys.path[:] = sys.argv[1:]; from reference.process import serve; serve()"
 _LENGTH = 8  # bytes that hold the length of an object sent to a child
+GRACE_S = 10.0  # seconds in which a child has to end by itself once its parent has closed the pipes
 
 
 class Parent:
@@ -88,12 +89,20 @@ class Worker:
             yield item
 
     def stop(self) -> None:
-        """Close the pipes, which ends a process that is still at work, and wait for its end."""
-        for pipe in (self._process.stdin, self._process.stdout):
-            if pipe is not None:
-                with contextlib.suppress(OSError):
-                    pipe.close()
-        self._process.wait()
+        """Close the pipes, which ends a process that is still at work, and wait for its end; kill it after `GRACE_S`.
+
+        Closing may block as well: a thread that waits for a result holds the pipe until the process ends.
+        """
+        alarm = threading.Timer(GRACE_S, self.kill)
+        alarm.start()
+        try:
+            for pipe in (self._process.stdin, self._process.stdout):
+                if pipe is not None:
+                    with contextlib.suppress(OSError):
+                        pipe.close()
+            self._process.wait()
+        finally:
+            alarm.cancel()
 
     def kill(self) -> None:
         """Kill the process (SIGKILL)."""

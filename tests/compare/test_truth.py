@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 import os
-import signal
-import subprocess
-import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-from places import ROOT
+from interruption import gone_within, interrupted
 from small_scenes import make_scene
 
 from compare import cache
@@ -143,12 +139,8 @@ def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
     own.write_text('id = "long"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "864000"\n')
     rows = tmp_path / "rows.csv"
     rows.write_text("t,x,y\n0,0.3,0.4\n864000,0.3,0.4\n")
-    words = [sys.executable, "-m", "foucault", "score", str(own), str(rows)]
-    with subprocess.Popen(words, stderr=subprocess.PIPE, cwd=ROOT, start_new_session=True) as process:
-        time.sleep(4)  # well into the solve, also on a busy machine
-        process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=30)
-    assert process.returncode not in (0, None)
+    status, err, group = interrupted(["score", str(own), str(rows)], lambda _, err: b"solving it" in err)
+    assert status == 130
     assert b"Traceback" not in err
-    assert b"solving it" in err
     assert list((own_cache / "golden").iterdir()) == []
+    assert gone_within(group, 10)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from typing import Any
 
 from reference.errors import InputError
@@ -22,3 +24,8 @@ def count_to(parent: Any, last: int) -> None:
 def refuse(parent: Any) -> None:
     """Raise an error that a user would see."""
     raise InputError("length", "-1", "a length above 0")
+
+
+def freeze(_: Any) -> None:
+    """Stop this process (SIGSTOP), so that it does not notice the end of its parent."""
+    os.kill(os.getpid(), signal.SIGSTOP)

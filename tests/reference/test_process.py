@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-import pytest
-from child import count_to, doubled, refuse
+import contextlib
+import os
+import threading
 
+import pytest
+from child import count_to, doubled, freeze, refuse
+
+from reference import process
 from reference.errors import IntegrationError
 from reference.process import Worker
 
@@ -41,3 +46,20 @@ def test_a_child_that_is_killed_is_an_error_and_no_silence():
     with pytest.raises(IntegrationError, match="ended without a result"):
         list(worker)
     worker.stop()
+
+
+def test_a_child_that_does_not_end_is_killed_even_while_a_thread_waits_for_it(monkeypatch):
+    monkeypatch.setattr(process, "GRACE_S", 0.2)
+    worker = Worker(freeze)
+    os.waitid(os.P_PID, worker._process.pid, os.WSTOPPED | os.WNOWAIT)
+    waiting = threading.Thread(target=_receive_nothing, args=(worker,), daemon=True)
+    waiting.start()
+    worker.stop()
+    waiting.join(5)
+    assert worker._process.returncode == -9
+    assert not waiting.is_alive()
+
+
+def _receive_nothing(worker: Worker) -> None:
+    with contextlib.suppress(IntegrationError, ValueError):  # the latter if the pipe is closed before it waits
+        worker.receive()

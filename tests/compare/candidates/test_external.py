@@ -11,7 +11,7 @@ import time
 from pathlib import Path
 
 import pytest
-from places import ROOT
+from interruption import gone_within, interrupted
 from small_scenes import make_scene
 
 from compare.candidates.external import arguments, placeholders, run_program, timed
@@ -223,16 +223,9 @@ def test_a_single_run_says_that_nothing_warmed_it_up():
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
     words, note = parent(tmp_path, "time.sleep(60)")
-    command = [sys.executable, "-m", "foucault", "score", "paris", "--run", shlex.join(words)]
-    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE) as process:
-        for _ in range(200):
-            if note.exists() and note.read_text():
-                break
-            time.sleep(0.1)
-        child = int(note.read_text())
-        process.send_signal(number)
-        _, err = process.communicate(timeout=30)
-    assert process.returncode not in (0, None)
+    command = ["score", "paris", "--run", shlex.join(words)]
+    status, err, group = interrupted(command, lambda *_: note.exists() and note.read_text() != "", number)
+    assert status == 128 + number
     assert b"Traceback" not in err
-    assert ends_within(child, 5)
-    assert not os.path.exists(f"/proc/{process.pid}")
+    assert ends_within(int(note.read_text()), 5)
+    assert gone_within(group, 5)

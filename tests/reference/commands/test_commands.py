@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import os
 import pty
-import signal
 import subprocess
 import sys
-import time
 
 import pytest
+from interruption import gone_within, interrupted, members
 from places import ROOT
 
 SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
@@ -193,32 +192,12 @@ def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
 
 
 def test_interrupted_it_leaves_no_dataset_and_no_child(tmp_path):
-    words = [sys.executable, "-m", "foucault", "generate", "paris", "--out", str(tmp_path / "p")]
-    with subprocess.Popen(
-        words,
-        stderr=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        cwd=ROOT,
-        start_new_session=True,
-    ) as process:
-        time.sleep(8)  # well into the run, also on a busy machine
-        process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=30)
-    assert process.returncode not in (0, None)
+    words = ["generate", "paris", "--engine", "heyoka", "--out", str(tmp_path / "p")]
+    status, err, group = interrupted(words, lambda group, _: members(group) > 1)  # the confirming run has begun
+    assert status == 130
     assert b"Traceback" not in err
     assert list(tmp_path.iterdir()) == []
-    assert gone_within(process.pid, 10)
-
-
-def gone_within(group: int, seconds: float) -> bool:
-    """True once no process of the group is left."""
-    for _ in range(int(seconds / 0.1)):
-        try:
-            os.killpg(group, 0)
-        except ProcessLookupError:
-            return True
-        time.sleep(0.1)
-    return False
+    assert gone_within(group, 10)
 
 
 def test_show_says_how_many_digits_the_flow_costs(foucault):

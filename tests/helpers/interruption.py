@@ -1,0 +1,64 @@
+"""Interrupt a command while it works, without guessing how long it takes to get there."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from places import ROOT
+
+PATIENCE_S = 120.0  # for a command to get to work, and to end once it is told to
+
+
+def interrupted(
+    words: list[str], at_work: Callable[[int, bytes], bool], number: signal.Signals = signal.SIGINT
+) -> tuple[int, bytes, int]:
+    """Run `foucault words`, send it a signal once `at_work(group, stderr)`; return exit status, stderr, and its group.
+
+    Everything that is left of it is killed if it does not get to work or does not end.
+    """
+    command = [sys.executable, "-m", "foucault", *words]
+    with subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, start_new_session=True) as process:
+        assert process.stderr is not None
+        os.set_blocking(process.stderr.fileno(), False)
+        err, deadline = b"", time.monotonic() + PATIENCE_S
+        try:
+            while not at_work(process.pid, err):
+                assert process.poll() is None, err
+                assert time.monotonic() < deadline, "it does not get to work"
+                err += process.stderr.read() or b""
+                time.sleep(0.02)
+            process.send_signal(number)
+            os.set_blocking(process.stderr.fileno(), True)
+            err += process.communicate(timeout=PATIENCE_S)[1]
+        except BaseException:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
+    return process.returncode, err, process.pid
+
+
+def members(group: int) -> int:
+    """Return the number of processes of a process group."""
+    return sum(_group_of(int(entry.name)) == group for entry in Path("/proc").iterdir() if entry.name.isdecimal())
+
+
+def gone_within(group: int, seconds: float) -> bool:
+    """Return True once no process of the group is left."""
+    deadline = time.monotonic() + seconds
+    while members(group):
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.05)
+    return True
+
+
+def _group_of(pid: int) -> int | None:
+    try:
+        return os.getpgid(pid)
+    except ProcessLookupError:
+        return None
