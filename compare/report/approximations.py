@@ -60,7 +60,7 @@ def text_table(report: dict[str, Any]) -> str:
     lines.append("")
     for row in report["quantities"]:
         error = "" if row["relative_error"] is None else f"  relative error {row['relative_error']:.1e}"
-        lines.append(f"{row['approximation']:22}{row['value'] or row['status']} {row['unit']}{error}")
+        lines.append(f"{row['approximation']:22}{row['value'] or row['reason']} {row['unit']}{error}")
     return "\n".join(lines)
 
 
@@ -139,7 +139,7 @@ def _quantities(report: dict[str, Any]) -> Html:
     rows = [
         TableRow(
             (
-                row["approximation"], row["value"] or row["status"], row["truth"] or "", row["unit"],
+                row["approximation"], row["value"] or row["reason"], row["truth"] or "", row["unit"],
                 "" if row["relative_error"] is None else f"{row['relative_error']:.1e}",
             )
         )

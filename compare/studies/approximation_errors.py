@@ -30,13 +30,14 @@ _ARCSEC = 180 * 3600 / np.pi
 
 @dataclass(frozen=True)
 class TimeRow:
-    """Largest errors from the release up to time t in s; None where one does not exist: `status` says why."""
+    """Largest errors from the release up to time t in s; None where one does not exist: `reason` says why."""
 
     approximation: str
     t: float
     error_m: float | None
     plane_error_arcsec: float | None
-    status: str = Status.OK
+    status: Status = Status.OK
+    reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,8 @@ class QuantityRow:
     truth: str | None
     unit: str
     relative_error: float | None
-    status: str = Status.OK
+    status: Status = Status.OK
+    reason: str = ""
 
 
 @dataclass(frozen=True)
@@ -150,7 +152,7 @@ def error_table(
         try:
             errors = truth.errors(motion)
         except FoucaultError as error:
-            rows += [TimeRow(motion.id, t, None, None, str(error)) for t in marks]
+            rows += [TimeRow(motion.id, t, None, None, Status.REFUSED, str(error)) for t in marks]
         else:
             rows += [TimeRow(motion.id, t, *errors.at(t)) for t in marks]
     return rows
@@ -168,7 +170,7 @@ def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[Quant
             if one.truth not in known:
                 known[one.truth] = one.truth(scene)
         except FoucaultError as error:
-            rows.append(QuantityRow(word, None, None, one.unit, None, str(error)))
+            rows.append(QuantityRow(word, None, None, one.unit, None, Status.REFUSED, str(error)))
         else:
             truth = value.context.mpf(known[one.truth])
             relative = float(abs(value / truth - 1)) if truth else None

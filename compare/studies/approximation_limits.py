@@ -32,14 +32,15 @@ class SweepRow:
     t: float
     error_m: float | None
     plane_error_arcsec: float | None
-    status: str = Status.OK
+    status: Status = Status.OK
+    reason: str = ""
 
 
 @dataclass(frozen=True)
 class LimitRow:
     """Where an approximation is good to a limit: intervals of time in s or of the varied quantity; none if nowhere.
 
-    `status` says why it could not be tried anywhere, or "ok".
+    `status` is REFUSED, with a reason, if it could not be tried anywhere.
     """
 
     approximation: str
@@ -47,7 +48,8 @@ class LimitRow:
     unit: str
     limit: str
     good: tuple[tuple[float, float], ...]
-    status: str = Status.OK
+    status: Status = Status.OK
+    reason: str = ""
 
 
 def sweep_values(scene: Scene, over: str) -> tuple[float, ...]:
@@ -77,7 +79,7 @@ def sweep(
             try:
                 errors = truth.errors(motion).at(t)
             except FoucaultError as error:
-                rows.append(SweepRow(motion.id, over, value, t, None, None, str(error)))
+                rows.append(SweepRow(motion.id, over, value, t, None, None, Status.REFUSED, str(error)))
             else:
                 rows.append(SweepRow(motion.id, over, value, t, *errors))
     return rows
@@ -101,11 +103,12 @@ def limits(
     limit_rows = []
     for word in dict.fromkeys(row.approximation for row in rows):
         of_one = sorted((row for row in rows if row.approximation == word), key=lambda row: row.value)
-        status = of_one[0].status if all(row.error_m is None for row in of_one) else Status.OK
+        nowhere = all(row.error_m is None for row in of_one)
+        outcome = (of_one[0].status, of_one[0].reason) if nowhere else (Status.OK, "")
         for name, quantity, limit in LIMITS:
             errors = [getattr(row, quantity) for row in of_one]
             good = _below(over, [row.value for row in of_one], errors, limit)
-            limit_rows.append(LimitRow(word, over, UNITS[over], name, good, status))
+            limit_rows.append(LimitRow(word, over, UNITS[over], name, good, *outcome))
     return limit_rows
 
 
@@ -115,7 +118,7 @@ def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[L
         try:
             errors = truth.errors(motion)
         except FoucaultError as error:
-            rows += [LimitRow(motion.id, "time", "s", name, (), str(error)) for name, _, _ in LIMITS]
+            rows += [LimitRow(motion.id, "time", "s", name, (), Status.REFUSED, str(error)) for name, _, _ in LIMITS]
             continue
         for name, quantity, limit in LIMITS:
             above = np.flatnonzero(~((errors.position if quantity == "error_m" else errors.plane) <= limit))

@@ -23,7 +23,7 @@ SETTLED = 10  # with drag γ the pace may change until t = SETTLED/γ
 def effort(steps: int, prec: int) -> int:
     """Return the number of steps at 160 bits that cost as much, if a step's cost grows with the cube of the bits.
 
-    That is cautious, for a limit: at a few hundred bits it grows more like the square (`solve._expected_s`).
+    That is cautious, for a limit: at a few hundred bits it grows more like the square (`Engine.expected_s`).
     """
     return steps * max(1, prec // 32) ** 3 // 125
 

@@ -11,6 +11,7 @@ from compare.report.charts.approximations import plot
 from compare.studies.approximation_errors import TimeRow, error_table
 from compare.studies.approximation_limits import SweepRow
 from reference import InputError, load_scene
+from reference.status import Status
 
 pytest.importorskip("matplotlib")
 SVG = "{http://www.w3.org/2000/svg}"
@@ -49,7 +50,7 @@ def test_two_charts_fit_into_one_page():
 
 
 def test_nothing_to_draw_is_said():
-    empty = [TimeRow("conical", 20.0, None, None, "no circle")]
+    empty = [TimeRow("conical", 20.0, None, None, Status.REFUSED, "no circle")]
     with pytest.raises(InputError, match="error_m"):
         plot(empty)
     with pytest.raises(InputError, match="colour"):

@@ -111,6 +111,15 @@ def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:
             assert cell.digits is not None and cell.digits < cell.asked - 3
 
 
+def test_a_scene_that_the_reference_cannot_solve_is_unreachable_and_the_others_are_measured(tmp_path: Path) -> None:
+    own = tmp_path / "stiff.toml"
+    own.write_text('id = "stiff"\n[pendulum]\ndrag = "1e9"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "600"\n')
+    lost, measured = stability([str(own), "hard"], ["rkmk4"])
+    assert (lost.status, lost.digits, lost.cpu_s) == (Status.UNREACHABLE, None, None)
+    assert lost.reason.startswith("The reference cannot solve it: ") and "Stiff" in lost.reason
+    assert measured.status == Status.OK
+
+
 def test_the_law_of_a_known_exponent_of_time_is_named() -> None:
     t = np.linspace(0, 100, 400)
     run = LongRun("m", "f", 1.0, Status.OK, "", t.tolist(), (1e-9 * t**1.5).tolist(), 1.0)
