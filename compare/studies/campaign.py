@@ -22,7 +22,7 @@ from ..methods import METHODS
 from .machine import machine, single_thread
 from .row import Record
 
-STARTING_S = 30.0  # wall-clock time for imports and compilation, on top of the patience for a process's first item
+STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
 
 Item = TypeVar("Item", bound=tuple[Any, ...])
 Result = TypeVar("Result", bound=Record)
