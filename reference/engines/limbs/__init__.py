@@ -6,7 +6,8 @@ fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are 
 - `engine`: its declaration; `size`: limbs for a precision.
 - `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof; `integration`, in progress.
 - `problem`, `output_times`: a scene and its times in limbs.
-- `march`, `step`, `series`, `unrolled`: steps, the Taylor coefficients of one, and their sums written out.
+- `march`, `step`: steps; `recurrence`, `products`, `series`, `unrolled`: the Taylor coefficients of one, the sums of
+  products in them, their arrays, and the innermost sums written out.
 - `limb`, `lanes`: numbers of limbs, eight side by side.
 - `zeros`, `polish`, `polynomial`, `xdot`: the zeros of xdot on a step; `dense_output`: the state inside a step.
 """

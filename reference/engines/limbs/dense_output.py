@@ -6,13 +6,10 @@ import numpy as np
 
 from .lanes import LANES, compiled, load, occupied, plus_product, shuffled, spread, store
 from .limb import DOUBLED, RADIX, UNIT, Array, add_product, carry, carry_scalar, clear, divide
-from .series import LinearTerms, Series, partner
+from .series import LinearTerms, Series, partner, positions, to_positions, to_speeds
 from .step import GRAINS, Model, lane_products
 
 _turning = shuffled((0, 1, -1, -1, -1, -1, -1, -1), "_turning")
-_rates = shuffled((3, 4, 5, -1, -1, -1, -1, -1), "_rates")
-_to_speeds = shuffled((-1, -1, -1, 0, 1, 2, -1, -1), "_to_speeds")
-_positions = shuffled((0, 1, 2, -1, -1, -1, -1, -1), "_positions")
 _tension_first = shuffled((6, -1, -1, -1, -1, -1, -1, -1), "_tension_first")
 _exchanged = shuffled((-1, 2, 1, -1, 5, 4, -1, -1), "_exchanged")
 
@@ -69,12 +66,12 @@ def to_cartesian(to: Array, start: int, rows: Array, s: Series, terms: LinearTer
         store(rate, LANES * r, _turning(load(total, LANES * r)))
         s.scalar[r] = total[LANES * r + 3]
     for r in range(limb_count):
-        store(rate, LANES * r, load(rate, LANES * r) + _rates(load(rows, LANES * r)))
+        store(rate, LANES * r, load(rate, LANES * r) + to_positions(load(rows, LANES * r)))
     carry(rate, 0, limb_count)
     _xddot(rows, s, terms, model)
     stretch = spread(GRAINS)
     for r in range(limb_count):
-        store(total, LANES * r, _to_speeds(load(rate, LANES * r)) * stretch)
+        store(total, LANES * r, to_speeds(load(rate, LANES * r)) * stretch)
         total[LANES * r + 6] = s.scalar[r] * GRAINS
     store(total, LANES * limb_count, spread(0.0))
     divide(total, 0, limb_count, m)
@@ -86,7 +83,7 @@ def to_cartesian(to: Array, start: int, rows: Array, s: Series, terms: LinearTer
     divide(other, 0, limb_count, m)
     carry(other, 0, limb_count)
     for r in range(limb_count):
-        v = _positions(load(rows, LANES * r)) + load(total, LANES * r) + load(other, LANES * r)
+        v = positions(load(rows, LANES * r)) + load(total, LANES * r) + load(other, LANES * r)
         store(rate, LANES * r, v)
         store(other, LANES * r, _exchanged(v))
     lane_products(total, rate, model.along, limb_count)
@@ -113,7 +110,7 @@ def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
         s.scalar[r] -= total[LANES * r]
     if model.drag:
         for r in range(limb_count):
-            store(other, LANES * r, _to_speeds(load(rate, LANES * r)))
+            store(other, LANES * r, to_speeds(load(rate, LANES * r)))
         clear(total, limb_count + 1)
         add_product(total, terms.drag, other, 0, limb_count)
         for r in range(limb_count + 1):

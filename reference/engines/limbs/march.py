@@ -10,7 +10,8 @@ from .dense_output import divide_place, evaluate, to_cartesian
 from .lanes import LANES, SOURCES, compiled, entry, load, store
 from .limb import Array, aligned
 from .polish import polish
-from .series import Counts, LinearTerms, Series, empty_series, taylor_coefficients
+from .recurrence import taylor_coefficients
+from .series import Counts, LinearTerms, Series, empty_series
 from .step import (
     LEAST_FACTOR,
     SAFETY_FACTOR,

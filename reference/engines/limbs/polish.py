@@ -5,7 +5,8 @@ from __future__ import annotations
 from .dense_output import evaluate
 from .lanes import LANES, compiled, load, store
 from .limb import Array, add_double, carry_scalar, double_of, set_double
-from .series import LinearTerms, Series, taylor_coefficients
+from .recurrence import taylor_coefficients
+from .series import LinearTerms, Series
 from .size import LIMB_BITS
 from .step import Model
 from .xdot import xddot_of, xdot_of

@@ -12,7 +12,7 @@ import numpy as np
 
 from .lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
 from .limb import DOUBLED, INVERSE, RADIX, UNIT, Array, carry, carry_scalar, clear, divide, double_of_lane
-from .series import SPIN, TENSION, LinearTerms, Series
+from .series import SPIN, TENSION, LinearTerms, Series, positions
 from .size import LIMB_BITS
 
 GRAINS = 1024
@@ -24,7 +24,6 @@ RESOLVED = 4.0  # units of the last limb: smaller coefficients say nothing about
 KEEP_FROM, KEEP_TO = 0.94, 1.03  # the length stays as it is while the new one would be within these multiples of it
 
 _swapped_halves = shuffled((3, 4, 5, 0, 1, 2, -1, -1), "_swapped_halves")
-_positions = shuffled((0, 1, 2, -1, -1, -1, -1, -1), "_positions")
 _speeds = shuffled((-1, -1, -1, 3, 4, 5, -1, -1), "_speeds")
 _aside = shuffled((-1, -1, -1, -1, 1, 2, -1, -1), "_aside")
 _across = shuffled((4, 3, -1, -1, -1, -1, -1, -1), "_across")
@@ -104,7 +103,7 @@ def order_zero(s: Series, terms: LinearTerms, now: Array, m: int, limb_count: in
         store(s.total, LANES * (r + 1), _speeds(load(now, LANES * r)) * speed)
     carry(s.total, 0, limb_count)
     for r in range(limb_count):
-        store(s.c, LANES * r, _positions(load(now, LANES * r)) + load(s.total, LANES * r))
+        store(s.c, LANES * r, positions(load(now, LANES * r)) + load(s.total, LANES * r))
         store(s.partners, LANES * r, _aside(load(s.c, LANES * r)))
         store(s.other, LANES * r, _across(load(s.c, LANES * r)))
     lane_products(s.total, terms.steady, s.partners, limb_count)
@@ -176,7 +175,7 @@ def project(now: Array, rows: Array, s: Series, m: int, limb_count: int) -> None
     divide(s.total, 0, limb_count, m)
     carry(s.total, 0, limb_count)
     for r in range(limb_count):
-        store(now, LANES * r, _positions(load(rows, LANES * r)) + load(s.total, LANES * r))
+        store(now, LANES * r, positions(load(rows, LANES * r)) + load(s.total, LANES * r))
     lane_products(s.total, now, now, limb_count)
     too_long = _excess(s, limb_count, UNIT)
     for r in range(limb_count):

@@ -1,0 +1,124 @@
+"""Taylor coefficients of the pendulum's n, V, tension and spin in limbs, by recurrence, order by order.
+
+The formulation is `inertial`, V = n' + Ω × n, in axes of the Earth: w along its axis, x east, m towards the axis' far
+side. Time is in steps (h is in every constant below, and coefficients are multiplied by h**k):
+
+    n' = V - Ω × n,    V' = c - Ω × V - λ n - γ n',    λ' = 3 c·V - c·(Ω × n) - 2 γ (λ - c·n - ω j),
+    j' = c_m x - γ (j - ω (1 - w²)),
+
+where λ = V·V + n·c is the tension of the cord and j = (n × V)_w. All but λ n (and w², with drag) is linear. Coefficient
+k is small as h**k, its leading limbs are zero and are not touched, so that high orders cost little.
+"""
+
+from __future__ import annotations
+
+from .lanes import LANES, compiled, inlined, load, occupied, plus_product, shuffled, spread, store, within
+from .limb import DOUBLED, LARGEST, Array, carry, carry_scalar, divide
+from .products import add_products, add_squares, clear_sums, copy_to_planes
+from .series import AXIAL_SQUARE, SPIN, TENSION, Counts, LinearTerms, Series, W, partner, to_positions, to_speeds
+from .unrolled import MOST_ROWS, PLANES, TURNED, WIDTH, add_linear, column
+
+_turned = shuffled(TURNED[0], "_turned")
+_tension_axial = shuffled(TURNED[1], "_tension_axial")
+_tension_turned = shuffled(TURNED[2], "_tension_turned")
+_dragged = shuffled((-1, -1, -1, 3, 4, 5, 6, 7), "_dragged")
+_dragged_aside = shuffled((-1, -1, -1, 1, 0, -1, 2, -1), "_dragged_aside")
+_tension_across = shuffled((-1, -1, -1, -1, -1, -1, 1, -1), "_tension_across")
+_tension_spin = shuffled((-1, -1, -1, -1, -1, -1, 7, -1), "_tension_spin")
+
+
+@compiled
+def taylor_coefficients(s: Series, terms: LinearTerms, order: int, limb_count: int, drag: bool) -> bool:
+    """Fill the coefficients from those of order 0; return false if one is too large for exact arithmetic.
+
+    Of λ n only the products with order 0 are needed at once; the others of an order are added to the sums while the
+    processor waits for the divisions of the next.
+    """
+    clear_sums(s, order, limb_count, drag)
+    if not _note_first_limb(s.c, s.first, 0, 0, limb_count):
+        return False
+    for k in range(order):
+        first = s.first[k]
+        _set_derivative(s, terms, k, first, limb_count)
+        if drag:
+            _add_drag(s, terms, k, first, limb_count)
+        low = 0
+        while low < limb_count and not occupied(load(s.total, LANES * low)):
+            low += 1
+        divide(s.total, low, limb_count, k + 1.0)
+        low = max(low - 1, 0)
+        carry(s.total, low, limb_count)
+        block = (k + 1) * limb_count * LANES
+        for q in range(limb_count):
+            store(s.c, block + LANES * q, load(s.total, LANES * q))
+        if not _note_first_limb(s.c, s.first, k + 1, low, limb_count):
+            return False
+        add_products(s, k, order, limb_count, drag)
+        if 2 * k < order:
+            # last, as a vector that is loaded just after a part of it was stored must wait
+            add_squares(s, k, first, limb_count, drag)
+            copy_to_planes(s, k, first, limb_count)
+    return True
+
+
+@inlined
+def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int) -> bool:
+    """Note the first limb of order k that is not zero, from `low` on; return false if a number is too large."""
+    block, first = k * limb_count * LANES, low
+    while first < limb_count and not occupied(load(c, block + LANES * first)):
+        first += 1
+    firsts[k] = first
+    return first > 0 or within(load(c, block), LARGEST)
+
+
+@inlined
+def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
+    """Write the derivative's coefficient of order k, drag left out, to `total`; not carried."""
+    c, block, turn, total = s.c, k * limb_count * LANES, terms.turn, s.total
+    for r in range(limb_count + 1):
+        value = spread(0.0) - column(s.sums, r * PLANES * WIDTH + k)
+        if first <= r < limb_count:
+            value = value + to_positions(load(c, block + LANES * r))
+        if k == 0:
+            value = value + load(terms.steady, LANES * r)
+        store(total, LANES * r, value)
+    if k == 1:
+        for q in range(limb_count):
+            v = load(c, LANES * q)
+            store(s.twice, LANES * q, v + v)
+    zeroth = s.twice if k else c
+    for r in range(first + 1 + MOST_ROWS, limb_count + 1):
+        turned, pulled = spread(0.0), spread(0.0)
+        for q in range(first, r):
+            v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
+            turned = plus_product(turned, load(turn, p), partner(v))
+            pulled = plus_product(pulled, spread(c[block + LANES * q + TENSION]), load(zeroth, p))
+            pulled = plus_product(pulled, spread(zeroth[p + TENSION]), v)
+        value = _turned(turned) + (_tension_axial(turned) + _tension_turned(turned)) - to_speeds(pulled)
+        store(total, LANES * r, load(total, LANES * r) + value)
+    rows = min(limb_count - first, MOST_ROWS)
+    add_linear(rows, c, block + LANES * first, zeroth, 0, turn, 0, total, LANES * (first + 1))
+
+
+@compiled
+def _add_drag(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
+    """Add the terms of drag to `total`."""
+    c, block, start, stride = s.c, k * limb_count * LANES, AXIAL_SQUARE * WIDTH + k, PLANES * WIDTH
+    weight = 2.0 * DOUBLED if k else DOUBLED
+    for r in range(limb_count + 1):
+        square = s.sums[start + r * stride]
+        for q in range(first, r):
+            square += weight * c[block + LANES * q + W] * c[LANES * (r - 1 - q) + W]
+        s.scalar[r] = square
+    carry_scalar(s.scalar, limb_count)
+    for r in range(1, limb_count + 1):
+        slowed, pulled, axial = spread(0.0), spread(0.0), 0.0
+        for q in range(first, r):
+            v, p = load(c, block + LANES * q), LANES * (r - 1 - q)
+            slowed = plus_product(slowed, load(terms.drag, p), v)
+            pulled = plus_product(pulled, load(terms.drag_tension, p), v)
+        for q in range(r):
+            axial += terms.drag_axial[LANES * (r - 1 - q)] * s.scalar[q]
+        value = load(s.total, LANES * r) + _dragged(slowed) + _dragged_aside(slowed)
+        store(s.total, LANES * r, value + (_tension_across(pulled) + _tension_spin(pulled)))
+        s.total[LANES * r + SPIN] += axial
