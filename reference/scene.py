@@ -9,83 +9,30 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Iterable, Mapping
-from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
 from .errors import InputError
+from .fields import NotNegative, Number, NumberOrInf, Positive, Refused, explained, within
 from .inputs import Inputs
 from .shipped import data_root, scene_ids
 
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
-MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
 LEVELS: tuple[Level, ...] = get_args(Level)
 Reading = Literal["decimal", "binary64"]
 
 _ID = re.compile(r"[a-z][a-z0-9_]*")
-_DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
 def is_scene_id(word: str) -> bool:
     """Return whether a word can be a scene's id, and so a folder and a command-line argument."""
     return _ID.fullmatch(word) is not None and len(word) <= 64
-
-
-class _Refused(ValueError):
-    """Raised by a validator with its expectation and advice; becomes an `InputError` with the field's name."""
-
-    def __init__(self, expected: str, advice: str = "") -> None:
-        super().__init__(expected)
-        self.expected, self.advice = expected, advice
-
-
-def _as_text(value: object) -> object:
-    if isinstance(value, float):
-        raise _Refused("a decimal number in quotes", 'A bare TOML float is rounded: write it as a string, "0.3".')
-    return str(value) if isinstance(value, int) and not isinstance(value, bool) else value
-
-
-def _decimal(text: str) -> str:
-    if not _DECIMAL.fullmatch(text) or len(text) > 2000:
-        raise _Refused("a decimal number such as 67 or 7.292115e-5", "NaN and inf are not numbers here.")
-    exponent = int(Decimal(text).adjusted())
-    if Decimal(text) != 0 and abs(exponent) > MAX_EXPONENT:
-        raise _Refused(f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size")
-    return text
-
-
-def _decimal_or_inf(text: str) -> str:
-    return text if text == "inf" else _decimal(text)
-
-
-def _within(low: str | None, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
-    words = [
-        *([f"{'above' if open_low else 'at least'} {low}"] if low is not None else []),
-        *([f"at most {high}"] if high is not None else []),
-    ]
-
-    def check(text: str) -> str:
-        if text == "inf":
-            return text
-        value = Fraction(text)
-        too_low = low is not None and (value < Fraction(low) or (open_low and value == Fraction(low)))
-        if too_low or (high is not None and value > Fraction(high)):
-            raise _Refused("a number " + " and ".join(words))
-        return text
-
-    return AfterValidator(check)
-
-
-Number = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal)]
-NumberOrInf = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal_or_inf)]
-Positive = Annotated[Number, _within("0", open_low=True)]
-NotNegative = Annotated[Number, _within("0")]
 
 
 class _Table(BaseModel):
@@ -102,12 +49,12 @@ class Pendulum(_Table):
 class Site(_Table):
     """Where the suspension stands (degrees, m), gravity (m/s²) and the Earth's rotation rate (rad/s)."""
 
-    latitude: Annotated[Number, _within("-90", "90")] = "48.846111"
+    latitude: Annotated[Number, within("-90", "90")] = "48.846111"
     altitude: Number = "0"
     gravity: NotNegative = "9.80665"
     rotation_rate: Number = "7.292115e-5"
     equatorial_radius: NotNegative = "6378137"
-    inverse_flattening: Annotated[NumberOrInf, _within("1", open_low=True)] = "298.257223564"
+    inverse_flattening: Annotated[NumberOrInf, within("1", open_low=True)] = "298.257223564"
 
 
 class Release(_Table):
@@ -117,22 +64,22 @@ class Release(_Table):
     y: Number | None = None
     vx: Number | None = None
     vy: Number | None = None
-    angle: Annotated[Number, _within("0", "180")] | None = None
-    azimuth: Annotated[Number, _within("-360", "360")] | None = None
+    angle: Annotated[Number, within("0", "180")] | None = None
+    azimuth: Annotated[Number, within("-360", "360")] | None = None
     angle_rate: Number | None = None
     azimuth_rate: Number | None = None
 
 
 def _digits(value: int) -> int:
     if not 1 <= value <= MAX_DIGITS:
-        raise _Refused(f"a whole number from 1 to {MAX_DIGITS}")
+        raise Refused(f"a whole number from 1 to {MAX_DIGITS}")
     return value
 
 
 class RunTable(_Table):
     """Time span and grid (s), digits, level of trust, transits or not."""
 
-    t_end: Annotated[Number, _within("0", "1e15", open_low=True)] = "86400"
+    t_end: Annotated[Number, within("0", "1e15", open_low=True)] = "86400"
     grid_step: Positive = "60"
     digits: Annotated[int, AfterValidator(_digits)] = 40
     level: Level = "confirmed"
@@ -141,7 +88,7 @@ class RunTable(_Table):
 
 def _identifier(text: str) -> str:
     if not is_scene_id(text):
-        raise _Refused("a lower-case letter followed by letters, digits or _ (at most 64)")
+        raise Refused("a lower-case letter followed by letters, digits or _ (at most 64)")
     return text
 
 
@@ -223,34 +170,10 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
     try:
         scene = Scene.model_validate(dict(document))
     except ValidationError as error:
-        raise _explain(error) from None
+        raise explained(error) from None
     _check_release(scene)
     _check_grid(scene)
     return scene
-
-
-def _explain(error: ValidationError) -> InputError:
-    details = error.errors()[0]
-    field = ".".join(str(part) for part in details["loc"])
-    kind, got = details["type"], details["input"]
-    cause = details.get("ctx", {}).get("error")
-    if isinstance(cause, _Refused):
-        return InputError(field, got, cause.expected, cause.advice)
-    if kind == "extra_forbidden":
-        return InputError(field, got, "no such key", "Remove it, or look for a misspelling.")
-    if kind == "missing":
-        return InputError(field, "nothing", "a value", "Add this field to the scene.")
-    expected = {
-        "literal_error": "one of " + str(details.get("ctx", {}).get("expected", "")),
-        "int_parsing": "a whole number",
-        "int_type": "a whole number",
-        "int_from_float": "a whole number",
-        "bool_parsing": "true or false",
-        "bool_type": "true or false",
-        "string_type": "a number in quotes",
-        "model_type": f"a table, written [{field}]",
-    }.get(kind, details["msg"])
-    return InputError(field, got, expected)
 
 
 def _check_release(scene: Scene) -> None:

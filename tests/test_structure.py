@@ -26,7 +26,7 @@ FLOORS = {
         ["engines", "enclosure"],
         ["model"],
         ["scene", "table", "process", "packing", "capture", "taylor_step"],
-        ["inputs", "precision", "shipped", "columns"],
+        ["inputs", "fields", "precision", "shipped", "columns"],
         ["errors", "status", "lazy"],
     ],
     "reference/engines": [
