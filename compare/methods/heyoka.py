@@ -88,7 +88,7 @@ METHODS = (
         prepare=lambda problem, setting: prepare_in(problem, DOUBLE, setting),
         stability=tuple((word, 1e-12) for word in ("momentum", "space", "spin", "plane", "angles", "lagrangian")),
         long_runs=(("momentum", 2.0**-52), ("space", 2.0**-52)),
-        precision_runs=lambda bits: [2.0**-52] if DOUBLE_BITS in bits else [],
+        precision_runs=lambda bits: [("momentum", 2.0**-52)] if DOUBLE_BITS in bits else [],
     ),
     _heyoka(
         id="heyoka_long_double",
@@ -98,7 +98,7 @@ METHODS = (
         number="long double",
         stability=(("momentum", 1e-16),),
         long_runs=(("momentum", 2.0**-63), ("space", 2.0**-63)),
-        precision_runs=lambda bits: [2.0**-63] if LONG_DOUBLE_BITS in bits else [],
+        precision_runs=lambda bits: [("momentum", 2.0**-63)] if LONG_DOUBLE_BITS in bits else [],
     ),
     _many_digits(
         id="heyoka_real128",
@@ -116,6 +116,6 @@ METHODS = (
         ladder=(64, 113, 160, 256, 512),
         prepare=lambda problem, setting: prepare_in(problem, real(int(setting)), None),
         number="MPFR",
-        precision_runs=lambda bits: [float(prec) for prec in bits if prec > LONG_DOUBLE_BITS],
+        precision_runs=lambda bits: [("momentum", float(prec)) for prec in bits if prec > LONG_DOUBLE_BITS],
     ),
 )

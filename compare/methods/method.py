@@ -108,7 +108,7 @@ class Method:
         stability: the runs of it that `foucault stability` makes, each a formulation (None: the first that can describe
             the motion) and a setting; a step is given as a part of 2π over the fastest rate of the scene.
         long_runs: the runs of it over thirty days, each a formulation and a setting.
-        precision_runs: the settings with which `foucault study --precisions` runs it, from the bits asked for.
+        precision_runs: the same for `foucault study --precisions`, from the bits that are asked for.
     """
 
     id: str
@@ -130,7 +130,7 @@ class Method:
     libraries: tuple[str, ...] = ("numpy",)
     stability: tuple[tuple[str | None, float], ...] = ()
     long_runs: tuple[tuple[str, float], ...] = ()
-    precision_runs: Callable[[Sequence[int]], list[float]] = field(default=lambda bits: [], repr=False)
+    precision_runs: Callable[[Sequence[int]], list[tuple[str, float]]] = field(default=lambda bits: [], repr=False)
 
     def __repr__(self) -> str:
         return f"Method({self.id}: {self.title})"

@@ -40,7 +40,7 @@ def bits_of(text: str) -> list[int]:
 def precision_items(bits: Sequence[int]) -> list[Item]:
     """List the runs that the methods declare for these precisions, those of the processor's number types first."""
     methods = sorted(METHODS.values(), key=lambda method: method.setting == "precision")
-    return [(method.id, "momentum", setting) for method in methods for setting in method.precision_runs(bits)]
+    return [(method.id, *run) for method in methods for run in method.precision_runs(bits)]
 
 
 def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Scene, int]:

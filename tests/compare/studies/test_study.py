@@ -141,10 +141,10 @@ def test_the_precision_ladder_gains_digits_with_bits() -> None:
     bits = bits_of("53,64,113,160")
     scene, digits = precision_scene(load_scene("paris"), bits, whole=False)
     assert (scene.run.t_end, digits) == ("600", 57)
-    listed = [(method, setting) for method, _, setting in precision_items(bits)]
-    mpfr = [("heyoka_real", 113), ("heyoka_real", 160)]
-    processor = [("heyoka_double", 2.0**-52), ("heyoka_long_double", 2.0**-63)]
-    assert listed == [*processor, *mpfr, ("limbs", 100), ("limbs", 150)]
+    processor = [("heyoka_double", "momentum", 2.0**-52), ("heyoka_long_double", "momentum", 2.0**-63)]
+    mpfr = [("heyoka_real", "momentum", 113), ("heyoka_real", "momentum", 160)]
+    limbs = [("limbs", "inertial", 100), ("limbs", "inertial", 150)]
+    assert precision_items(bits) == [*processor, *mpfr, *limbs]
     items = [item for item in precision_items(bits) if item[0] != "limbs"]
     result = study(scene.with_values(["run.t_end=60"]), items=items, digits=digits)
     errors = [row.error_m for row in result.rows]
