@@ -20,6 +20,7 @@ from reference.status import Status
 from ..approximations import APPROXIMATIONS, Motion, Quantity, motions, quantities
 from ..observed.swing_plane import Gauge
 from ..position_error import difference, distance
+from .failure import failure
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
 _PER_SWING = 16  # samples in a period
@@ -152,7 +153,7 @@ def error_table(
         try:
             errors = truth.errors(motion)
         except FoucaultError as error:
-            rows += [TimeRow(motion.id, t, None, None, Status.REFUSED, str(error)) for t in marks]
+            rows += [TimeRow(motion.id, t, None, None, *failure(error)) for t in marks]
         else:
             rows += [TimeRow(motion.id, t, *errors.at(t)) for t in marks]
     return rows
@@ -170,7 +171,7 @@ def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[Quant
             if one.truth not in known:
                 known[one.truth] = one.truth(scene)
         except FoucaultError as error:
-            rows.append(QuantityRow(word, None, None, one.unit, None, Status.REFUSED, str(error)))
+            rows.append(QuantityRow(word, None, None, one.unit, None, *failure(error)))
         else:
             truth = value.context.mpf(known[one.truth])
             relative = float(abs(value / truth - 1)) if truth else None

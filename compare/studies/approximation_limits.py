@@ -13,6 +13,7 @@ from reference.status import Status
 
 from ..approximations.approximation import Motion
 from .approximation_errors import TIMES, ReferenceMotion, chosen_motions
+from .failure import failure
 from .variation import UNITS, varied
 
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))
@@ -40,7 +41,7 @@ class SweepRow:
 class LimitRow:
     """Where an approximation is good to a limit: intervals of time in s or of the varied quantity; none if nowhere.
 
-    `status` is REFUSED, with a reason, if it could not be tried anywhere.
+    `status` and `reason` say why it could not be tried anywhere.
     """
 
     approximation: str
@@ -79,7 +80,7 @@ def sweep(
             try:
                 errors = truth.errors(motion).at(t)
             except FoucaultError as error:
-                rows.append(SweepRow(motion.id, over, value, t, None, None, Status.REFUSED, str(error)))
+                rows.append(SweepRow(motion.id, over, value, t, None, None, *failure(error)))
             else:
                 rows.append(SweepRow(motion.id, over, value, t, *errors))
     return rows
@@ -118,7 +119,7 @@ def _time_limits(scene: Scene, chosen: Sequence[Motion], t_end: float) -> list[L
         try:
             errors = truth.errors(motion)
         except FoucaultError as error:
-            rows += [LimitRow(motion.id, "time", "s", name, (), Status.REFUSED, str(error)) for name, _, _ in LIMITS]
+            rows += [LimitRow(motion.id, "time", "s", name, (), *failure(error)) for name, _, _ in LIMITS]
             continue
         for name, quantity, limit in LIMITS:
             above = np.flatnonzero(~((errors.position if quantity == "error_m" else errors.plane) <= limit))

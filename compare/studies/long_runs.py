@@ -22,7 +22,8 @@ from ..methods import METHODS, Problem, available
 from ..power_law import power_of_time
 from ..truth import golden_of
 from .campaign import Counted, campaign
-from .measure import FAILURES, failure, timed
+from .failure import FAILURES, failure
+from .measure import timed
 from .method_errors import GridTruth
 from .row import Record
 

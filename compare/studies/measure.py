@@ -17,13 +17,14 @@ from typing import Any
 
 import numpy as np
 
-from reference import FoucaultError, Scene, load, parse_scene
+from reference import Scene, load, parse_scene
 from reference.precision import Array
 from reference.process import Emit
 from reference.status import Status
 
 from ..methods import METHODS, Method, Outcome, Problem, Work, available
 from ..rhs.swing import suited
+from .failure import FAILURES, failure
 from .method_errors import GridTruth, h_drift
 from .row import Row
 
@@ -33,7 +34,6 @@ REPEAT_S = 1.0  # a run is repeated while the CPU time spent on its setting stay
 REPEATS = 5  # and at most this often
 TRANSIT_S = 3.0  # transit times need a second, untimed run, which is made only if the first took at most this long
 TRANSIT_FLOOR_S = 1e-29  # error of one Newton step from the double next to a transit; nothing smaller is reported
-FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)  # what a run may raise
 MISSED = 0.5  # a transit whose error exceeds this part of the gap to its neighbour counts as missed
 
 
@@ -152,13 +152,6 @@ class Bench:
             text = f"{int(missed.sum())} of {len(transits)} transits are missed, the first at t = {first:.6f} s"
             return replace(row, status=Status.MISSED_TRANSITS, reason=text)
         return replace(row, transit_error_s=max(float(errors_s.max()), TRANSIT_FLOOR_S))
-
-
-def failure(error: Exception) -> tuple[Status, str]:
-    """Return status and reason of a run that raised one of `FAILURES`."""
-    if isinstance(error, FoucaultError):
-        return Status.REFUSED, str(error)
-    return Status.GAVE_UP, f"{type(error).__name__}: {error}"
 
 
 def timed(work: Work) -> tuple[Outcome, float]:
