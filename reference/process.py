@@ -113,7 +113,10 @@ def serve() -> None:
     """Run in the child: read the function and its arguments, call it, and end when the parent ends."""
     results = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # nothing that heyoka or others print may mix with the results
-    module, name, arguments = _item()
+    try:
+        module, name, arguments = _item()
+    except (EOFError, KeyboardInterrupt):  # the parent has ended before it sent anything
+        os._exit(1)
     received: queue.SimpleQueue[Any] = queue.SimpleQueue()
     threading.Thread(target=_receive, args=(received,), daemon=True).start()
     parent = Parent(results, received)

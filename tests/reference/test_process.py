@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
+import subprocess
+import sys
 import threading
 
 import pytest
@@ -31,6 +33,12 @@ def test_a_child_takes_objects_while_it_works_and_ends_when_its_parent_stops():
     assert worker.receive() == 15
     worker.stop()
     assert worker._process.poll() is not None
+
+
+def test_a_child_whose_parent_ends_before_it_sends_anything_ends_without_a_word():
+    command = [sys.executable, "-c", process._START, *sys.path]
+    child = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    assert (child.returncode, child.stdout, child.stderr) == (1, b"", b"")
 
 
 def test_an_error_of_the_function_arrives_as_an_integration_error():
