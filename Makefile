@@ -4,7 +4,7 @@
 PYTHON ?= python3
 BIN := .venv/bin
 
-.PHONY: golden test lint lock clean
+.PHONY: golden test campaign lint lock clean
 
 golden: .venv/ready
 	$(BIN)/foucault generate paris
@@ -12,6 +12,10 @@ golden: .venv/ready
 
 test: lint
 	$(BIN)/python -m pytest -q -n 2 --cov --cov-report=term-missing:skip-covered --cov-fail-under=95
+
+# Tests by the thousand (damaged files, forgeries, fuzzed inputs, kills): `make test` runs a short form of each.
+campaign: .venv/ready
+	$(BIN)/python -m pytest -q tests/campaigns --long
 
 lint: .venv/ready
 	$(BIN)/ruff check .

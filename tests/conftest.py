@@ -23,6 +23,32 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 __all__ = ["make_scene"]
 
 
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--long", action="store_true", help="run the campaigns at full size, as `make campaign` does")
+
+
+@pytest.fixture
+def size(pytestconfig: pytest.Config) -> Callable[[int, int], int]:
+    """Choose how many cases a campaign tries: the first number in every test run, the second with --long."""
+    return lambda short, long: long if pytestconfig.getoption("--long") else short
+
+
+@pytest.fixture
+def tally(record_property: Callable[[str, object], None]) -> Callable[[str], None]:
+    """Report what a campaign tried and found: the line is printed at the end of the test run."""
+    return lambda line: record_property("tally", line)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    reports = [report for kind in ("passed", "failed") for report in terminalreporter.stats.get(kind, ())]
+    lines = [str(value) for report in reports for key, value in report.user_properties if key == "tally"]
+    if lines:
+        terminalreporter.section("campaigns")
+    for line in sorted(lines):
+        terminalreporter.write_line(line)
+
+
 @pytest.fixture
 def paris() -> Scene:
     return load_scene("paris")
