@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Literal
+
+GravityIs = Literal["ellipsoid", "effective"]
 
 SAME_TIME = Fraction(1, 1 << 30)  # of a grid step: times nearer than this differ only by the rounding of the inputs
 
@@ -13,7 +16,8 @@ class Inputs:
     """The exact numbers of a scene: SI units, angles in degrees; `flattening` is 0 for a sphere.
 
     Exactly one of `position` (x, y, vx, vy) and `angles` (angle, azimuth, angle_rate, azimuth_rate)
-    is set, the one that the scene contains.
+    is set, the one that the scene contains. `gravity_is` tells the pull along the ellipsoid's normal, to which the
+    centrifugal force comes, from the effective one along the plumb line, which contains that at the pivot.
     """
 
     length: Fraction
@@ -28,6 +32,7 @@ class Inputs:
     angles: tuple[Fraction, Fraction, Fraction, Fraction] | None
     t_end: Fraction
     grid_step: Fraction
+    gravity_is: GravityIs = "ellipsoid"
 
     @property
     def grid(self) -> list[Fraction]:

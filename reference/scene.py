@@ -17,7 +17,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
 from .errors import InputError
 from .fields import NotNegative, Number, NumberOrInf, Positive, Refused, explained, within
-from .inputs import Inputs
+from .inputs import GravityIs, Inputs
 from .shipped import data_root, scene_ids
 
 MAX_DIGITS = 1000
@@ -47,11 +47,12 @@ class Pendulum(_Table):
 
 
 class Site(_Table):
-    """Where the suspension stands (degrees, m), gravity (m/s²) and the Earth's rotation rate (rad/s)."""
+    """Where the suspension stands (degrees, m), gravity (m/s²), what it means, the Earth's rotation rate (rad/s)."""
 
     latitude: Annotated[Number, within("-90", "90")] = "48.846111"
     altitude: Number = "0"
     gravity: NotNegative = "9.80665"
+    gravity_is: GravityIs = "ellipsoid"
     rotation_rate: Number = "7.292115e-5"
     equatorial_radius: NotNegative = "6378137"
     inverse_flattening: Annotated[NumberOrInf, within("1", open_low=True)] = "298.257223564"
@@ -134,6 +135,7 @@ class Scene(_Table):
             angles=None if cartesian else angles,
             t_end=read(self.run.t_end),
             grid_step=read(self.run.grid_step),
+            gravity_is=site.gravity_is,
         )
 
     def with_values(self, assignments: Iterable[str]) -> Scene:

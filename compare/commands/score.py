@@ -78,8 +78,8 @@ def command(
     Exit status 0: agrees, 1: disagrees.
 
     --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
-    {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate} {azimuth_rate}
-    {t_end} {grid_step}.
+    {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
+    {azimuth_rate} {t_end} {grid_step}.
     """
     scene = load_scene(scene_word, set_ or ())
     if tolerance is not None and not 0 < tolerance < float("inf"):

@@ -79,7 +79,8 @@ def _derived(scene: Scene) -> dict[str, str]:
     def text(value: Any) -> str:
         return str(ctx.nstr(ctx.mpf(value), 15))
 
-    derived = {"axis_distance_m": text(k.axis_distance * k.length)}
+    carried = scene.site.gravity_is == "ellipsoid"  # effective gravity takes the distance out of the equations
+    derived = {"axis_distance_m": text(k.axis_distance * k.length)} if carried else {}
     strength = ctx.sqrt(sum(part * part for part in k.pull))
     derived["pivot_gravity_m_s2"] = text(strength * k.length)
     if strength:

@@ -21,6 +21,8 @@ def lines_and_left_out(scene: Scene, formulation: str) -> tuple[list[str], list[
         left_out.append("the distance R from the axis and the terms with Omega_y: the latitude is a pole.")
     elif inputs.latitude == 0:
         left_out.append("the terms with Omega_z and c_y: the latitude is 0.")
+    if inputs.gravity_is == "effective":
+        left_out.append("the centrifugal force at the pivot: gravity is effective and contains it.")
     if inputs.drag == 0:
         left_out.append("drag: it is 0.")
     if inputs.gravity == 0:

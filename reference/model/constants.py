@@ -25,11 +25,11 @@ class Constants:
     Attributes:
         length: cord length l in m.
         turn: rotation vector Ω in rad/s on the axes east, north, up.
-        pull: gravity plus centrifugal force at the pivot, over l, in 1/s².
+        pull: gravity plus centrifugal force at the pivot, over l, in 1/s²; effective gravity is both together.
         centrifugal: Ω², Ωz², -Ωy Ωz, Ωy², the entries xx, yy, yz, zz of |Ω|² - Ω Ωᵀ, in 1/s².
         drag: γ in 1/s.
         gravity: g/l in 1/s².
-        axis_distance: R/l.
+        axis_distance: R/l; 0 where gravity is effective.
         rate: |Ω| with its sign, in rad/s.
         sin: sine of the geodetic latitude.
         cos: cosine of the geodetic latitude.
@@ -91,7 +91,9 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
     radius, flattening, altitude = (
         to_mpf(v, ctx) for v in (inputs.equatorial_radius, inputs.flattening, inputs.altitude)
     )
-    distance = axis_distance(radius, flattening, altitude, sin, cos, ctx.sqrt)
+    # effective gravity contains the centrifugal force at the pivot: what is left is that of a pivot on the axis
+    carried = inputs.gravity_is == "ellipsoid"
+    distance = axis_distance(radius, flattening, altitude, sin, cos, ctx.sqrt) if carried else ctx.zero
     north, up = rate * cos, rate * sin
     outward = rate * rate * distance
     return Constants(

@@ -32,7 +32,7 @@ def scene(**changes: object) -> Inputs:
     start = [Fraction(str(changes.pop(n, d))) for n, d in (("x", "0.3"), ("y", "0.4"), ("vx", 0), ("vy", 0))]
     angles = changes.pop("angles", None)
     turned = tuple(Fraction(str(a)) for a in angles) if angles else None
-    numbers = {name: Fraction(str(value)) for name, value in changes.items()}
+    numbers = {name: value if name == "gravity_is" else Fraction(str(value)) for name, value in changes.items()}
     return replace(PARIS, position=None if turned else tuple(start), angles=turned, **numbers)
 
 
@@ -42,6 +42,7 @@ def constants(inputs: Inputs):
     phi, f = q(inputs.latitude) * mp.pi / 180, q(inputs.flattening)
     s, c = mp.sin(phi), mp.cos(phi)
     R = (q(inputs.equatorial_radius) / mp.sqrt(1 - f * (2 - f) * s * s) + q(inputs.altitude)) * c
+    R = 0 if inputs.gravity_is == "effective" else R
     return s, c, R, q(inputs.length), q(inputs.gravity), q(inputs.rotation_rate), q(inputs.drag)
 
 

@@ -32,6 +32,7 @@ HARD = {
     (scene(latitude="90"), 100),
     (scene(latitude="-33.3"), 100),
     (scene(rotation_rate="0.001"), 100),
+    (scene(rotation_rate="0.001", gravity_is="effective"), 100),
     (scene(rotation_rate="0"), 100),
     (scene(drag="0.01"), 100),
     (scene(x="0", y="0.5"), 100),

@@ -38,6 +38,7 @@ def random_scene(seed: int, below: bool = True):
             "rotation_rate": number(-2, 2),
             "equatorial_radius": number(1, 9),
             "inverse_flattening": number(3, 9),
+            "gravity_is": "effective" if seed % 4 == 3 else "ellipsoid",
         },
         release={
             "angle": number(5, 85) if below else number(95, 175),
@@ -78,6 +79,23 @@ def test_all_formulations_agree_to_sixty_digits_where_all_terms_are_large(seed):
     for name in FORMULATIONS:
         got = acceleration_of(name, ctx, k, n, v)
         assert max(abs(a - b) for a, b in zip(got, expected, strict=True)) < ctx.mpf(10) ** -60, name
+
+
+def test_effective_gravity_leaves_the_centrifugal_force_of_the_swing_alone():
+    """F = -g ẑ - Ω × (Ω × r) - 2 Ω × v - γ v, from the scene's own numbers and r from the pivot."""
+    scene = random_scene(7)
+    ctx, k, n, v = model_at(scene, PREC)
+    rate, gravity, length, drag = (
+        ctx.mpf(value.numerator) / value.denominator
+        for value in (scene.exact.rotation_rate, scene.exact.gravity, scene.exact.length, scene.exact.drag)
+    )
+    latitude = ctx.mpf(scene.exact.latitude.numerator) / scene.exact.latitude.denominator * ctx.pi / 180
+    turn = (0, rate * ctx.cos(latitude), rate * ctx.sin(latitude))
+    away, sideways = cross(turn, cross(turn, n)), cross(turn, v)
+    for i, got in enumerate(force(n, v, k)):
+        expected = -away[i] - 2 * sideways[i] - drag * v[i] - (gravity / length if i == 2 else 0)
+        assert abs(got - expected) < ctx.mpf(10) ** -100
+    assert scene.site.gravity_is == "effective"
 
 
 @pytest.mark.parametrize("seed", range(5))

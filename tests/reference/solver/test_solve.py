@@ -128,6 +128,19 @@ def test_every_kind_of_scene_is_confirmed_to_thirty_digits(sections):
         assert abs(solution.grid.exact(name)[-1] - exact) <= solution.grid.bound(name)[-1]
 
 
+@pytest.mark.parametrize("level", ["confirmed", "enclosed"])
+def test_effective_gravity_is_the_pivot_on_the_axis_to_the_last_bit(level):
+    """Two engines agree on it, and a proof; a pivot on the axis has no centrifugal force that g could contain."""
+    run = {"t_end": "120", "digits": "30", "level": level}
+    fast = {"rotation_rate": "0.01", "altitude": "100"}
+    effective = reference.solve(make_scene(site={**fast, "gravity_is": "effective"}, run=run))
+    on_axis = reference.solve(make_scene(site={**fast, "equatorial_radius": "0", "altitude": "0"}, run=run))
+    assert effective.transits is not None
+    assert [effective.grid.exact(name) for name in GRID] == [on_axis.grid.exact(name) for name in GRID]
+    assert effective.transits.exact("t") == on_axis.transits.exact("t")
+    assert abs(effective.x[-1] - reference.solve(make_scene(site=fast, run=run)).x[-1]) > 1e-3
+
+
 def test_precision_is_raised_when_the_first_guess_is_too_low(monkeypatch, paris):
     honest = solver.run_pilot
 
