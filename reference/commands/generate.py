@@ -38,22 +38,25 @@ def command(
 ) -> None:
     """Solve a scene and write its golden dataset."""
     from ..columns import POSITION
-    from ..dataset.sheets import grid_bound
-    from ..dataset.write import check_target, default_folder, write
+    from ..dataset.place import dataset_id, default_folder
+    from ..dataset.sheets import column_bounds
+    from ..dataset.write import check_target, write
 
     options = {"t_end": t_end, "digits": digits, "level": level, "transits": "false" if no_transits else None}
     changes = [*(set_ or ()), *(f"run.{key}={value}" for key, value in options.items() if value is not None)]
     scene = load_scene(scene_word, changes)
-    as_shipped = scene_word in scene_ids() and not set_ and t_end is None and not no_transits
-    folder = out or default_folder(scene, as_shipped or set_ == ["inputs=binary64"])
+    name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
+    folder = out or default_folder(scene, name)
     check_target(folder)
+    from ..solver.rounding import grid_decimals
     from ..solver.solve import solve
 
     with progress(scene.id, float(scene.exact.t_end)) as report:
         solution = solve(scene, engine=engine.value, report=report)
-    write(solution, folder)
+    write(solution, folder, name)
     count = len(solution.directions)
-    bound = grid_bound(solution, POSITION)
+    bounds = column_bounds(solution.grid, grid_decimals(solution))
+    bound = max((bounds[column] for column in POSITION), key=float)
     checks_s = sum(check.cpu_s for check in solution.checks) + sum(
         (solution.proof.cpu_s if solution.proof else {}).values()
     )

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
-from ..shipped import data_root
+from ..shipped import golden_root, seals
 from .terminal import AsJson, emit, progress
 
 
@@ -23,25 +23,26 @@ def command(
     ] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Check golden datasets: schema, hashes and physics."""
-    from ..dataset.read import golden_folder, read_manifest, scene_of
+    """Check golden datasets: files, seal, physics, and the motion integrated again."""
+    from ..dataset.place import golden_folder
     from ..dataset.recompute import recompute as recomputed
-    from ..dataset.verify import problems_of
+    from ..dataset.verify import verify
 
-    folders = [golden_folder(path) for path in paths or ()] or sorted((data_root() / "golden").glob("[a-z]*"))
+    folders = [golden_folder(path) for path in paths or ()] or [golden_root() / name for name in seals()]
     if not folders:
         raise InputError("PATH", "nothing", "a golden dataset", "Make one with `foucault generate`.")
     rows = []
     for folder in folders:
-        problems = problems_of(folder)
-        if recompute and not problems:
-            with progress(folder.name, float(scene_of(read_manifest(folder)).exact.t_end)) as report:
+        with progress(folder.name) as report:
+            found = verify(folder, report)
+            problems = found.problems
+            if recompute and not problems:
                 problems = recomputed(folder, report)
-        rows.append({"path": str(folder), "ok": not problems, "problems": problems})
+        rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": found.notes})
         if not as_json:
             typer.echo(f"{folder}: {'ok' if not problems else 'WRONG'}")
-            for problem in problems:
-                typer.echo(f"  {problem}")
+            for line in [*problems, *found.notes]:
+                typer.echo(f"  {line}")
     if as_json:
         emit({"rows": rows})
     if not all(row["ok"] for row in rows):

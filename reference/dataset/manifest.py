@@ -1,36 +1,59 @@
-"""`manifest.json` of a golden dataset: its fields and their types, as pydantic models that refuse extra keys."""
+"""`manifest.json` of a golden dataset: its fields and their types, which refuse extra keys, its text and its seal."""
 
 from __future__ import annotations
 
+import hashlib
 import json
-from typing import Annotated, Any, Literal
+from fractions import Fraction
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from ..scene import Level, Reading
 
-Decimal = Annotated[str, Field(pattern=r"^-?[0-9]+(\.[0-9]+)?(e[+-][0-9]+)?$")]
+MANIFEST = "manifest.json"
+FORMAT = 2
+ALWAYS = ("grid.csv", "certified.txt")
+OPTIONAL = ("transits.csv", "grid.binary64.csv", "transits.binary64.csv", "vectors.json")
+NUMBER = (
+    r"^-?[0-9]{1,1100}(\.[0-9]{1,1100})?(e[+-][0-9]{1,4})?$"  # bounded: an exponent of nine digits fills the memory
+)
+
+Decimal = Annotated[str, Field(pattern=NUMBER)]
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
+Name = Annotated[str, Field(max_length=400)]
+Text = Annotated[str, Field(max_length=20_000)]
+Count = Annotated[int, Field(ge=0, le=10**10)]
+Decimals = Annotated[int, Field(ge=0, le=2000)]  # digits after the point
+FileName = Literal[
+    "grid.csv", "certified.txt", "transits.csv", "grid.binary64.csv", "transits.binary64.csv", "vectors.json"
+]
 
 
 class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
 class Bounds(_Part):
-    """How far any printed number of a kind may be from the truth: m, m/s, s; s only where there are transits."""
+    """How far any printed number may be from the truth, rounding to its digits included: m, m/s, s, m/s².
+
+    The first three are the largest of their kind, `transit_s` only where there are transits; `grid` and `transits` are
+    by column, the largest of all rows.
+    """
 
     position_m: Decimal
     velocity_m_s: Decimal
     transit_s: Decimal | None
+    grid: dict[Name, Decimal]
+    transits: dict[Name, Decimal]
 
 
 class Counts(_Part):
     """Rows of the tables; `possible` are transits that could not be decided."""
 
-    grid: int
-    transits: int
-    possible: int
+    grid: Count
+    transits: Count
+    possible: Count
 
 
 class Invariant(_Part):
@@ -43,18 +66,18 @@ class Invariant(_Part):
 class Equations(_Part):
     """The formulation that the numbers come from, its compiled lines, and what the scene left out."""
 
-    formulation: str
-    lines: list[str]
-    left_out: list[str]
+    formulation: Name
+    lines: list[Text]
+    left_out: list[Text]
 
 
 class RunRecord(_Part):
     """A run: formulation, number type, order and steps of the Taylor method."""
 
-    formulation: str
-    number: str
-    order: int
-    steps: int
+    formulation: Name
+    number: Name
+    order: Count
+    steps: Count
 
 
 class CrossCheckRecord(RunRecord):
@@ -76,10 +99,10 @@ class Possible(_Part):
 class EnclosureRecord(_Part):
     """The proof: its method, size and largest radii, and the bits to which heyoka's run agrees with it."""
 
-    method: str
-    prec: int
-    order: int
-    steps: int
+    method: Name
+    prec: Count
+    order: Count
+    steps: Count
     position_radius_m: Decimal
     velocity_radius_m_s: Decimal
     transit_radius_s: Decimal | None
@@ -89,25 +112,30 @@ class EnclosureRecord(_Part):
 class FileRecord(_Part):
     """Size and hash of a file of the dataset."""
 
-    bytes: int
+    bytes: Count
     sha256: Sha256
 
 
 class Manifest(_Part):
-    """`manifest.json`; numbers that matter are strings."""
+    """`manifest.json`; numbers that matter are strings.
 
-    schema_version: Literal[1]
-    id: str
-    title: str
-    source: str
-    flags: list[str]
-    scene: dict[str, dict[str, str]]
+    `seal` is the sha256 of the same text with an empty seal. It finds accidents; a forger can make it again.
+    """
+
+    schema_version: Literal[2]  # FORMAT
+    seal: Sha256 | Literal[""]
+    id: Name
+    title: Text
+    source: Text
+    flags: list[Name]
+    notes: dict[Name, Text]
+    scene: dict[Name, dict[Name, Text]]
     inputs: Reading
-    frame: str
-    units: dict[str, str]
+    frame: Text
+    units: dict[Name, Name]
     level: Level
-    digits: int
-    decimals: dict[str, dict[str, int]]
+    digits: Count
+    decimals: dict[Literal["grid", "transits"], dict[Name, Decimals]]
     bounds: Bounds
     counts: Counts
     transits: Literal["complete", "undecided intervals", "not asked for", "xdot is identically zero"]
@@ -117,13 +145,53 @@ class Manifest(_Part):
     run: RunRecord
     cross_checks: list[CrossCheckRecord]
     enclosure: EnclosureRecord | None
-    generator: dict[str, str]
-    command: str
-    files: dict[str, FileRecord]
+    generator: dict[Name, Name]
+    command: Text
+    files: dict[FileName, FileRecord]
+
+    @model_validator(mode="after")
+    def _agrees_with_itself(self) -> Self:
+        run = self.scene.get("run", {})
+        largest = {"grid": (self.bounds.position_m, self.bounds.velocity_m_s), "transits": (self.bounds.transit_s,)}
+        rules = {
+            "level: the scene asks for another": run.get("level") == self.level,
+            "digits: the scene asks for another number": run.get("digits") == str(self.digits),
+            "level: a proof and the level enclosed belong together": (self.level == "enclosed") == bool(self.enclosure),
+            "level: no run agrees with the published one": bool(self.cross_checks) or self.level == "computed",
+            "level: a single run has no cross-checks": not (self.cross_checks and self.level == "computed"),
+            "counts: the possible transits are others": self.counts.possible == len(self.possible),
+            "transits: undecided intervals and possible transits belong together": bool(self.possible)
+            == (self.transits == "undecided intervals"),
+            "transits: the scene says whether they are asked for": (run.get("transits") == "true")
+            == (self.transits != "not asked for"),
+            "notes: one for each flag": set(self.notes) == set(self.flags),
+            f"files: {' and '.join(ALWAYS)} belong to every dataset": set(ALWAYS) <= set(self.files),
+        }
+        for table, numbers in largest.items():
+            for number in numbers:
+                rules[f"bounds: {number} is that of no column"] = (
+                    number is None or number in getattr(self.bounds, table).values()
+                )
+        broken = [rule for rule, holds in rules.items() if not holds]
+        if broken:
+            raise ValueError(broken[0])
+        return self
 
     def text(self) -> str:
-        """Return the text of `manifest.json`."""
+        """Return the text of `manifest.json`, in the one form that is accepted."""
         return json.dumps(self.model_dump(), indent=1, ensure_ascii=False) + "\n"
+
+    def expected_seal(self) -> str:
+        """Return the seal that belongs to everything else in the manifest."""
+        return hashlib.sha256(self.model_copy(update={"seal": ""}).text().encode()).hexdigest()
+
+    def sealed(self) -> Manifest:
+        """Return the manifest with its seal."""
+        return self.model_copy(update={"seal": self.expected_seal()})
+
+    def bound(self, table: Literal["grid", "transits"], column: str) -> Fraction:
+        """Return the bound on a column's printed numbers, the largest of all rows."""
+        return Fraction(getattr(self.bounds, table)[column])
 
 
 def json_schema() -> dict[str, Any]:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from ..engines.plan import Report
 from ..solver.solve import solve
-from .read import read_manifest, scene_of
+from .files import read_files
+from .manifest import MANIFEST
 from .render import render
 
 
@@ -14,18 +15,16 @@ def recompute(folder: Path, report: Report | None = None) -> list[str]:
     """Solve the scene of a dataset again; return a sentence for every file whose bytes differ.
 
     Raises:
+        InputError, DatasetError: as `read_files`.
         UnreachableError: the scene cannot be solved here.
     """
-    manifest = read_manifest(folder)
-    files = render(solve(scene_of(manifest), engine=_engine(manifest.command), report=report))
+    files = read_files(folder)
+    manifest = files.manifest
+    engine = manifest.command.partition("--engine ")[2].partition(" ")[0]
+    texts = render(solve(files.scene, engine=engine, report=report), manifest.id)
+    found = {MANIFEST: manifest.text(), **files.texts}
     return [
-        f"{name}: recomputing gives other bytes"
-        for name, text in files.items()
-        if (folder / name).read_bytes() != text.encode()
+        f"{name}: recomputing gives {'other bytes' if name in found else 'this file too'}"
+        for name, text in texts.items()
+        if found.get(name) != text
     ]
-
-
-def _engine(command: str) -> str:
-    """Return the engine that the command of a dataset names."""
-    _, _, words = command.partition("--engine ")
-    return words.split()[0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
@@ -11,10 +11,12 @@ from ..precision import fixed_decimal, rounded_up
 from ..scene import Scene
 from ..solver.rounding import exact_decimals, grid_decimals, transit_decimals
 from ..solver.solution import Solution
+from ..table import Table
 
 GRID_HEADER = ("t", *GRID)
 TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")
 WORDS = frozenset({"k", "direction", "bound"})  # columns that are not decimals with a fixed number of digits
+NUMBERS = {"grid": ("t", *GRID), "transits": TRANSITS}  # the others, which are also given as doubles
 
 
 @dataclass(frozen=True)
@@ -57,22 +59,36 @@ def transits_sheet(solution: Solution) -> Sheet:
     return Sheet(TRANSITS_HEADER, rows, decimals)
 
 
-def binary64_sheet(sheet: Sheet) -> Sheet:
-    """Return a sheet with every number as the nearest double: 17 significant digits, then all again as hexfloats."""
-    names = [name for name in sheet.header if name not in WORDS]
+def binary64_sheet(sheet: Sheet, doubles: Mapping[str, Sequence[float]]) -> Sheet:
+    """Return a sheet with doubles for its numbers, by column: 17 significant digits, then all again as hexfloats."""
+    columns = [doubles.get(name) for name in sheet.header]
     rows = []
-    for row in sheet.rows:
-        doubles = [float(text) for name, text in zip(sheet.header, row, strict=True) if name in names]
-        queue = iter(doubles)
-        plain = (f"{next(queue):.16e}" if name in names else text for name, text in zip(sheet.header, row, strict=True))
-        rows.append((*plain, *(value.hex() for value in doubles)))
-    return Sheet((*sheet.header, *(f"{name}_hex" for name in names)), rows, {})
+    for i, row in enumerate(sheet.rows):
+        numbers = [None if column is None else float(column[i]) for column in columns]
+        plain = (text if number is None else f"{number:.16e}" for text, number in zip(row, numbers, strict=True))
+        rows.append((*plain, *(number.hex() for number in numbers if number is not None)))
+    return Sheet((*sheet.header, *(f"{name}_hex" for name in sheet.header if name in doubles)), rows, {})
 
 
-def grid_bound(solution: Solution, columns: tuple[str, ...]) -> str:
-    """Return the largest bound of some columns of the grid as text, rounding to the printed digits included."""
-    bounds, decimals = solution.grid.largest_bounds(), grid_decimals(solution)
-    return rounded_up(max(bounds[name] + Fraction(1, 2 * 10 ** decimals[name]) for name in columns))
+def nearest_doubles(table: Table, sheet: Sheet) -> dict[str, list[float]]:
+    """Return the doubles nearest to the numbers of a table, which are known to more digits than its sheet prints.
+
+    A number smaller than its error bound is noise about zero, and gets the double of the printed decimal.
+    """
+    unit, found = 1 << table.bits, {}
+    for i, name in enumerate(table.columns):
+        place, column = sheet.header.index(name), []
+        for value, error, row in zip(table.values, table.errors, sheet.rows, strict=True):
+            known = abs(value[i]) > error[i]
+            column.append(value[i] / unit if known else float(Fraction(row[place])))
+        found[name] = column
+    return found
+
+
+def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
+    """Return the largest bound of each column as text, rounding to the printed digits included."""
+    bounds = table.largest_bounds()
+    return {name: rounded_up(bounds[name] + Fraction(1, 2 * 10 ** decimals[name])) for name in table.columns}
 
 
 def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:

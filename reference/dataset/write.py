@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import os
 import shutil
 from collections.abc import Iterator
@@ -10,20 +11,13 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..errors import DatasetError, InputError
-from ..scene import Scene
-from ..shipped import data_root, in_checkout
+from ..shipped import golden_root, keep_seal
 from ..solver.solution import Solution
-from .read import MANIFEST
+from .manifest import MANIFEST
 from .render import render
 from .verify import problems_of
 
 _AT_FDCWD, _RENAME_EXCHANGE = -100, 2
-
-
-def default_folder(scene: Scene, as_shipped: bool) -> Path:
-    """Return the folder to write to: the checkout's data/golden for a shipped scene as it stands, else ./golden."""
-    name = scene.id if scene.inputs == "decimal" else f"{scene.id}.{scene.inputs}"
-    return (data_root() if as_shipped and in_checkout() else Path()) / "golden" / name
 
 
 def check_target(folder: Path) -> None:
@@ -63,8 +57,13 @@ def _workspace(folder: Path) -> Iterator[Path]:
         shutil.rmtree(work, ignore_errors=True)
 
 
-def write(solution: Solution, folder: str | Path) -> Path:
+def write(solution: Solution, folder: str | Path, name: str | None = None) -> Path:
     """Write a solution as a golden dataset: beside `folder`, where it is checked, and then put in place at once.
+
+    Args:
+        solution: what to write.
+        folder: the dataset's folder; an older dataset there is replaced.
+        name: the dataset's id, by default the scene's own with its changes (`place.dataset_id`).
 
     Raises:
         InputError: the folder cannot be written.
@@ -73,8 +72,9 @@ def write(solution: Solution, folder: str | Path) -> Path:
     folder = Path(folder)
     check_target(folder)
     with _workspace(folder) as work:
-        for name, text in render(solution).items():
-            with (work / name).open("w", encoding="utf-8", newline="\n") as handle:
+        texts = render(solution, name)
+        for file, text in texts.items():
+            with (work / file).open("w", encoding="utf-8", newline="\n") as handle:
                 handle.write(text)
                 handle.flush()
                 os.fsync(handle.fileno())
@@ -82,6 +82,8 @@ def write(solution: Solution, folder: str | Path) -> Path:
         if problems:
             raise DatasetError(str(folder), problems)
         _put_in_place(work, folder.absolute())
+    if folder.resolve().parent == golden_root().resolve():
+        keep_seal(folder.name, json.loads(texts[MANIFEST])["seal"])
     return folder
 
 

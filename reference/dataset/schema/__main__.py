@@ -1,12 +1,13 @@
-"""Write `manifest.schema.json` anew from `reference/dataset/manifest.py`: python -m reference.dataset.schema."""
+"""Write the JSON Schemas anew from `reference/dataset/`: python -m reference.dataset.schema."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
 
-from reference.dataset.manifest import json_schema
+from reference.dataset import manifest, vectors
 
 if __name__ == "__main__":
-    target = Path(__file__).with_name("manifest.schema.json")
-    target.write_text(json.dumps(json_schema(), indent=1) + "\n", encoding="utf-8")
+    for module in (manifest, vectors):
+        target = Path(__file__).with_name(f"{module.__name__.rpartition('.')[2]}.schema.json")
+        target.write_text(json.dumps(module.json_schema(), indent=1) + "\n", encoding="utf-8")

@@ -153,7 +153,7 @@ def test_what_cannot_be_reached_ends_with_exit_3_and_no_file(foucault, tmp_path,
 def test_verify_without_any_dataset_says_so(foucault, tmp_path, monkeypatch):
     from reference.commands import verify
 
-    monkeypatch.setattr(verify, "data_root", lambda: tmp_path)
+    monkeypatch.setattr(verify, "seals", dict)
     status, _, err = foucault("verify")
     assert status == 2
     assert "foucault generate" in err

@@ -19,15 +19,20 @@ import pytest
 from small_scenes import make_scene
 
 import reference
+from reference.dataset import manifest as manifests
+from reference.dataset import place, vectors
 from reference.dataset import write as writer
-from reference.dataset.manifest import json_schema
-from reference.dataset.read import MANIFEST, load, read_table
-from reference.dataset.render import command, render
+from reference.dataset.files import read_files
+from reference.dataset.manifest import ALWAYS, MANIFEST, OPTIONAL
+from reference.dataset.place import dataset_id, default_folder, golden_folder
+from reference.dataset.read import load
+from reference.dataset.record import command
+from reference.dataset.render import render
 from reference.dataset.verify import problems_of
-from reference.dataset.write import check_target, default_folder, write
+from reference.dataset.write import check_target, write
 from reference.errors import DatasetError, InputError
 
-NAMES = {MANIFEST, "grid.csv", "transits.csv", "grid.binary64.csv", "transits.binary64.csv", "certified.txt"}
+NAMES = {MANIFEST, *ALWAYS, *OPTIONAL}
 
 
 @pytest.fixture(scope="module")
@@ -65,29 +70,85 @@ def test_headers_and_digits_after_the_point_are_fixed(dataset):
         assert len(shapes) == 1
 
 
+def columns_of(dataset, name):
+    sheet = read_files(dataset).tables[name]
+    return dict(zip(sheet.header, zip(*sheet.rows, strict=True), strict=True))
+
+
 def test_the_largest_number_of_a_column_has_the_digits_asked(dataset):
-    columns = read_table(dataset / "grid.csv")
+    columns = columns_of(dataset, "grid.csv")
     for name in ("x", "y", "z", "vx", "vy"):
         largest = max(columns[name], key=lambda text: abs(Fraction(text)))
         assert len(largest.lstrip("-0.").replace(".", "")) == 25
 
 
 def test_doubles_are_given_with_seventeen_digits_and_as_hexfloats(dataset):
-    grid = read_table(dataset / "grid.csv")
-    doubles = read_table(dataset / "grid.binary64.csv")
+    grid, doubles = columns_of(dataset, "grid.csv"), columns_of(dataset, "grid.binary64.csv")
     for name in grid:
         for text, plain, hexadecimal in zip(grid[name], doubles[name], doubles[f"{name}_hex"], strict=True):
             assert float(Fraction(text)) == float(plain) == float.fromhex(hexadecimal)
             assert len(plain.lstrip("-").partition("e")[0]) == 18
 
 
-def test_the_manifest_follows_the_published_schema(dataset):
-    document = json.loads((dataset / MANIFEST).read_text())
-    schema = json.loads(files("reference").joinpath("dataset/schema/manifest.schema.json").read_text())
+def test_doubles_are_nearest_to_the_truth_that_is_known_and_not_to_the_digits_that_are_printed(tmp_path):
+    """Fifteen digits are printed and some twenty are known; the truth here is a run of forty."""
+    scene = reference.load_scene("paris", ["run.t_end=600", "run.digits=15"])
+    solution, truth = reference.solve(scene), reference.solve(scene, digits=40)
+    dataset = write(solution, tmp_path / "few")
+    for kind, known, table in (
+        ("grid", solution.grid, truth.grid),
+        ("transits", solution.transits, truth.transits),
+    ):
+        printed, doubles = columns_of(dataset, f"{kind}.csv"), columns_of(dataset, f"{kind}.binary64.csv")
+        nearest = {"doubles": 0, "decimals": 0, "all": 0}
+        for name in table.columns:
+            cells = zip(printed[name], doubles[f"{name}_hex"], table.exact(name), known.bound(name), strict=True)
+            for text, hexfloat, exact, bound in cells:
+                double = float.fromhex(hexfloat)
+                assert abs(Fraction(double) - exact) <= Fraction(math.ulp(double)) / 2 + bound
+                nearest["doubles"] += double == float(exact)
+                nearest["decimals"] += float(text) == float(exact)
+                nearest["all"] += 1
+        assert nearest["doubles"] > 0.95 * nearest["all"] > nearest["decimals"]
+
+
+@pytest.mark.parametrize("name, module", [(MANIFEST, manifests), ("vectors.json", vectors)])
+def test_the_manifest_and_the_vectors_follow_their_published_schemas(dataset, name, module):
+    document = json.loads((dataset / name).read_text())
+    file = f"dataset/schema/{name.partition('.')[0]}.schema.json"
+    schema = json.loads(files("reference").joinpath(file).read_text())
     jsonschema.validate(document, schema)
-    assert schema == json_schema(), "run: python -m reference.dataset.schema"
+    assert schema == module.json_schema(), "run: python -m reference.dataset.schema"
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate({**document, "extra": 1}, schema)
+
+
+def test_vectors_are_at_most_64_states_and_transits_with_bounds_taken_from_the_tables(tmp_path):
+    scene = reference.load_scene("paris", ["run.t_end=900", "run.grid_step=10", "run.digits=15"])
+    dataset = write(reference.solve(scene), tmp_path / "vectors")
+    found, tables = json.loads((dataset / "vectors.json").read_text()), read_files(dataset).tables
+    assert len(found["states"]) == 64
+    assert 62 <= len(found["transits"]) <= 64  # the closest pair may be among those that are evenly spread
+    assert found["states"][0]["flags"] == ["release"] and found["states"][-1]["flags"] == ["end"]
+    pair = [t["k"] for t in found["transits"] if "closest_pair" in t["flags"]]
+    assert pair[1] == pair[0] + 1
+    assert set(found["notes"]) == {"release", "end", "closest_pair"}
+    assert found["columns"] == {
+        "t": "s",
+        **dict.fromkeys("xyz", "m"),
+        **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
+        "ax": "m/s^2",
+    }
+    for state in found["states"]:
+        row = tables["grid.csv"].rows[state["row"] - 1]
+        assert [value["decimal"] for value in state["values"].values()] == list(row)
+        assert (
+            Fraction(state["values"]["t"]["bound"]) == 0 < Fraction(state["values"]["x"]["bound"]) < Fraction(1, 10**14)
+        )
+    for transit in found["transits"]:
+        row = tables["transits.csv"].rows[transit["k"] - 1]
+        assert (transit["direction"], transit["values"]["t"]["bound"]) == (int(row[2]), row[-1])
+        assert float.fromhex(transit["values"]["t"]["hexfloat"]) == pytest.approx(float(row[1]), rel=1e-15)
 
 
 def test_the_manifest_names_no_date_host_or_wall_time(dataset):
@@ -111,6 +172,7 @@ def test_the_page_for_people_carries_the_certified_values(dataset):
     page = (dataset / "certified.txt").read_text()
     last = (dataset / "grid.csv").read_text().splitlines()[-1].split(",")
     assert all(text in page for text in last)
+    assert "Certified" not in page  # it is confirmed, not proven
     assert "Transits (xdot = 0, t > 0): 36 (complete)" in page
 
 
@@ -138,9 +200,8 @@ def test_a_solution_and_its_dataset_have_the_same_columns(dataset, solution):
             exact = zip(table.exact(name), printed.exact(name), strict=True)
             assert all(abs(one - other) <= unit / 2 for one, other in exact)
             assert np.allclose(table[name], printed[name], rtol=1e-15, atol=float(unit))
-            if name != "ax":  # of which no bound is published
-                bounds = zip(table.bound(name), printed.bound(name), strict=True)
-                assert all(one <= other for one, other in bounds)
+            bounds = zip(table.bound(name), printed.bound(name), strict=True)
+            assert all(one <= other for one, other in bounds)
     with pytest.raises(KeyError, match="'w' is no column"):
         golden.grid["w"]
 
@@ -162,7 +223,7 @@ def test_what_has_no_transits_says_why(tmp_path):
 
 def test_a_changed_file_is_not_read(dataset):
     page = dataset / "certified.txt"
-    page.write_text(page.read_text().replace("Certified", "Uncertified"))
+    page.write_text(page.read_text().replace("State", "Fate"))
     with pytest.raises(DatasetError, match=r"certified\.txt"):
         load(dataset)
 
@@ -188,7 +249,7 @@ def test_a_target_that_is_something_else_is_left_alone(tmp_path):
 def test_a_dataset_that_fails_its_own_checks_is_not_put_in_place(dataset, solution, monkeypatch):
     before = {path.name: path.read_bytes() for path in dataset.iterdir()}
     broken = {**render(solution), "grid.csv": "t,x\n"}
-    monkeypatch.setattr(writer, "render", lambda _: broken)
+    monkeypatch.setattr(writer, "render", lambda *_: broken)
     with pytest.raises(DatasetError):
         write(solution, dataset)
     assert {path.name: path.read_bytes() for path in dataset.iterdir()} == before
@@ -215,14 +276,43 @@ def test_what_a_killed_process_left_is_cleared_and_what_a_living_one_holds_is_no
     assert alive.exists()
 
 
-def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch):
-    scene = reference.load_scene("paris")
-    assert default_folder(scene, as_shipped=True).parts[-3:] == ("data", "golden", "paris")
-    assert default_folder(scene, as_shipped=False) == Path("golden/paris")
-    binary = scene.with_values(["inputs=binary64"])
-    assert default_folder(binary, as_shipped=True).name == "paris.binary64"
-    monkeypatch.setattr(writer, "in_checkout", lambda: False)
-    assert default_folder(scene, as_shipped=True) == Path("golden/paris")
+def test_a_dataset_is_called_by_its_scene_and_by_what_was_changed(paris):
+    assert dataset_id(paris) == "paris"
+    assert dataset_id(paris.with_values(["inputs=binary64"])) == "paris.binary64"
+    changed = paris.with_values(["site.latitude=0", "run.t_end=600"])
+    assert dataset_id(changed) == "paris+site.latitude=0"
+    assert dataset_id(changed, changed) == "paris"
+    mine = make_scene("mine")
+    assert dataset_id(mine.with_values(["site.latitude=1"]), mine) == "mine+site.latitude=1"
+    many = dataset_id(paris.with_values([f"pendulum.length=67.{'0' * 200}1"]))
+    assert many.startswith("paris+sha256=") and len(many) < 40
+
+
+def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch, tmp_path, paris):
+    monkeypatch.chdir(tmp_path)
+
+    def folder(scene):
+        return default_folder(scene, dataset_id(scene))
+
+    assert folder(paris).parts[-3:] == ("data", "golden", "paris")
+    assert folder(paris.with_values(["inputs=binary64"])).parts[-3:] == ("data", "golden", "paris.binary64")
+    assert folder(paris.with_values(["run.t_end=60"])) == Path("golden/paris")
+    assert folder(paris.with_values(["site.latitude=0"])) == Path("golden/paris+site.latitude=0")
+    assert folder(make_scene("mine")) == Path("golden/mine")
+    monkeypatch.setattr(place, "in_checkout", lambda: False)
+    assert folder(paris) == Path("golden/paris")
+
+
+def test_a_name_means_the_same_folder_to_those_who_write_and_those_who_read(monkeypatch, tmp_path, dataset, paris):
+    monkeypatch.chdir(tmp_path)
+    assert golden_folder("paris") == Path("paris")  # a folder here
+    dataset.rename(tmp_path / "elsewhere")
+    assert golden_folder("paris") == default_folder(paris, "paris")
+    (tmp_path / "golden/paris").mkdir(parents=True)
+    assert golden_folder("paris") == default_folder(paris, "paris") == Path("golden/paris")
+    assert golden_folder("./paris") == Path("paris")
+    assert golden_folder("golden/hard") == Path("golden/hard")
+    assert golden_folder("nothing") == Path("nothing")
 
 
 WRITER = """
@@ -270,12 +360,13 @@ def test_bounds_cover_the_rounding_to_the_printed_digits(dataset):
 
 def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     plain = "foucault generate paris --t-end 86400 --digits 40 --level confirmed"
-    assert command(paris, "heyoka") == f"{plain} --engine heyoka"
-    assert command(paris, "limbs") == f"{plain} --engine limbs"
+    assert command(paris, "heyoka", "paris") == f"{plain} --engine heyoka"
+    assert command(paris, "limbs", "paris") == f"{plain} --engine limbs"
     changed = paris.with_values(["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"])
     sets = "--set site.latitude=0 --set release.vx=1 --set run.grid_step=600 --set inputs=binary64"
-    text = command(changed, "heyoka")
+    text = command(changed, "heyoka", dataset_id(changed))
     assert sets in text and text.startswith(plain)
     words = [word for word in text.split() if "=" in word]
     assert paris.with_values(words) == changed
-    assert command(make_scene("mine"), "heyoka").startswith("foucault generate mine.toml --t-end")
+    assert command(make_scene("mine"), "heyoka", "mine").startswith("foucault generate mine.toml --t-end")
+    assert command(make_scene("mine"), "heyoka", "mine+site.latitude=1").endswith("--set site.latitude=1")

@@ -1,0 +1,8 @@
+"""The checks of `verify`, one idea a file; each yields a sentence for every problem that it finds in a dataset.
+
+- `record`: what follows from the scene is made again: names, frame, equations, command, counts, bounds, page, vectors.
+- `tables`: grid times, the first row, doubles, the digits of each column, order and directions of the transits.
+- `physics`: each row by itself: sphere, velocity along it, invariant, the acceleration at a transit.
+- `index`: the seal of a dataset that ships, against the one inside the package.
+- `motion`: the rows together: the scene is integrated again from its release, or else from every row to the next.
+"""

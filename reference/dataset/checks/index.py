@@ -1,0 +1,33 @@
+"""Check the seal of a dataset that ships against the index inside the package: a forger can make the seal anew."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from ...errors import FoucaultError
+from ...shipped import golden_root, seals
+from ..files import Files, read_files
+from ..manifest import MANIFEST, Manifest
+from ..record import generator
+
+
+def problems(files: Files) -> Iterator[str]:
+    """Check the seal of a dataset that ships, in its place or copied from there."""
+    manifest, ships = files.manifest, golden_root() / files.manifest.id
+    seal = seals().get(manifest.id)
+    if seal in (None, manifest.seal):
+        return
+    if files.folder.resolve() == ships.resolve() or _is_copy(manifest, ships):
+        own, other = manifest.seal[:12], seal[:12]
+        yield f"{MANIFEST}: its seal {own}… is not that of the dataset that ships, {other}… (index.json)"
+
+
+def _is_copy(manifest: Manifest, ships: Path) -> bool:
+    """Return whether a dataset must be that which ships: the same scene, not made here with other versions."""
+    try:
+        shipped = read_files(ships).manifest
+    except FoucaultError:
+        return False
+    made_otherwise = shipped.generator != manifest.generator == generator()
+    return manifest.scene == shipped.scene and not made_otherwise

@@ -1,0 +1,153 @@
+"""Check the rows together: integrate the scene again in limbs, and compare every printed number with the result.
+
+Two runs from the exact release, at two precisions, show by their disagreement how far the finer one can be trusted.
+Where even the most bits that limbs have do not decide, as on a chaotic scene, each row is integrated to the next.
+"""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from ...columns import GRID, TRANSITS
+from ...engines.limbs.size import LIMB_BITS, MOST_PREC
+from ...engines.plan import Run
+from ...engines.registry import engines
+from ...errors import IntegrationError, UnreachableError
+from ...model.start import Start
+from ...precision import DOUBLE_BITS, GUARD_BITS, LONG_DOUBLE_BITS, bits_of
+from ...table import Table
+from ..files import Files
+from ..manifest import Manifest
+from ..sheets import Sheet
+
+BASE_S, ROW_S, TRANSIT_S = 10.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
+PATIENCE = 4  # times that, before a run that was expected to be short is given up
+LEAST_PREC = LONG_DOUBLE_BITS + 1
+FINER_BITS = 2 * LIMB_BITS  # between two attempts; half of it between the two runs of one, so that their limbs differ
+
+Progress = Callable[[float, float], None]  # called with the simulated time reached and the whole span, in s
+
+
+class _TooLong(Exception):
+    """A run has taken `PATIENCE` times what it may."""
+
+
+def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
+    """Return a sentence for every number that the motion contradicts, and what could not be checked."""
+    left_out = "each row was checked by itself; the motion was not integrated again"
+    if not engines()["limbs"].installed:
+        return [], [f"{left_out}: that needs numba (pip install 'foucault-reference[methods]')"]
+    manifest = files.manifest
+    allowed = BASE_S + ROW_S * manifest.counts.grid + TRANSIT_S * manifest.counts.transits
+    prec = _first_prec(manifest)
+    expected = 2 * engines()["limbs"].expected_s(_steps(files), prec)
+    if expected > allowed:
+        return [], [f"{left_out}, which would take about {expected:.0f} s: --recompute does it"]
+    remarks: list[str] = []
+    seek = files.scene.run.transits and manifest.transits == "complete" and "transits.csv" in files.tables
+    deadline = time.process_time() + PATIENCE * allowed
+    try:
+        while prec <= MOST_PREC:
+            coarse = _run(files, prec - LIMB_BITS, seek, deadline, report)
+            fine = _run(files, prec, seek, deadline, report)
+            found = _compared(files, coarse, fine, seek)
+            if found is not None:
+                return found, remarks
+            prec += FINER_BITS
+    except _TooLong:
+        return [], [f"{left_out}, which takes more than {PATIENCE * allowed:.0f} s: --recompute does it"]
+    except (IntegrationError, UnreachableError) as error:
+        return [], [f"{left_out}: {error}"]
+    return [], [f"{left_out}: it takes more than {MOST_PREC} bits; --recompute does it"]
+
+
+def _first_prec(manifest: Manifest) -> int:
+    """Return the bits of the published run where limbs have as many, and at least those of the digits."""
+    claimed = re.search(r"\((\d{1,4})\)", manifest.run.number)
+    prec = max(int(claimed[1]) if claimed else DOUBLE_BITS, bits_of(manifest.digits) + GUARD_BITS // 2)
+    return min(max(prec, LEAST_PREC + LIMB_BITS), MOST_PREC)
+
+
+def _steps(files: Files) -> int:
+    """Return about how many steps a run takes: the fastest rate in the scene, over the whole span."""
+    start = Start.of(files.scene.exact, GUARD_BITS)
+    speeds = (sum(abs(part) for part in row) for row in files.tables["grid.csv"].numbers(GRID[3:]))
+    rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)) + abs(start.k.rate) + start.k.drag)
+    rate += float(max(speeds) / files.scene.exact.length)
+    return int(min(1e15, float(files.scene.exact.t_end) * rate)) + 1
+
+
+def _run(files: Files, prec: int, seek: bool, deadline: float, report: Progress | None) -> Run:
+    limbs, inputs = engines()["limbs"], files.scene.exact
+
+    def patient(t: float) -> None:
+        if time.process_time() > deadline:
+            raise _TooLong
+        if report is not None:
+            report(t, float(inputs.t_end))
+
+    return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), patient)
+
+
+def _compared(files: Files, coarse: Run, fine: Run, seek: bool) -> list[str] | None:
+    """Return the numbers that are off; None where the two runs are too far apart to tell."""
+    manifest = files.manifest
+    comparisons = [_Comparison.of(manifest, "grid", files.tables["grid.csv"], coarse.grid, fine.grid)]
+    found = []
+    if seek and (fine.transits is not None):
+        if coarse.directions != fine.directions:
+            return None
+        sheet = files.tables["transits.csv"]
+        directions = [int(row[sheet.header.index("direction")]) for row in sheet.rows]
+        if directions != fine.directions:
+            return [f"transits.csv: {len(directions)} transits, the motion has {len(fine.directions)}"]
+        assert coarse.transits is not None
+        comparisons.append(_Comparison.of(manifest, "transits", sheet, coarse.transits, fine.transits))
+    for comparison in comparisons:
+        if not comparison.decided:
+            return None
+        found += comparison.problems()
+    return found
+
+
+@dataclass(frozen=True)
+class _Comparison:
+    """A printed table beside the same columns of two runs."""
+
+    kind: str
+    sheet: Sheet
+    table: Table
+    apart: dict[str, Fraction]
+    bounds: dict[str, Fraction]
+    decimals: dict[str, int]
+
+    @classmethod
+    def of(cls, manifest: Manifest, kind: str, sheet: Sheet, coarse: Table, fine: Table) -> _Comparison:
+        columns: Sequence[str] = GRID if kind == "grid" else TRANSITS
+        table = fine.only(tuple(columns))
+        bounds = {name: manifest.bound(kind, name) for name in columns}  # type: ignore[arg-type]
+        apart = table.distance(coarse).largest()
+        return cls(kind, sheet, table, apart, bounds, manifest.decimals[kind])  # type: ignore[index]
+
+    @property
+    def decided(self) -> bool:
+        """Whether the runs are nearer to each other than the bounds ask."""
+        return all(self.apart[name] <= bound for name, bound in self.bounds.items())
+
+    def problems(self) -> list[str]:
+        """Return a sentence for every printed number that is not within its bound."""
+        found, word = [], "transit" if self.kind == "transits" else "t ="
+        unit, own = 1 << self.table.bits, self.sheet.header.index("bound") if self.kind == "transits" else None
+        for i, name in enumerate(self.table.columns):
+            place, ten = self.sheet.header.index(name), 10 ** self.decimals[name]
+            for row, values in zip(self.sheet.rows, self.table.values, strict=True):
+                bound = Fraction(row[own]) if own is not None and name == "t" else self.bounds[name]
+                off = abs(Fraction(int(row[place].replace(".", "")), ten) - Fraction(values[i], unit))
+                if off > bound + self.apart[name]:
+                    where = f"{self.kind}.csv: {word} {row[0]}: {name} is off by {float(off):.2g}"
+                    found.append(f"{where}, its bound is {float(bound):.2g}")
+        return found

@@ -1,0 +1,166 @@
+"""Check each row by itself: on the sphere, velocity along it, the invariant h, and the acceleration at a transit.
+
+How far a checked quantity may be off follows from the bounds of the columns, by differences of the quantity itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from ...columns import GRID
+from ...model.constants import Constants, constants
+from ...model.force import acceleration, invariant
+from ...precision import GUARD_BITS, Array, bits_of, context, to_fraction, to_mpf
+from ..files import Files
+from ..invariant import INVARIANT_BITS
+
+NUDGE = 1e-5  # of a column's size: differences over it are right to four digits, which is plenty
+SLACK = Fraction(21, 20)
+STEEP = 4  # where |z| is below l/4, z does not follow well enough from x and y
+
+Quantity = Callable[[list[Any], Constants], Any]
+
+
+def problems(files: Files) -> Iterator[str]:
+    """Yield every row that breaks a law which holds at each moment."""
+    manifest, sheet = files.manifest, files.tables["grid.csv"]
+    grid = _Moments(
+        files,
+        [f"grid.csv: t = {row[0]}" for row in sheet.rows],
+        list(sheet.numbers(GRID)),
+        [manifest.bound("grid", name) for name in GRID],
+    )
+    yield from grid.off_the_sphere()
+    yield from grid.not_along_the_sphere()
+    constant = files.scene.exact.drag == 0
+    if constant:
+        yield from grid.with_another_invariant(grid)
+    if manifest.counts.transits and "transits.csv" in files.tables:
+        transits, ax = _transits(files)
+        yield from transits.off_the_sphere()
+        if constant:
+            yield from transits.with_another_invariant(grid)
+        yield from transits.with_another_acceleration(ax, manifest.bound("transits", "ax"))
+
+
+def _transits(files: Files) -> tuple[_Moments, list[Fraction]]:
+    """Return the states at the transits, where the velocity is (0, vy, -y vy / z), and xddot."""
+    sheet, bound = files.tables["transits.csv"], files.manifest.bound
+    names, rows, ax = [], [], []
+    for (x, y, z, vy, second), row in zip(sheet.numbers(("x", "y", "z", "vy", "ax")), sheet.rows, strict=True):
+        names.append(f"transits.csv: transit {row[0]}")
+        rows.append([x, y, z, Fraction(0), vy, -y * vy / z if z else Fraction(0)])
+        ax.append(second)
+    exact = Fraction(0)  # xdot is zero by definition, and zdot follows
+    bounds = [*(bound("transits", name) for name in ("x", "y", "z")), exact, bound("transits", "vy"), exact]
+    return _Moments(files, names, rows, bounds), ax
+
+
+@dataclass(frozen=True)
+class _Moments:
+    """States x, y, z, vx, vy, vz of a dataset, how messages name them, and the bounds of the six columns."""
+
+    files: Files
+    names: list[str]
+    rows: list[list[Fraction]]
+    bounds: list[Fraction]
+
+    def off_the_sphere(self) -> Iterator[str]:
+        """Check |r| = l."""
+        length = self.files.scene.exact.length
+        for name, row in zip(self.names, self.rows, strict=True):
+            allowed = sum((2 * abs(q) * b + b * b for q, b in zip(row[:3], self.bounds[:3], strict=True)), Fraction(0))
+            if abs(sum((q * q for q in row[:3]), Fraction(0)) - length**2) > allowed:
+                yield f"{name}: the bob is not at the distance {float(length):g} m from the pivot"
+
+    def not_along_the_sphere(self) -> Iterator[str]:
+        """Check r·v = 0."""
+        b, c = self.bounds[:3], self.bounds[3:]
+        for name, row in zip(self.names, self.rows, strict=True):
+            pairs = list(zip(row[:3], row[3:], b, c, strict=True))
+            allowed = sum((abs(q) * e + abs(v) * d + d * e for q, v, d, e in pairs), Fraction(0))
+            if abs(sum((q * v for q, v, _, _ in pairs), Fraction(0))) > allowed:
+                yield f"{name}: the velocity is not along the sphere"
+
+    def with_another_invariant(self, grid: _Moments) -> Iterator[str]:
+        """Check that h is that of the grid's first row."""
+        first, allowed_first = grid.values(_invariant)[0], grid.allowed(_invariant)[0]
+        for name, h, allowed in zip(self.names, self.values(_invariant), self.allowed(_invariant), strict=True):
+            if abs(h - first) > allowed + allowed_first:
+                yield f"{name}: the invariant h differs by {float(h - first):.2g} m²/s² from that of the first row"
+
+    def with_another_acceleration(self, ax: list[Fraction], bound: Fraction) -> Iterator[str]:
+        """Check xddot."""
+        rows = zip(self.names, self.values(_xddot), self.allowed(_xddot), ax, strict=True)
+        for name, value, allowed, printed in rows:
+            if abs(value - printed) > allowed + bound:
+                yield f"{name}: ax = {float(printed):.17g}, the equations of motion give {float(value):.17g}"
+
+    def values(self, quantity: Quantity) -> list[Fraction]:
+        """Return a quantity of each state."""
+        ctx = context(bits_of(self.files.manifest.digits) + INVARIANT_BITS)
+        k = constants(self.files.scene.exact, ctx)
+        found = []
+        for row in self.rows:
+            columns = _completed([to_mpf(q, ctx) for q in row], k.length, _is_deep(row, self.files), ctx.sqrt)
+            found.append(to_fraction(quantity(columns, k) + ctx.zero))
+        return found
+
+    def allowed(self, quantity: Quantity) -> list[Fraction]:
+        """Return how far a quantity of each state may be off by the bounds on the state."""
+        k = constants(self.files.scene.exact, context(GUARD_BITS)).converted(float)
+        columns = [np.array([float(row[j]) for row in self.rows]) for j in range(6)]
+        deep = np.array([_is_deep(row, self.files) for row in self.rows])
+
+        def of(changed: list[Array]) -> Array:
+            depth = _completed(changed, k.length, True, lambda square: np.sqrt(np.maximum(square, 0.0)))
+            return np.asarray(
+                quantity([np.where(deep, p, q) for p, q in zip(depth, changed, strict=True)], k) + 0.0 * deep
+            )
+
+        value, total = of(columns), [Fraction(0)] * len(self.rows)
+        fastest = max(float(np.max(np.abs(column))) for column in columns[3:])
+        for j, bound in enumerate(self.bounds):
+            if not bound:
+                continue
+            step = max(NUDGE * (k.length if j < 3 else fastest or k.length), float(bound))
+            ends = (of([*columns[:j], columns[j] + side * step, *columns[j + 1 :]]) for side in (1, -1))
+            slopes = np.max([np.abs(end - value) for end in ends], axis=0) / step
+            total = [so_far + Fraction(slope) * bound * SLACK for so_far, slope in zip(total, slopes, strict=True)]
+        return total
+
+
+def _is_deep(row: list[Fraction], files: Files) -> bool:
+    return abs(row[2]) * STEEP > files.scene.exact.length
+
+
+def _completed(columns: list[Any], length: Any, deep: bool, sqrt: Callable[[Any], Any]) -> list[Any]:
+    """Return the columns with z and vz as they follow from x, y, vx, vy, where they follow well."""
+    if not deep:
+        return columns
+    x, y, z, vx, vy, _ = columns
+    depth = sqrt(length * length - x * x - y * y) * _sign(z)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return [x, y, depth, vx, vy, -(x * vx + y * vy) / depth]
+
+
+def _sign(z: Any) -> Any:
+    return np.sign(z) if isinstance(z, np.ndarray) else 1 if z > 0 else -1
+
+
+def _invariant(columns: list[Any], k: Constants) -> Any:
+    return invariant(*_over_length(columns, k), k)
+
+
+def _xddot(columns: list[Any], k: Constants) -> Any:
+    return acceleration(*_over_length(columns, k), k)[0] * k.length
+
+
+def _over_length(columns: list[Any], k: Constants) -> tuple[Any, Any]:
+    x, y, z, vx, vy, vz = (column / k.length for column in columns)
+    return (x, y, z), (vx, vy, vz)

@@ -1,0 +1,135 @@
+"""Check a manifest against its scene: all that follows from the scene is made again and compared."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from fractions import Fraction
+
+from ...columns import GRID, POSITION, TRANSITS, VELOCITY
+from ...engines import engine_names
+from ...model.formulations import FORMULATIONS
+from ...model.start import Start
+from ...model.vanishing import xdot_vanishes
+from ..files import Files
+from ..invariant import invariant_drift
+from ..manifest import MANIFEST, CrossCheckRecord, Manifest
+from ..place import changes_in, dataset_id, shipped_scene
+from ..record import UNIT_OF, command, equations_of, frame_of, notes_of
+from ..render import derived_texts
+
+PREC = 128  # bits; only exact zeros matter here
+SLACK = Fraction(11, 10)  # bounds are rounded up to two digits
+
+
+def problems(files: Files) -> Iterator[str]:
+    """Yield what of a manifest, of the page and of the vectors does not follow from the scene and the tables."""
+    manifest, scene = files.manifest, files.scene
+    run = manifest.run
+    if run.formulation not in FORMULATIONS:
+        yield f"{MANIFEST}: run.formulation = {run.formulation} is none"
+        return
+    expected = {
+        "notes": notes_of(scene),
+        "frame": frame_of(scene),
+        "units": UNIT_OF,
+        "equations": equations_of(scene, run.formulation),
+    }
+    for name, value in expected.items():
+        if getattr(manifest, name) != value:
+            yield f"{MANIFEST}: {name} does not follow from the scene"
+    if not _is_its_id(files):
+        yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
+    if manifest.command not in {command(scene, engine, manifest.id) for engine in engine_names()}:
+        yield f"{MANIFEST}: command does not follow from the scene"
+    vanishes = xdot_vanishes(Start.of(scene.exact, PREC))
+    if (manifest.transits == "xdot is identically zero") != (vanishes and scene.run.transits):
+        yield f"{MANIFEST}: transits = {manifest.transits}, xdot is {'' if vanishes else 'not '}identically zero"
+    yield from _possible(files)
+    yield from _bounds(manifest)
+    yield from _evidence(manifest)
+    if invariant_drift(scene, files.tables["grid.csv"]) != (manifest.invariant.h_m2_s2, manifest.invariant.drift_m2_s2):
+        yield f"{MANIFEST}: the invariant is not that of grid.csv"
+    yield from _derived(files)
+
+
+def _is_its_id(files: Files) -> bool:
+    """Return whether an id names the scene's changes: all against a shipped scene, else some that the scene has."""
+    name, scene = files.manifest.id, files.scene
+    if shipped_scene(scene) is not scene:
+        return name == dataset_id(scene)
+    bare = dataset_id(scene)  # of a user's own scene, whose fields before the changes are not known
+    return name == bare or (name.startswith(f"{bare}+") and all(_has(files, change) for change in changes_in(name)))
+
+
+def _has(files: Files, change: str) -> bool:
+    key, _, value = change.partition("=")
+    section, _, field = key.partition(".")
+    return files.manifest.scene.get(section, {}).get(field) == value
+
+
+def _possible(files: Files) -> Iterator[str]:
+    ends = [(Fraction(one.from_s), Fraction(one.to_s)) for one in files.manifest.possible]
+    last = Fraction(0)
+    for low, high in ends:
+        if not last <= low <= high <= files.scene.exact.t_end:
+            yield f"{MANIFEST}: possible transits must be intervals in order within (0, t_end]"
+        last = high
+
+
+def _bounds(manifest: Manifest) -> Iterator[str]:
+    """Check that each bound covers the rounding to the printed digits, and the largest of each kind."""
+    bounds = manifest.bounds
+    for kind, columns, count in (("grid", GRID, 1), ("transits", TRANSITS, manifest.counts.transits)):
+        found = getattr(bounds, kind)
+        if tuple(found) != (columns if count else ()):
+            yield f"{MANIFEST}: bounds.{kind} must name the columns {', '.join(columns)}"
+            return
+        for name, bound in found.items():
+            if Fraction(bound) < Fraction(1, 2 * 10 ** manifest.decimals[kind].get(name, 0)):  # type: ignore[index]
+                yield f"{MANIFEST}: bounds.{kind}.{name} = {bound} is less than half a unit of the last printed digit"
+    largest = {
+        "position_m": max((bounds.grid[name] for name in POSITION), key=Fraction),
+        "velocity_m_s": max((bounds.grid[name] for name in VELOCITY), key=Fraction),
+        "transit_s": bounds.transits.get("t"),
+    }
+    for name, bound in largest.items():
+        if getattr(bounds, name) != bound:
+            yield f"{MANIFEST}: bounds.{name} = {getattr(bounds, name)} is not the largest of its columns, {bound}"
+
+
+def _evidence(manifest: Manifest) -> Iterator[str]:
+    """Check the level against what stands behind it: other runs, or a proof, as close as the bounds say."""
+    checks, bounds, run = manifest.cross_checks, manifest.bounds, manifest.run
+    if manifest.level == "confirmed" and all(check.formulation == run.formulation for check in checks):
+        yield f"{MANIFEST}: level = confirmed, and no cross-check is in another formulation"
+    if manifest.level == "self_consistent" and all(_same_run(check, manifest) for check in checks):
+        yield f"{MANIFEST}: level = self_consistent, and no cross-check differs from the run"
+    for check in checks:
+        if check.formulation not in FORMULATIONS:
+            yield f"{MANIFEST}: cross_checks: {check.formulation} is no formulation"
+        apart = {"position_m": check.position_m, "velocity_m_s": check.velocity_m_s, "transit_s": check.transit_s}
+        for name, gap in apart.items():
+            if gap is not None and (bound := getattr(bounds, name)) and Fraction(gap) > Fraction(bound):
+                yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"
+    proof = manifest.enclosure
+    if proof is not None:
+        radii = {
+            "position_m": proof.position_radius_m,
+            "velocity_m_s": proof.velocity_radius_m_s,
+            "transit_s": proof.transit_radius_s,
+        }
+        for name, radius in radii.items():
+            if radius is not None and (bound := getattr(bounds, name)) and Fraction(radius) > SLACK * Fraction(bound):
+                yield f"{MANIFEST}: enclosure: the radius {radius} is more than bounds.{name} = {bound}"
+
+
+def _same_run(check: CrossCheckRecord, manifest: Manifest) -> bool:
+    run = manifest.run
+    return (check.formulation, check.number) == (run.formulation, run.number)
+
+
+def _derived(files: Files) -> Iterator[str]:
+    """Check the files that follow from manifest and tables, to the byte."""
+    for name, text in derived_texts(files.manifest, files.tables).items():
+        if name in files.texts and files.texts[name] != text:
+            yield f"{name}: does not follow from the manifest and the tables"

@@ -1,0 +1,239 @@
+"""Read the files of a dataset: kind and size first, every byte once, and nothing is used but what was hashed."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import re
+import stat
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from ..errors import DatasetError, FoucaultError, InputError
+from ..scene import Scene, parse_scene
+from .manifest import MANIFEST, OPTIONAL, Manifest
+from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
+
+MAX_MANIFEST = 1 << 22  # bytes
+MAX_FILE = 1 << 28
+HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER}
+_NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": "[0-9](?:[.][0-9])?e[+-][0-9]{2,4}|0"}
+_DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
+_HEXFLOAT = r"-?0x[01][.][0-9a-f]{1,13}p[+-][0-9]{1,4}"
+
+
+@dataclass(frozen=True)
+class Files:
+    """The files of a dataset, read once: those of their hashes, well formed.
+
+    Attributes:
+        folder: where they stand.
+        manifest: `manifest.json`, with its seal intact.
+        scene: the scene that it describes.
+        texts: every other file, by name.
+        tables: the CSV tables among them, by name.
+        foreign: names of other files in the folder, which are ignored.
+    """
+
+    folder: Path
+    manifest: Manifest
+    scene: Scene
+    texts: dict[str, str]
+    tables: dict[str, Sheet]
+    foreign: list[str]
+
+
+def read_files(folder: Path) -> Files:
+    """Read a dataset and check its seal, its hashes and the form of its tables.
+
+    Raises:
+        InputError: there is no dataset, or it cannot be read.
+        DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
+    """
+    with _opened(folder) as directory:
+        manifest = _manifest(folder, directory)
+        try:
+            scene = scene_of(manifest)
+        except FoucaultError as error:
+            raise DatasetError(str(folder), [f"the manifest's scene is refused: {error}"]) from None
+        texts: dict[str, str] = {}
+        problems = []
+        for name, record in manifest.files.items():
+            try:
+                data = _read(directory, name, record.bytes)
+            except OSError as error:
+                problems.append(f"{name}: {error.strerror}")
+                continue
+            if hashlib.sha256(data).hexdigest() != record.sha256:
+                problems.append(f"{name}: a byte was changed (sha256 differs)")
+                continue
+            try:
+                texts[name] = data.decode()
+            except UnicodeDecodeError:
+                problems.append(f"{name}: not UTF-8")
+        foreign = sorted(
+            set(os.listdir(directory.number if directory.number is not None else folder)) - {MANIFEST, *manifest.files}
+        )
+    if problems:
+        raise DatasetError(str(folder), problems)
+    tables = _tables(folder, manifest, texts)
+    return Files(folder, manifest, scene, texts, tables, foreign)
+
+
+def scene_of(manifest: Manifest) -> Scene:
+    """Return the scene that a manifest describes.
+
+    Raises:
+        InputError: it is no scene.
+    """
+    top = {key: getattr(manifest, key) for key in ("title", "source", "flags", "inputs")}
+    name = manifest.id.partition("+")[0].removesuffix(f".{manifest.inputs}")
+    return parse_scene({"id": name, **top, **manifest.scene})
+
+
+@dataclass(frozen=True)
+class _Directory:
+    """An open folder: what is put in its place meanwhile is not read."""
+
+    path: Path
+    number: int | None  # None where the system cannot open files relative to a folder
+
+
+@contextmanager
+def _opened(folder: Path) -> Iterator[_Directory]:
+    try:
+        if os.open not in os.supports_dir_fd:
+            yield _Directory(folder, None)
+            return
+        number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        raise _no_dataset(folder) from None
+    except OSError as error:
+        raise InputError("PATH", str(folder), "a readable folder", f"{error.strerror}.") from None
+    try:
+        yield _Directory(folder, number)
+    finally:
+        os.close(number)
+
+
+def _no_dataset(folder: Path) -> InputError:
+    return InputError(
+        "PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", "Make it with `foucault generate`."
+    )
+
+
+def _read(directory: _Directory, name: str, size: int | None) -> bytes:
+    """Return the bytes of a regular file of the size that the manifest says; of the manifest, any up to `MAX_MANIFEST`.
+
+    Raises:
+        OSError: it is something else; nothing of it is read then.
+    """
+    path = name if directory.number is not None else directory.path / name
+    # without blocking, because a named pipe would wait for a writer
+    with open(os.open(path, os.O_RDONLY | _NOT_BLOCKING, dir_fd=directory.number), "rb") as stream:
+        status = os.fstat(stream.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            raise OSError(0, "not a regular file")
+        if size is not None and status.st_size != size:
+            raise OSError(0, f"{status.st_size} bytes, the manifest says {size}")
+        most = MAX_MANIFEST if size is None else MAX_FILE
+        if status.st_size > most:
+            raise OSError(0, f"{status.st_size} bytes, at most {most} are read")
+        return stream.read(most + 1)
+
+
+def _manifest(folder: Path, directory: _Directory) -> Manifest:
+    def refused(problem: str) -> DatasetError:
+        return DatasetError(str(folder), [f"{MANIFEST} {problem}"])
+
+    try:
+        text = _read(directory, MANIFEST, None).decode()
+        document = json.loads(text)
+        manifest = Manifest.model_validate(document)
+    except FileNotFoundError:
+        raise _no_dataset(folder) from None
+    except OSError as error:
+        raise refused(f"cannot be read: {error.strerror}") from None
+    except ValidationError as error:
+        if isinstance(document, dict) and document.get("schema_version") == 1:
+            raise refused("is of format 1: make the dataset again with `foucault generate`") from None
+        details = error.errors()[0]
+        where = ".".join(map(str, details["loc"]))
+        raise refused(f"breaks the schema{' at ' + where if where else ''}: {details['msg']}") from None
+    except (ValueError, RecursionError) as error:
+        raise refused(f"is not JSON in UTF-8: {error}") from None
+    if manifest.text() != text:
+        raise refused("is not in the form in which it is written: spaces, the order of keys, or a key twice")
+    if manifest.expected_seal() != manifest.seal:
+        raise refused("does not fit its seal: a byte was changed")
+    return manifest
+
+
+def _tables(folder: Path, manifest: Manifest, texts: Mapping[str, str]) -> dict[str, Sheet]:
+    """Return the CSV tables.
+
+    Raises:
+        DatasetError: one has another header, another number of rows, or a row that is malformed.
+    """
+    tables, problems = {}, []
+    for name in ("grid.csv", *OPTIONAL):
+        kind = name.partition(".")[0]
+        if name not in texts or kind not in HEADERS:
+            continue
+        header, decimals = HEADERS[kind], manifest.decimals.get(kind, {})  # type: ignore[call-overload]
+        if set(decimals) != set(NUMBERS[kind]) and (decimals or getattr(manifest.counts, kind)):
+            problems.append(f"{MANIFEST}: decimals must name the columns {', '.join(NUMBERS[kind])} of {kind}")
+            continue
+        if name.endswith(".binary64.csv"):
+            header = (*header, *(f"{column}_hex" for column in NUMBERS[kind]))
+        try:
+            tables[name] = _parsed(
+                texts[name], header, getattr(manifest.counts, kind), _pattern(header, decimals, name)
+            )
+        except ValueError as error:
+            problems.append(f"{name}: {error}")
+    if problems:
+        raise DatasetError(str(folder), problems)
+    return tables
+
+
+def _pattern(header: tuple[str, ...], decimals: Mapping[str, int], name: str) -> list[tuple[str, str]]:
+    """Return each column's name and the pattern of its numbers."""
+    found = []
+    for column in header:
+        places = decimals.get(column, 0)
+        plain = "-?[0-9]{1,400}" + (f"[.][0-9]{{{places}}}" if places else "")
+        number = _HEXFLOAT if column.endswith("_hex") else _DOUBLE if "binary64" in name else plain
+        found.append((column, _PATTERNS.get(column, number)))
+    return found
+
+
+def _parsed(text: str, header: tuple[str, ...], count: int, columns: list[tuple[str, str]]) -> Sheet:
+    """Return a table from its text; ValueError says what is wrong with it."""
+    if not text.startswith(",".join(header) + "\n"):
+        raise ValueError(f"the header must be {','.join(header)}")
+    if text.count("\n") != count + 1 or not text.endswith("\n"):
+        raise ValueError(f"{text.count(chr(10)) - 1} rows, the manifest counts {count}")
+    lines = text.split("\n")[1:-1]
+    whole = re.compile(",".join(f"(?:{pattern})" for _, pattern in columns), re.ASCII)
+    rows = []
+    for number, line in enumerate(lines, 1):
+        cells = tuple(line.split(","))
+        if not whole.fullmatch(line):
+            raise ValueError(f"row {number}: {_wrong_cell(cells, columns)}")
+        rows.append(cells)
+    return Sheet(header, rows, {})
+
+
+def _wrong_cell(cells: tuple[str, ...], columns: list[tuple[str, str]]) -> str:
+    if len(cells) != len(columns):
+        return f"{len(cells)} numbers, not {len(columns)}"
+    wrong = [(n, c) for c, (n, p) in zip(cells, columns, strict=True) if not re.fullmatch(p, c, re.ASCII)]
+    name, cell = wrong[0]
+    return f"{name} = {cell[:80]!r} is not a number of this column's form"

@@ -1,0 +1,75 @@
+"""What a dataset is called and where it stands: its id, the folder it is written to, the folder that a name means."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+from ..scene import Scene, load_scene
+from ..shipped import golden_root, in_checkout, scene_ids
+from .sheets import scene_inputs
+
+GOLDEN = "golden"
+MAX_ID = 160  # characters; more changes than fit are named by their hash
+
+
+def changes(scene: Scene, base: Scene) -> list[str]:
+    """Return the fields of a scene that are not those of another, each as section.key=value."""
+    before = scene_inputs(base)
+    return [
+        f"{section}.{key}={value}"
+        for section, table in scene_inputs(scene).items()
+        for key, value in table.items()
+        if before.get(section, {}).get(key) != value
+    ]
+
+
+def shipped_scene(scene: Scene) -> Scene:
+    """Return the scene of that id that comes with the project, or the scene itself if there is none."""
+    return load_scene(scene.id) if scene.id in scene_ids() else scene
+
+
+def dataset_id(scene: Scene, base: Scene | None = None) -> str:
+    """Return the id of a scene's dataset: the scene's own, such as `paris`, with its reading and what was changed.
+
+    Span, digits and level are not named: of a scene there is one dataset in a place. Examples: `paris`,
+    `paris.binary64`, `paris+site.latitude=0`.
+
+    Args:
+        scene: the scene that is solved.
+        base: the scene before its changes; by default the one of that id that comes with the project.
+    """
+    name = scene.id if scene.inputs == "decimal" else f"{scene.id}.{scene.inputs}"
+    changed = ",".join(
+        change for change in changes(scene, base or shipped_scene(scene)) if not change.startswith("run.")
+    )
+    if not changed:
+        return name
+    if len(name) + len(changed) >= MAX_ID:
+        changed = f"sha256={hashlib.sha256(changed.encode()).hexdigest()[:16]}"
+    return f"{name}+{changed}"
+
+
+def changes_in(name: str) -> list[str]:
+    """Return the changes that an id names, each as section.key=value; none where their hash stands for them."""
+    _, _, changed = name.partition("+")
+    return [] if changed.startswith("sha256=") else [word for word in changed.split(",") if word]
+
+
+def default_folder(scene: Scene, name: str) -> Path:
+    """Return the folder that a dataset of this id is written to: ./golden, or the checkout's data for what ships."""
+    local = Path(GOLDEN) / name
+    shipped = shipped_scene(scene)
+    ships = shipped is not scene and name == dataset_id(shipped.model_copy(update={"inputs": scene.inputs}))
+    if ships and scene.run == shipped.run and in_checkout() and not local.is_dir():
+        return golden_root() / name
+    return local
+
+
+def golden_folder(name: str | Path) -> Path:
+    """Return the folder that a name means: a path, or else an id in ./golden, in data/golden, in the package."""
+    folder = Path(name)
+    if isinstance(name, Path) or folder.name != name or folder.is_dir():
+        return folder
+    roots = (Path(GOLDEN), Path("data") / GOLDEN, golden_root())
+    return next((root / name for root in roots if (root / name).is_dir()), folder)

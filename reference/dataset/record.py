@@ -1,0 +1,177 @@
+"""The manifest of a solution: what was solved, how, to which bounds, and what agrees with it; without its files."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+from ..columns import POSITION, UNITS, VELOCITY
+from ..engines.equations import lines_and_left_out
+from ..precision import outward, rounded_up
+from ..scene import Scene
+from ..shipped import flag_meanings, scene_ids
+from ..solver.solution import Proof, Solution
+from .invariant import invariant_drift
+from .manifest import (
+    Bounds,
+    Counts,
+    CrossCheckRecord,
+    EnclosureRecord,
+    Equations,
+    Invariant,
+    Manifest,
+    Possible,
+    RunRecord,
+)
+from .place import changes, changes_in, dataset_id, shipped_scene
+from .sheets import Sheet, column_bounds, scene_inputs
+
+_UP = {
+    "ellipsoid": "z up",
+    "effective": "z up along the plumb line",
+}
+UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
+PACKAGES = ("foucault-reference", "heyoka", "mpmath")
+
+
+def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | None = None) -> Manifest:
+    """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id."""
+    scene, run = solution.scene, solution.run
+    name = name or dataset_id(scene)
+    initial, drift = invariant_drift(scene, grid)
+    return Manifest.model_construct(
+        schema_version=2,
+        seal="",
+        id=name,
+        title=scene.title,
+        source=scene.source,
+        flags=list(scene.flags),
+        notes=notes_of(scene),
+        scene=scene_inputs(scene),
+        inputs=scene.inputs,
+        frame=frame_of(scene),
+        units=UNIT_OF,
+        level=scene.run.level,
+        digits=scene.run.digits,
+        decimals={"grid": grid.decimals, "transits": transits.decimals},
+        bounds=_bounds(solution, grid, transits),
+        counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
+        transits=_completeness(solution),
+        possible=[
+            Possible.model_validate({"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity})
+            for low, high, parity in solution.possible
+        ],
+        invariant=Invariant(h_m2_s2=initial, drift_m2_s2=drift),
+        equations=equations_of(scene, run.formulation),
+        run=RunRecord(formulation=run.formulation, number=run.number, order=run.order, steps=run.steps),
+        cross_checks=[
+            CrossCheckRecord(
+                formulation=check.formulation,
+                number=check.number,
+                order=check.order,
+                steps=check.steps,
+                position_m=rounded_up(check.position_m),
+                velocity_m_s=rounded_up(check.velocity_m_s),
+                transit_s=_up(check.transit_s),
+            )
+            for check in solution.checks
+        ],
+        enclosure=None if solution.proof is None else _enclosure(solution.proof),
+        generator=generator(),
+        command=command(scene, run.engine, name),
+        files={},
+    )
+
+
+def frame_of(scene: Scene) -> str:
+    """Return the frame of a dataset's numbers, in words."""
+    up = _UP[scene.site.gravity_is]
+    return f"topocentric, axes x east, y north, {up}, origin at the suspension, z < 0 below it"
+
+
+def notes_of(scene: Scene) -> dict[str, str]:
+    """Return a sentence for each flag of a scene: why it is difficult."""
+    meanings = flag_meanings()
+    return {flag: meanings.get(flag, "not a flag of the scenes that ship") for flag in scene.flags}
+
+
+def equations_of(scene: Scene, formulation: str) -> Equations:
+    """Return the compiled equations of a scene in a formulation, and what they leave out."""
+    lines, left_out = lines_and_left_out(scene, formulation)
+    return Equations(formulation=formulation, lines=lines, left_out=left_out)
+
+
+def generator() -> dict[str, str]:
+    """Return the versions of this project and of the libraries that its numbers depend on."""
+    return {name: _version(name) for name in PACKAGES}
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "unknown"
+
+
+def command(scene: Scene, engine: str, name: str) -> str:
+    """Return the command that makes a dataset: of a shipped scene, or of the scene's own file, with what was changed.
+
+    `name` is the dataset's id, which names the changes.
+    """
+    run = scene.run
+    parts = ["foucault", "generate", scene.id if scene.id in scene_ids() else f"{scene.id}.toml"]
+    parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
+    parts += ["--engine", engine]
+    parts += [] if run.transits else ["--no-transits"]
+    own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=")
+    shipped = shipped_scene(scene)
+    changed = changes_in(name) if shipped is scene else changes(scene, shipped)
+    changed = [change for change in changed if not change.startswith(own_option)]
+    changed += [f"inputs={scene.inputs}"] if f".{scene.inputs}" in name else []
+    return " ".join([*parts, *(word for change in changed for word in ("--set", change))])
+
+
+def _bounds(solution: Solution, grid: Sheet, transits: Sheet) -> Bounds:
+    of_grid = column_bounds(solution.grid, grid.decimals)
+    of_transits = {}
+    if solution.transits is not None and transits.rows:
+        largest = max((row[-1] for row in transits.rows), key=Fraction)
+        of_transits = column_bounds(solution.transits, transits.decimals) | {"t": largest}
+    return Bounds(
+        position_m=_largest(of_grid, POSITION),
+        velocity_m_s=_largest(of_grid, VELOCITY),
+        transit_s=of_transits.get("t"),
+        grid=of_grid,
+        transits=of_transits,
+    )
+
+
+def _largest(bounds: dict[str, str], columns: tuple[str, ...]) -> str:
+    return max((bounds[name] for name in columns), key=Fraction)
+
+
+def _completeness(solution: Solution) -> Any:
+    """Return the manifest's word on its transits: whether all are there, and otherwise why not."""
+    if not solution.scene.run.transits:
+        return "not asked for"
+    if solution.transits is None:
+        return "xdot is identically zero"
+    return "undecided intervals" if solution.possible else "complete"
+
+
+def _enclosure(proof: Proof) -> EnclosureRecord:
+    return EnclosureRecord(
+        method=proof.method,
+        prec=proof.prec,
+        order=proof.order,
+        steps=proof.steps,
+        position_radius_m=rounded_up(proof.position_radius),
+        velocity_radius_m_s=rounded_up(proof.velocity_radius),
+        transit_radius_s=_up(proof.transit_radius),
+        agreement_bits=proof.agreement_bits,
+    )
+
+
+def _up(value: Fraction | None) -> str | None:
+    return None if value is None else rounded_up(value)

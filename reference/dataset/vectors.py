@@ -1,0 +1,139 @@
+"""`vectors.json`: some states and transits with bounds, for tests in other languages, in the manner of wycheproof."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict
+
+from ..columns import KINDS, UNITS
+from .manifest import FORMAT, Decimal, Manifest, Name, Text
+from .sheets import NUMBERS, Sheet
+
+MOST = 64  # states, and transits
+NOTES = {
+    "release": "The exact release: an error here is one of reading the inputs.",
+    "end": "The last of the run, where the error of an integrator is usually largest.",
+    "closest_pair": "One of the two transits nearest to each other: an event search with long steps loses both.",
+}
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Value(_Part):
+    """A number: as a decimal, as the nearest double, and how far the decimal may be from the truth, in its unit."""
+
+    decimal: Decimal
+    hexfloat: Name
+    bound: Decimal
+
+
+class StateVector(_Part):
+    """The state at a grid time; `row` counts the rows of `grid.csv` from 1."""
+
+    row: int
+    flags: list[Name]
+    values: dict[Name, Value]
+
+
+class TransitVector(_Part):
+    """A zero of xdot; `k` is its number in `transits.csv`, and the direction is +1 where xdot goes from - to +."""
+
+    k: int
+    direction: int
+    flags: list[Name]
+    values: dict[Name, Value]
+
+
+class Vectors(_Part):
+    """`vectors.json`: the inputs of a scene, and what a program has to give for them."""
+
+    schema_version: int
+    id: Name
+    level: Name
+    digits: int
+    inputs: Name
+    frame: Text
+    scene: dict[Name, dict[Name, Text]]
+    columns: dict[Name, Name]
+    notes: dict[Name, Text]
+    states: list[StateVector]
+    transits: list[TransitVector]
+
+    def text(self) -> str:
+        """Return the text of `vectors.json`."""
+        return json.dumps(self.model_dump(), indent=1, ensure_ascii=False) + "\n"
+
+
+def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
+    """Return the vectors of a dataset from its manifest and its tables, evenly spread over their rows."""
+    grid, transits = tables["grid.csv"], tables.get("transits.csv", Sheet((), [], {}))
+    pair = _closest_pair(transits)
+    states = [
+        StateVector(
+            row=i + 1,
+            flags=_flags({"release": 0, "end": len(grid.rows) - 1}, i),
+            values=_values(manifest, tables, "grid", i),
+        )
+        for i in _spread(len(grid.rows), MOST)
+    ]
+    zeros = [
+        TransitVector(
+            k=i + 1,
+            direction=int(transits.rows[i][transits.header.index("direction")]),
+            flags=[*_flags({"end": len(transits.rows) - 1}, i), *(["closest_pair"] if i in pair else [])],
+            values=_values(manifest, tables, "transits", i),
+        )
+        for i in sorted({*_spread(len(transits.rows), MOST - len(pair)), *pair})
+    ]
+    used = {flag for state in states for flag in state.flags} | {flag for zero in zeros for flag in zero.flags}
+    return Vectors(
+        schema_version=FORMAT,
+        id=manifest.id,
+        level=manifest.level,
+        digits=manifest.digits,
+        inputs=manifest.inputs,
+        frame=manifest.frame,
+        scene=manifest.scene,
+        columns={name: UNITS[KINDS[name]] for name in dict.fromkeys((*NUMBERS["grid"], *NUMBERS["transits"]))},
+        notes={**manifest.notes, **{flag: note for flag, note in NOTES.items() if flag in used}},
+        states=states,
+        transits=zeros,
+    )
+
+
+def _spread(count: int, most: int) -> list[int]:
+    """Return at most so many of the rows 0 to count - 1, evenly spread, with the first and the last."""
+    return list(range(count)) if count <= most else [i * (count - 1) // (most - 1) for i in range(most)]
+
+
+def _flags(places: Mapping[str, int], i: int) -> list[str]:
+    return [flag for flag, place in places.items() if place == i]
+
+
+def _closest_pair(transits: Sheet) -> list[int]:
+    if len(transits.rows) < 3:
+        return []
+    times = [row[0] for row in transits.numbers(("t",))]
+    first = min(range(len(times) - 1), key=lambda i: times[i + 1] - times[i])
+    return [first, first + 1]
+
+
+def _values(manifest: Manifest, tables: Mapping[str, Sheet], kind: Any, i: int) -> dict[str, Value]:
+    """Return the numbers of a row; the bound on a transit's time is its own, the others are those of their columns."""
+    plain, doubles = tables[f"{kind}.csv"], tables[f"{kind}.binary64.csv"]
+    row = dict(zip(plain.header, plain.rows[i], strict=True))
+    hexfloats = dict(zip(doubles.header, doubles.rows[i], strict=True))
+    bounds = {"t": row.get("bound", "0"), **{k: b for k, b in getattr(manifest.bounds, kind).items() if k != "t"}}
+    return {
+        name: Value(decimal=row[name], hexfloat=hexfloats[f"{name}_hex"], bound=bounds[name]) for name in NUMBERS[kind]
+    }
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema of vectors, as published in `schema/vectors.schema.json`."""
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Vectors.model_json_schema()}

@@ -1,0 +1,104 @@
+"""Forge a dataset as carefully as possible: doubles, vectors, page, counts, hashes and the seal are made to fit."""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+from collections.abc import Callable
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from reference.dataset.files import Files, read_files
+from reference.dataset.invariant import invariant_drift
+from reference.dataset.manifest import MANIFEST, Manifest
+from reference.dataset.render import derived_texts
+from reference.dataset.sheets import NUMBERS, Sheet, binary64_sheet
+from reference.precision import fixed_decimal
+
+Rows = list[list[str]]
+Change = Callable[[Rows, list[str]], object]  # of a table's rows of text, given the header
+
+
+def forge(
+    folder: Path,
+    grid: Change | None = None,
+    transits: Change | None = None,
+    manifest: Callable[[dict[str, Any]], object] | None = None,
+) -> None:
+    """Change a dataset in place: its tables' rows, its manifest, and all that depends on them."""
+    files = read_files(folder)
+    document = json.loads((folder / MANIFEST).read_text())
+    texts, tables = dict(files.texts), dict(files.tables)
+    for kind, change in (("grid", grid), ("transits", transits)):
+        if change is not None:
+            _change_table(tables, kind, change)
+            document["counts"][kind] = len(tables[f"{kind}.csv"].rows)
+    if manifest is not None:
+        manifest(document)
+    if grid is not None:
+        initial, drift = invariant_drift(files.scene, tables["grid.csv"])
+        document["invariant"] = {"h_m2_s2": initial, "drift_m2_s2": drift}
+    texts |= {name: sheet.csv() for name, sheet in tables.items()}
+    with contextlib.suppress(ValueError):  # a manifest that contradicts itself has no page
+        texts |= derived_texts(Manifest.model_validate(document), tables)
+    seal(folder, document, texts)
+
+
+def seal(folder: Path, document: dict[str, Any], texts: dict[str, str]) -> None:
+    """Write files and manifest with hashes and a seal that fit."""
+    for name, text in texts.items():
+        data = text.encode()
+        (folder / name).write_bytes(data)
+        document["files"][name] = {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+    document["seal"] = ""
+    document["seal"] = hashlib.sha256(_text(document).encode()).hexdigest()
+    (folder / MANIFEST).write_text(_text(document))
+
+
+def _text(document: dict[str, Any]) -> str:
+    return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
+
+
+def _change_table(tables: dict[str, Sheet], kind: str, change: Change) -> None:
+    """Change the rows of a table, and the doubles of every number that is new."""
+    sheet, doubles = tables[f"{kind}.csv"], tables[f"{kind}.binary64.csv"]
+    width = len(sheet.header)
+    known = {
+        (name, row[sheet.header.index(name)]): float.fromhex(other[width + i])
+        for row, other in zip(sheet.rows, doubles.rows, strict=True)
+        for i, name in enumerate(NUMBERS[kind])
+    }
+    rows = [list(row) for row in sheet.rows]
+    change(rows, list(sheet.header))
+    forged = Sheet(sheet.header, [tuple(row) for row in rows], sheet.decimals)
+    columns = {
+        name: [_double(known, name, row[sheet.header.index(name)]) for row in forged.rows] for name in NUMBERS[kind]
+    }
+    tables[f"{kind}.csv"], tables[f"{kind}.binary64.csv"] = forged, binary64_sheet(forged, columns)
+
+
+def _double(known: dict[tuple[str, str], float], name: str, text: str) -> float:
+    try:
+        return known.get((name, text), float(Fraction(text)))
+    except ValueError:
+        return 0.0
+
+
+def moved(text: str, by: Fraction) -> str:
+    """Return a decimal changed by an amount, with as many digits, and not as it was."""
+    places = len(text.partition(".")[2])
+    changed = fixed_decimal(Fraction(text) + by, places)
+    return (
+        changed
+        if changed != text
+        else fixed_decimal(Fraction(text) + Fraction(1 if by > 0 else -1, 10**places), places)
+    )
+
+
+def bound_of(files: Files, kind: str, column: str, row: int) -> Fraction:
+    """Return the bound on a printed number."""
+    if column == "t":
+        return Fraction(files.tables[f"{kind}.csv"].rows[row][-1]) if kind == "transits" else Fraction(0)
+    return files.manifest.bound(kind, column)  # type: ignore[arg-type]
