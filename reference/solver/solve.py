@@ -109,7 +109,10 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
             return _assemble(scene, times, published, gap.errors, gap.transits, (check,), pilot)
         largest = max(gap.grid.values())
         if last_gap is not None and largest >= last_gap > 0:
-            raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
+            last_resort = fastest(MAX_PREC).name  # limbs hold no more bits of a swing much smaller than the cord
+            if fine.engine == last_resort:
+                raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
+            engine = last_resort
         last_gap, next_prec = largest, _rounded(prec + gap.missing_bits)
         if _out_of_reach(pilot, next_prec):
             break
