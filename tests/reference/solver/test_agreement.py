@@ -95,7 +95,7 @@ def transits_in_double(name):
     """Return a run in double, its largest errors on a dense grid, and those of its transits; the truth is far finer."""
     scene, times = make_scene(**TRANSIT_SCENES[name]), tuple(Fraction(k, 20) for k in range(401))
     rough = run(Plan(scene.exact, "momentum", DOUBLE, times, transits=True))
-    fine = run(Plan(scene.exact, "spin", real(160), times, transits=True))
+    fine = run(Plan(scene.exact, "spin", real(120), times, transits=True))
     assert rough.directions == fine.directions
     on_grid = rough.grid.only(GRID).distance(fine.grid).largest()
     return rough, on_grid, rough.transits.only(TRANSITS).distance(fine.transits)
