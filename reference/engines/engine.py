@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
+from dataclasses import replace
 from fractions import Fraction
 from importlib.util import find_spec
 from typing import Any, ClassVar
@@ -40,6 +41,13 @@ class Engine(ABC):
     @abstractmethod
     def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
         """Return the cheapest run with at least `prec` bits."""
+
+    def witness(self, published: Plan, prec: int) -> Plan:
+        """Return a run of at most `prec` bits, fewer than those of the published run, and in other steps.
+
+        No number in it may be the published run's by construction, so that their difference tells an error.
+        """
+        return replace(self.plan(published.inputs, prec, published.times, published.transits), other_steps=True)
 
     @abstractmethod
     def run(self, plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:

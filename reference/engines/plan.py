@@ -33,6 +33,7 @@ class Plan:
         times: times of output in s, increasing, from 0.
         transits: whether to find the zeros of xdot.
         engine: a name of `registry.ENGINES`.
+        other_steps: whether to take other steps than the engine would: for a run that checks one of the same engine.
     """
 
     inputs: Inputs
@@ -41,6 +42,7 @@ class Plan:
     times: tuple[Fraction, ...]
     transits: bool
     engine: str = "heyoka"
+    other_steps: bool = False
 
 
 @dataclass(frozen=True)

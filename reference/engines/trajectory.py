@@ -5,6 +5,7 @@ They are as good as their number type and tolerance, no better: `solver.solve` g
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from fractions import Fraction
@@ -12,11 +13,16 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import IntegrationError
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
 from ..precision import DOUBLE, GUARD_BITS, Array, NumberType
 from ..scene import Scene
+
+STEPS_PER_RADIAN = 100  # most steps while the scene's fastest rate goes through a radian: a run takes one or two
+LEAST_STEPS = 10_000  # and of a whole run
+SINGULAR = {"plane": "at the horizontal", "angles": "on the vertical", "lagrangian": "on the vertical"}
 
 
 def integrate(
@@ -76,6 +82,9 @@ def trajectory(
 
     Returns:
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
+
+    Raises:
+        IntegrationError: heyoka stops before the last time, as where the formulation is singular.
     """
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
@@ -83,7 +92,20 @@ def trajectory(
 
     model = RoundedModel(FORMULATIONS[formulation], start.k, number)
     moments = [model.numbers.of(_exact(t)) for t in times]
-    return model.doubles(model.propagator(tolerance).from_zero(model.release(start), moments))
+    most = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * _fastest_rate(start) * float(moments[-1]))
+    try:
+        states = model.propagator(tolerance).from_zero(model.release(start), moments, max_steps=most)
+    except IntegrationError as error:
+        where = SINGULAR.get(formulation)
+        advice = f"The formulation {formulation} is singular {where}: take momentum." if where else ""
+        raise IntegrationError(error.reason, advice) from None
+    return model.doubles(states)
+
+
+def _fastest_rate(start: Start) -> float:
+    """Return the sum of the rates of swing, release, rotation and drag, in 1/s."""
+    ctx, k = start.ctx, start.k
+    return float(ctx.sqrt(ctx.norm(k.pull)) + ctx.norm(start.v) + abs(k.rate) + k.drag)
 
 
 def _exact(value: Any) -> Any:

@@ -2,31 +2,31 @@
 
 Pilot runs measure how rounding errors grow on the scene over its whole span; from that follow the bits that the digits
 need. Two runs then have to agree to a quarter of the last printed digit in every column: for `self_consistent` at two
-precisions and tolerances, for `confirmed` in another formulation as well. The published numbers are those of the finer
-run. For `computed` there is one run only, and for `enclosed` a proof (`enclosed`).
+precisions, orders and steps, for `confirmed` by another formulation as well. The published numbers are those of the
+finer run. For `computed` there is one run only, and for `enclosed` a proof (`enclosed`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 
-from ..columns import GRID, TRANSITS
+from ..columns import GRID
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
 from ..engines.side_by_side import run_both
 from ..errors import UnreachableError
 from ..precision import LONG_DOUBLE, real
 from ..scene import Scene
-from ..table import Table, bits_in, decimals_of, resolved
-from .pilot import MARGIN_BITS, Pilot, run_pilot
+from ..table import Table
+from .agreement import Agreement
+from .pilot import Pilot, run_pilot
 from .reach import MAX_PREC, MAX_STEPS, effort
 from .solution import CrossCheck, Solution, Source
+from .transit_errors import with_transit_errors
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
-AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
 MAX_RAISES = 6  # pairs of runs before giving up
 
 
@@ -97,19 +97,22 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
     for _ in range(MAX_RAISES):
         fine_prec = prec + FINER_BITS
         fine = fastest(fine_prec, engine).plan(inputs, fine_prec, times, transits)
-        coarse = fastest(prec, engine).plan(inputs, prec, times, transits)
         if scene.run.level == "confirmed":
             coarse = Plan(inputs, confirming_formulation(pilot), real(prec), times, transits)
+        else:
+            coarse = _witness(fine, prec, engine)
         published, witness = run_both(fine, coarse, pilot.steps, report)
-        gap = _Gap.between(published, witness, digits)
+        gap = Agreement.between(published, witness, digits)
         if not gap.missing_bits:
             transit_s = None if gap.transits is None else gap.transits.largest()["t"]
             check = CrossCheck.of(witness, gap.grid, transit_s)
-            errors = {name: 2 * size for name, size in gap.grid.items()}
-            return _assemble(scene, times, published, errors, gap.transits, (check,), pilot)
+            return _assemble(scene, times, published, gap.errors, gap.transits, (check,), pilot)
         largest = max(gap.grid.values())
         if last_gap is not None and largest >= last_gap > 0:
-            raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
+            last_resort = fastest(MAX_PREC).name  # limbs hold no more bits of a swing much smaller than the cord
+            if fine.engine == last_resort:
+                raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
+            engine = last_resort
         last_gap, next_prec = largest, _rounded(prec + gap.missing_bits)
         if _out_of_reach(pilot, next_prec):
             break
@@ -118,6 +121,14 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
         f"Two runs up to {prec} bits do not agree to {digits} digits.",
         "Ask for fewer digits or a shorter run; a transit that only grazes xdot = 0 cannot be decided this way.",
     )
+
+
+def _witness(fine: Plan, prec: int, engine: str) -> Plan:
+    """Return the run that checks another at the level self_consistent: by another engine, or in other steps."""
+    coarse = fastest(prec, engine)
+    if coarse.name == fine.engine:
+        return coarse.witness(fine, prec)
+    return coarse.plan(fine.inputs, prec, fine.times, fine.transits)
 
 
 def _out_of_reach(pilot: Pilot, prec: int) -> bool:
@@ -142,49 +153,6 @@ def _rounded(prec: int) -> int:
     return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
 
 
-@dataclass(frozen=True)
-class _Gap:
-    """How far two runs are apart.
-
-    Attributes:
-        missing_bits: that they lack to agree to a quarter of the last digit; 0 if they do agree.
-        grid: largest difference in each column of the grid.
-        transits: differences of each transit; None where they are not to be compared.
-    """
-
-    missing_bits: int
-    grid: dict[str, Fraction]
-    transits: Table | None
-
-    @classmethod
-    def between(cls, published: Run, witness: Run, digits: int) -> _Gap:
-        """Compare a run with its witness; the decimals are those that the published one gets."""
-        states = published.grid.only(GRID)
-        gaps = states.distance(witness.grid).largest()
-        decimals = decimals_of(resolved(states.largest(), gaps), digits)
-        missing = _bits_lacking(gaps, decimals)
-        if published.transits is None or witness.transits is None:
-            return cls(missing, gaps, None)
-        if published.directions != witness.directions:
-            return cls(witness.plan.number.prec // 2, gaps, None)
-        transits = published.transits.only(TRANSITS)
-        apart = transits.distance(witness.transits)
-        decimals = decimals_of(transits.largest(), digits) | {
-            name: places for name, places in decimals.items() if name in TRANSITS
-        }
-        return cls(max(missing, _bits_lacking(apart.largest(), decimals)), gaps, apart)
-
-
-def _bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> int:
-    """Return the bits by which a gap exceeds one unit of its last digit, and a margin; 0 if all keep to `AGREEMENT`."""
-    lacking = 0
-    for name, gap in gaps.items():
-        ratio = gap * 10 ** decimals[name]
-        if ratio > AGREEMENT:
-            lacking = max(lacking, bits_in(ratio) + MARGIN_BITS)
-    return lacking
-
-
 def _assemble(
     scene: Scene,
     times: tuple[Fraction, ...],
@@ -196,23 +164,5 @@ def _assemble(
 ) -> Solution:
     """Return a run with its bounds as a `Solution`; `apart` are the differences of its transits from a second run's."""
     grid = published.grid.only(GRID).with_errors(errors)
-    transits = None if published.transits is None else published.transits.only(TRANSITS)
-    if transits is not None:
-        transits = transits.with_errors(_transit_errors(transits, errors, apart))
+    transits = None if published.transits is None else with_transit_errors(published, errors, apart)
     return Solution(scene, times, grid, transits, published.directions, Source.of(published), checks, pilot.cpu_s)
-
-
-def _transit_errors(transits: Table, errors: Mapping[str, Fraction], apart: Table | None) -> list[dict[str, Fraction]]:
-    """Return the errors of each transit, none less than twice what the two runs differ by.
-
-    That of its time is the error of xdot over |ax|; that of ax is taken to be as large as that of vx.
-    """
-    rows = []
-    for ax in transits.exact("ax"):
-        # where xdot only grazes zero, the time is as good as unknown
-        rows.append({**errors, "t": errors["vx"] / abs(ax) if ax else Fraction(10) ** 9, "ax": errors["vx"]})
-    if apart is not None:
-        for name in TRANSITS:
-            for row, gap in zip(rows, apart.exact(name), strict=True):
-                row[name] = max(row[name], 2 * gap)
-    return rows

@@ -66,10 +66,14 @@ class Numbers:
         """
         grid = np.array(times, dtype=self.dtype)
         outcome, _, _, steps, _, states = integrator.propagate_grid(grid, **options)
+        if outcome == hy.taylor_outcome.err_nf_state or not np.isfinite(states.astype(float)).all():
+            raise IntegrationError("the state became infinite or not a number.")
+        if outcome == hy.taylor_outcome.step_limit:
+            raise IntegrationError(
+                f"{steps} steps end at t = {float(integrator.time)} s, and no more are taken: {outcome}."
+            )
         if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
             raise IntegrationError(f"heyoka stopped at t = {float(integrator.time)} s with outcome {outcome}.")
-        if not np.isfinite(states.astype(float)).all():
-            raise IntegrationError("the state became infinite or not a number.")
         return states, int(steps)
 
 

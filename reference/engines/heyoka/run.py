@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from .log import watched_log
 from .stepper import Stepper, Zero
 from .transits import march, quiet_start
 
+OTHER_STEPS = Fraction(5, 8)  # of the span: the longest step of a run that takes other steps, if one would do
 SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
 
 
@@ -30,7 +32,8 @@ def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Stepper]
     """
     start = Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
     watching = plan.transits and not xdot_vanishes(start)
-    stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, events=watching)
+    longest = plan.times[-1] * OTHER_STEPS if plan.other_steps else None
+    stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, events=watching, longest=longest)
     times = [stepper.numbers.of(t) for t in plan.times]
     if look_ahead is not None:
         look_ahead(stepper)

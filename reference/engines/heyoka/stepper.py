@@ -39,6 +39,7 @@ class Stepper:
         start: constants and release, in a precision finer than the run's.
         number: type to compute in.
         events: whether to detect the zeros of xdot.
+        longest: longest step in s; heyoka's own choice if None.
     """
 
     def __init__(
@@ -48,11 +49,13 @@ class Stepper:
         number: NumberType,
         *,
         events: bool = False,
+        longest: Fraction | None = None,
     ) -> None:
         self.number, self.model = number, RoundedModel(formulation, start.k, number)
         self.numbers = self.model.numbers
         self.zeros: list[Zero] = []
         self.steps = 0
+        self._longest = None if longest is None else self.numbers.of(longest)
         system = System.build(formulation, self.model.k)
         self._variables = [name for name, _ in system.equations]
         keywords = dict(self.numbers.keywords)
@@ -93,7 +96,7 @@ class Stepper:
             IntegrationError: heyoka reports a failure, or the state is not finite.
         """
         self.zeros.clear()
-        self._count_step(self._ta.step(limit)[0])
+        self._count_step(self._ta.step(limit if self._longest is None else min(limit, self._longest))[0])
 
     def _count_step(self, outcome: Any) -> None:
         """Count a step, or raise if it failed."""
@@ -184,6 +187,8 @@ class Stepper:
                 report(float(integrator.time))
             return True
 
-        states, steps = self.numbers.propagated(self._ta, times, **({} if report is None else {"callback": progress}))
+        options = {"callback": None if report is None else progress, "max_delta_t": self._longest}
+        given = {name: value for name, value in options.items() if value is not None}
+        states, steps = self.numbers.propagated(self._ta, times, **given)
         self.steps += steps
         return states

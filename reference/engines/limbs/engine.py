@@ -30,6 +30,14 @@ class Limbs(Engine):
         """Return the run that keeps `prec` bits of a number as large as the swing."""
         return Plan(inputs, self.formulation, NumberType("limbs", prec), times, transits, self.name)
 
+    def witness(self, published: Plan, prec: int) -> Plan:
+        """Return a run of at most `prec` bits, with fewer limbs than the published run, and in other steps."""
+        from .problem import highest_prec_of_fewer_limbs
+
+        return super().witness(
+            published, min(prec, highest_prec_of_fewer_limbs(published.inputs, published.number.prec))
+        )
+
     def run(self, plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
         """Integrate a plan; see `Engine.run`. It is in `inertial` whatever formulation the plan names."""
         from .run import run

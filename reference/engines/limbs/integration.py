@@ -124,7 +124,7 @@ def integration_of(plan: Plan, polynomials: int = 0, order: int | None = None) -
         raise InputError(
             "precision", plan.number.prec, f"at most {MOST_PREC} bits", "Use the engine heyoka for more digits."
         )
-    problem = limb_problem(plan.inputs, plan.number.prec, order)
+    problem = limb_problem(plan.inputs, plan.number.prec, order, plan.other_steps)
     whole, remainders = limbs_of_fractions(plan.times, problem.grain, problem.model.limb_count)
     seek = plan.transits and not xdot_vanishes(problem.start)
     return Integration(problem, whole, remainders, seek, polynomials)

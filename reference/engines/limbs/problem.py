@@ -21,12 +21,13 @@ from ...precision import GUARD_BITS
 from ..plan import MOST_TURN
 from .limb import Array, rows_of
 from .series import LinearTerms
-from .size import MOST_PREC, limb_count_for
+from .size import MOST_PREC, highest_prec, limb_count_for
 from .step import GRAINS, MOST_GRAINS, Model
 
 TAIL_BITS = 9  # a series ends this much below the precision, as its tail keeps its sign, and so adds up, for many steps
 ORDER_PER_BIT = 0.45  # the cheapest order for each bit of precision: an order then gains 2.2 bits
 MOST_SWING_BITS = 64  # bits added at most for a swing smaller than l; none are added where there is no swing
+OTHER_STEPS = Fraction(7, 8)  # of the order, and of the first and the longest step, in a run that takes other steps
 GUESS = 0.5  # first step, of the time in which the pendulum changes: no series is known yet
 
 
@@ -54,16 +55,18 @@ class LimbProblem:
         return self.unit / GRAINS
 
 
-def limb_problem(inputs: Inputs, prec: int, order: int | None = None) -> LimbProblem:
+def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_steps: bool = False) -> LimbProblem:
     """Return a scene's problem, in which numbers as large as the swing keep about `prec` bits a step.
 
-    `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer steps.
+    `order` is that of the series; None for the cheapest of a run. A higher one makes fewer, longer steps. With
+    `other_steps` the order is lower and the longest step shorter, so that steps of either kind are others.
     """
-    start = Start.of(inputs, MOST_PREC + 2 * GUARD_BITS)
+    start = _start(inputs)
     ctx, k, n = start.ctx, start.k, start.n
-    prec = min(prec + _swing_bits(start), MOST_PREC)
+    prec = _prec_from_l(start, prec)
     limb_count = limb_count_for(prec)
     unit, first = _unit_of_time(start)
+    order = order or round(ORDER_PER_BIT * (prec + TAIL_BITS)) + 2
     h = ctx.mpf(unit.numerator) / unit.denominator
     sin, cos = (k.sin, k.cos) if k.rate else (1, 0)
     turn, pull = _earth_axes(k.turn, sin, cos), _earth_axes(k.pull, sin, cos)
@@ -71,9 +74,11 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None) -> LimbPro
     longest = (
         min(MOST_GRAINS, max(1, int(GRAINS * MOST_TURN / (h * ctx.sqrt(ctx.norm(pull)))))) if any(pull) else MOST_GRAINS
     )
+    if other_steps:
+        order, first, longest = (max(1, int(size * OTHER_STEPS)) for size in (order, first, longest))
     model = Model(
         limb_count=limb_count,
-        order=order or round(ORDER_PER_BIT * (prec + TAIL_BITS)) + 2,
+        order=order,
         drag=bool(k.drag),
         tolerance=2.0 ** -(prec + TAIL_BITS),
         longest=longest,
@@ -84,6 +89,21 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None) -> LimbPro
     )
     state = rows_of([*_earth_axes(n, sin, cos), *(h * u for u in inertial)], limb_count)
     return LimbProblem(model, state, unit, min(first, longest), start)
+
+
+def highest_prec_of_fewer_limbs(inputs: Inputs, prec: int) -> int:
+    """Return the highest precision at which a scene is integrated with fewer limbs than at `prec` bits."""
+    start = _start(inputs)
+    return highest_prec(limb_count_for(_prec_from_l(start, prec)) - 1) - _swing_bits(start)
+
+
+def _start(inputs: Inputs) -> Start:
+    return Start.of(inputs, MOST_PREC + 2 * GUARD_BITS)
+
+
+def _prec_from_l(start: Start, prec: int) -> int:
+    """Return the bits, counted from l, that keep `prec` bits of numbers as large as the swing; at most `MOST_PREC`."""
+    return min(prec + _swing_bits(start), MOST_PREC)
 
 
 def _swing_bits(start: Start) -> int:

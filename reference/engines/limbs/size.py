@@ -17,4 +17,9 @@ def limb_count_for(prec: int) -> int:
     return max(3, -(-(prec + ROUNDING_BITS + 1) // LIMB_BITS))
 
 
-MOST_PREC = fraction_bits(MOST_LIMBS) - ROUNDING_BITS  # the highest precision
+def highest_prec(limb_count: int) -> int:
+    """Return the highest precision for which `limb_count` limbs suffice."""
+    return fraction_bits(limb_count) - ROUNDING_BITS
+
+
+MOST_PREC = highest_prec(MOST_LIMBS)

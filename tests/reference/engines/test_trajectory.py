@@ -10,8 +10,9 @@ import pytest
 from small_scenes import make_scene
 
 from reference import InputError, IntegrationError, integrate, trajectory
+from reference.engines import trajectory as trajectories
 from reference.engines.variants import Variants
-from reference.precision import LONG_DOUBLE, real
+from reference.precision import DOUBLE, LONG_DOUBLE, real
 
 TIMES = np.linspace(0.0, 100.0, 57)
 
@@ -63,6 +64,22 @@ def test_every_formulation_gives_the_same_motion(paris, formulation):
     expected = trajectory(paris, TIMES, number=LONG_DOUBLE)
     found = trajectory(paris, TIMES, formulation=formulation, number=LONG_DOUBLE)
     assert np.abs(found - expected).max() < 1e-14
+
+
+@pytest.mark.parametrize("number", [DOUBLE, real(120)])
+def test_a_run_into_the_singularity_of_its_formulation_says_so(number):
+    rising = make_scene(pendulum={"length": "1"}, release={"angle": "80", "azimuth": "20", "angle_rate": "500"})
+    with pytest.raises(IntegrationError, match=r"plane is singular at the horizontal: take momentum"):
+        trajectory(rising, [0.0, 10.0], formulation="plane", number=number)
+    assert trajectory(rising, [0.0, 10.0], number=number).shape == (2, 6)
+
+
+def test_a_run_whose_steps_shrink_to_nothing_comes_to_an_end(monkeypatch, paris):
+    """Next to a singularity steps can shrink without end; here fewer are allowed than a smooth run takes."""
+    monkeypatch.setattr(trajectories, "LEAST_STEPS", 5)
+    monkeypatch.setattr(trajectories, "STEPS_PER_RADIAN", 0.01)
+    with pytest.raises(IntegrationError, match=r"\d steps end at t = .* s, and no more are taken"):
+        trajectory(paris, TIMES)
 
 
 def test_a_run_keeps_the_grid_of_the_golden_data(paris):

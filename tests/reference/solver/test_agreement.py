@@ -1,0 +1,126 @@
+"""Two runs that are one prove nothing; bounds are above zero, and hold in every column of grid and transits."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cache
+
+import pytest
+from small_scenes import make_scene
+
+import reference
+from reference.columns import GRID, TRANSITS
+from reference.engines.plan import Plan
+from reference.engines.registry import run
+from reference.errors import IntegrationError
+from reference.precision import DOUBLE, real
+from reference.solver import solve as solver
+from reference.solver.transit_errors import with_transit_errors
+
+# in both runs these two once had the same number of limbs and, as steps were at their longest, the same steps
+ONE_RUN_TWICE = make_scene(
+    pendulum={"length": "0.230728425241"},
+    site={"latitude": "-19.109114989775", "gravity": "1.75", "rotation_rate": "0", "inverse_flattening": "inf"},
+    release={"x": "0", "y": "-3e-06", "vx": "-1.2623088e-05", "vy": "2.47212963009768e-06"},
+    run={"t_end": "27.38", "grid_step": "0.684484", "digits": 25, "level": "self_consistent"},
+)
+
+
+# so small a swing that limbs, which count from the length of the cord, have not the bits for sixty digits of vz
+BEYOND_LIMBS = make_scene(
+    site={"rotation_rate": "0"},
+    release={"x": "1e-25", "y": "0", "vx": "0", "vy": "1e-25"},
+    run={"t_end": "30", "grid_step": "10", "digits": 60, "level": "self_consistent"},
+)
+
+
+@pytest.mark.parametrize("scene", [ONE_RUN_TWICE, BEYOND_LIMBS], ids=["at the longest steps", "beyond limbs"])
+def test_a_tiny_swing_has_bounds_that_hold(scene):
+    solution = reference.solve(scene)
+    truth = run(Plan(scene.exact, "spin", real(512), solution.times, transits=True))
+    assert solution.directions == truth.directions
+    for table, exact, columns in ((solution.grid, truth.grid, GRID), (solution.transits, truth.transits, TRANSITS)):
+        gaps = table.only(columns).distance(exact)
+        for name in columns:
+            bounds = table.bound(name)
+            assert min(bounds) > 0
+            assert all(gap <= bound for gap, bound in zip(gaps.exact(name), bounds, strict=True)), name
+
+
+@pytest.mark.parametrize("level", ["self_consistent", "confirmed"])
+def test_a_run_does_not_confirm_itself(monkeypatch, level, paris):
+    honest = solver.run_both
+    monkeypatch.setattr(solver, "run_both", lambda fine, coarse, *rest: honest(fine, fine, *rest))
+    with pytest.raises(IntegrationError, match="the same run"):
+        reference.solve(paris, t_end="10", digits=15, level=level)
+
+
+UNCHANGING = {
+    "y on the equator": {"site": {"latitude": "0"}, "release": {"x": "0.5", "y": "0"}},
+    "x in the meridian": {"site": {"rotation_rate": "0"}, "release": {"x": "0", "y": "0.5"}},
+    "straight down at a pole": {"site": {"latitude": "90"}, "release": {"x": "0", "y": "0"}},
+    "no force": {"site": {"gravity": "0", "rotation_rate": "0"}, "release": {"x": "0", "y": "0"}},
+}
+
+
+@pytest.mark.parametrize("sections", UNCHANGING.values(), ids=UNCHANGING.keys())
+@pytest.mark.parametrize("level", ["self_consistent", "confirmed"])
+def test_what_never_changes_may_be_equal_in_both_runs(level, sections):
+    """Exact zeros and constants: no error, and a bound above zero unless no rate at all is in the scene."""
+    scene = make_scene(**sections, run={"t_end": "20", "digits": 15, "level": level})
+    solution = reference.solve(scene)
+    unchanging = [name for name in GRID if len(set(solution.grid.exact(name))) == 1]
+    assert unchanging
+    for name in unchanging:
+        start = solution.grid.exact(name)[0]
+        assert start == (-67 if name == "z" else 0)
+        assert 0 < max(solution.grid.bound(name)) < Fraction(1, 10**14) or scene.exact.gravity == 0
+
+
+TRANSIT_SCENES = {
+    "short cord": {"pendulum": {"length": "0.01"}, "release": {"x": "0.003", "y": "0.004"}},
+    "near the meridian": {"release": {"x": "1e-3", "y": "0.5"}, "site": {"rotation_rate": "1e-4"}},
+    "conical": {"pendulum": {"length": "2"}, "release": {"angle": "70", "azimuth": "20", "azimuth_rate": "200"}},
+    "drag": {"pendulum": {"length": "1", "drag": "0.05"}, "release": {"x": "0.003", "y": "0.004"}},
+    "fast Earth": {
+        "pendulum": {"length": "1"},
+        "site": {"rotation_rate": "0.3", "equatorial_radius": "0"},
+        "release": {"x": "0.003", "y": "0.004"},
+    },
+}
+
+
+@cache
+def transits_in_double(name):
+    """Return a run in double, its largest errors on a dense grid, and those of its transits; the truth is far finer."""
+    scene, times = make_scene(**TRANSIT_SCENES[name]), tuple(Fraction(k, 20) for k in range(401))
+    rough = run(Plan(scene.exact, "momentum", DOUBLE, times, transits=True))
+    fine = run(Plan(scene.exact, "spin", real(120), times, transits=True))
+    assert rough.directions == fine.directions
+    on_grid = rough.grid.only(GRID).distance(fine.grid).largest()
+    return rough, on_grid, rough.transits.only(TRANSITS).distance(fine.transits)
+
+
+@pytest.mark.parametrize("name", TRANSIT_SCENES)
+def test_the_errors_of_transits_follow_from_those_of_the_grid(name):
+    rough, on_grid, gaps = transits_in_double(name)
+    table = with_transit_errors(rough, on_grid, None)
+    assert len(table) > 1
+    for column in TRANSITS:
+        for gap, bound in zip(gaps.exact(column), table.bound(column), strict=True):
+            assert gap <= bound < 10**6 * max(on_grid.values()), column
+
+
+@pytest.mark.parametrize(
+    ("name", "column", "of_grid"), [("short cord", "ax", "vx"), ("fast Earth", "vy", "vy"), ("conical", "z", "z")]
+)
+def test_the_errors_of_the_grid_as_they_are_do_not_bound_those_of_transits(name, column, of_grid):
+    _, on_grid, gaps = transits_in_double(name)
+    assert gaps.largest()[column] > on_grid[of_grid]
+
+
+def test_the_time_of_a_transit_that_only_grazes_zero_is_unknown(paris):
+    """xdot may be off by as much as the whole swing has: no zero of it is certain."""
+    solution = run(Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
+    table = with_transit_errors(solution, dict.fromkeys(GRID, Fraction(1)), None)
+    assert set(table.bound("t")) == {10**9}
