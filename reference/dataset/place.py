@@ -1,4 +1,4 @@
-"""What a dataset is called and where it stands: its id, the folder it is written to, the folder that a name means."""
+"""The id of a dataset, the folder that it is written to, and the folder that a name means."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ from ..sheets import Sheet
 BASE_S, ROW_S, TRANSIT_S = 10.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
 PATIENCE = 4  # times that, before a run that was expected to be short is given up
 LEAST_PREC = LONG_DOUBLE_BITS + 1
-FINER_BITS = 2 * LIMB_BITS  # between two attempts; half of it between the two runs of one, so that their limbs differ
+FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
 
 Progress = Callable[[float, float], None]  # called with the simulated time reached and the whole span, in s
 
