@@ -77,8 +77,11 @@ def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched(monke
     assert again.manifest == golden.manifest
     (golden.path / "stranger").touch()
     said: list[str] = []
-    golden_of(scene, announce=said.append)
-    assert len(said) == 1  # a folder with something else in it is no dataset: it was solved again
+    assert golden_of(scene, announce=said.append).manifest == golden.manifest
+    assert said == []
+    transits.write_bytes(transits.read_bytes()[:-1])
+    assert golden_of(scene, announce=said.append).manifest == golden.manifest
+    assert len(said) == 1  # damaged, so it was solved again
 
 
 @pytest.mark.parametrize("place", ["file", "proc"])

@@ -54,21 +54,30 @@ def _transits(files: Files) -> tuple[_Moments, list[Fraction]]:
     names, rows, ax = [], [], []
     for (x, y, z, vy, second), row in zip(sheet.numbers(("x", "y", "z", "vy", "ax")), sheet.rows, strict=True):
         names.append(f"transits.csv: transit {row[0]}")
-        rows.append([x, y, z, Fraction(0), vy, -y * vy / z if z else Fraction(0)])
+        rows.append([x, y, z, Fraction(0), vy, Fraction(0)])
         ax.append(second)
     exact = Fraction(0)  # xdot is zero by definition, and zdot follows
     bounds = [*(bound("transits", name) for name in ("x", "y", "z")), exact, bound("transits", "vy"), exact]
-    return _Moments(files, names, rows, bounds), ax
+    return _Moments(files, names, rows, bounds, at_transits=True), ax
 
 
 @dataclass(frozen=True)
 class _Moments:
-    """States x, y, z, vx, vy, vz of a dataset, how messages name them, and the bounds of the six columns."""
+    """States of a dataset.
+
+    Attributes:
+        files: the dataset.
+        names: what messages call each.
+        rows: x, y, z, vx, vy, vz of each.
+        bounds: of the six columns.
+        at_transits: whether vz is not given, but follows from the others and vx = 0.
+    """
 
     files: Files
     names: list[str]
     rows: list[list[Fraction]]
     bounds: list[Fraction]
+    at_transits: bool = False
 
     def off_the_sphere(self) -> Iterator[str]:
         """Check |r| = l."""
@@ -107,21 +116,26 @@ class _Moments:
         k = constants(self.files.scene.exact, ctx)
         found = []
         for row in self.rows:
-            columns = _completed([to_mpf(q, ctx) for q in row], k.length, _is_deep(row, self.files), ctx.sqrt)
-            found.append(to_fraction(quantity(columns, k) + ctx.zero))
+            x, y, z, vx, vy, vz = (to_mpf(q, ctx) for q in row)
+            if self._is_deep(row):
+                z = ctx.sqrt(k.length * k.length - x * x - y * y) * (1 if z > 0 else -1)
+            if z and (self.at_transits or self._is_deep(row)):
+                vz = -(x * vx + y * vy) / z
+            found.append(to_fraction(quantity([x, y, z, vx, vy, vz], k) + ctx.zero))
         return found
 
     def allowed(self, quantity: Quantity) -> list[Fraction]:
         """Return how far a quantity of each state may be off by the bounds on the state."""
         k = constants(self.files.scene.exact, context(GUARD_BITS)).converted(float)
         columns = [np.array([float(row[j]) for row in self.rows]) for j in range(6)]
-        deep = np.array([_is_deep(row, self.files) for row in self.rows])
+        deep = np.array([self._is_deep(row) for row in self.rows])
 
         def of(changed: list[Array]) -> Array:
-            depth = _completed(changed, k.length, True, lambda square: np.sqrt(np.maximum(square, 0.0)))
-            return np.asarray(
-                quantity([np.where(deep, p, q) for p, q in zip(depth, changed, strict=True)], k) + 0.0 * deep
-            )
+            x, y, z, vx, vy, vz = changed
+            z = np.where(deep, np.sqrt(np.maximum(k.length**2 - x * x - y * y, 0.0)) * np.sign(z), z)
+            follows = (deep | self.at_transits) & (z != 0)
+            vz = np.where(follows, -(x * vx + y * vy) / np.where(follows, z, 1.0), vz)
+            return np.asarray(quantity([x, y, z, vx, vy, vz], k) + 0.0 * z)
 
         value, total = of(columns), [Fraction(0)] * len(self.rows)
         fastest = max(float(np.max(np.abs(column))) for column in columns[3:])
@@ -134,23 +148,9 @@ class _Moments:
             total = [so_far + Fraction(slope) * bound * SLACK for so_far, slope in zip(total, slopes, strict=True)]
         return total
 
-
-def _is_deep(row: list[Fraction], files: Files) -> bool:
-    return abs(row[2]) * STEEP > files.scene.exact.length
-
-
-def _completed(columns: list[Any], length: Any, deep: bool, sqrt: Callable[[Any], Any]) -> list[Any]:
-    """Return the columns with z and vz as they follow from x, y, vx, vy, where they follow well."""
-    if not deep:
-        return columns
-    x, y, z, vx, vy, _ = columns
-    depth = sqrt(length * length - x * x - y * y) * _sign(z)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return [x, y, depth, vx, vy, -(x * vx + y * vy) / depth]
-
-
-def _sign(z: Any) -> Any:
-    return np.sign(z) if isinstance(z, np.ndarray) else 1 if z > 0 else -1
+    def _is_deep(self, row: list[Fraction]) -> bool:
+        """Return whether z follows well from x and y."""
+        return abs(row[2]) * STEEP > self.files.scene.exact.length
 
 
 def _invariant(columns: list[Any], k: Constants) -> Any:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
 
-from ...columns import GRID
+from ...columns import GRID, VELOCITY
 from ...model.start import Start
 from ...precision import GUARD_BITS, bits_of, decimals_for, to_fraction
 from ...solver.rounding import exact_decimals
@@ -124,10 +124,20 @@ def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
     known = [check.transit_s for check in manifest.cross_checks]
     known += [manifest.enclosure.transit_radius_s] if manifest.enclosure else []
     apart = 2 * max((Fraction(text) for text in known if text is not None), default=Fraction(0))
+    error = 2 * manifest.bound("grid", "vx")  # of xdot, and over ax that of the time
+    grazing = error * _largest_jerk(files)
     for k, (bound, ax) in enumerate(transits.numbers(("bound", "ax")), 1):
         if bound < half_unit:
             yield f"transits.csv: transit {k}: bound {float(bound):.2g} s is less than half a unit of the last digit"
-        elif ax and bound > SLACK * (half_unit + max(apart, 2 * manifest.bound("grid", "vx") / abs(ax))):
+        elif ax * ax > grazing and bound > SLACK * (half_unit + max(apart, error / abs(ax))):
             yield f"transits.csv: transit {k}: bound {float(bound):.2g} s is more than the runs leave open"
     if max(transits.numbers(("bound",)))[0] != manifest.bound("transits", "t"):
         yield f"{MANIFEST}: bounds.transits.t is not the largest bound of transits.csv"
+
+
+def _largest_jerk(files: Files) -> Fraction:
+    """Return an estimate from above of the rate of xddot, in m/s³: where ax is small against it, a zero may graze."""
+    start = Start.of(files.scene.exact, GUARD_BITS)
+    fastest = max(sum(map(abs, row)) for row in files.tables["grid.csv"].numbers(VELOCITY))
+    square = to_fraction(start.ctx.norm(start.k.pull)) + (fastest / files.scene.exact.length) ** 2
+    return 8 * square * fastest

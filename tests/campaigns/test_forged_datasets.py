@@ -1,0 +1,266 @@
+"""Datasets forged on purpose, with every hash and the seal made to fit: what exceeds 30 bounds is found.
+
+Also where many numbers are changed together so that each row still obeys the laws that hold at a moment.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import shutil
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from forgery import bound_of, forge, moved
+
+import reference
+from reference.columns import GRID, TRANSITS
+from reference.dataset.files import read_files
+from reference.dataset.verify import verify
+from reference.dataset.write import write
+from reference.model.constants import constants
+from reference.model.force import acceleration
+from reference.precision import context, fixed_decimal, to_fraction, to_mpf
+
+BOUNDS = 30  # a forgery changes some number by more than this many bounds
+SCENES = {
+    "swing": ["run.t_end=600", "run.digits=20"],
+    "wide": ["release.x=30", "release.y=40", "run.t_end=240", "run.grid_step=20", "run.digits=25"],
+    "drag": ["pendulum.drag=0.001", "run.t_end=300", "run.digits=18"],
+    "fast": ["site.rotation_rate=0.05", "run.t_end=300", "run.digits=30"],
+}
+
+
+@pytest.fixture(scope="module")
+def datasets(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("golden")
+    scenes = {name: reference.load_scene("paris", changes) for name, changes in SCENES.items()}
+    return [write(reference.solve(scene), folder / name) for name, scene in scenes.items()]
+
+
+class Flow:
+    """Rows of a grid moved along the motion, or turned about the vertical, by a little."""
+
+    def __init__(self, folder: Path) -> None:
+        self.files = read_files(folder)
+        self.scene = self.files.scene
+        self.ctx = context(400)
+        self.k = constants(self.scene.exact, self.ctx)
+
+    def shifted(self, row: list[str], header: list[str], late: Fraction) -> None:
+        """Replace a row by the state a little later, which is on the sphere and has the same h."""
+        places = [header.index(name) for name in GRID]
+        state = [to_mpf(Fraction(row[i]), self.ctx) / self.k.length for i in places]
+        a = acceleration(tuple(state[:3]), tuple(state[3:]), self.k)
+        for i, value, rate in zip(places, state, (*state[3:], *a), strict=True):
+            moved_to = (value + rate * to_mpf(late, self.ctx)) * self.k.length
+            row[i] = fixed_decimal(to_fraction(moved_to), len(row[i].partition(".")[2]))
+
+    def turned(self, row: list[str], header: list[str], angle: Fraction) -> None:
+        """Turn a row's plane of swing."""
+        for a, b in (("x", "y"), ("vx", "vy")):
+            i, j = header.index(a), header.index(b)
+            p, q = Fraction(row[i]), Fraction(row[j])
+            row[i], row[j] = (
+                fixed_decimal(value, len(row[place].partition(".")[2]))
+                for value, place in ((p - q * angle, i), (q + p * angle, j))
+            )
+
+    def lateness(self, bounds: Fraction) -> Fraction:
+        """Return a delay that moves the fastest row by so many of its bounds."""
+        fastest = max(abs(row[0]) for row in self.files.tables["grid.csv"].numbers(("vx",)))
+        return bounds * self.files.manifest.bound("grid", "x") / fastest
+
+
+def one_number(folder, draw):
+    files = read_files(folder)
+    kind = draw.choice(["grid", "transits"])
+    column = draw.choice(GRID if kind == "grid" else TRANSITS)
+    row = draw.randrange(len(files.tables[f"{kind}.csv"].rows))
+    by = draw.choice([-1, 1]) * BOUNDS * draw.randrange(1, 10**4) * bound_of(files, kind, column, row)
+
+    def change(rows, header):
+        place = header.index(column)
+        rows[row][place] = moved(rows[row][place], by)
+
+    forge(folder, **{kind: change})
+
+
+def one_row_later(folder, draw):
+    flow = Flow(folder)
+    late = flow.lateness(Fraction(draw.randrange(2 * BOUNDS, 10**5)))
+
+    def change(rows, header):  # the row that moves fastest
+        row = max(rows, key=lambda cells: abs(Fraction(cells[header.index("vx")])))
+        flow.shifted(row, header, late)
+
+    forge(folder, grid=change)
+
+
+def all_rows_later_from_somewhere_on(folder, draw):
+    flow = Flow(folder)
+    late, share = flow.lateness(Fraction(draw.randrange(3 * BOUNDS, 10**4))), draw.uniform(0.1, 0.5)
+
+    def change(rows, header):
+        for row in rows[1 + int(share * len(rows)) :]:
+            flow.shifted(row, header, late)
+
+    def transits(rows, header):
+        place = header.index("t")
+        for row in rows[int(share * len(rows)) :]:
+            row[place] = fixed_decimal(Fraction(row[place]) - late, len(row[place].partition(".")[2]))
+
+    forge(folder, grid=change, transits=transits)
+
+
+def ever_later(folder, draw):
+    """Every row a little later than the one before, by less than its bound allows: a slow drift."""
+    flow = Flow(folder)
+    rows = len(flow.files.tables["grid.csv"].rows)
+    late = flow.lateness(Fraction(draw.randrange(4 * BOUNDS, 40 * BOUNDS), rows))
+
+    def change(rows, header):
+        for i, row in enumerate(rows):
+            flow.shifted(row, header, i * late)
+
+    forge(folder, grid=change)
+
+
+def ever_more_turned(folder, draw):
+    flow = Flow(folder)
+    manifest = flow.files.manifest
+    angle = draw.randrange(5 * BOUNDS, 100 * BOUNDS) * manifest.bound("grid", "x") / Fraction(1, 4)
+    count = len(flow.files.tables["grid.csv"].rows)
+
+    def change(rows, header):
+        for i, row in enumerate(rows):
+            flow.turned(row, header, angle * i / count)
+
+    forge(folder, grid=change)
+
+
+def a_pair_of_transits_left_out(folder, draw):
+    first = draw.randrange(len(read_files(folder).tables["transits.csv"].rows) - 1)
+
+    def change(rows, _):
+        del rows[first : first + 2]
+        for k, row in enumerate(rows, 1):
+            row[0] = str(k)
+
+    forge(folder, transits=change)
+
+
+def a_pair_of_transits_added(folder, draw):
+    at = draw.randrange(1, len(read_files(folder).tables["transits.csv"].rows) - 1)
+
+    def change(rows, header):
+        t, places = header.index("t"), len(rows[0][header.index("t")].partition(".")[2])
+        low, high = Fraction(rows[at - 1][t]), Fraction(rows[at][t])
+        pair = [list(rows[at]), list(rows[at - 1])]
+        for part, row in enumerate(pair, 1):
+            row[t] = fixed_decimal(low + (high - low) * part / 3, places)
+        rows[at:at] = pair
+        for k, row in enumerate(rows, 1):
+            row[0] = str(k)
+
+    forge(folder, transits=change)
+
+
+def one_transit_later(folder, draw):
+    """Its time alone, by more than 30 of its bounds."""
+    files = read_files(folder)
+    row = draw.randrange(len(files.tables["transits.csv"].rows))
+    by = draw.randrange(BOUNDS + 1, 10**6) * bound_of(files, "transits", "t", row)
+
+    def change(rows, header):
+        rows[row][header.index("t")] = moved(rows[row][header.index("t")], by)
+
+    forge(folder, transits=change)
+
+
+def smaller_bounds(folder, draw):
+    """All bounds a thirtieth, in the manifest and row by row."""
+    factor = Fraction(1, draw.randrange(BOUNDS, 10**6))
+
+    def less(text):
+        value = Fraction(text) * factor
+        return f"{float(value):.1e}"
+
+    def change(document):
+        for part in ("grid", "transits"):
+            document["bounds"][part] = {name: less(bound) for name, bound in document["bounds"][part].items()}
+        for name in ("position_m", "velocity_m_s", "transit_s"):
+            document["bounds"][name] = less(document["bounds"][name])
+
+    forge(folder, transits=lambda rows, _: [row.__setitem__(-1, less(row[-1])) for row in rows], manifest=change)
+
+
+def another_input(folder, draw):
+    """Length, gravity, latitude or release a little other, with the page, the vectors and the id made to fit."""
+    section, key = draw.choice([("pendulum", "length"), ("site", "gravity"), ("site", "latitude"), ("release", "x")])
+
+    def change(document):
+        old = document["scene"][section][key]
+        new = old + ("" if "." in old else ".") + "0" * draw.randrange(1, 8) + "1"
+        document["scene"][section][key] = new
+        name, _, others = document["id"].partition("+")
+        kept = [word for word in others.split(",") if word and not word.startswith(f"{section}.{key}=")]
+        order = ["pendulum", "site", "release"]
+        kept = sorted([*kept, f"{section}.{key}={new}"], key=lambda word: order.index(word.partition(".")[0]))
+        document["id"] = f"{name}+{','.join(kept)}"
+        words = [word for change in kept for word in ("--set", change)]
+        grid_step = [w for w in document["command"].split() if w.startswith("run.grid_step=")]
+        command = document["command"].partition(" --set")[0]
+        document["command"] = " ".join([command, *words, *(w for step in grid_step for w in ("--set", step))])
+
+    forge(folder, manifest=change)
+
+
+FORGERIES = [
+    one_number, one_row_later, all_rows_later_from_somewhere_on, ever_later, ever_more_turned, one_transit_later,
+    a_pair_of_transits_left_out, a_pair_of_transits_added, smaller_bounds, another_input,
+]  # fmt: skip
+
+
+def test_what_exceeds_thirty_bounds_is_found_although_every_hash_and_the_seal_fit(datasets, tmp_path, size, tally):
+    draw, missed, tried = random.Random(11), [], size(20, 300)
+    for i in range(tried):
+        source, forgery = draw.choice(datasets), FORGERIES[i % len(FORGERIES)]
+        copy = Path(shutil.copytree(source, tmp_path / str(i)))
+        forgery(copy, draw)
+        reference.load(copy)  # its hashes and its seal do fit
+        if not verify(copy).problems:
+            missed.append(f"{i}: {forgery.__name__} of {source.name}")
+        shutil.rmtree(copy)
+    tally(f"forgeries: {tried} of {len(FORGERIES)} kinds, {tried - len(missed)} found")
+    assert not missed
+
+
+def test_no_forgery_of_a_dataset_that_ships_has_the_seal_of_the_index(tmp_path, size, tally):
+    """Words that nothing can prove are changed: a title, a source, a count of steps."""
+    draw, found, tried = random.Random(12), 0, size(4, 40)
+    for i in range(tried):
+        name = draw.choice(["paris", "paris.binary64"])
+        copy = Path(shutil.copytree(reference.load(name).path, tmp_path / str(i)))
+        key = draw.choice(["title", "source", "run", "generator"])
+
+        def change(document, key=key):
+            if key == "run":
+                document["run"]["steps"] += 1
+            elif key == "generator":
+                document["generator"]["heyoka"] = "0.0.0"
+            else:
+                document[key] += "x"
+
+        forge(copy, manifest=change)
+        found += any("index.json" in problem for problem in verify(copy).problems)
+        shutil.rmtree(copy)
+    tally(f"forgeries of what ships: {tried} tried, {found} found by the index")
+    assert found == tried
+
+
+def test_a_copy_of_what_ships_passes(tmp_path):
+    copy = Path(shutil.copytree(reference.load("paris").path, tmp_path / "paris"))
+    assert json.loads((copy / "manifest.json").read_text())["id"] == "paris"
+    assert verify(copy).problems == []
