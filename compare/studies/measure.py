@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from reference.precision import Array
 from reference.process import Emit
 from reference.status import Status
 
-from ..methods import METHODS, Method, Outcome, Problem, Work, available
+from ..methods import METHODS, Method, Outcome, Problem, Work, available, external
 from ..rhs.swing import suited
 from .failure import FAILURES, failure
 from .method_errors import GridTruth, h_drift
@@ -162,8 +162,20 @@ def timed(work: Work) -> tuple[Outcome, float]:
     return outcome, spent if outcome.cpu_s is None else outcome.cpu_s
 
 
-def ladder(emit: Emit, scene: dict[str, Any], golden: Path, t_end: float, limit_s: float, items: list[Any]) -> None:
-    """Measure (method, formulation, setting) one after the other, in a child process, and send each row."""
+def ladder(
+    emit: Emit,
+    scene: dict[str, Any],
+    golden: Path,
+    t_end: float,
+    limit_s: float,
+    programs: Mapping[str, str],
+    items: list[Any],
+) -> None:
+    """Measure (method, formulation, setting) one after the other, in a child process, and send each row.
+
+    A method is a declared one, or the program of that name: `programs` holds their commands.
+    """
     bench = Bench(parse_scene(scene), GridTruth(load(golden), t_end), limit_s)
     for name, formulation, setting in items:
-        emit(bench.row(METHODS[name], formulation, setting))
+        method = external(programs[name], name=name) if name in programs else METHODS[name]
+        emit(bench.row(method, formulation, setting))
