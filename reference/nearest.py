@@ -13,7 +13,7 @@ LEAST_PART = 3  # characters of a word that is looked for inside the names as we
 
 
 def nearest(word: str, known: Iterable[str]) -> list[str]:
-    """Return at most five names: those very like a word, else those that contain it, else those like it; in any case."""
+    """Return at most five names: very like a word, else containing it, else like it; in any case."""
     names = {name.lower(): name for name in known}
     typed = word.lower()
     for likeness in VERY_ALIKE:

@@ -30,6 +30,10 @@ if TYPE_CHECKING:
 
 MAX_REPEATS = 1000
 TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats
+UNUSED = {  # fields of a scene that make no difference to a score
+    "run.level": "A candidate is held against a confirmed solution, or a dataset that ships.",
+    "inputs=decimal": "Write --inputs decimal: without it doubles are held against doubles.",
+}
 INPUTS = ("auto", "decimal", "binary64")  # readings of the scene's numbers; auto: by the candidate's precision
 
 
@@ -119,7 +123,7 @@ def command(
     """
     reading = None if chosen("--inputs", inputs, INPUTS) == "auto" else inputs
     options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
-    scene = load_scene(scene_word, replacements(set_, options))
+    scene = load_scene(scene_word, replacements(set_, options, UNUSED))
     if tolerance is not None and not 0 < tolerance < float("inf"):
         raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
     if not candidates and run is None and approximation is None:
@@ -157,7 +161,7 @@ def command(
                 transits=transit_times,
                 tolerance=tolerance,
                 inputs=inputs,
-                until=None if t_end is None else float(scene.exact.t_end),
+                t_end=None if t_end is None else float(scene.exact.t_end),
                 explain=not no_diagnosis,
                 announce=announce,
                 report=show(f"the truth of {scene.id}", float(scene.exact.t_end)),

@@ -26,6 +26,16 @@ from .options import (
 )
 
 LIMIT_S, SETTINGS = 8.0, "0.1,0.01"  # defaults of --limit and --settings
+# fields of a scene that make no difference to a study of these, and why
+OF_METHODS = {
+    "run.level": "Methods are held against a confirmed solution, or a dataset that ships.",
+    "inputs=decimal": "Methods are given doubles, and are held against the solution for doubles.",
+}
+OF_PRECISIONS = OF_METHODS | {"run.digits": "The truth has as many digits as the finest precision needs."}
+OF_APPROXIMATIONS = dict.fromkeys(
+    ("run.level", "run.digits", "run.transits", "run.grid_step"),
+    "Approximations are held against one run, at set times.",
+)
 
 
 def command(
@@ -70,7 +80,8 @@ def command(
 
     Every method is run over its settings; with the same --out a study resumes.
     """
-    scene = load_scene(scene_word, replacements(set_, {"--t-end": ("run.t_end", t_end)}))
+    unused = OF_APPROXIMATIONS if approximations else OF_PRECISIONS if precisions is not None else OF_METHODS
+    scene = load_scene(scene_word, replacements(set_, {"--t-end": ("run.t_end", t_end)}, unused))
     if approximations:
         refuse(
             {

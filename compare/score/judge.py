@@ -130,7 +130,7 @@ def judge(
     transits: Array | None = None,
     tolerance: float | None = None,
     inputs: str = "auto",
-    until: float | None = None,
+    t_end: float | None = None,
     explain: bool = True,
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
@@ -143,7 +143,7 @@ def judge(
         transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
         tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
-        until: end of the comparison in s; later rows and transits are ignored, and a note says so.
+        t_end: end of the comparison in s; later rows and transits are ignored, and a note says so.
         explain: whether to look for the reason if a position is off.
         announce: called with a message before the scene is solved, which takes long.
         report: called with the simulated time reached, in s, while the scene is solved.
@@ -158,9 +158,9 @@ def judge(
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     candidate = candidate if isinstance(candidate, Candidate) else read(candidate)
     times = candidate.transits if transits is None else transits
-    if until is not None:
-        candidate = _up_to(candidate, until)
-        times = None if times is None else times[times <= until]
+    if t_end is not None:
+        candidate = _up_to(candidate, t_end)
+        times = None if times is None else times[times <= t_end]
     problem, why = _reading(candidate, scene, inputs)
     digits = scene.run.digits if candidate.extended else DIGITS
     golden = golden_of(problem, digits, announce, report, float(candidate.t[-1]))

@@ -88,7 +88,7 @@ class Bench:
         if expected > self.limit_s:
             rows = min(rows, max(LEAST_ROWS, int(self.limit_s / 4 / expected * len(times))))
         if rows <= len(probe_times):
-            return self._finished(base, probe_outcome, [probe_s], probe_times)
+            return self._finished(base, method, probe_outcome, [probe_s], probe_times)
         started = time.process_time()
         work = method.prepare(self._problem(base, times[:rows]), base.setting)
         base = replace(base, compile_s=compile_s + time.process_time() - started)
@@ -98,7 +98,7 @@ class Bench:
         costs_s = [cpu_s]
         while len(costs_s) < self.repeats and sum(costs_s) + cpu_s < REPEAT_S:
             costs_s.append(timed(work)[1])
-        return self._finished(base, outcome, costs_s, times[:rows])
+        return self._finished(base, method, outcome, costs_s, times[:rows])
 
     def _problem(self, base: Row, times: Array) -> Problem:
         return Problem.of(self.scene, base.formulation, times)
@@ -114,7 +114,7 @@ class Bench:
             rhs_evaluations=outcome.rhs_evaluations,
         )
 
-    def _finished(self, base: Row, outcome: Outcome, costs_s: Sequence[float], times: Array) -> Row:
+    def _finished(self, base: Row, method: Method, outcome: Outcome, costs_s: Sequence[float], times: Array) -> Row:
         whole = len(times) == len(self.truth.times)
         share = float(self.truth.times[-1] / times[-1])
         errors = self.truth.position_errors(outcome)
@@ -133,14 +133,14 @@ class Bench:
             steps=outcome.steps,
             reached_t=float(times[-1]),
         )
-        return self._with_transits(row) if self.transits and whole and cpu_s <= TRANSIT_S else row
+        return self._with_transits(row, method) if self.transits and whole and cpu_s <= TRANSIT_S else row
 
-    def _with_transits(self, row: Row) -> Row:
+    def _with_transits(self, row: Row, method: Method) -> Row:
         """Return the row with the largest error of a transit's time, or as failed if a transit is missed."""
         transits = self.truth.transits
         if not len(transits):
             return row
-        work = METHODS[row.method].prepare(self._problem(row, np.concatenate([[0.0], transits])), row.setting)
+        work = method.prepare(self._problem(row, np.concatenate([[0.0], transits])), row.setting)
         outcome = work()
         if outcome.status != Status.OK:
             return row

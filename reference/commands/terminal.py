@@ -54,19 +54,28 @@ def chosen(option: str, word: str, names: Iterable[str]) -> str:
     return word
 
 
-def replacements(assignments: Iterable[str] | None, options: Mapping[str, tuple[str, str | None]]) -> list[str]:
+def replacements(
+    assignments: Iterable[str] | None,
+    options: Mapping[str, tuple[str, str | None]],
+    unused: Mapping[str, str] | None = None,
+) -> list[str]:
     """Return the replacements of a scene's fields, by `--set` and by options of their own.
 
     Args:
         assignments: those of `--set`.
         options: the field that each option replaces, and its value; None if it was not given.
+        unused: fields, or fields with a value, that make no difference to the command, and why.
 
     Raises:
-        InputError: a field is replaced twice, so that one of the values would have no effect.
+        InputError: a replacement would have no effect: the field is replaced twice, or it is an unused one.
     """
     values: dict[str, str] = {}
+    reasons = unused or {}
     for assignment in assignments or ():
         field = assignment.partition("=")[0].strip()
+        reason = reasons.get(field) or reasons.get(assignment)
+        if reason:
+            raise InputError("--set", assignment, "a field that makes a difference here", reason)
         if field in values:
             raise InputError("--set", assignment, f"{field} once", f"{values[field]} stands before it: keep one.")
         values[field] = assignment
@@ -85,6 +94,6 @@ def refuse(options: Mapping[str, object], why: str) -> None:
         InputError: one of the options was given: its value is neither None, nor False, nor empty.
     """
     for option, value in options.items():
-        if value not in (None, False, []):
+        if value is not None and value is not False and value != []:  # 0 was given
             got = " ".join(map(str, value)) if isinstance(value, list) else "set" if value is True else str(value)
             raise InputError(option, got, f"no such option {why}", "It would have no effect.")

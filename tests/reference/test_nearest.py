@@ -64,5 +64,5 @@ def test_every_field_of_a_scene_has_a_name_that_set_takes():
 
 @pytest.mark.parametrize("word", ["", "  "])
 def test_an_empty_scene_is_told_what_a_scene_is(word):
-    with pytest.raises(InputError, match="expected a scene's id or the path of a TOML file. `foucault scenes` lists"):
+    with pytest.raises(InputError, match="expected a scene's id or the path of a TOML file"):
         load_scene(word)

@@ -85,7 +85,12 @@ def completed(*words: str) -> list[str]:
     line = " ".join(["foucault", *words])
     asked = {"_FOUCAULT_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(words))}
     done = subprocess.run(
-        [sys.executable, "-m", "foucault"], env={**os.environ, **asked}, cwd=ROOT, capture_output=True, text=True
+        [sys.executable, "-m", "foucault"],
+        check=False,
+        env={**os.environ, **asked},
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
     )
     return done.stdout.split()
 
