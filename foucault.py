@@ -15,7 +15,7 @@ from reference.errors import FoucaultError
 app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": ["--help", "-h"]},
 )
 app.add_typer(computing)
 app.add_typer(comparing)

@@ -145,5 +145,6 @@ def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None
 
     report = report_of(scene)
     report.check(out)
-    document = document_of(scene)
+    with progress() as show:
+        document = document_of(scene, show(scene.id, unit="tables"))
     finish(document, report.text, report.write(document, out), as_json)

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ..engines import AUTO, engine_names
+from ..errors import InputError
 from ..nearest import in_words
 from ..scene import LEVELS, load_scene
 from ..shipped import scene_ids
@@ -80,6 +81,9 @@ def command(
 
     with progress() as show:
         solution = solve(scene, engine=engine, report=show(scene.id, float(scene.exact.t_end)))
+    if engine not in (AUTO, solution.run.engine):
+        few = f"So few digits need only {solution.run.number}, which {engine} does not have."
+        raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
     write(solution, folder)
     count = len(solution.directions)
     bound = grid_bound(solution, POSITION)

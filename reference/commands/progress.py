@@ -11,6 +11,7 @@ import typer
 
 NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
 MEASURED_S = 5.0  # shortest time from which the rest is estimated
+ENOUGH, LATEST_S = 0.02, 60.0  # part of the work from which it is estimated; after so many s from less
 
 
 class Move(Protocol):
@@ -90,14 +91,19 @@ class Notice:
             self._first = now, completed
         self._last = completed
         since, done = self._first
-        if self._given or now - self._begun <= NOTICE_S or now - since < MEASURED_S or completed <= done:
+        elapsed = now - self._begun
+        if self._given or elapsed <= NOTICE_S or now - since < MEASURED_S or completed <= done:
+            return
+        if completed - done < ENOUGH * (total - done) and elapsed <= LATEST_S:
             return
         self._given = True
-        elapsed = now - self._begun
         whole = elapsed + (total - completed) * (now - since) / (completed - done)
-        form = ",.0f" if total >= 10 else ".2g"
-        counted = f"{completed:{form}} of {total:{form}} {self._unit} after {elapsed:.0f} s"
+        counted = f"{_rough(completed)} of {_rough(total)} {self._unit} after {elapsed:.0f} s"
         typer.echo(f"{self._label}: about {in_words(whole)}: {counted}", err=True)
+
+
+def _rough(amount: float) -> str:
+    return f"{amount:,.0f}" if amount >= 10 else f"{amount:.2g}"
 
 
 def in_words(seconds: float) -> str:

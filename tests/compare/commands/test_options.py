@@ -9,6 +9,7 @@ from compare.studies.precisions import precision_items
 from reference import InputError
 
 STUDY, SCORE, GENERATE = ("study", "paris"), ("score", "paris", "-"), ("generate", "paris")
+FEW = ("--t-end", "60", "--digits", "10", "--level", "computed")
 LATE = ("--t-end", "10", "--set", "run.t_end=20")
 
 REFUSED = [
@@ -43,6 +44,7 @@ REFUSED = [
     ((*GENERATE, "--no-transits", "--set", "run.transits=true"), "--no-transits", "together with"),
     ((*GENERATE, "--set", "run.digits=9", "--set", " run.digits = 8"), "--set", "run.digits=9 stands before it"),
     ((*GENERATE, "--level", "confimed"), "--level", "Did you mean confirmed?"),
+    ((*GENERATE, *FEW, "--engine", "limbs"), "--engine", "expected auto or heyoka"),
     ((*GENERATE, "--engine", "limb"), "--engine", "Did you mean limbs?"),
     (("study", "pariss"), "SCENE", "Did you mean paris?"),
     ((*STUDY, "--methods", "rk4,dop853"), "method", "scipy_dop853"),

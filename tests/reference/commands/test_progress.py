@@ -65,6 +65,14 @@ def test_work_that_starts_again_is_estimated_from_its_new_start(clock, capsys):
     assert capsys.readouterr().err == "hard: about 2 minutes: 11 of 100 s simulated after 31 s\n"
 
 
+def test_the_first_steps_are_too_few_for_an_estimate_unless_they_take_a_minute(clock, capsys):
+    move = Notice("creeping", 100.0, clock=clock)
+    for seconds in range(100):
+        clock.now = 100.0 + seconds
+        move(0.004 * seconds)
+    assert capsys.readouterr().err == "creeping: about 6.9 hours: 0.24 of 100 s simulated after 61 s\n"
+
+
 def test_runs_are_counted_and_those_that_were_stored_cost_nothing(clock, capsys):
     move = Notice("paris", unit="runs", clock=clock)
     for done in range(30, 60):
