@@ -101,7 +101,7 @@ def command(
         refuse({"--settings": settings, "--name": name}, "without --run")
     check_limit(LIMIT_S if limit is None else limit)
     from ..candidates.external import arguments
-    from ..methods import named_programs
+    from ..methods import SETTING, named_programs
     from ..report.study import REPORT
     from ..studies.study import plan
     from ..studies.study import study as measure
@@ -120,10 +120,13 @@ def command(
     if not run:
         check_installed(method for method, _, _ in items)
     for program in run or ():
-        arguments(program.replace("{setting}", "0.1"), problem)  # refuses one that cannot be run before any work
+        arguments(program.replace(SETTING, "0.1"), problem)  # refuses one that cannot be run before any work
     programs = named_programs(run or (), name or ())
+    if not any(SETTING in program for program in programs.values()):
+        refuse({"--settings": settings}, f"with a --run that has no {SETTING}")
     steps = numbers(SETTINGS if settings is None else settings, "--settings")
-    items += [(program, "momentum", step) for program in programs for step in steps]
+    for program, words in programs.items():
+        items += [(program, "momentum", step) for step in (steps if SETTING in words else steps[:1])]
     with progress() as show:
         study = measure(
             problem,

@@ -23,10 +23,21 @@ from reference import InputError
 
 from ..registry import Registry
 from ..rhs.problem import Problem
-from .external import LONGEST_NAME, external, file_name
+from .external import LONGEST_NAME, SETTING, external, file_name
 from .method import Family, Method, Outcome, Work, available
 
-__all__ = ["METHODS", "Family", "Method", "Outcome", "Problem", "Work", "available", "external", "named_programs"]
+__all__ = [
+    "METHODS",
+    "SETTING",
+    "Family",
+    "Method",
+    "Outcome",
+    "Problem",
+    "Work",
+    "available",
+    "external",
+    "named_programs",
+]
 
 METHODS: Mapping[str, Method] = Registry(__name__, "METHODS", "method", lambda method: [*Family].index(method.family))
 

@@ -18,6 +18,7 @@ from reference.status import Status
 from ..rhs.problem import Array, Problem
 from .method import Method, Outcome, Setting, Work, failed
 
+SETTING = "{setting}"  # stands for the step, tolerance or precision in a command
 LONGEST_NAME = 24  # characters of a program's name in tables and charts
 SCRIPTS = (".py", ".js", ".mjs", ".ts", ".jl", ".rb", ".r", ".m", ".pl", ".lua", ".sh", ".jar")
 SAME_TIME = 1e-9  # relative difference of times that count as equal, for programs that print few decimals
@@ -58,7 +59,7 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
     from ..candidates.external import arguments, run_program
     from ..candidates.read import read_stream
 
-    words = arguments(command.replace("{setting}", repr(value)), _scene(problem))
+    words = arguments(command.replace(SETTING, repr(value)), _scene(problem))
 
     def work() -> Outcome:
         try:

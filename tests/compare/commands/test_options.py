@@ -9,7 +9,6 @@ from compare.studies.precisions import precision_items
 from reference import InputError
 
 STUDY, SCORE, GENERATE = ("study", "paris"), ("score", "paris", "-"), ("generate", "paris")
-FEW = ("--t-end", "60", "--digits", "10", "--level", "computed")
 LATE = ("--t-end", "10", "--set", "run.t_end=20")
 
 REFUSED = [
@@ -20,6 +19,7 @@ REFUSED = [
     ((*STUDY, "--approximations", "--no-formulations"), "--no-formulations", "together with --approximations"),
     ((*STUDY, "--approximations", "--set", "run.grid_step=7"), "--set", "at set times"),
     ((*STUDY, "--settings", "0.1"), "--settings", "without --run"),
+    ((*STUDY, "--settings", "0.1", "--run", "./p"), "--settings", "with a --run that has no {setting}"),
     ((*STUDY, "--name", "mine"), "--name", "without --run"),
     ((*STUDY, "--run", "./p", "--run", "./q", "--name", "p"), "--name", "one name for each --run, so 2"),
     ((*STUDY, "--run", "./p", "--name", "rk4"), "--name", "a name that a method does not have"),
@@ -44,7 +44,6 @@ REFUSED = [
     ((*GENERATE, "--no-transits", "--set", "run.transits=true"), "--no-transits", "together with"),
     ((*GENERATE, "--set", "run.digits=9", "--set", " run.digits = 8"), "--set", "run.digits=9 stands before it"),
     ((*GENERATE, "--level", "confimed"), "--level", "Did you mean confirmed?"),
-    ((*GENERATE, *FEW, "--engine", "limbs"), "--engine", "expected auto or heyoka"),
     ((*GENERATE, "--engine", "limb"), "--engine", "Did you mean limbs?"),
     (("study", "pariss"), "SCENE", "Did you mean paris?"),
     ((*STUDY, "--methods", "rk4,dop853"), "method", "scipy_dop853"),

@@ -140,6 +140,14 @@ def test_an_unknown_level_or_command_is_wrong_usage(foucault):
     assert foucault("generate", "paris", "--engine", "steam")[0] == 2
 
 
+def test_an_engine_that_so_few_digits_do_not_need_is_refused(foucault, tmp_path):
+    pytest.importorskip("numba")
+    status, out, err = foucault("generate", "paris", *SHORT, "--engine", "limbs", "--out", tmp_path / "p")
+    assert (status, out) == (2, "")
+    assert "--engine: got 'limbs', expected auto or heyoka. So few digits need only long_double" in err
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_what_cannot_be_reached_ends_with_exit_3_and_no_file(foucault, tmp_path, monkeypatch):
     from reference.solver import pilot as pilot_runs
 
