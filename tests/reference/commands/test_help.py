@@ -13,13 +13,15 @@ import pytest
 from places import ROOT
 
 from compare.candidates.external import REPEATS, TIMEOUT_S
+from compare.commands import app as comparing
 from compare.commands import stability, study
 from compare.score.judge import TOLERANCE
 from compare.studies.precisions import SPAN_S
 from compare.studies.stability import LIMIT_S as STABILITY_LIMIT_S
 from compare.studies.study import LIMIT_S as STUDY_LIMIT_S
+from reference.commands import app as computing
 
-COMMANDS = ("scenes", "show", "generate", "verify", "score", "study", "stability", "methods", "pend", "paper")
+COMMANDS = [str(one.name) for part in (computing, comparing) for one in part.registered_commands]
 
 
 @pytest.mark.parametrize("word", ["--help", "-h"])
