@@ -19,7 +19,7 @@ def nearest(word: str, known: Iterable[str]) -> list[str]:
     for likeness in VERY_ALIKE:
         if alike := get_close_matches(typed, names, n=MOST, cutoff=likeness):
             return [names[name] for name in alike]
-    containing = [name for name in names if len(typed) >= LEAST_PART and typed in name]
+    containing = sorted((name for name in names if len(typed) >= LEAST_PART and typed in name), key=len)
     return [names[name] for name in (containing or get_close_matches(typed, names, n=MOST))][:MOST]
 
 
