@@ -30,6 +30,10 @@ def test_there_are_at_most_five_names():
     )
 
 
+def test_of_names_that_contain_the_word_the_shortest_stand_first():
+    assert nearest("dop853", ["numbalsoda_dop853", "rk4", "scipy_dop853"]) == ["scipy_dop853", "numbalsoda_dop853"]
+
+
 def test_names_are_joined_as_in_a_sentence():
     assert [in_words(names) for names in (["a"], ["a", "b"], ["a", "b", "c"])] == ["a", "a or b", "a, b or c"]
     assert did_you_mean("pari", ["paris"], "") == "Did you mean paris?"
