@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from difflib import get_close_matches
 from functools import cached_property
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Any, Protocol, TypeVar
 
-from reference import InputError
+from reference.nearest import unknown
 
 
 class Declaration(Protocol):
@@ -48,9 +47,10 @@ class Registry(Mapping[str, D]):
 
     def __getitem__(self, word: str) -> D:
         if word not in self._by_id:
-            nearest_first = get_close_matches(word, self._by_id, n=len(self._by_id), cutoff=0.0)
-            known = f"Known ids, the nearest first: {', '.join(nearest_first)}."
-            raise InputError(self._what, word, f"the id of a declared {self._what}", known)
+            article = "an" if self._what[0] in "aeiou" else "a"
+            raise unknown(
+                self._what, word, f"the id of {article} {self._what}", self._by_id, "`foucault methods` lists them."
+            )
         return self._by_id[word]
 
     def get(self, word: str, default: Any = None) -> Any:

@@ -15,6 +15,7 @@ from reference import InputError, Scene
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .score.judge import Score, judge
+from .score.verdict import diagnosis_lines
 
 
 def assert_agrees(
@@ -22,7 +23,7 @@ def assert_agrees(
     t: npt.ArrayLike,
     states: npt.ArrayLike,
     *,
-    tolerance: float,
+    tolerance: float | None = None,
     transits: npt.ArrayLike | None = None,
     inputs: str = "auto",
 ) -> Score:
@@ -32,7 +33,7 @@ def assert_agrees(
         scene: a scene, its id, or the path of a TOML file.
         t: times in s, shape (rows,), increasing.
         states: x, y in m; or x, y, z in m; or these and vx, vy, vz in m/s: shape (rows, 2), (rows, 3) or (rows, 6).
-        tolerance: largest position error allowed, in m.
+        tolerance: largest position error allowed, in m; a millionth of the amplitude if None, as in `foucault score`.
         transits: times of xdot = 0 in s, if they are to be compared as well.
         inputs: decimal, binary64 or auto, as in `foucault score --inputs`.
 
@@ -40,7 +41,8 @@ def assert_agrees(
         The score, with more measures of the error.
 
     Raises:
-        AssertionError: the trajectory disagrees; the message gives time, component, expected, got, difference, allowed.
+        AssertionError: the trajectory disagrees; the message gives time, component, expected, got, difference, what is
+            allowed, and the mistake that explains it, if one does.
         InputError: an array has the wrong shape, or a number is not finite.
     """
     rows, times = np.asarray(states), np.asarray(t)
@@ -57,7 +59,6 @@ def assert_agrees(
         transits=transit_times,
         tolerance=tolerance,
         inputs=inputs,
-        explain=False,
     )
     if not result.agrees:
         raise AssertionError(message(result))
@@ -82,4 +83,4 @@ def message(result: Score) -> str:
         lines.append(
             f"  largest error {transits.max_error_s:.3e} s, weighted by |ax| {transits.max_conditioned_m:.3e} m"
         )
-    return "\n".join(lines)
+    return "\n".join([*lines, *(f"  {line}" for line in diagnosis_lines(result))])

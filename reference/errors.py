@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from .shortened import shortened
+
+LONGEST_VALUE = 120  # characters of a value that a message repeats
+
 
 class FoucaultError(Exception):
     """Base of every error that this project raises on purpose."""
@@ -16,8 +20,7 @@ class InputError(FoucaultError):
 
     def __init__(self, field: str, got: object, expected: str, advice: str = "") -> None:
         self.field, self.got, self.expected, self.advice = field, got, expected, advice
-        value = got if isinstance(got, str) else repr(got)
-        value = value if len(value) <= 120 else value[:117] + "..."
+        value = shortened(got if isinstance(got, str) else repr(got), LONGEST_VALUE)
         text = f"{field}: got {value!r}, expected {expected}."
         super().__init__(f"{text} {advice}".rstrip())
 

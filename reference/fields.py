@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated
@@ -10,6 +11,7 @@ from typing import Annotated
 from pydantic import AfterValidator, BeforeValidator, ValidationError
 
 from .errors import InputError
+from .nearest import did_you_mean
 
 MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
 
@@ -68,8 +70,13 @@ Positive = Annotated[Number, within("0", open_low=True)]
 NotNegative = Annotated[Number, within("0")]
 
 
-def explained(error: ValidationError) -> InputError:
-    """Return the error that a user reads: the first wrong field, what it got, what was expected."""
+def explained(error: ValidationError, known: Iterable[str]) -> InputError:
+    """Return the error that a user reads: the first wrong field, what it got, what was expected.
+
+    Args:
+        error: as pydantic raised it.
+        known: names of the fields that there are.
+    """
     details = error.errors()[0]
     field = ".".join(str(part) for part in details["loc"])
     kind, got = details["type"], details["input"]
@@ -77,7 +84,9 @@ def explained(error: ValidationError) -> InputError:
     if isinstance(cause, Refused):
         return InputError(field, got, cause.expected, cause.advice)
     if kind == "extra_forbidden":
-        return InputError(field, got, "no such key", "Remove it, or look for a misspelling.")
+        return InputError(
+            field, got, "a field that scenes have", did_you_mean(field, known, "`foucault show SCENE` lists them.")
+        )
     if kind == "missing":
         return InputError(field, "nothing", "a value", "Add this field to the scene.")
     expected = {

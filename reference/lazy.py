@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from difflib import get_close_matches
 from importlib import import_module
 from typing import Any
 
-NEAR = 0.5  # of difflib's similarity, from 0 to 1: names at least as near stand first
+from .nearest import nearest
 
 
 def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
@@ -36,5 +35,5 @@ def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
     if name.startswith("_"):  # Python itself asks for such names, and wants no advice
         return AttributeError(text)
     known = sorted(names)
-    near = get_close_matches(name, known, cutoff=NEAR)
+    near = nearest(name, known)
     return AttributeError(f"{text}; it has {', '.join([*near, *(one for one in known if one not in near)])}")

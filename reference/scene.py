@@ -18,6 +18,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 from .errors import InputError
 from .fields import NotNegative, Number, NumberOrInf, Positive, Refused, explained, within
 from .inputs import GravityIs, Inputs
+from .nearest import unknown
 from .shipped import data_root, scene_ids
 
 MAX_DIGITS = 1000
@@ -163,6 +164,16 @@ def _assign(document: dict[str, Any], assignment: str) -> None:
         table[parts[-1]] = value.strip()
 
 
+def field_names() -> list[str]:
+    """Return the names of a scene's fields, as `--set` takes them: inputs, site.latitude and so on."""
+    names = []
+    for top, field in Scene.model_fields.items():
+        kind = field.annotation
+        inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, _Table) else ()
+        names += [f"{top}.{key}" for key in inside] or [top]
+    return names
+
+
 def parse_scene(document: Mapping[str, Any]) -> Scene:
     """Check a scene given as nested mappings.
 
@@ -172,7 +183,7 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
     try:
         scene = Scene.model_validate(dict(document))
     except ValidationError as error:
-        raise explained(error) from None
+        raise explained(error, [*Scene.model_fields, *field_names()]) from None
     _check_release(scene)
     _check_grid(scene)
     return scene
@@ -217,13 +228,13 @@ def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
         InputError: no such scene, broken TOML, or a wrong field.
     """
     word = str(name)
+    if not word.strip():
+        raise _no_scene(word)
     path = data_root() / "scenes" / f"{word}.toml" if is_scene_id(word) else Path(word)
     try:
         document = tomllib.loads(path.read_bytes().decode())
     except FileNotFoundError:
-        raise InputError(
-            "SCENE", word, "a scene's id or the path of a TOML file", f"Known ids: {', '.join(scene_ids())}."
-        ) from None
+        raise _no_scene(word) from None
     except OSError as error:
         raise InputError("SCENE", word, "a readable file", f"{error.strerror}.") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -231,3 +242,8 @@ def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
     for assignment in assignments:
         _assign(document, assignment)
     return parse_scene(document)
+
+
+def _no_scene(word: str) -> InputError:
+    expected = "a scene's id or the path of a TOML file"
+    return unknown("SCENE", word, expected, scene_ids(), "`foucault scenes` lists the ids.")

@@ -1,14 +1,15 @@
-"""Commands that compare results with the datasets: score, study, stability, pend, paper (progress on stderr)."""
+"""Commands that compare results with the datasets: score, study, stability, methods, pend, paper."""
 
 from __future__ import annotations
 
 import typer
 
-from . import paper, pend, score, stability, study
+from . import methods, paper, pend, score, stability, study
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None)
 app.command("score")(score.command)
 app.command("study")(study.command)
 app.command("stability")(stability.command)
+app.command("methods")(methods.command)
 app.command("pend")(pend.command)
 app.command("paper")(paper.command)

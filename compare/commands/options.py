@@ -1,15 +1,67 @@
-"""Shared parts of the commands: comma-separated options, folders of results, and how a command ends."""
+"""Shared parts of the commands: comma-separated options and their completion, folders of results, and the end."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
-from reference import InputError
+from reference import InputError, scene_ids
 from reference.commands.terminal import emit
+
+
+def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
+    """Return what a shell asks for the names that may follow in a comma-separated list that is being typed."""
+
+    def lists(incomplete: str) -> list[str]:
+        before, comma, last = incomplete.rpartition(",")
+        used = before.split(",")
+        return [f"{before}{comma}{name}" for name in names() if name.startswith(last) and name not in used]
+
+    return lists
+
+
+def method_ids() -> list[str]:
+    """Return the ids of the methods; their files are imported at the first call."""
+    from ..methods import METHODS
+
+    return list(METHODS)
+
+
+Methods = Annotated[
+    str | None,
+    typer.Option(
+        "--methods",
+        metavar="A,B,…",
+        help="Ids of methods, as `foucault methods` lists them (default: all).",
+        autocompletion=completion_of_lists(method_ids),
+    ),
+]
+Scenes = Annotated[
+    str | None,
+    typer.Option(
+        "--scenes",
+        metavar="A,B,…",
+        help="Ids of scenes (default: paris and all that have flags).",
+        autocompletion=completion_of_lists(scene_ids),
+    ),
+]
+Folder = Annotated[
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Write CSV, JSON and an HTML page into this folder (default: none)."),
+]
+Commands = Annotated[
+    list[str] | None,
+    typer.Option("--run", metavar="'COMMAND'", help="Study your program too; {setting} is its step. May be repeated."),
+]
+Names = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--name", metavar="WORD", help="Name of the program of --run, one for each (default: its file's name)."
+    ),
+]
 
 
 def listed(text: str | None, field: str) -> list[str] | None:
@@ -31,6 +83,26 @@ def numbers(text: str, field: str) -> list[float]:
     if not values or not all(0 < value < float("inf") for value in values):
         raise InputError(field, text, "positive numbers", "Separate several with commas.")
     return values
+
+
+def check_limit(limit_s: float) -> None:
+    """Refuse a limit that is no positive number of seconds."""
+    if not 0 < limit_s < float("inf"):
+        raise InputError("--limit", f"{limit_s:g}", "a positive number of seconds")
+
+
+def check_installed(methods: Iterable[str]) -> None:
+    """Refuse methods of which none can run here; where some can, the report says what the others lack.
+
+    Raises:
+        InputError: none is installed; it says how to install the first.
+    """
+    from ..methods import METHODS, available
+
+    wanted = list(dict.fromkeys(methods))
+    missing = [available(METHODS[name]) for name in wanted]
+    if wanted and all(missing):
+        raise InputError("--methods", ", ".join(wanted), "a method that can run here", f"{wanted[0]} is {missing[0]}.")
 
 
 def inside(folder: Path | None, name: str) -> Path | None:

@@ -8,7 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from reference.commands.terminal import AsJson, progress
+from reference.commands.progress import progress
+from reference.commands.terminal import AsJson
 
 from .options import finish
 
@@ -30,8 +31,12 @@ def command(
     from ..papers.page import document
     from ..report.folder import PAGE
 
-    with progress("judging", unit="rows") as count:
-        report = None if count is None else lambda place, completed, total: count(completed, total, place)
+    with progress() as show:
+        judging = show("judging", unit="rows and figures")
+
+        def report(place: str, completed: int, total: int) -> None:
+            judging(completed, total, place)
+
         judged = rows(report) if out is None else build(out, report)
     result = {"out": None if out is None else str(out), "rows": [document(row) for row in judged]}
     finish(result, _text, None if out is None else out / PAGE, as_json)

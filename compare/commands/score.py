@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from reference import InputError, Scene, load_scene
-from reference.commands.terminal import AsJson, Assignments, SceneWord, emit, progress
+from reference.commands.progress import progress
+from reference.commands.terminal import (
+    AsJson,
+    Assignments,
+    SceneWord,
+    chosen,
+    completion,
+    emit,
+    refuse,
+    replacements,
+)
 
 from .options import announce
 
@@ -20,21 +29,25 @@ if TYPE_CHECKING:
     from ..score.judge import Score
 
 MAX_REPEATS = 1000
+TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats
+UNUSED = {  # fields of a scene that make no difference to a score
+    "run.level": "A candidate is held against a confirmed solution, or a dataset that ships.",
+    "inputs=decimal": "Write --inputs decimal: without it doubles are held against doubles.",
+}
+INPUTS = ("auto", "decimal", "binary64")  # readings of the scene's numbers; auto: by the candidate's precision
 
 
-class InputsReading(StrEnum):
-    """Reading of the scene's numbers: as decimals, as the nearest doubles, or chosen by the candidate's precision."""
+def _approximation_ids() -> list[str]:
+    from ..approximations import motions
 
-    auto = "auto"
-    decimal = "decimal"
-    binary64 = "binary64"
+    return list(motions())
 
 
 def command(
     scene_word: SceneWord,
     candidates: Annotated[
         list[str] | None,
-        typer.Argument(metavar="[CANDIDATE]...", help="Files to score: CSV, foucPend's output or .npz; - is stdin."),
+        typer.Argument(metavar="CANDIDATE", help="Files to score: CSV, foucPend's output or .npz; - is stdin."),
     ] = None,
     transits: Annotated[
         str | None,
@@ -47,7 +60,12 @@ def command(
     ] = None,
     approximation: Annotated[
         str | None,
-        typer.Option("--approximation", metavar="ID", help="Score one of the source papers' approximations."),
+        typer.Option(
+            "--approximation",
+            metavar="ID",
+            help="Score one of the source papers' approximations, which `foucault methods` lists.",
+            autocompletion=completion(_approximation_ids),
+        ),
     ] = None,
     tolerance: Annotated[
         float | None,
@@ -55,18 +73,40 @@ def command(
             "--tolerance", metavar="M", help="Allow position errors up to this, in m (default: 1e-6 of the amplitude)."
         ),
     ] = None,
+    t_end: Annotated[
+        str | None,
+        typer.Option(
+            "--t-end", metavar="S", help="Compare up to this time, in s, and ignore later rows (default: the scene's)."
+        ),
+    ] = None,
     inputs: Annotated[
-        InputsReading, typer.Option("--inputs", help="Read the scene's numbers as decimals or as doubles.")
-    ] = InputsReading.auto,
+        str,
+        typer.Option(
+            "--inputs",
+            metavar="READING",
+            help="Read the scene's numbers as decimal or binary64; auto: as the candidate's digits suggest.",
+            autocompletion=completion(lambda: INPUTS),
+        ),
+    ] = "auto",
     plot: Annotated[
         Path | None, typer.Option("--plot", metavar="FILE", help="Draw error against time: .svg, .png or .pdf.")
     ] = None,
     timeout: Annotated[
-        float, typer.Option("--timeout", metavar="S", help="Stop the program of --run after this many seconds.")
-    ] = 600.0,
+        float | None,
+        typer.Option(
+            "--timeout",
+            metavar="S",
+            help=f"Stop the program of --run after this many seconds (default: {TIMEOUT_S:g}).",
+        ),
+    ] = None,
     repeats: Annotated[
-        int, typer.Option("--repeats", help="Time the program of --run this often after a warm-up.")
-    ] = 3,
+        int | None,
+        typer.Option(
+            "--repeats",
+            metavar="N",
+            help=f"Time the program of --run this often after a warm-up (default: {REPEATS}).",
+        ),
+    ] = None,
     no_diagnosis: Annotated[
         bool, typer.Option("--no-diagnosis", help="Do not look for the reason of an error.")
     ] = False,
@@ -81,7 +121,9 @@ def command(
     {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
     {azimuth_rate} {t_end} {grid_step}.
     """
-    scene = load_scene(scene_word, set_ or ())
+    reading = None if chosen("--inputs", inputs, INPUTS) == "auto" else inputs
+    options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
+    scene = load_scene(scene_word, replacements(set_, options, UNUSED))
     if tolerance is not None and not 0 < tolerance < float("inf"):
         raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
     if not candidates and run is None and approximation is None:
@@ -90,6 +132,9 @@ def command(
         )
     if [*(candidates or ()), transits].count("-") > 1:
         raise InputError("CANDIDATE", "- more than once", "standard input once", "It can be read only once.")
+    if run is None:
+        refuse({"--timeout": timeout, "--repeats": repeats}, "without --run")
+    timeout, repeats = TIMEOUT_S if timeout is None else timeout, REPEATS if repeats is None else repeats
     if not 0 < timeout < float("inf"):
         raise InputError("--timeout", f"{timeout:g}", "a positive number of seconds")
     if not 0 <= repeats <= MAX_REPEATS:
@@ -109,16 +154,17 @@ def command(
         timed_candidates.append((_approximate(approximation, scene), None))
     scores = []
     for candidate, timing in timed_candidates:
-        with progress(f"solve {scene.id}", float(scene.run.t_end)) as report:
+        with progress() as show:
             score = judge(
                 candidate,
                 scene,
                 transits=transit_times,
                 tolerance=tolerance,
-                inputs=inputs.value,
+                inputs=inputs,
+                t_end=None if t_end is None else float(scene.exact.t_end),
                 explain=not no_diagnosis,
                 announce=announce,
-                report=report,
+                report=show(f"the truth of {scene.id}", float(scene.exact.t_end)),
             )
         scores.append(replace(score, timing=timing))
     if plot is not None:
@@ -144,12 +190,14 @@ def _approximate(word: str, scene: Scene) -> Candidate:
     """Return the motion of an approximation at the scene's grid times."""
     import numpy as np
 
-    from ..approximations import APPROXIMATIONS, Motion, motions
+    from ..approximations import APPROXIMATIONS, Motion
     from ..candidates.candidate import COLUMNS, candidate_of
 
     motion = APPROXIMATIONS[word]
     if not isinstance(motion, Motion):
-        raise InputError("--approximation", word, f"one of {', '.join(motions())}", "It gives a number, not a motion.")
+        raise InputError(
+            "--approximation", word, "an approximation of the motion", "This one gives a number, not a motion."
+        )
     times = [float(t) for t in scene.exact.grid]
     columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
     return candidate_of(word, {"t": np.array(times), **columns})

@@ -2,31 +2,28 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from reference import InputError
-from reference.commands.terminal import AsJson, progress
+from reference.commands.progress import progress
+from reference.commands.terminal import AsJson
 
-from .options import finish, inside, listed
+from .options import Folder, Methods, Scenes, check_installed, check_limit, finish, inside, listed
+
+LIMIT_S = 3.0  # default of --limit
 
 
 def command(
-    scenes: Annotated[
-        str | None, typer.Option("--scenes", metavar="A,B,…", help="Ids of scenes; by default all that have flags.")
-    ] = None,
-    methods: Annotated[
-        str | None, typer.Option("--methods", metavar="A,B,…", help="Ids of methods; by default all.")
-    ] = None,
-    limit: Annotated[float, typer.Option("--limit", metavar="S", help="Allow one run this many CPU seconds.")] = 3.0,
+    scenes: Scenes = None,
+    methods: Methods = None,
+    limit: Annotated[
+        float, typer.Option("--limit", metavar="S", help="Allow one run this many CPU seconds.")
+    ] = LIMIT_S,
     long: Annotated[
         bool, typer.Option("--long", help="Also measure how errors grow over 30 days (takes minutes more).")
     ] = False,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Write CSV, JSON and an HTML page into this folder.")
-    ] = None,
+    out: Folder = None,
     as_json: AsJson = False,
 ) -> None:
     """Run methods on the difficult scenes.
@@ -38,13 +35,23 @@ def command(
     from ..studies.long_runs import long_runs
     from ..studies.stability import stability as measure
 
-    if not 0 < limit < float("inf"):
-        raise InputError("--limit", f"{limit:g}", "a positive number of seconds")
+    check_limit(limit)
     REPORT.check(out)
     chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
+    check_installed(method for method, _, _ in declared(requested, "stability"))
     items = declared(requested, "long_runs") if long else []
-    with progress("stability", unit="runs") as report:
-        cells = measure(chosen, requested, limit_s=limit, journal_path=inside(out, "cells.jsonl"), report=report)
-        runs = long_runs(items, journal_path=inside(out, "long.jsonl"), report=report) if items else []
+    with progress() as show:
+        cells = measure(
+            chosen,
+            requested,
+            limit_s=limit,
+            journal_path=inside(out, "cells.jsonl"),
+            solving=show("the truth", unit="scenes"),
+            report=show("stability", unit="runs"),
+        )
+        runs = []
+        if items:
+            solving, report = show("the truth over 30 days", unit="days"), show("30 days", unit="runs")
+            runs = long_runs(items, journal_path=inside(out, "long.jsonl"), solving=solving, report=report)
     document = document_of(cells, runs)
     finish(document, REPORT.text, REPORT.write(document, out), as_json)

@@ -7,17 +7,40 @@ from typing import Annotated
 
 import typer
 
-from reference import InputError, Scene, load_scene
-from reference.commands.terminal import AsJson, Assignments, SceneWord, progress
+from reference import Scene, load_scene
+from reference.commands.progress import progress
+from reference.commands.terminal import AsJson, Assignments, SceneWord, refuse, replacements
 
-from .options import announce, finish, inside, listed, numbers
+from .options import (
+    Commands,
+    Folder,
+    Methods,
+    Names,
+    announce,
+    check_installed,
+    check_limit,
+    finish,
+    inside,
+    listed,
+    numbers,
+)
+
+LIMIT_S, SETTINGS = 8.0, "0.1,0.01"  # defaults of --limit and --settings
+# fields of a scene that make no difference to a study of these, and why
+OF_METHODS = {
+    "run.level": "Methods are held against a confirmed solution, or a dataset that ships.",
+    "inputs=decimal": "Methods are given doubles, and are held against the solution for doubles.",
+}
+OF_PRECISIONS = OF_METHODS | {"run.digits": "The truth has as many digits as the finest precision needs."}
+OF_APPROXIMATIONS = dict.fromkeys(
+    ("run.level", "run.digits", "run.transits", "run.grid_step"),
+    "Approximations are held against one run, at set times.",
+)
 
 
 def command(
     scene_word: SceneWord,
-    methods: Annotated[
-        str | None, typer.Option("--methods", metavar="A,B,…", help="Ids of methods; by default all.")
-    ] = None,
+    methods: Methods = None,
     precisions: Annotated[
         str | None,
         typer.Option(
@@ -30,21 +53,26 @@ def command(
             "--approximations", help="Study the source papers' approximations instead: where each stops being good."
         ),
     ] = False,
-    run: Annotated[
-        list[str] | None,
-        typer.Option("--run", metavar="'COMMAND'", help="Study your program too; {setting} is its step."),
-    ] = None,
+    run: Commands = None,
+    name: Names = None,
     settings: Annotated[
-        str, typer.Option("--settings", metavar="0.1,0.01,…", help="Values of {setting} in --run.")
-    ] = "0.1,0.01",
-    t_end: Annotated[str | None, typer.Option("--t-end", metavar="S", help="End of the run in s.")] = None,
-    limit: Annotated[float, typer.Option("--limit", metavar="S", help="Allow one run this many CPU seconds.")] = 8.0,
+        str | None,
+        typer.Option("--settings", metavar="S,S,…", help=f"Values of {{setting}} in --run (default: {SETTINGS})."),
+    ] = None,
+    t_end: Annotated[
+        str | None,
+        typer.Option(
+            "--t-end", metavar="S", help="End of the run in s (default: the scene's; at most 600 with --precisions)."
+        ),
+    ] = None,
+    limit: Annotated[
+        float | None,
+        typer.Option("--limit", metavar="S", help=f"Allow one run this many CPU seconds (default: {LIMIT_S:g})."),
+    ] = None,
     no_formulations: Annotated[
         bool, typer.Option("--no-formulations", help="Leave out the comparison of formulations.")
     ] = False,
-    out: Annotated[
-        Path | None, typer.Option("--out", metavar="DIR", help="Write CSV, JSON and an HTML page into this folder.")
-    ] = None,
+    out: Folder = None,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
@@ -52,37 +80,63 @@ def command(
 
     Every method is run over its settings; with the same --out a study resumes.
     """
-    changes = [*(set_ or ()), *([] if t_end is None else [f"run.t_end={t_end}"])]
-    scene = load_scene(scene_word, changes)
-    if not 0 < limit < float("inf"):
-        raise InputError("--limit", f"{limit:g}", "a positive number of seconds")
+    unused = OF_APPROXIMATIONS if approximations else OF_PRECISIONS if precisions is not None else OF_METHODS
+    scene = load_scene(scene_word, replacements(set_, {"--t-end": ("run.t_end", t_end)}, unused))
     if approximations:
+        refuse(
+            {
+                "--methods": methods,
+                "--precisions": precisions,
+                "--run": run,
+                "--name": name,
+                "--settings": settings,
+                "--limit": limit,
+                "--no-formulations": no_formulations,
+            },
+            "together with --approximations",
+        )
         _study_approximations(scene, out, as_json)
         return
-    from ..methods import EXTERNAL
+    if not run:
+        refuse({"--settings": settings, "--name": name}, "without --run")
+    check_limit(LIMIT_S if limit is None else limit)
+    from ..candidates.external import arguments
+    from ..methods import SETTING, named_programs
     from ..report.study import REPORT
     from ..studies.study import plan
     from ..studies.study import study as measure
 
     REPORT.check(out)
     problem, digits = scene, None
-    items = plan(scene, listed(methods, "--methods"), not no_formulations)
-    if precisions is not None:
+    requested = listed(methods, "--methods")
+    if precisions is None:
+        items = plan(scene, requested, not no_formulations)
+    else:
         from ..studies.precisions import bits_of, precision_items, precision_scene
 
         bits = bits_of(precisions)
-        items = precision_items(bits)
+        items = precision_items(bits, requested)
         problem, digits = precision_scene(scene, bits, whole=t_end is not None)
+    if not run:
+        check_installed(method for method, _, _ in items)
     for program in run or ():
-        items += [(f"{EXTERNAL}{program}", "momentum", setting) for setting in numbers(settings, "--settings")]
-    with progress(scene.id, unit="runs") as report:
+        arguments(program.replace(SETTING, "0.1"), problem)  # refuses one that cannot be run before any work
+    programs = named_programs(run or (), name or ())
+    if not any(SETTING in program for program in programs.values()):
+        refuse({"--settings": settings}, f"with a --run that has no {SETTING}")
+    steps = numbers(SETTINGS if settings is None else settings, "--settings")
+    for program, words in programs.items():
+        items += [(program, "momentum", step) for step in (steps if SETTING in words else steps[:1])]
+    with progress() as show:
         study = measure(
             problem,
             items=items,
-            limit_s=limit,
+            programs=programs,
+            limit_s=LIMIT_S if limit is None else limit,
             journal_path=inside(out, "rows.jsonl"),
             digits=digits,
-            report=report,
+            solving=show(f"the truth of {scene.id}", float(problem.exact.t_end)),
+            report=show(scene.id, unit="runs"),
             announce=announce,
         )
     document = study.document()
@@ -94,5 +148,6 @@ def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None
 
     report = report_of(scene)
     report.check(out)
-    document = document_of(scene)
+    with progress() as show:
+        document = document_of(scene, show(scene.id, unit="tables"))
     finish(document, report.text, report.write(document, out), as_json)

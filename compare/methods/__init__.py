@@ -17,25 +17,50 @@ it prepares a problem. They are listed by family, then by file, then as they sta
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+from reference import InputError
 
 from ..registry import Registry
 from ..rhs.problem import Problem
-from .external import external
+from .external import LONGEST_NAME, SETTING, external, file_name
 from .method import Family, Method, Outcome, Work, available
 
-__all__ = ["EXTERNAL", "METHODS", "Family", "Method", "Outcome", "Problem", "Work", "available", "external"]
+__all__ = [
+    "METHODS",
+    "SETTING",
+    "Family",
+    "Method",
+    "Outcome",
+    "Problem",
+    "Work",
+    "available",
+    "external",
+    "named_programs",
+]
 
-EXTERNAL = "external: "  # begins the id of a method that is a command
+METHODS: Mapping[str, Method] = Registry(__name__, "METHODS", "method", lambda method: [*Family].index(method.family))
 
 
-class _Methods(Registry[Method]):
-    """The declared methods; an id that begins with `EXTERNAL` is a command, which needs no declaration."""
+def named_programs(commands: Sequence[str], names: Sequence[str] = ()) -> dict[str, str]:
+    """Return the commands by the names that a study calls them by.
 
-    def __getitem__(self, word: str) -> Method:
-        if word.startswith(EXTERNAL):
-            return external(word.removeprefix(EXTERNAL), name=word)
-        return super().__getitem__(word)
+    Args:
+        commands: of programs of the user's own, as `candidates.external.arguments` accepts them.
+        names: one for each, or none at all: then each has the name of its program's file, shortened.
 
-
-METHODS: Mapping[str, Method] = _Methods(__name__, "METHODS", "method", lambda method: [*Family].index(method.family))
+    Raises:
+        InputError: the names are not as many as the commands, not short and printable, or not distinct.
+    """
+    if names and len(names) != len(commands):
+        raise InputError("--name", ", ".join(names), f"one name for each --run, so {len(commands)}", "Or give none.")
+    programs: dict[str, str] = {}
+    for i, command in enumerate(commands):
+        name = names[i] if names else file_name(command)
+        if not name.strip() or not name.isprintable() or len(name) > LONGEST_NAME:
+            raise InputError("--name", name, f"1 to {LONGEST_NAME} printable characters")
+        if name in programs or name in METHODS:
+            owner = "another --run" if name in programs else "a method"
+            raise InputError("--name", name, f"a name that {owner} does not have", "Give each --run a --name.")
+        programs[name] = command
+    return programs

@@ -6,15 +6,29 @@ a study varies. It has to print the scene's grid times; `{t_end}` and `{grid_ste
 
 from __future__ import annotations
 
+import shlex
+from pathlib import Path
+
 import numpy as np
 
 from reference import InputError, Scene
+from reference.shortened import shortened
 from reference.status import Status
 
 from ..rhs.problem import Array, Problem
 from .method import Method, Outcome, Setting, Work, failed
 
+SETTING = "{setting}"  # stands for the step, tolerance or precision in a command
+LONGEST_NAME = 24  # characters of a program's name in tables and charts
+SCRIPTS = (".py", ".js", ".mjs", ".ts", ".jl", ".rb", ".r", ".m", ".pl", ".lua", ".sh", ".jar")
 SAME_TIME = 1e-9  # relative difference of times that count as equal, for programs that print few decimals
+
+
+def file_name(command: str) -> str:
+    """Return the name of the file that a command runs, shortened: of a script, not of the language that it is in."""
+    words = shlex.split(command)
+    script = next((word for word in words if Path(word).suffix.lower() in SCRIPTS), words[0])
+    return shortened(Path(script).name, LONGEST_NAME)
 
 
 def external(
@@ -45,7 +59,7 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
     from ..candidates.external import arguments, run_program
     from ..candidates.read import read_stream
 
-    words = arguments(command.replace("{setting}", repr(value)), _scene(problem))
+    words = arguments(command.replace(SETTING, repr(value)), _scene(problem))
 
     def work() -> Outcome:
         try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from functools import partial
 from typing import Any
 
@@ -21,17 +22,32 @@ OVERS = ("time", "amplitude", "latitude", "length")
 CURVE_TIMES = 80  # points of a curve over time
 
 
-def document_of(scene: Scene) -> dict[str, Any]:
-    """Return errors up to 20 s, 1 h, 12000 s and the end, ranges good to 1 mm, 1 µm and 1 arcsecond, and quantities."""
+def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) -> dict[str, Any]:
+    """Return errors up to 20 s, 1 h, 12000 s and the end, ranges good to 1 mm, 1 µm and 1 arcsecond, and quantities.
+
+    Args:
+        scene: the scene to approximate.
+        report: called with the number of tables that are measured, and of all.
+    """
     t_end = float(scene.exact.t_end)
     within = min(SWEEP_S, t_end)
-    good = [row for over in OVERS for row in limits(scene, over=over, t_end=t_end if over == "time" else within)]
+    tables: list[Callable[[], Iterable[Any]]] = [
+        *(partial(limits, scene, over=over, t_end=t_end if over == "time" else within) for over in OVERS),
+        partial(error_table, scene, t_end=t_end),
+        partial(quantity_table, scene),
+    ]
+    measured = []
+    for count, rows in enumerate(tables):
+        if report is not None:
+            report(count, len(tables))
+        measured.append([vars(row) for row in rows()])
+    *good, errors, quantities = measured
     return {
         "scene": scene.id,
         "t_end": t_end,
-        "rows": [vars(row) for row in error_table(scene, t_end=t_end)],
-        "limits": [vars(row) for row in good],
-        "quantities": [vars(row) for row in quantity_table(scene)],
+        "rows": errors,
+        "limits": [row for of_one in good for row in of_one],
+        "quantities": quantities,
     }
 
 

@@ -29,7 +29,7 @@ def page_text(document: dict[str, Any]) -> str:
         section("Every row", tables.every_row(rows, bound_m)),
         *([section("What failed, and why", failed, tables.words(lost))] if failed else []),
         section("How it was measured", *map(paragraph, explanations.measured(document.get("limit_s")))),
-        section("The methods", tables.methods(rows)),
+        section("The methods", tables.methods(rows, document.get("programs", {}))),
     ]
     return page(f"Error against run time: {document.get('title') or document['scene']}", parts, lead=_lead(document))
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
+from reference.shortened import shortened
 from reference.status import Status
 
 from ..methods import METHODS
@@ -15,6 +16,7 @@ from .page import Column, Html, TableRow, strong, table
 from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
 
 FRONT_MARK, PART_MARK = "●", "~"
+LONGEST_COMMAND = 400  # characters of a command that a page repeats
 SMALL = 1.5e-3  # settings below this are written with an exponent
 
 
@@ -113,11 +115,15 @@ def advice(statuses: Collection[Status]) -> list[str]:
     return [f"{one.words}: {one.advice}" for one in Status if one in statuses and one.advice]
 
 
-def methods(rows: Sequence[Row]) -> Html:
-    """Return titles, sources and licences of the methods; methods that are not in `METHODS` are left out."""
+def methods(rows: Sequence[Row], programs: Mapping[str, str]) -> Html:
+    """Return titles, sources and licences of the methods, and the commands of the user's programs."""
     known = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
     columns = [Column("method"), Column("", "prose"), Column("source", "prose"), Column("licence"), Column("extra")]
-    return table(columns, [TableRow([one.id, one.title, one.source, one.licence, one.extra or ""]) for one in known])
+    body = [TableRow([one.id, one.title, one.source, one.licence, one.extra or ""]) for one in known]
+    yours = [
+        TableRow([name, shortened(command, LONGEST_COMMAND), "--run", "", ""]) for name, command in programs.items()
+    ]
+    return table(columns, [*body, *yours])
 
 
 def text_table(document: dict[str, Any]) -> str:

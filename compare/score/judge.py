@@ -130,6 +130,7 @@ def judge(
     transits: Array | None = None,
     tolerance: float | None = None,
     inputs: str = "auto",
+    t_end: float | None = None,
     explain: bool = True,
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
@@ -142,6 +143,7 @@ def judge(
         transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
         tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
+        t_end: end of the comparison in s; later rows and transits are ignored, and a note says so.
         explain: whether to look for the reason if a position is off.
         announce: called with a message before the scene is solved, which takes long.
         report: called with the simulated time reached, in s, while the scene is solved.
@@ -155,12 +157,15 @@ def judge(
         raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     candidate = candidate if isinstance(candidate, Candidate) else read(candidate)
+    times = candidate.transits if transits is None else transits
+    if t_end is not None:
+        candidate = _up_to(candidate, t_end)
+        times = None if times is None else times[times <= t_end]
     problem, why = _reading(candidate, scene, inputs)
-    digits, until = scene.run.digits if candidate.extended else DIGITS, float(candidate.t[-1])
-    golden = golden_of(problem, digits, announce, report, until)
+    digits = scene.run.digits if candidate.extended else DIGITS
+    golden = golden_of(problem, digits, announce, report, float(candidate.t[-1]))
     errors = trajectory_errors(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
     allowed = TOLERANCE * errors.amplitude_m if tolerance is None else tolerance
-    times = candidate.transits if transits is None else transits
     unjudged = None if times is None else _unjudged(golden)
     result = Score(
         candidate=candidate,
@@ -177,6 +182,19 @@ def judge(
     if explain and result.off_path:
         return replace(result, diagnosis=diagnose(candidate, errors, problem), looked=True)
     return result
+
+
+def _up_to(candidate: Candidate, end: float) -> Candidate:
+    """Return the rows up to a time in s, with a note if there were later ones."""
+    kept = candidate.t <= end
+    if kept.all():
+        return candidate
+    if not kept.any():
+        raise InputError("t_end", f"{end:g}", f"a time from the first row on, which is at t = {candidate.t[0]:g} s")
+    columns, low = ({name: column[kept] for name, column in of.items()} for of in (candidate.columns, candidate.low))
+    ignored = int((~kept).sum())
+    note = f"{ignored} {'row' if ignored == 1 else 'rows'} after t = {end:g} s ignored"
+    return replace(candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note))
 
 
 def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, str]:

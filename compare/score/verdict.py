@@ -37,12 +37,17 @@ def lines(score: Score) -> Iterator[str]:
         yield from _row("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
     yield from _row("inputs read as", score.scene.inputs, score.why_inputs)
     yield from _row("reference", f"{score.golden.manifest.level}", f"within {errors.bound_m:.2g} m at these times")
+    yield from diagnosis_lines(score)
+    for note in score.notes:
+        yield f"Note: {note}."
+
+
+def diagnosis_lines(score: Score) -> Iterator[str]:
+    """Yield what is known of the reason for the error, if it was looked for."""
     if score.diagnosis is not None:
         yield score.diagnosis.text
     elif score.looked:
         yield "No single mistake known to foucault explains 99 % of the error."
-    for note in score.notes:
-        yield f"Note: {note}."
 
 
 def _row(name: str, value: str, remark: str = "") -> Iterator[str]:

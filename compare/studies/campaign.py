@@ -58,6 +58,7 @@ def campaign(
     failed: Callable[[Item, Status, str], Result],
     patience_s: float,
     recipe: Any,
+    recipe_of: Callable[[Item], Any] | None = None,
     journal_path: Path | None = None,
     report: Counted | None = None,
 ) -> list[Result]:
@@ -75,15 +76,17 @@ def campaign(
         patience_s: wall-clock seconds for one item; then its process is killed.
         recipe: what else decides the results, to be written as JSON; together with machine and versions of libraries it
             must be equal for a stored result to be used again.
+        recipe_of: what else decides the result of one item, beside the item itself.
         journal_path: a file of JSON lines to which results are appended; None if nothing is to be stored.
         report: called before each measurement with the number of finished items, of all items, and what runs now.
 
     Raises:
         InputError: the journal cannot be written.
     """
-    mark = hashlib.sha256(json.dumps([recipe, machine()], sort_keys=True).encode()).hexdigest()[:16]
-    stored = dict(_stored(journal_path, mark))
-    results = {item: kind.parsed(stored[item]) for item in items if item in stored}
+    common = [recipe, machine()]
+    marks = {item: _mark(common if recipe_of is None else [*common, recipe_of(item)]) for item in items}
+    stored = dict(_stored(journal_path))
+    results = {item: kind.parsed(stored[mark, item]) for item, mark in marks.items() if (mark, item) in stored}
     groups: dict[tuple[Any, ...], list[Item]] = {}
     for item in items:
         if item not in results:
@@ -94,19 +97,22 @@ def campaign(
                 if report is not None:
                     report(len(results), len(items), str(item[0]))
                 results[item] = next(answers)
-                _store(journal_path, {"recipe": mark, "item": item, "result": asdict(results[item])})
+                _store(journal_path, {"recipe": marks[item], "item": item, "result": asdict(results[item])})
     return [results[item] for item in items]
 
 
-def _stored(path: Path | None, mark: str) -> Iterator[tuple[tuple[Any, ...], dict[str, Any]]]:
-    """Yield items and results with this mark, in order; a line cut short by an interrupt is skipped."""
+def _mark(recipe: Any) -> str:
+    return hashlib.sha256(json.dumps(recipe, sort_keys=True).encode()).hexdigest()[:16]
+
+
+def _stored(path: Path | None) -> Iterator[tuple[tuple[str, tuple[Any, ...]], dict[str, Any]]]:
+    """Yield marks with items, and results, in order; a line cut short by an interrupt is skipped."""
     if path is None or not path.exists():
         return
     for line in path.read_text().splitlines():
         try:
             record = json.loads(line)
-            if record["recipe"] == mark:
-                yield tuple(record["item"]), dict(record["result"])
+            yield (record["recipe"], tuple(record["item"])), dict(record["result"])
         except (ValueError, KeyError, TypeError):
             continue
 

@@ -6,7 +6,7 @@ the frequency has a constant error.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from pathlib import Path
@@ -33,6 +33,7 @@ TRUTH_LEVEL = "self_consistent"  # confirming it takes heyoka twenty minutes, wh
 LAWS = {"t": 1.0, "t^1.5": 1.5, "t^2": 2.0}
 PATIENCE_S = 1800.0  # wall-clock time for one method
 FROM = 1 / 40  # the exponent of time is fitted from this part of the run to its end
+DAY_S = 86400.0
 PARTS = 24  # points of the fitted curve, equally far apart in log t
 
 Item = tuple[str, str, float]  # method, formulation, setting
@@ -85,6 +86,7 @@ def long_runs(
     scene: Scene | None = None,
     *,
     journal_path: Path | None = None,
+    solving: Callable[[float, float], None] | None = None,
     report: Counted | None = None,
 ) -> list[LongRun]:
     """Measure the errors of methods over a long run, and solve for the truth if needed.
@@ -93,10 +95,12 @@ def long_runs(
         items: method, formulation and setting of each run; `declared(methods, "long_runs")` lists them.
         scene: its inputs read as binary64; Paris over 30 days if None.
         journal_path: a file to which results are appended, and whose results are not measured again.
+        solving: called with the simulated days reached, and all days, while the truth is solved for.
         report: called with the number of finished runs, of all runs, and the method that runs now.
     """
     scene = scene or load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
-    golden = golden_of(scene, TRUTH_DIGITS, level=TRUTH_LEVEL)
+    days = float(scene.exact.t_end) / DAY_S
+    golden = golden_of(scene, TRUTH_DIGITS, report=solving and (lambda t: solving(t / DAY_S, days)), level=TRUTH_LEVEL)
     return campaign(
         errors_over_time,
         (scene.model_dump(exclude_none=True), golden.path),
@@ -140,7 +144,7 @@ def laws(rows: Sequence[LongRun]) -> Iterator[str]:
             yield f"{row.method} ({row.formulation}): {row.status}. {row.reason}"
         else:
             end = row.error_m[-1]
-            days = row.t[-1] / 86400
+            days = row.t[-1] / DAY_S
             yield (
                 f"{row.method} ({row.formulation}): {end:.2g} m after {days:g} days, grows like t^{exponent:.2f}: "
                 f"nearest law {row.law}"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import statistics
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from reference.precision import Array
 from reference.process import Emit
 from reference.status import Status
 
-from ..methods import METHODS, Method, Outcome, Problem, Work, available
+from ..methods import METHODS, Method, Outcome, Problem, Work, available, external
 from ..rhs.swing import suited
 from .failure import FAILURES, failure
 from .method_errors import GridTruth, h_drift
@@ -88,7 +88,7 @@ class Bench:
         if expected > self.limit_s:
             rows = min(rows, max(LEAST_ROWS, int(self.limit_s / 4 / expected * len(times))))
         if rows <= len(probe_times):
-            return self._finished(base, probe_outcome, [probe_s], probe_times)
+            return self._finished(base, method, probe_outcome, [probe_s], probe_times)
         started = time.process_time()
         work = method.prepare(self._problem(base, times[:rows]), base.setting)
         base = replace(base, compile_s=compile_s + time.process_time() - started)
@@ -98,7 +98,7 @@ class Bench:
         costs_s = [cpu_s]
         while len(costs_s) < self.repeats and sum(costs_s) + cpu_s < REPEAT_S:
             costs_s.append(timed(work)[1])
-        return self._finished(base, outcome, costs_s, times[:rows])
+        return self._finished(base, method, outcome, costs_s, times[:rows])
 
     def _problem(self, base: Row, times: Array) -> Problem:
         return Problem.of(self.scene, base.formulation, times)
@@ -114,7 +114,7 @@ class Bench:
             rhs_evaluations=outcome.rhs_evaluations,
         )
 
-    def _finished(self, base: Row, outcome: Outcome, costs_s: Sequence[float], times: Array) -> Row:
+    def _finished(self, base: Row, method: Method, outcome: Outcome, costs_s: Sequence[float], times: Array) -> Row:
         whole = len(times) == len(self.truth.times)
         share = float(self.truth.times[-1] / times[-1])
         errors = self.truth.position_errors(outcome)
@@ -133,14 +133,14 @@ class Bench:
             steps=outcome.steps,
             reached_t=float(times[-1]),
         )
-        return self._with_transits(row) if self.transits and whole and cpu_s <= TRANSIT_S else row
+        return self._with_transits(row, method) if self.transits and whole and cpu_s <= TRANSIT_S else row
 
-    def _with_transits(self, row: Row) -> Row:
+    def _with_transits(self, row: Row, method: Method) -> Row:
         """Return the row with the largest error of a transit's time, or as failed if a transit is missed."""
         transits = self.truth.transits
         if not len(transits):
             return row
-        work = METHODS[row.method].prepare(self._problem(row, np.concatenate([[0.0], transits])), row.setting)
+        work = method.prepare(self._problem(row, np.concatenate([[0.0], transits])), row.setting)
         outcome = work()
         if outcome.status != Status.OK:
             return row
@@ -162,8 +162,20 @@ def timed(work: Work) -> tuple[Outcome, float]:
     return outcome, spent if outcome.cpu_s is None else outcome.cpu_s
 
 
-def ladder(emit: Emit, scene: dict[str, Any], golden: Path, t_end: float, limit_s: float, items: list[Any]) -> None:
-    """Measure (method, formulation, setting) one after the other, in a child process, and send each row."""
+def ladder(
+    emit: Emit,
+    scene: dict[str, Any],
+    golden: Path,
+    t_end: float,
+    limit_s: float,
+    programs: Mapping[str, str],
+    items: list[Any],
+) -> None:
+    """Measure (method, formulation, setting) one after the other, in a child process, and send each row.
+
+    A method is a declared one, or the program of that name: `programs` holds their commands.
+    """
     bench = Bench(parse_scene(scene), GridTruth(load(golden), t_end), limit_s)
     for name, formulation, setting in items:
-        emit(bench.row(METHODS[name], formulation, setting))
+        method = external(programs[name], name=name) if name in programs else METHODS[name]
+        emit(bench.row(method, formulation, setting))

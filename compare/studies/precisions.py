@@ -37,10 +37,23 @@ def bits_of(text: str) -> list[int]:
     return precisions
 
 
-def precision_items(bits: Sequence[int]) -> list[Item]:
-    """List the runs that the methods declare for these precisions, those of the processor's number types first."""
-    methods = sorted(METHODS.values(), key=lambda method: method.setting == "precision")
-    return [(method.id, *run) for method in methods for run in method.precision_runs(bits)]
+def precision_items(bits: Sequence[int], methods: Sequence[str] | None = None) -> list[Item]:
+    """List the runs that methods declare for these precisions, those of the processor's number types first.
+
+    Args:
+        bits: the precisions, increasing.
+        methods: ids; all if None.
+
+    Raises:
+        InputError: a method is unknown, or declares no run for these precisions.
+    """
+    runs = {name: METHODS[name].precision_runs(bits) for name in methods or METHODS}
+    without = [name for name in methods or () if not runs[name]]
+    if without:
+        known = ", ".join(name for name, method in METHODS.items() if method.precision_runs(bits))
+        raise InputError("--methods", ", ".join(without), "methods with these --precisions", f"These have: {known}.")
+    in_turn = sorted(runs, key=lambda name: METHODS[name].setting == "precision")
+    return [(name, *run) for name in in_turn for run in runs[name]]
 
 
 def precision_scene(scene: Scene, bits: Sequence[int], whole: bool) -> tuple[Scene, int]:

@@ -7,9 +7,10 @@ silently wrong if it reports success with an error above a thousand times the re
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -89,6 +90,7 @@ def stability(
     *,
     limit_s: float = LIMIT_S,
     journal_path: Path | None = None,
+    solving: Callable[[float, int], None] | None = None,
     report: Counted | None = None,
 ) -> list[Cell]:
     """Make the runs that methods declare for this study on every scene.
@@ -98,6 +100,7 @@ def stability(
         methods: ids; all that declare such runs if None.
         limit_s: CPU seconds of a cell.
         journal_path: a file to which cells are appended, and whose cells are not run again.
+        solving: called with the number of scenes whose truth is known, and of all scenes.
         report: called with the number of finished cells, of all cells, and what runs now.
 
     Raises:
@@ -108,12 +111,13 @@ def stability(
     problems: Problems = {}
     unsolved: dict[str, str] = {}
     for count, (name, scene) in enumerate(cuts.items()):
-        if report is not None:
-            report(count, len(cuts), f"truth of {name}")
+        moved = solving and partial(_moved, solving, count, len(cuts), float(scene.exact.t_end))
         try:
-            problems[name] = scene.model_dump(exclude_none=True), golden_of(scene, TRUTH_DIGITS).path
+            problems[name] = scene.model_dump(exclude_none=True), golden_of(scene, TRUTH_DIGITS, report=moved).path
         except UnreachableError as error:
             unsolved[name] = f"The reference cannot solve it: {error}"
+        if solving is not None:
+            solving(count + 1, len(cuts))
     items: list[Item] = [(*run, name) for run in runs for name in cuts]
     solved = [item for item in items if item[-1] in problems]
     orders = {name: method.order for name, method in METHODS.items() if method.setting == "step"}
@@ -130,6 +134,11 @@ def stability(
     )
     finished = dict(zip(solved, cells, strict=True))
     return [finished.get(item) or _failed(item, Status.UNREACHABLE, unsolved[item[-1]]) for item in items]
+
+
+def _moved(solving: Callable[[float, int], None], solved: int, scenes: int, t_end: float, t: float) -> None:
+    """Report that so many scenes are solved, and the next one up to t in s."""
+    solving(solved + t / t_end, scenes)
 
 
 def _failed(item: Item, status: Status, reason: str) -> Cell:

@@ -7,8 +7,8 @@ Study(paris, 60 s: 7 of 7 rows measured)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from reference.status import Status
 
 from ..methods import METHODS
 from ..rhs.swing import suited
-from ..truth import golden_of
+from ..truth import Report, golden_of
 from .campaign import Counted, campaign
 from .grid import on_doubles
 from .machine import machine
@@ -42,6 +42,7 @@ class Study:
         limit_s: CPU seconds that one run may take.
         golden: the golden dataset that errors are measured against.
         rows: every method at every setting, failed ones included.
+        programs: commands of the user's programs, by the names that the rows call them by.
         machine: processor, system and versions of libraries.
     """
 
@@ -51,6 +52,7 @@ class Study:
     golden: Golden
     rows: list[Row]
     machine: dict[str, str]
+    programs: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Return the scene, the span, and how many rows have a cost and an error."""
@@ -70,6 +72,7 @@ class Study:
                 "transits": int((self.golden.transits["t"] < self.t_end).sum()),
             },
             "machine": self.machine,
+            "programs": dict(self.programs),
             "rows": [asdict(row) for row in self.rows],
         }
 
@@ -103,10 +106,12 @@ def study(
     t_end: float | None = None,
     formulations: bool = True,
     items: Sequence[Item] | None = None,
+    programs: Mapping[str, str] | None = None,
     limit_s: float = LIMIT_S,
     digits: int | None = None,
     journal_path: Path | None = None,
     report: Counted | None = None,
+    solving: Report | None = None,
     announce: Callable[[str], None] | None = None,
 ) -> Study:
     """Measure error against run time of methods on a scene: `study("paris", ["rk4"], t_end=600).rows`.
@@ -114,14 +119,16 @@ def study(
     Args:
         scene: an id, the path of a TOML file, or a scene; its inputs are read as binary64, because that is the problem
             which methods in double solve.
-        methods: ids, each run over its settings; all if None. "external: " and a command runs a program of your own.
+        methods: ids, each run over its settings; all if None.
         t_end: end of the span in s; the scene's own if None.
         formulations: whether to compare the formulations of the equations in one method as well.
         items: the runs, if others are wanted than `plan` lists from `methods` and `formulations`.
+        programs: commands of programs of your own, by the names that `items` call them by.
         limit_s: CPU seconds for one run; a longer one is extrapolated from a part of the span.
         digits: of the truth if it has to be solved for; the scene's own if None.
         journal_path: a file to which rows are appended, and whose rows are not measured again.
         report: called with the number of finished rows, of all rows, and the method that runs now.
+        solving: called with the simulated time reached, in s, while the truth is solved for.
         announce: called with a message if the truth has to be solved for.
 
     Raises:
@@ -131,20 +138,23 @@ def study(
     asked = load_scene(scene) if isinstance(scene, str) else scene
     span = [] if t_end is None else [f"run.t_end={t_end}"]
     problem = on_doubles(asked.with_values(["inputs=binary64", *span]))
-    golden = golden_of(problem, digits or problem.run.digits, announce)
+    golden = golden_of(problem, digits or problem.run.digits, announce, solving)
+    commands = programs or {}
 
     def failed(item: Item, status: Status, reason: str) -> Row:
-        return Row(*item, METHODS[item[0]].setting, problem.inputs, status, reason)
+        kind = "step" if item[0] in commands else METHODS[item[0]].setting
+        return Row(*item, kind, problem.inputs, status, reason)
 
     rows = campaign(
         ladder,
-        (problem.model_dump(exclude_none=True), golden.path, float(problem.exact.t_end), limit_s),
+        (problem.model_dump(exclude_none=True), golden.path, float(problem.exact.t_end), limit_s, commands),
         list(items or plan(asked, methods, formulations)),
         kind=Row,
         failed=failed,
         patience_s=PATIENCE * limit_s,
         recipe=[problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s],
+        recipe_of=lambda item: commands.get(item[0]),
         journal_path=journal_path,
         report=report,
     )
-    return Study(problem, float(problem.exact.t_end), limit_s, golden, rows, machine())
+    return Study(problem, float(problem.exact.t_end), limit_s, golden, rows, machine(), commands)

@@ -2,36 +2,61 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..engines import AUTO, engine_names
+from ..errors import InputError
+from ..nearest import in_words
 from ..scene import LEVELS, load_scene
 from ..shipped import scene_ids
-from .terminal import AsJson, Assignments, SceneWord, emit, progress
+from .progress import progress
+from .terminal import AsJson, Assignments, SceneWord, chosen, completion, emit, replacements
 
-Level = StrEnum("Level", list(LEVELS))  # type: ignore[misc]  # the functional form is fine at run time
-
-
-EngineName = StrEnum("EngineName", [AUTO, *engine_names()])  # type: ignore[misc]
-DEFAULT_ENGINE = EngineName(AUTO)
+ENGINES = (AUTO, *engine_names())
 
 
 def command(
     scene_word: SceneWord,
-    out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Write the dataset to this folder.")] = None,
-    t_end: Annotated[str | None, typer.Option("--t-end", metavar="S", help="End the run at this time, in s.")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="DIR",
+            help="Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).",
+        ),
+    ] = None,
+    t_end: Annotated[
+        str | None, typer.Option("--t-end", metavar="S", help="End the run at this time, in s (default: the scene's).")
+    ] = None,
     digits: Annotated[
         str | None,
-        typer.Option("--digits", metavar="D", help="Significant digits of the largest number in each column."),
+        typer.Option(
+            "--digits",
+            metavar="D",
+            help="Significant digits of the largest number in each column (default: the scene's).",
+        ),
     ] = None,
-    level: Annotated[Level | None, typer.Option("--level", metavar="L", help=", ".join(LEVELS))] = None,
+    level: Annotated[
+        str | None,
+        typer.Option(
+            "--level",
+            metavar="L",
+            help=f"How far to trust the numbers: {in_words(LEVELS)} (default: the scene's).",
+            autocompletion=completion(lambda: LEVELS),
+        ),
+    ] = None,
     engine: Annotated[
-        EngineName, typer.Option("--engine", help="Choose the integrator; auto takes the fastest that is installed.")
-    ] = DEFAULT_ENGINE,
+        str,
+        typer.Option(
+            "--engine",
+            metavar="E",
+            help=f"Integrate with {in_words(engine_names())}; auto takes the fastest that is installed.",
+            autocompletion=completion(lambda: ENGINES),
+        ),
+    ] = AUTO,
     no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for transits, xdot = 0.")] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
@@ -42,17 +67,25 @@ def command(
     from ..dataset.sheets import column_bounds
     from ..dataset.write import check_target, write
 
-    options = {"t_end": t_end, "digits": digits, "level": level, "transits": "false" if no_transits else None}
-    changes = [*(set_ or ()), *(f"run.{key}={value}" for key, value in options.items() if value is not None)]
-    scene = load_scene(scene_word, changes)
+    options = {
+        "--t-end": ("run.t_end", t_end),
+        "--digits": ("run.digits", digits),
+        "--level": ("run.level", level and chosen("--level", level, LEVELS)),
+        "--no-transits": ("run.transits", "false" if no_transits else None),
+    }
+    chosen("--engine", engine, ENGINES)
+    scene = load_scene(scene_word, replacements(set_, options))
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
     check_target(folder)
     from ..solver.rounding import grid_decimals
     from ..solver.solve import solve
 
-    with progress(scene.id, float(scene.exact.t_end)) as report:
-        solution = solve(scene, engine=engine.value, report=report)
+    with progress() as show:
+        solution = solve(scene, engine=engine, report=show(scene.id, float(scene.exact.t_end)))
+    if engine not in (AUTO, solution.run.engine):
+        few = f"So few digits need only {solution.run.number}, which {engine} does not have."
+        raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
     write(solution, folder, name)
     count = len(solution.directions)
     bounds = column_bounds(solution.grid, grid_decimals(solution))

@@ -1,17 +1,38 @@
-"""Parts shared by all commands: arguments and options, JSON documents on stdout, progress bars on stderr."""
+"""Parts shared by all commands: arguments, options and their completion, refusals, JSON documents on stdout."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
 from typing import Annotated, Any
 
 import typer
 
-SceneWord = Annotated[str, typer.Argument(metavar="SCENE", help="A scene's id, or the path of a TOML file.")]
+from ..errors import InputError
+from ..nearest import did_you_mean, in_words
+from ..scene import field_names
+from ..shipped import scene_ids
+
+
+def completion(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
+    """Return what a shell asks for the names that begin as the word that is being typed."""
+    return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
+
+
+SceneWord = Annotated[
+    str,
+    typer.Argument(
+        metavar="SCENE", help="A scene's id, or the path of a TOML file.", autocompletion=completion(scene_ids)
+    ),
+]
 Assignments = Annotated[
-    list[str] | None, typer.Option("--set", metavar="section.key=value", help="Replace one field of the scene.")
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="section.key=value",
+        help="Replace one field of the scene; may be repeated.",
+        autocompletion=completion(lambda: (f"{name}=" for name in field_names())),
+    ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
 
@@ -21,27 +42,58 @@ def emit(document: dict[str, Any]) -> None:
     typer.echo(json.dumps(document, indent=1, ensure_ascii=False))
 
 
-@contextmanager
-def progress(label: str, total: float = 0, unit: str = "s simulated") -> Iterator[Callable[..., None] | None]:
-    """Show a bar on stderr; yield the function of completed, total, item that moves it, or None without a terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+def chosen(option: str, word: str, names: Iterable[str]) -> str:
+    """Return the word that was given to an option of few choices.
 
-    console = Console(stderr=True)
-    if not console.is_terminal:
-        yield None
-        return
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn(f"{{task.completed:,.0f}} of {{task.total:,.0f}} {unit}"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task(label, total=total)
+    Raises:
+        InputError: it is none of them.
+    """
+    known = list(names)
+    if word not in known:
+        raise InputError(option, word, in_words(known), did_you_mean(word, known, ""))
+    return word
 
-        def move(completed: float, total: float = total, item: str = "") -> None:
-            bar.update(task, completed=completed, total=total, description=f"{label}: {item}" if item else label)
 
-        yield move
+def replacements(
+    assignments: Iterable[str] | None,
+    options: Mapping[str, tuple[str, str | None]],
+    unused: Mapping[str, str] | None = None,
+) -> list[str]:
+    """Return the replacements of a scene's fields, by `--set` and by options of their own.
+
+    Args:
+        assignments: those of `--set`.
+        options: the field that each option replaces, and its value; None if it was not given.
+        unused: fields, or fields with a value, that make no difference to the command, and why.
+
+    Raises:
+        InputError: a replacement would have no effect: the field is replaced twice, or it is an unused one.
+    """
+    values: dict[str, str] = {}
+    reasons = unused or {}
+    for assignment in assignments or ():
+        field = assignment.partition("=")[0].strip()
+        reason = reasons.get(field) or reasons.get(assignment)
+        if reason:
+            raise InputError("--set", assignment, "a field that makes a difference here", reason)
+        if field in values:
+            raise InputError("--set", assignment, f"{field} once", f"{values[field]} stands before it: keep one.")
+        values[field] = assignment
+    for option, (field, value) in options.items():
+        if value is not None:
+            if field in values:
+                raise InputError(option, value, f"no such option together with --set {values[field]}", "Keep one.")
+            values[field] = f"{field}={value}"
+    return list(values.values())
+
+
+def refuse(options: Mapping[str, object], why: str) -> None:
+    """Refuse options that would have no effect, such as those given "without --run".
+
+    Raises:
+        InputError: one of the options was given: its value is neither None, nor False, nor empty.
+    """
+    for option, value in options.items():
+        if value is not None and value is not False and value != []:  # 0 was given
+            got = " ".join(map(str, value)) if isinstance(value, list) else "set" if value is True else str(value)
+            raise InputError(option, got, f"no such option {why}", "It would have no effect.")

@@ -8,14 +8,17 @@ import typer
 
 from ..errors import InputError
 from ..shipped import golden_root, seals
-from .terminal import AsJson, emit, progress
+from .progress import progress
+from .terminal import AsJson, completion, emit
 
 
 def command(
     paths: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="[PATH]...", help="Ids or folders of datasets; if none, all that come with the project."
+            metavar="PATH",
+            help="Ids or folders of datasets (default: all that come with the project).",
+            autocompletion=completion(seals),
         ),
     ] = None,
     recompute: Annotated[
@@ -33,11 +36,11 @@ def command(
         raise InputError("PATH", "nothing", "a golden dataset", "Make one with `foucault generate`.")
     rows = []
     for folder in folders:
-        with progress(folder.name) as report:
-            found = verify(folder, report)
+        with progress() as show:
+            found = verify(folder, show(folder.name))
             problems = found.problems
             if recompute and not problems:
-                problems = recomputed(folder, report)
+                problems = recomputed(folder, show(folder.name))
         rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": found.notes})
         if not as_json:
             typer.echo(f"{folder}: {'ok' if not problems else 'WRONG'}")

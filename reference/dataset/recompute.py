@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..engines.plan import Report
 from ..solver.solve import solve
+from .checks.motion import Progress
 from .files import read_files
 from .manifest import MANIFEST
 from .render import render
 
 
-def recompute(folder: Path, report: Report | None = None) -> list[str]:
+def recompute(folder: Path, report: Progress | None = None) -> list[str]:
     """Solve the scene of a dataset again; return a sentence for every file whose bytes differ.
 
     Raises:
@@ -21,7 +21,9 @@ def recompute(folder: Path, report: Report | None = None) -> list[str]:
     files = read_files(folder)
     manifest = files.manifest
     engine = manifest.command.partition("--engine ")[2].partition(" ")[0]
-    texts = render(solve(files.scene, engine=engine, report=report), manifest.id)
+    end = float(files.scene.exact.t_end)
+    solution = solve(files.scene, engine=engine, report=report and (lambda t: report(t, end)))
+    texts = render(solution, manifest.id)
     found = {MANIFEST: manifest.text(), **files.texts}
     return [
         f"{name}: recomputing gives {'other bytes' if name in found else 'this file too'}"

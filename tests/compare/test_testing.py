@@ -10,7 +10,7 @@ import pytest
 
 import compare
 from compare import assert_agrees
-from reference import InputError, load, load_scene
+from reference import InputError, load, load_scene, trajectory
 
 
 @pytest.fixture(scope="module")
@@ -58,6 +58,16 @@ def test_a_failure_tells_time_component_expected_got_difference_and_allowed(gold
     assert f"got        {float(wrong[30, 1])!r}" in said
     assert "difference +1.000e-03 m" in said
     assert "allowed 1.000e-06 m" in said
+
+
+def test_a_failure_names_the_mistake_as_score_does(golden):
+    """The bob of a plane pendulum that does not feel the Earth's rotation."""
+    still = load_scene("paris", ["site.rotation_rate=0", "run.t_end=3600", "inputs=binary64"])
+    run = trajectory(still, golden.t[:61])
+    with pytest.raises(AssertionError) as caught:
+        assert_agrees("paris", golden.t[:61], run[:, :2])
+    assert "It seems that your program leaves out" in str(caught.value).splitlines()[-1]
+    assert "allowed 7.112e-07 m" in str(caught.value)  # a millionth of the amplitude, as `foucault score` allows
 
 
 def test_a_failure_of_transits_tells_which(golden, states):

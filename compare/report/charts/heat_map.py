@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from reference import InputError
+from reference.shortened import shortened
 from reference.status import Status
 
 from .drawing import BAND, FAINT, INK, PAPER, sheet, svg_text
@@ -28,6 +29,7 @@ _BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")  # f
 _DARK_FROM = 3  # index of the first blue with white text
 _CELL = 0.27  # side of a cell in inches
 _MARGINS = (2.3, 1.9)  # width and height for the names, in inches
+_LONGEST_NAME = 30  # characters of a scene's name, which may be the path of a file
 _CHARACTER = 0.27  # width of a character in cells
 _LEAST_COLUMNS, _KEY_ROWS = 15, 5.5  # cells that the key needs
 
@@ -85,7 +87,8 @@ def heat_map(cells: Sequence[Field], steps: Sequence[float] = (3, 6, 9, 12, 15))
         axes.set_xticks(
             [i + 0.5 for i in range(len(columns))], columns, rotation=55, rotation_mode="anchor", ha="left", fontsize=8
         )
-        axes.set_yticks([i + 0.5 for i in range(len(rows))], rows, fontsize=8)
+        names = [shortened(row, _LONGEST_NAME) for row in rows]
+        axes.set_yticks([i + 0.5 for i in range(len(rows))], names, fontsize=8)
         axes.tick_params(length=0, top=False, labeltop=True, labelbottom=False, bottom=False, pad=2)
         axes.spines[:].set_visible(False)
         wrong = sum(cell.status == LOUD for cell in cells)

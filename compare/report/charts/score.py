@@ -10,12 +10,14 @@ import numpy as np
 
 from reference import InputError
 from reference.precision import Array
+from reference.shortened import shortened
 
 from ...score.judge import Score
 from .drawing import COLOURS, GUIDE, check_matplotlib, line_style, logarithmic, picture, sheet
 from .labels import Line, draw, place
 from .ladders import band
 
+LONGEST_NAME = 32  # characters of a file's name beside its line
 SUFFIXES = (".svg", ".png", ".pdf")
 
 
@@ -50,7 +52,7 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
     for i, score in enumerate(scores):
         t, error = _thinned(score.errors.t, np.maximum(score.errors.position, bound / 30))
         style = line_style(COLOURS[i % len(COLOURS)], i)
-        lines.append(Line(Path(score.candidate.name).name, t.tolist(), error.tolist(), style))
+        lines.append(Line(shortened(Path(score.candidate.name).name, LONGEST_NAME), t.tolist(), error.tolist(), style))
     end = max(line.x[-1] for line in lines)
     if tolerance < 100 * top:
         lines.append(Line(f"tolerance, {tolerance:.1e} m", [0, end], [tolerance, tolerance], GUIDE))

@@ -47,8 +47,8 @@ def test_the_reports_of_approximations_load_no_heavy_library():
     assert process.stdout.strip() == "[]"
 
 
-def test_an_unknown_word_is_answered_with_the_known_ones():
-    with pytest.raises(InputError, match="the nearest first: linear_g, linear_3d"):
+def test_an_unknown_word_is_answered_with_those_most_like_it():
+    with pytest.raises(InputError, match=r"Did you mean linear_g or linear_3d\?"):
         APPROXIMATIONS["linear"]
 
 

@@ -160,7 +160,7 @@ def test_the_registry_knows_every_id_of_the_issue():
 
 
 def test_an_unknown_method_is_refused_by_name():
-    with pytest.raises(InputError, match=r"scipy_dop852.*the nearest first: scipy_dop853"):
+    with pytest.raises(InputError, match=r"scipy_dop852.*Did you mean scipy_dop853"):
         METHODS["scipy_dop852"]
     assert "scipy_dop852" not in METHODS
 

@@ -95,7 +95,7 @@ def test_numbers_stand_beside_the_reference():
 def test_a_number_is_no_motion_and_an_unknown_word_is_named(call):
     with pytest.raises(InputError, match="rest_equation"):
         call(PARIS, ["rest_equation"])
-    with pytest.raises(InputError, match="Known ids"):
+    with pytest.raises(InputError, match="`foucault methods` lists them"):
         call(PARIS, ["nothing"])
 
 

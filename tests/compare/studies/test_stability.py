@@ -114,7 +114,9 @@ def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:
 def test_a_scene_that_the_reference_cannot_solve_is_unreachable_and_the_others_are_measured(tmp_path: Path) -> None:
     own = tmp_path / "stiff.toml"
     own.write_text('id = "stiff"\n[pendulum]\ndrag = "1e9"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "600"\n')
-    lost, measured = stability([str(own), "hard"], ["rkmk4"])
+    solved: list[tuple[float, int]] = []
+    lost, measured = stability([str(own), "hard"], ["rkmk4"], solving=lambda done, total: solved.append((done, total)))
+    assert solved == sorted(solved) and (1, 2) in solved and solved[-1] == (2, 2)
     assert (lost.status, lost.digits, lost.cpu_s) == (Status.UNREACHABLE, None, None)
     assert lost.reason.startswith("The reference cannot solve it: ") and "Stiff" in lost.reason
     assert measured.status == Status.OK

@@ -129,12 +129,20 @@ def test_somebody_elses_program_is_a_row_of_the_study(tmp_path: Path) -> None:
         "for i in range(round(end / step) + 1):\n    print(f'{i * step!r},0.3,0.4')\n"
     )
     command = f"python3 {script} {{t_end}} {{grid_step}}"
-    words = ["study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--settings", "1", "--json"]
+    words = ["study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--json"]
     result = CliRunner().invoke(app, words)
     assert result.exit_code == 0, result.output
-    row = json.loads(result.stdout)["rows"][-1]
-    assert row["method"] == f"external: {command}"
+    (row,) = (row for row in json.loads(result.stdout)["rows"] if row["method"] != "rkmk4")  # it has no {setting}
+    assert row["method"] == "still.py"
     assert row["error_m"] > 0.5
+
+
+def test_a_truth_that_has_to_be_solved_for_tells_how_far_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
+    times: list[float] = []
+    elsewhere = load_scene("paris", ["site.latitude=12.5", "run.t_end=3600"])
+    study(elsewhere, items=[("rkmk4", "momentum", 0.5)], digits=40, solving=times.append)
+    assert times == sorted(times) and 0 < times[0] <= times[-1] <= 3600
 
 
 def test_the_precision_ladder_gains_digits_with_bits() -> None:

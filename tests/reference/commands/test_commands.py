@@ -100,7 +100,7 @@ def test_verify_reports_damage_with_exit_1(foucault, tmp_path):
 
 
 BAD = [
-    (("generate", "atlantis"), "SCENE", "Known ids"),
+    (("generate", "atlantis"), "SCENE", "`foucault scenes` lists the ids"),
     (("generate", "../paris"), "SCENE", "TOML file"),
     (("generate", "paris", "--digits", "0"), "run.digits", "from 1 to 1000"),
     (("generate", "paris", "--digits", "99999"), "run.digits", "from 1 to 1000"),
@@ -111,7 +111,7 @@ BAD = [
     (("generate", "paris", "--set", "site.latitude=91"), "site.latitude", "at most 90"),
     (("generate", "paris", "--set", "pendulum.length=0"), "pendulum.length", "above 0"),
     (("generate", "paris", "--set", "release.x=70"), "release", "below the suspension"),
-    (("generate", "paris", "--set", "site.colour=blue"), "site.colour", "no such key"),
+    (("generate", "paris", "--set", "site.colour=blue"), "site.colour", "a field that scenes have"),
     (("generate", "paris", "--set", "id=a/b"), "id", "lower-case"),
     (("generate", "paris", "--set", "nonsense"), "--set", "section.key=value"),
     (("generate", "paris", "--out", "/proc/nowhere/x"), "--out", "writable"),
@@ -138,6 +138,14 @@ def test_an_unknown_level_or_command_is_wrong_usage(foucault):
     assert foucault("generate", "paris", "--level", "perfect")[0] == 2
     assert foucault("dance")[0] == 2
     assert foucault("generate", "paris", "--engine", "steam")[0] == 2
+
+
+def test_an_engine_that_so_few_digits_do_not_need_is_refused(foucault, tmp_path):
+    pytest.importorskip("numba")
+    status, out, err = foucault("generate", "paris", *SHORT, "--engine", "limbs", "--out", tmp_path / "p")
+    assert (status, out) == (2, "")
+    assert "--engine: got 'limbs', expected auto or heyoka. So few digits need only long_double" in err
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_what_cannot_be_reached_ends_with_exit_3_and_no_file(foucault, tmp_path, monkeypatch):

@@ -1,0 +1,114 @@
+"""How far long work has come, on stderr: bars on a terminal; elsewhere one line about work that takes long."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, Protocol
+
+import typer
+
+NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
+MEASURED_S = 5.0  # shortest time from which the rest is estimated
+ENOUGH, LATEST_S = 0.02, 60.0  # part of the work from which it is estimated; after so many s from less
+
+
+class Move(Protocol):
+    """Moves a piece of work on."""
+
+    def __call__(self, completed: float, total: float | None = None, item: str = "") -> None:
+        """Tell the part that is done, the whole if it was not known before, and what is done now."""
+
+
+class Show(Protocol):
+    """Begins a piece of work."""
+
+    def __call__(self, label: str, total: float = 0, unit: str = "s simulated") -> Move:
+        """Return the function that moves the work on, which is counted in units up to a total."""
+
+
+@contextmanager
+def progress() -> Iterator[Show]:
+    """Yield the function that begins a piece of work; it is shown on stderr from its first move on."""
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield Notice
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed:,.0f} of {task.total:,.0f} {task.fields[unit]}"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=console, transient=True) as bars:
+        yield lambda label, total=0, unit="s simulated": _bar(bars, label, total, unit)
+
+
+def _bar(bars: Any, label: str, total: float, unit: str) -> Move:
+    """Return the function that moves a bar, which appears at its first move and goes when it is full."""
+    task = bars.add_task(label, total=total, unit=unit, visible=False, start=False)
+
+    whole_before = total
+
+    def move(completed: float, total: float | None = None, item: str = "") -> None:
+        if not bars.tasks[task].started:
+            bars.start_task(task)
+        whole = whole_before if total is None else total
+        text = f"{label}: {item}" if item else label
+        bars.update(task, completed=completed, total=whole, description=text, visible=completed < whole)
+
+    return move
+
+
+class Notice:
+    """One line, written once a piece of work has taken a while, that says how long all of it will take.
+
+    Args:
+        label: what is done.
+        total: how much of it there is, in `unit`.
+        unit: of completed and total.
+        clock: returns a time in s.
+    """
+
+    def __init__(
+        self, label: str, total: float = 0, unit: str = "s simulated", clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._label, self._total, self._unit, self._clock = label, total, unit, clock
+        self._begun = clock()
+        self._first: tuple[float, float] | None = None  # time and part done at the first move, also of a second try
+        self._last = 0.0
+        self._given = False
+
+    def __call__(self, completed: float, total: float | None = None, item: str = "") -> None:
+        """Note the part that is done; write the line if it is time and there is something to estimate from."""
+        now, total = self._clock(), self._total if total is None else total
+        if self._first is None or completed < self._last:
+            self._first = now, completed
+        self._last = completed
+        since, done = self._first
+        elapsed = now - self._begun
+        if self._given or elapsed <= NOTICE_S or now - since < MEASURED_S or completed <= done:
+            return
+        if completed - done < ENOUGH * (total - done) and elapsed <= LATEST_S:
+            return
+        self._given = True
+        whole = elapsed + (total - completed) * (now - since) / (completed - done)
+        counted = f"{_rough(completed)} of {_rough(total)} {self._unit} after {elapsed:.0f} s"
+        typer.echo(f"{self._label}: about {in_words(whole)}: {counted}", err=True)
+
+
+def _rough(amount: float) -> str:
+    return f"{amount:,.0f}" if amount >= 10 else f"{amount:.2g}"
+
+
+def in_words(seconds: float) -> str:
+    """Return a rough time in the unit that suits it: 40 seconds, 11 minutes, 3.5 hours, 2 days."""
+    for unit, length, until in (("seconds", 1, 90), ("minutes", 60, 5400), ("hours", 3600, 172800)):
+        if seconds < until:
+            return f"{float(f'{seconds / length:.2g}'):g} {unit}"
+    return f"{float(f'{seconds / 86400:.2g}'):g} days"

@@ -1,0 +1,95 @@
+"""Options without effect are refused with the reason; nothing is computed or written before."""
+
+from __future__ import annotations
+
+import pytest
+
+from compare.methods import METHODS
+from compare.studies.precisions import precision_items
+from reference import InputError
+
+STUDY, SCORE, GENERATE = ("study", "paris"), ("score", "paris", "-"), ("generate", "paris")
+LATE = ("--t-end", "10", "--set", "run.t_end=20")
+
+REFUSED = [
+    ((*STUDY, "--approximations", "--precisions", "53"), "--precisions", "together with --approximations"),
+    ((*STUDY, "--approximations", "--methods", "rk4"), "--methods", "together with --approximations"),
+    ((*STUDY, "--approximations", "--run", "./p"), "--run", "together with --approximations"),
+    ((*STUDY, "--approximations", "--limit", "5"), "--limit", "together with --approximations"),
+    ((*STUDY, "--approximations", "--no-formulations"), "--no-formulations", "together with --approximations"),
+    ((*STUDY, "--approximations", "--set", "run.grid_step=7"), "--set", "at set times"),
+    ((*STUDY, "--settings", "0.1"), "--settings", "without --run"),
+    ((*STUDY, "--settings", "0.1", "--run", "./p"), "--settings", "with a --run that has no {setting}"),
+    ((*STUDY, "--name", "mine"), "--name", "without --run"),
+    ((*STUDY, "--run", "./p", "--run", "./q", "--name", "p"), "--name", "one name for each --run, so 2"),
+    ((*STUDY, "--run", "./p", "--name", "rk4"), "--name", "a name that a method does not have"),
+    ((*STUDY, "--run", "./p 1", "--run", "./p 2"), "--name", "a name that another --run does not have"),
+    ((*STUDY, "--run", "./p", "--name", "x" * 25), "--name", "1 to 24 printable characters"),
+    ((*STUDY, "--run", "./p {nonsense}"), "--run", "{x0}"),
+    ((*STUDY, *LATE), "--t-end", "together with --set run.t_end=20"),
+    ((*STUDY, "--set", "inputs=decimal"), "--set", "Methods are given doubles"),
+    ((*STUDY, "--set", "run.level=enclosed"), "--set", "confirmed"),
+    ((*STUDY, "--precisions", "113", "--set", "run.digits=9"), "--set", "the finest precision"),
+    ((*STUDY, "--precisions", "113", "--methods", "rk4"), "--methods", "methods with these --precisions"),
+    ((*SCORE, *LATE), "--t-end", "together with --set run.t_end=20"),
+    ((*SCORE, "--timeout", "5"), "--timeout", "without --run"),
+    ((*SCORE, "--repeats", "0"), "--repeats", "without --run"),
+    ((*SCORE, "--inputs", "binary64", "--set", "inputs=decimal"), "--set", "Write --inputs decimal"),
+    ((*SCORE, "--inputs", "decimal", "--set", "inputs=binary64"), "--inputs", "together with --set inputs=binary64"),
+    ((*SCORE, "--inputs", "floats"), "--inputs", "expected auto, decimal or binary64"),
+    ((*SCORE, "--set", "run.level=enclosed"), "--set", "a dataset that ships"),
+    ((*GENERATE, *LATE), "--t-end", "together with --set run.t_end=20"),
+    ((*GENERATE, "--digits", "9", "--set", "run.digits=9"), "--digits", "together with --set run.digits=9"),
+    ((*GENERATE, "--level", "computed", "--set", "run.level=enclosed"), "--level", "together with"),
+    ((*GENERATE, "--no-transits", "--set", "run.transits=true"), "--no-transits", "together with"),
+    ((*GENERATE, "--set", "run.digits=9", "--set", " run.digits = 8"), "--set", "run.digits=9 stands before it"),
+    ((*GENERATE, "--level", "confimed"), "--level", "Did you mean confirmed?"),
+    ((*GENERATE, "--engine", "limb"), "--engine", "Did you mean limbs?"),
+    (("study", "pariss"), "SCENE", "Did you mean paris?"),
+    ((*STUDY, "--methods", "rk4,dop853"), "method", "scipy_dop853"),
+    (("score", "paris", "--approximation", "conic"), "approximation", "Did you mean conical?"),
+    (("score", "paris", "--approximation", "precession_sine"), "--approximation", "a number, not a motion"),
+    (("stability", "--methods", "nothing_like_it"), "method", "`foucault methods` lists them"),
+    (("stability", "--scenes", "harrd"), "SCENE", "Did you mean hard?"),
+]
+
+
+@pytest.mark.parametrize(("words", "field", "reason"), REFUSED, ids=[" ".join(row[0]) for row in REFUSED])
+def test_what_would_have_no_effect_is_refused(foucault, words, field, reason, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    status, out, err = foucault(*words)
+    assert (status, out) == (2, "")
+    assert err.startswith(f"foucault: {field}: got ")
+    assert reason in err
+    assert len(err) < 500
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("words", [("study", "paris", "--methods", "rk4"), ("stability", "--methods", "rk4,rkmk4")])
+def test_methods_of_which_none_is_installed_are_refused_with_the_command_that_installs_them(
+    foucault, words, monkeypatch, tmp_path
+):
+    import compare.methods.method as declared
+
+    monkeypatch.setattr(declared, "_installed", lambda module: False)
+    status, out, err = foucault(*words, "--out", tmp_path / "out")
+    assert (status, out) == (2, "")
+    assert "rk4 is not installed (numba): pip install 'foucault-reference[methods]'" in err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_precisions_of_some_methods_are_those_of_all_methods_chosen_from():
+    whole = precision_items([113, 160])
+    assert precision_items([113, 160], ["heyoka_real", "limbs"]) == [
+        one for one in whole if one[0] in ("limbs", "heyoka_real")
+    ]
+    with pytest.raises(InputError, match=r"These have: .*limbs"):
+        precision_items([113, 160], ["rk4"])
+
+
+def test_every_method_and_approximation_is_listed_with_what_it_lacks(foucault):
+    status, out, _ = foucault("methods")
+    assert status == 0
+    for name, method in METHODS.items():
+        assert f"  {name} " in out and method.title in out
+    assert "linear_3d" in out

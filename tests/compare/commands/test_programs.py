@@ -1,0 +1,67 @@
+"""Programs of --run in a study: short names for rows, tables and charts; the command stands on the page once."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+
+import pytest
+
+from compare.methods import named_programs
+
+PROGRAM = """
+import math, sys
+step, end, grid, length, g = map(float, sys.argv[1:6])
+omega = math.sqrt(g / length)
+print("t,x,y")
+for k in range(round(end / grid) + 1):
+    swing = math.cos(omega * k * grid)
+    print(k * grid, 0.3 * swing, 0.4 * swing, sep=",")
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [
+        ("/tmp/pendulum {x0} {y0} 0.01", "pendulum"),
+        ("./rk4 {setting} data.txt", "rk4"),
+        ("python3 -O 'my programs/mine.py' {setting}", "mine.py"),
+        ("node leap.js {x0}", "leap.js"),
+        ("julia --project=. Pendulum.jl", "Pendulum.jl"),
+        ("./a_program_with_a_rather_long_name {x0}", "a_program_with_a_rather…"),
+    ],
+)
+def test_a_program_is_called_as_its_file(command, name):
+    renamed = command.replace("./rk4", "./rk4_of_mine")  # a method is called rk4
+    assert named_programs([renamed]) == {name if renamed == command else "rk4_of_mine": renamed}
+
+
+def test_names_go_with_commands_in_order():
+    assert named_programs(["./p 1", "./p 2"], ["one", "zwei <2>"]) == {"one": "./p 1", "zwei <2>": "./p 2"}
+
+
+def test_a_long_command_breaks_neither_table_nor_page(foucault, tmp_path):
+    pytest.importorskip("matplotlib")
+    pytest.importorskip("numba")
+    path = tmp_path / "harmonic.py"
+    path.write_text(PROGRAM)
+    command = " ".join(
+        [shlex.quote(sys.executable), str(path), "{setting} {t_end} {grid_step} {length} {gravity}", "x" * 3000]
+    )
+    words = ["study", "paris", "--t-end", "600", "--methods", "rk4", "--settings", "0.1", "--out", tmp_path / "out"]
+    status, out, _ = foucault(*words, "--run", command, "--run", f"{command} y", "--name", "mine", "--name", "<other>")
+    assert status == 0
+    head, row, other = (next(line for line in out.splitlines() if word in line) for word in ("setting", "mine", "<oth"))
+    assert len(row) == len(other) == len(head)  # of the same columns
+    document = json.loads((tmp_path / "out/study.json").read_text())
+    assert document["programs"] == {"mine": command, "<other>": f"{command} y"}
+    assert {row["method"]: row["status"] for row in document["rows"]} == {"rk4": "ok", "mine": "ok", "<other>": "ok"}
+    page = (tmp_path / "out/index.html").read_text()
+    assert "x" * 500 not in page
+    assert "<other>" not in page and "&lt;other&gt;" in page
+    stored = (tmp_path / "out/rows.jsonl").read_text()
+    changed = [*words[:-1], tmp_path / "out", "--run", f"{command} z", "--name", "mine"]
+    assert foucault(*changed)[0] == 0
+    (line,) = (tmp_path / "out/rows.jsonl").read_text().removeprefix(stored).splitlines()
+    assert json.loads(line)["item"][0] == "mine"  # another command of that name is measured again, and nothing else

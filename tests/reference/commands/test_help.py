@@ -1,0 +1,119 @@
+"""Help, version and completion: what a newcomer and a shell ask for."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import re
+import subprocess
+import sys
+from importlib.metadata import version
+
+import pytest
+from places import ROOT
+
+from compare.candidates.external import REPEATS, TIMEOUT_S
+from compare.commands import app as comparing
+from compare.commands import stability, study
+from compare.score.judge import TOLERANCE
+from compare.studies.precisions import SPAN_S
+from compare.studies.stability import LIMIT_S as STABILITY_LIMIT_S
+from compare.studies.study import LIMIT_S as STUDY_LIMIT_S
+from reference.commands import app as computing
+
+COMMANDS = [str(one.name) for part in (computing, comparing) for one in part.registered_commands]
+
+
+@pytest.mark.parametrize("word", ["--help", "-h"])
+def test_the_help_says_what_the_program_does_how_to_begin_and_each_command_in_a_line(foucault, word, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    status, out, _ = foucault(word)
+    assert status == 0
+    assert "reference solutions of the Foucault pendulum" in out and "foucault scenes" in out
+    lines = out.splitlines()
+    listed = [line.split()[0] for line in lines[lines.index("Commands:") + 1 :]]
+    assert sorted(listed) == sorted(COMMANDS)
+    assert [line for line in lines if line.rstrip().endswith(("…", "...")) or len(line) > 80] == [
+        "Usage: foucault [OPTIONS] COMMAND [ARGS]..."
+    ]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_help_and_pend_keeps_the_papers_switch_h(foucault, command):
+    status, out, _ = foucault(command, "--help")
+    assert status == 0
+    if command == "pend":
+        assert "-h M" in out
+    else:
+        assert foucault(command, "-h") == (0, out, "")
+
+
+def test_the_version_is_that_of_the_package(foucault):
+    assert foucault("--version") == (0, f"foucault {version('foucault-reference')}\n", "")
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "default"),
+    [
+        ("score", "--tolerance", f"{TOLERANCE:.0e}".replace("e-0", "e-") + " of the amplitude"),
+        ("score", "--t-end", "the scene's"),
+        ("score", "--timeout", f"{TIMEOUT_S:g}"),
+        ("score", "--repeats", f"{REPEATS}"),
+        ("generate", "--t-end", "the scene's"),
+        ("generate", "--digits", "the scene's"),
+        ("generate", "--level", "the scene's"),
+        ("generate", "--out", "golden/SCENE"),
+        ("study", "--methods", "all"),
+        ("study", "--t-end", f"the scene's; at most {SPAN_S} with --precisions"),
+        ("study", "--limit", f"{STUDY_LIMIT_S:g}"),
+        ("study", "--settings", study.SETTINGS),
+        ("stability", "--methods", "all"),
+        ("stability", "--scenes", "paris and all that have flags"),
+    ],
+)
+def test_the_help_states_the_default_that_the_code_has(foucault, command, option, default):
+    out = foucault(command, "--help")[1]
+    (text,) = re.findall(rf"^  {option} .*?(?=^  -|\Z)", out, re.MULTILINE | re.DOTALL)
+    assert f"(default: {default}" in " ".join(text.split())
+
+
+def test_limits_of_the_command_line_are_those_of_python():
+    assert (study.LIMIT_S, stability.LIMIT_S) == (STUDY_LIMIT_S, STABILITY_LIMIT_S)
+    assert inspect.signature(stability.command).parameters["limit"].default == STABILITY_LIMIT_S
+
+
+def completed(*words: str) -> list[str]:
+    """Return what bash is offered for the last of the words."""
+    line = " ".join(["foucault", *words])
+    asked = {"_FOUCAULT_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(words))}
+    done = subprocess.run(
+        [sys.executable, "-m", "foucault"],
+        check=False,
+        env={**os.environ, **asked},
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+    )
+    return done.stdout.split()
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        (("gen",), ["generate"]),
+        (("generate", "par"), ["paris", "paris_30d"]),
+        (("study", "paris", "--methods", "rk4,rkng"), ["rk4,rkng56", "rk4,rkng67"]),
+        (("stability", "--scenes", "hard,par"), ["hard,paris", "hard,paris_30d"]),
+        (("generate", "paris", "--level", "con"), ["confirmed"]),
+        (("show", "paris", "--set", "site.lat"), ["site.latitude="]),
+        (("verify", "paris.b"), ["paris.binary64"]),
+        (("score", "paris", "--approximation", "linear_3"), ["linear_3d"]),
+    ],
+)
+def test_a_shell_completes_commands_scenes_methods_and_fields(words, offered):
+    assert completed(*words) == offered
+
+
+def test_completion_can_be_installed_and_shown(foucault):
+    out = foucault("--help")[1]
+    assert "--install-completion" in out and "--show-completion" in out
