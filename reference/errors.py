@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from .plain_text import plain, plain_lines
+
+MOST_SHOWN = 120  # characters of a wrong value that a message quotes
+
 
 class FoucaultError(Exception):
     """Base of every error that this project raises on purpose."""
 
     exit_status = 1
+
+    def __init__(self, text: str) -> None:
+        super().__init__(plain_lines(text))
 
 
 class InputError(FoucaultError):
@@ -16,10 +23,17 @@ class InputError(FoucaultError):
 
     def __init__(self, field: str, got: object, expected: str, advice: str = "") -> None:
         self.field, self.got, self.expected, self.advice = field, got, expected, advice
-        value = got if isinstance(got, str) else repr(got)
-        value = value if len(value) <= 120 else value[:117] + "..."
-        text = f"{field}: got {value!r}, expected {expected}."
+        text = f"{plain(field)}: got {_shown(got)!r}, expected {expected}."
         super().__init__(f"{text} {advice}".rstrip())
+
+
+def _shown(value: object) -> str:
+    """Return the beginning of a value as text."""
+    try:
+        text = value if isinstance(value, str) else repr(value)
+    except (ValueError, RecursionError):  # an integer of more than 4300 digits, or lists in lists without end
+        text = f"too large a value to print, {type(value).__name__}"
+    return text if len(text) <= MOST_SHOWN else text[: MOST_SHOWN - 3] + "..."
 
 
 class UnreachableError(FoucaultError):

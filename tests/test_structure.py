@@ -28,6 +28,7 @@ FLOORS = {
         ["scene", "table", "process", "packing", "capture", "taylor_step"],
         ["inputs", "fields", "precision", "shipped", "columns"],
         ["errors", "status", "lazy"],
+        ["plain_text"],
     ],
     "reference/engines": [
         ["side_by_side"],

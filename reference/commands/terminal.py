@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
+
+from ..plain_text import plain, plain_json, terminal_of
 
 SceneWord = Annotated[str, typer.Argument(metavar="SCENE", help="A scene's id, or the path of a TOML file.")]
 Assignments = Annotated[
@@ -18,7 +21,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on
 
 def emit(document: dict[str, Any]) -> None:
     """Print one JSON document."""
-    typer.echo(json.dumps(document, indent=1, ensure_ascii=False))
+    typer.echo(plain_json(json.dumps(document, indent=1, ensure_ascii=False)))
 
 
 @contextmanager
@@ -27,12 +30,12 @@ def progress(label: str, total: float = 0, unit: str = "s simulated") -> Iterato
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    console = Console(stderr=True)
+    console = Console(file=terminal_of(sys.stderr))
     if not console.is_terminal:
         yield None
         return
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn(f"{{task.completed:,.0f}} of {{task.total:,.0f}} {unit}"),
         TimeElapsedColumn(),
@@ -42,6 +45,7 @@ def progress(label: str, total: float = 0, unit: str = "s simulated") -> Iterato
         task = bar.add_task(label, total=total)
 
         def move(completed: float, total: float = total, item: str = "") -> None:
-            bar.update(task, completed=completed, total=total, description=f"{label}: {item}" if item else label)
+            description = plain(f"{label}: {item}" if item else label)
+            bar.update(task, completed=completed, total=total, description=description)
 
         yield move
