@@ -1,4 +1,4 @@
-"""Read a TOML file that a stranger may have written: of bounded size and depth, so that it takes neither time nor memory."""
+"""Read a TOML file that a stranger may have written: bounded in size and depth, and so in time and memory."""
 
 from __future__ import annotations
 

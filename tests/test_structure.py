@@ -26,8 +26,9 @@ FLOORS = {
         ["engines", "enclosure"],
         ["model"],
         ["scene", "table", "process", "packing", "capture", "taylor_step"],
+        ["toml_document"],
         ["inputs", "fields", "precision", "shipped", "columns"],
-        ["errors", "status", "lazy"],
+        ["errors", "status", "lazy", "opening"],
         ["plain_text"],
     ],
     "reference/engines": [
@@ -123,6 +124,8 @@ PUBLIC = {
     "reference.model.force": "acceleration invariant rest_position tension",
     "reference.model.formulations": "FORMULATIONS",
     "reference.model.start": "Start scaled",
+    "reference.opening": "open_at_once",
+    "reference.plain_text": "plain",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
     "reference.process": "Emit Worker",

@@ -78,6 +78,19 @@ def test_what_numpy_savetxt_writes_is_read():
     assert_read(read_stream(stream, "run"))
 
 
+@pytest.mark.parametrize("mark", ["", "# "])
+@pytest.mark.parametrize(("between", "named"), [(",", ","), (";", ";"), (" ", " "), ("\t", "  "), (" ", ","), (",", " ")])
+def test_names_are_read_whatever_separates_them(mark, between, named):
+    """White space under a header in another order was once taken for foucPend's t x y z."""
+    rows = [between.join(map(repr, (z, y, t, x))) for t, x, y, z in ROWS]
+    assert_read(read_stream(text("# of a program of mine", mark + named.join(("z", "y", "t", "x")), *rows), "run"))
+
+
+def test_velocities_under_a_header_of_white_space_are_not_taken_for_z():
+    found = read_stream(text("# t x y vx vy", "0 1 2 3 4"), "run")
+    assert {name: column[0] for name, column in found.columns.items()} == {"x": 1, "y": 2, "vx": 3, "vy": 4}
+
+
 def test_the_output_of_the_papers_program_is_read_with_its_transits():
     lines = ["# foucPend", *(" ".join([*map(repr, row), "1 2 3 4 5 6"]) for row in ROWS)]
     lines[2:2] = ["# P 1 8.2178 0.0608", "# P 2 16.4356 0.0608"]
@@ -157,7 +170,9 @@ def test_a_number_is_split_over_two_chunks_without_harm(monkeypatch):
         (["t,x", "0,1"], ("header", "none", "column y")),
         (["t,x,y,x", "0,1,2,3"], ("header", "2 of them")),
         (["t,x,y,vz,vz", "0,1,2,3,4"], ("header", "column vz at most")),
-        (["t;x;y", "0;1;2"], ("header", "separated by commas")),
+        (["t;x;y", "0,5;1,5;2,5"], ("line 2: t", "'0,5'", "a number")),
+        (["# time x y", "0 1 2"], ("header", "none in 'time x y'", "column t")),
+        (["0 1 2"], ("first line", "'0 1 2'", "header that names")),
         (["0,0.3,0.4"], ("first line", "header that names")),
         (["t,x,y", "0,0.3"], ("line 2", "2 fields", "3 as in the first line", "cut off")),
         (["t,x,y", "0,1,2", "# note", "1,1,2,3"], ("line 4", "4 fields")),
@@ -249,7 +264,7 @@ def test_transits_need_the_column_t_only(tmp_path):
         ("k,t\n1\n", "line 2: got '1 fields'"),
         ("k,t\n1,2\n\n2,soon\n", "line 4: t: got 'soon'"),
         ("k,t\n1,2\n2,3,4\n", "line 3: got '3 fields', expected 2"),
-        ("1 2 3 4\n", "one column t"),
+        ("1 2 3 4\n", "a header that names"),
         ("t\n2\n1\n", "1 as transit 2 after 2"),
         ("t\nnan\n", "nan as transit 1"),
         ("t\n-1\n", "from 0 on"),
