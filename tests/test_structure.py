@@ -28,7 +28,7 @@ FLOORS = {
         ["scene", "table", "process", "packing", "capture", "taylor_step"],
         ["toml_document"],
         ["inputs", "fields", "precision", "shipped", "columns"],
-        ["errors", "status", "lazy", "opening"],
+        ["errors", "status", "lazy", "opening", "packages"],
         ["plain_text"],
     ],
     "reference/engines": [
@@ -125,6 +125,7 @@ PUBLIC = {
     "reference.model.formulations": "FORMULATIONS",
     "reference.model.start": "Start scaled",
     "reference.opening": "open_at_once",
+    "reference.packages": "missing switched_off",
     "reference.plain_text": "plain",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",

@@ -30,6 +30,8 @@ TIMEOUT_S = 600.0
 REPEATS = 3
 LONG_S = 20.0  # a program that takes longer than this, in s, is timed once, by the run that is scored
 _TAIL = 400  # characters of stderr that a message quotes
+_FOR_A_SHELL = re.compile(r"\|.*|&&?|;|(\d*|&)[<>].*")  # unquoted words that only a shell obeys
+_NO_SHELL = "No shell is used. Put the words into quotes if they are meant as they stand, or run sh -c '...'."
 _PLACEHOLDER = re.compile(r"\{(\{\w+\})\}|\{(\w+)\}")  # {{word}} stands for {word} itself
 
 
@@ -79,6 +81,9 @@ def arguments(command: str, scene: Scene) -> list[str]:
         raise InputError("--run", command, "a command with balanced quotes", f"{error}.") from None
     if not words:
         raise InputError("--run", command, "a command")
+    for word in _as_typed(command):
+        if _FOR_A_SHELL.fullmatch(word):
+            raise InputError("--run", command, f"a program and its arguments, without {word}", _NO_SHELL)
 
     def value(match: re.Match[str]) -> str:
         if match[1]:
@@ -89,6 +94,14 @@ def arguments(command: str, scene: Scene) -> list[str]:
         return values[match[2]]
 
     return [_PLACEHOLDER.sub(value, word) for word in words]
+
+
+def _as_typed(command: str) -> list[str]:
+    """Return the words with their quotes; none where escaped quotes make that impossible."""
+    try:
+        return shlex.split(command, posix=False)
+    except ValueError:
+        return []
 
 
 def run_program(

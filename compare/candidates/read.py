@@ -57,10 +57,12 @@ def read_transits(source: str | Path) -> Array:
 @contextmanager
 def _opened(source: str | Path, field: str, expected: str) -> Iterator[tuple[BinaryIO, bytes, str]]:
     """Yield a file, or standard input if `source` is "-": stream, bytes read from it already, name for messages."""
-    if str(source) == "-":
-        yield sys.stdin.buffer, b"", "standard input"
-        return
     try:
+        if str(source) == "-":
+            if sys.stdin is None:
+                raise OSError(errno.EBADF, "Standard input is closed")
+            yield sys.stdin.buffer, b"", "standard input"
+            return
         with open_at_once(Path(source)) as stream:
             head = _first_of_pipe(stream) if stat.S_ISFIFO(os.fstat(stream.fileno()).st_mode) else b""
             os.set_blocking(stream.fileno(), True)

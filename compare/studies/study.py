@@ -18,7 +18,7 @@ from reference.status import Status
 from ..methods import METHODS
 from ..rhs.swing import suited
 from ..truth import golden_of
-from .campaign import Counted, campaign
+from .campaign import Counted, campaign, check_usable
 from .grid import on_doubles
 from .machine import machine
 from .measure import ladder
@@ -83,8 +83,9 @@ def plan(scene: Scene, methods: Sequence[str] | None = None, formulations: bool 
         formulations: whether to compare the formulations in one method as well.
 
     Raises:
-        InputError: an unknown method.
+        InputError: an unknown method, or none that can run here.
     """
+    check_usable(methods)
     items: list[Item] = []
     for name in methods or METHODS:
         method = METHODS[name]

@@ -79,10 +79,10 @@ def test_what_numpy_savetxt_writes_is_read():
 
 
 @pytest.mark.parametrize("mark", ["", "# "])
-@pytest.mark.parametrize(("between", "named"), [(",", ","), (";", ";"), (" ", " "), ("\t", "  "), (" ", ","), (",", " ")])
-def test_names_are_read_whatever_separates_them(mark, between, named):
+@pytest.mark.parametrize(("put", "named"), [(",", ","), (";", ";"), (" ", " "), ("\t", "  "), (" ", ","), (",", " ")])
+def test_names_are_read_whatever_separates_them(mark, put, named):
     """White space under a header in another order was once taken for foucPend's t x y z."""
-    rows = [between.join(map(repr, (z, y, t, x))) for t, x, y, z in ROWS]
+    rows = [put.join(map(repr, (z, y, t, x))) for t, x, y, z in ROWS]
     assert_read(read_stream(text("# of a program of mine", mark + named.join(("z", "y", "t", "x")), *rows), "run"))
 
 
