@@ -124,8 +124,9 @@ def run_program(
                 env=tree.environment,
                 start_new_session=True,
             )
-        except OSError as error:
-            raise InputError("--run", words[0], "a program that can be started", f"{error.strerror}.") from None
+        except (OSError, ValueError) as error:  # ValueError: a word with a zero byte, or that is no text
+            why = error.strerror if isinstance(error, OSError) else error
+            raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
         limits = _Limits(process, output, errors, timeout_s, max_bytes)
         try:
             with _terminable():
