@@ -25,6 +25,7 @@ from reference.model.start import Start
 from .lines import MAX_BYTES
 from .process_tree import ProcessTree
 
+MAX_COMMAND = 1 << 14  # characters; the time to split it into words grows with the square
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
 TIMEOUT_S = 600.0
 REPEATS = 3
@@ -74,6 +75,8 @@ def arguments(command: str, scene: Scene) -> list[str]:
     Raises:
         InputError: a placeholder is unknown, quotes are unbalanced, or the command is empty.
     """
+    if len(command) > MAX_COMMAND:
+        raise InputError("--run", command, f"a command of at most {MAX_COMMAND} characters")
     values = placeholders(scene)
     try:
         words = shlex.split(command)

@@ -15,11 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
+from reference.plain_text import plain_lines
 
 from .page import MARK
 
 CSV, PAGE = "rows.csv", "index.html"
-_FORMULA = ("=", "+", "-", "@", "\t", "\r")  # with these a formula begins in a spreadsheet, as OWASP lists them
+_FORMULA = ("=", "+", "-", "@", "\t", "\n")  # may begin a formula in a spreadsheet, as OWASP lists them
 _HEAD = 1024  # bytes at the start of a page that hold its mark
 
 
@@ -127,7 +128,7 @@ def _bring_back(old: Path, target: Path) -> None:
 def csv_text(columns: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> str:
     """Return rows as CSV: a header line, doubles with all their digits, an empty field where there is no value.
 
-    Text that a spreadsheet would run as a formula begins with an apostrophe.
+    Control characters are written out, and what a spreadsheet would run as a formula begins with an apostrophe.
     """
     stream = io.StringIO()
     writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
@@ -137,13 +138,16 @@ def csv_text(columns: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> str:
 
 
 def _harmless(value: Any) -> Any:
-    if not isinstance(value, str) or not value.startswith(_FORMULA):
+    if not isinstance(value, str):
         return value
+    text = plain_lines(value)
+    if not text.startswith(_FORMULA):
+        return text
     try:
-        float(value)
+        float(text)
     except ValueError:
-        return f"'{value}"
-    return value
+        return f"'{text}"
+    return text
 
 
 def json_text(document: Any) -> str:

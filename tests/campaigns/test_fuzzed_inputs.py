@@ -33,7 +33,7 @@ def test_no_input_ends_in_a_traceback_a_hang_or_full_memory(size, tally, tmp_pat
     for kind, outcomes in found["tried"].items():
         tally(f"fuzzed inputs, {kind}: {sum(outcomes.values())} tried, {outcomes}")
     seconds, kind, _ = found["slowest"]
-    tally(f"fuzzed inputs: the slowest took {seconds:.1f} s ({kind}), peak memory {found['peak_mb']} MB")
+    tally(f"fuzzed inputs: the slowest took {seconds:.1f} CPU s ({kind}), peak memory {found['peak_mb']} MB")
     assert {kind: sum(outcomes.values()) for kind, outcomes in found["tried"].items()} == counts
     assert all(outcomes["read"] for kind, outcomes in found["tried"].items() if kind != "--run"), "all were refused"
     assert found["wrong"] == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import subprocess
 import sys
 import zipfile
@@ -248,6 +249,55 @@ def test_a_missing_file_and_a_folder_are_refused(tmp_path):
     for path in (tmp_path / "none.csv", tmp_path):
         with pytest.raises(InputError, match="readable file"):
             read(path)
+
+
+def test_a_pipe_is_read_if_somebody_writes_to_it_and_refused_if_nobody_does(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for read_pipe in (read, read_transits):
+        with pytest.raises(InputError, match="Nobody writes to this pipe"):
+            read_pipe(pipe)
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_the_output_of_a_program_is_read_from_a_pipe_also_if_it_comes_late(monkeypatch, late):
+    reader, writer = os.pipe()
+    unblock = os.set_blocking
+
+    def write_all():
+        os.write(writer, csv().getvalue())
+        os.close(writer)
+
+    def write_late(descriptor, blocking):
+        write_all()
+        unblock(descriptor, blocking)
+
+    if late:
+        monkeypatch.setattr(os, "set_blocking", write_late)
+    else:
+        write_all()
+    assert_read(read(f"/dev/fd/{reader}"))
+    os.close(reader)
+
+
+def test_a_path_that_no_file_can_have_and_a_closed_standard_input_are_refused(monkeypatch):
+    for path in ("a\0b", "\ud800"):
+        with pytest.raises(InputError, match="No file has this path"):
+            read(path)
+    monkeypatch.setattr("sys.stdin", None)
+    with pytest.raises(InputError, match="Standard input is closed"):
+        read("-")
+
+
+def test_a_device_without_end_is_refused_at_once():
+    with pytest.raises(InputError, match="a line of more than 65536 bytes"):
+        read("/dev/zero")
+
+
+def test_the_name_of_a_candidate_can_be_printed(tmp_path):
+    path = tmp_path / os.fsdecode(b"n\xff\x1b[31m.csv")
+    path.write_bytes(csv().getvalue())
+    assert read(path).name == f"{tmp_path}/n\\xff\\x1b[31m.csv"
 
 
 def test_transits_need_the_column_t_only(tmp_path):
