@@ -50,6 +50,13 @@ class IntegrationError(UnreachableError):
     """The integrator stopped, warned, or contradicted itself; a failed run returns no numbers."""
 
 
+class BeyondDoublesError(UnreachableError):
+    """A number of a scene is too large for the runs in binary64 with which every solution begins."""
+
+    def __init__(self) -> None:
+        super().__init__("A length, force, rate or time of the scene is beyond the range of binary64.")
+
+
 class DatasetError(FoucaultError):
     """A golden dataset is damaged or contradicts itself; `problems` lists how."""
 

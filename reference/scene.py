@@ -79,7 +79,7 @@ def _digits(value: int) -> int:
 class RunTable(_Table):
     """Time span and grid (s), digits, level of trust, transits or not."""
 
-    t_end: Annotated[Number, within("0", "1e15", open_low=True)] = "86400"
+    t_end: Annotated[Number, within("1e-300", "1e15")] = "86400"
     grid_step: Positive = "60"
     digits: Annotated[int, AfterValidator(_digits)] = 40
     level: Level = "confirmed"

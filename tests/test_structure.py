@@ -116,6 +116,7 @@ PUBLIC = {
     "reference.engines.heyoka.model": "RoundedModel",
     "reference.engines.registry": "engines",
     "reference.engines.variants": "Variants",
+    "reference.errors": "BeyondDoublesError",
     "reference.inputs": "Inputs",
     "reference.lazy": "lazy",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import BeyondDoublesError
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
@@ -76,14 +77,20 @@ def trajectory(
 
     Returns:
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
+
+    Raises:
+        UnreachableError: a number of the scene is too large, or heyoka stops before the last time.
     """
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
     from .heyoka.model import RoundedModel
 
-    model = RoundedModel(FORMULATIONS[formulation], start.k, number)
-    moments = [model.numbers.of(_exact(t)) for t in times]
-    return model.doubles(model.propagator(tolerance).from_zero(model.release(start), moments))
+    try:
+        model = RoundedModel(FORMULATIONS[formulation], start.k, number)
+        moments, state = [model.numbers.of(_exact(t)) for t in times], model.release(start)
+    except OverflowError:
+        raise BeyondDoublesError from None
+    return model.doubles(model.propagator(tolerance).from_zero(state, moments))
 
 
 def _exact(value: Any) -> Any:
