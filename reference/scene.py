@@ -22,6 +22,7 @@ from .toml_document import toml_document
 
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
+LEAST_T_END = Fraction(1, 10**300)
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
 LEVELS: tuple[Level, ...] = get_args(Level)
@@ -79,7 +80,7 @@ def _digits(value: int) -> int:
 class RunTable(_Table):
     """Time span and grid (s), digits, level of trust, transits or not."""
 
-    t_end: Annotated[Number, within("1e-300", "1e15")] = "86400"
+    t_end: Annotated[Number, within("0", "1e15", open_low=True)] = "86400"
     grid_step: Positive = "60"
     digits: Annotated[int, AfterValidator(_digits)] = 40
     level: Level = "confirmed"
@@ -200,6 +201,8 @@ def _check_release(scene: Scene) -> None:
 
 
 def _check_grid(scene: Scene) -> None:
+    if scene.exact.t_end < LEAST_T_END:
+        raise InputError("run.t_end", scene.run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide")
     rows = scene.exact.t_end / scene.exact.grid_step
     if rows > MAX_ROWS:
         raise InputError(

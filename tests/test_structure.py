@@ -127,7 +127,7 @@ PUBLIC = {
     "reference.model.start": "Start scaled",
     "reference.opening": "open_at_once",
     "reference.packages": "missing switched_off",
-    "reference.plain_text": "plain",
+    "reference.plain_text": "plain plain_lines",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
     "reference.process": "Emit Worker",
