@@ -11,6 +11,7 @@ import typer
 from compare.commands import app as comparing
 from reference.commands import app as computing
 from reference.errors import FoucaultError
+from reference.plain_text import plain_output
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -46,11 +47,12 @@ def front(
 
 def main() -> None:
     """Run the command line; a user's mistake ends with a message and its exit status, not a traceback."""
-    try:
-        app(prog_name="foucault")
-    except FoucaultError as error:
-        print(f"foucault: {error}", file=sys.stderr)
-        raise SystemExit(error.exit_status) from None
+    with plain_output():
+        try:
+            app(prog_name="foucault")
+        except FoucaultError as error:
+            print(f"foucault: {error}", file=sys.stderr)
+            raise SystemExit(error.exit_status) from None
 
 
 if __name__ == "__main__":

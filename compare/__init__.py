@@ -1,7 +1,7 @@
 """Compare results with the reference: score a program's output, study error against run time, test stability.
 
 >>> import compare
->>> score = compare.assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
+>>> score = compare.assert_agrees("paris", [0.0, 60.0], [[0.3, 0.4], [-0.176326733, -0.415867688]], tolerance=1e-8)
 >>> score.verdict
 'agrees'
 

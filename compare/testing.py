@@ -1,8 +1,8 @@
 """Assert in your own tests that a trajectory agrees with the truth; `fixture.py` has it as a pytest fixture.
 
 >>> from compare import assert_agrees
->>> score = assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
->>> score.errors.max_m < 1e-12
+>>> score = assert_agrees("paris", [0.0, 60.0], [[0.3, 0.4], [-0.176326733, -0.415867688]], tolerance=1e-8)
+>>> score.errors.max_m < 1e-8
 True
 """
 
@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
+from reference.precision import Array
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .score.judge import Score, judge
@@ -43,16 +44,13 @@ def assert_agrees(
     Raises:
         AssertionError: the trajectory disagrees; the message gives time, component, expected, got, difference, what is
             allowed, and the mistake that explains it, if one does.
-        InputError: an array has the wrong shape, or a number is not finite.
+        InputError: an array has the wrong shape, a number is not finite, or no time is above 0.
     """
-    rows, times = np.asarray(states), np.asarray(t)
+    rows, times = _array(states, "states"), _array(t, "t")
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
         raise InputError("states", f"shape {rows.shape}", "shape (rows, 2), (rows, 3) or (rows, 6)")
-    for name, array in (("t", times), ("states", rows)):
-        if array.dtype.kind not in "fiu":
-            raise InputError(name, f"dtype {array.dtype}", "real numbers")
     arrays = {"t": times, **{name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}}
-    transit_times = None if transits is None else checked_transits(np.asarray(transits, dtype=np.float64), "transits")
+    transit_times = None if transits is None else checked_transits(_array(transits, "transits"), "transits")
     result = judge(
         candidate_of("states", arrays),
         scene,
@@ -63,6 +61,17 @@ def assert_agrees(
     if not result.agrees:
         raise AssertionError(message(result))
     return result
+
+
+def _array(values: npt.ArrayLike, name: str) -> Array:
+    """Return an array of real numbers."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise InputError(name, "rows of different lengths", "an array of real numbers") from None
+    if array.size and array.dtype.kind not in "fiu":
+        raise InputError(name, f"dtype {array.dtype}", "real numbers")
+    return array
 
 
 def message(result: Score) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .plain_text import plain, plain_lines
 from .shortened import shortened
 
 LONGEST_VALUE = 120  # characters of a value that a message repeats
@@ -12,6 +13,9 @@ class FoucaultError(Exception):
 
     exit_status = 1
 
+    def __init__(self, text: str) -> None:
+        super().__init__(plain_lines(text))
+
 
 class InputError(FoucaultError):
     """A user's mistake: the field, the value it got, what was expected, and advice."""
@@ -20,9 +24,17 @@ class InputError(FoucaultError):
 
     def __init__(self, field: str, got: object, expected: str, advice: str = "") -> None:
         self.field, self.got, self.expected, self.advice = field, got, expected, advice
-        value = shortened(got if isinstance(got, str) else repr(got), LONGEST_VALUE)
-        text = f"{field}: got {value!r}, expected {expected}."
+        text = f"{plain(field)}: got {_shown(got)!r}, expected {expected}."
         super().__init__(f"{text} {advice}".rstrip())
+
+
+def _shown(value: object) -> str:
+    """Return the beginning of a value as text."""
+    try:
+        text = value if isinstance(value, str) else repr(value)
+    except (ValueError, RecursionError):  # an integer of more than 4300 digits, or lists in lists without end
+        text = f"too large a value to print, {type(value).__name__}"
+    return shortened(text, LONGEST_VALUE)
 
 
 class UnreachableError(FoucaultError):
@@ -37,6 +49,13 @@ class UnreachableError(FoucaultError):
 
 class IntegrationError(UnreachableError):
     """The integrator stopped, warned, or contradicted itself; a failed run returns no numbers."""
+
+
+class BeyondDoublesError(UnreachableError):
+    """A number of a scene is too large for the runs in binary64 with which every solution begins."""
+
+    def __init__(self) -> None:
+        super().__init__("A length, force, rate or time of the scene is beyond the range of binary64.")
 
 
 class DatasetError(FoucaultError):

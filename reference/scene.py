@@ -7,7 +7,6 @@ decimal 48.846111 and not the double next to it, unless the scene says `inputs =
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from pathlib import Path
@@ -16,13 +15,15 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
 
 from .errors import InputError
-from .fields import NotNegative, Number, NumberOrInf, Positive, Refused, explained, within
+from .fields import Line, NotNegative, Number, NumberOrInf, Positive, Refused, as_read, explained, within
 from .inputs import GravityIs, Inputs
 from .nearest import unknown
 from .shipped import data_root, scene_ids
+from .toml_document import toml_document
 
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
+LEAST_T_END = Fraction(1, 10**300)
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
 LEVELS: tuple[Level, ...] = get_args(Level)
@@ -101,9 +102,9 @@ class Scene(_Table):
     """
 
     id: Annotated[str, AfterValidator(_identifier)]
-    title: str = ""
-    source: str = ""
-    flags: tuple[str, ...] = ()
+    title: Line = ""
+    source: Line = ""
+    flags: tuple[Line, ...] = ()
     inputs: Reading = "decimal"
     pendulum: Pendulum = Pendulum()
     site: Site = Site()
@@ -115,8 +116,7 @@ class Scene(_Table):
         """The scene's numbers as exact fractions, each rounded to binary64 first if `inputs` says so."""
 
         def read(text: str | None) -> Fraction:
-            value = Fraction(text or "0")
-            return Fraction(float(value)) if self.inputs == "binary64" else value
+            return as_read(text or "0", self.inputs)
 
         site, release = self.site, self.release
         inverse = site.inverse_flattening
@@ -181,7 +181,7 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
         InputError: names the first wrong field, what it got and what was expected.
     """
     try:
-        scene = Scene.model_validate(dict(document))
+        scene = Scene.model_validate(dict(document), context={"inputs": document.get("inputs")})
     except ValidationError as error:
         raise explained(error, [*Scene.model_fields, *field_names()]) from None
     _check_release(scene)
@@ -214,6 +214,8 @@ def _check_release(scene: Scene) -> None:
 
 
 def _check_grid(scene: Scene) -> None:
+    if scene.exact.t_end < LEAST_T_END:
+        raise InputError("run.t_end", scene.run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide")
     rows = scene.exact.t_end / scene.exact.grid_step
     if rows > MAX_ROWS:
         raise InputError(
@@ -232,13 +234,13 @@ def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
         raise _no_scene(word)
     path = data_root() / "scenes" / f"{word}.toml" if is_scene_id(word) else Path(word)
     try:
-        document = tomllib.loads(path.read_bytes().decode())
+        document = toml_document(path)
     except FileNotFoundError:
         raise _no_scene(word) from None
     except OSError as error:
         raise InputError("SCENE", word, "a readable file", f"{error.strerror}.") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError("SCENE", word, "a TOML file", f"{error}.") from None
+    except Refused as refusal:
+        raise InputError("SCENE", word, refusal.expected, refusal.advice) from None
     for assignment in assignments:
         _assign(document, assignment)
     return parse_scene(document)

@@ -117,7 +117,10 @@ class Motion(Approximation):
         grid = np.asarray(times, dtype=np.float64)
         if grid.ndim != 1 or not len(grid) or grid[0] < 0 or not np.all(np.diff(grid) > 0):
             raise InputError("times", f"{grid.shape} numbers", "increasing times in s, the first not negative")
-        rows = self.path(scene, grid) if grid[0] == 0 else self.path(scene, np.insert(grid, 0, 0.0))[1:]
+        try:
+            rows = self.path(scene, grid) if grid[0] == 0 else self.path(scene, np.insert(grid, 0, 0.0))[1:]
+        except OverflowError:
+            rows = np.array([np.inf])
         if not np.isfinite(rows).all():
             raise UnreachableError(f"{self.id} gives no finite motion for {scene.id}.")
         return rows

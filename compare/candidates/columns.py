@@ -1,6 +1,7 @@
-"""Read columns of numbers from text: one header line that names them, and rows separated by commas.
+"""Read columns of numbers from text: one header line that names them, and rows.
 
-Lines that start with # are comments, and the header may be one. Columns of other names are ignored.
+Fields are separated by commas, semicolons or white space. Lines that start with # are comments, and the header may be
+one. Columns of other names are ignored.
 """
 
 from __future__ import annotations
@@ -46,9 +47,10 @@ class ColumnReader:
         self.expected, self.comment = expected, comment
         self.known = [*needed, *optional]
         more = f" and, if there, {', '.join(optional)}" if optional else ""
-        self.advice = f"The first line names the columns, separated by commas: {', '.join(needed)}{more}."
+        self.advice = f"The first line names the columns: {', '.join(needed)}{more}."
         self.header: list[str] | None = None  # names of all columns, once known
-        self.separator: str | None = ","
+        self.remark = ""  # the last comment before the first row that may be the header
+        self.separator: str | None = None  # of the header, then of the rows; None is white space
         self.blocks: list[Array] = []
         self.low_blocks: list[Array] = []
         self.rows = self.line = 0
@@ -67,6 +69,8 @@ class ColumnReader:
         for lines, complete in chunks(stream, self.name, head):
             self.cut_off = not complete
             self._read_lines(lines)
+        if self.header is None and self.remark:
+            self._take_header(self.remark)
         if self.header is None:
             raise InputError(self.name, "no header and no rows", self.expected, self.advice)
         low = any(block.any() for block in self.low_blocks)
@@ -91,8 +95,8 @@ class ColumnReader:
                 continue
             if text[0] == "#":
                 comment = text[1:].strip()
-                if self.header is None and set(self.needed) <= set(_names(comment)):
-                    self._read_header(comment)  # numpy.savetxt writes the header as a comment
+                if self.header is None and set(self.known) & set(_names(comment)):
+                    self.remark = comment  # numpy.savetxt writes the header as a comment
                 self.comment(comment, number)
             elif self.header is not None or self._read_header(text):
                 rows.append(text)
@@ -105,14 +109,22 @@ class ColumnReader:
             self._parse(rows, numbers)
 
     def _read_header(self, text: str) -> bool:
-        """Read the columns' names from the first line; return True if that line is a row already."""
-        fields = text.split()
-        if self.headless and "," not in text and len(fields) >= len(self.headless) and all(map(is_number, fields)):
-            self.separator, self.header = None, [*self.headless, *[""] * (len(fields) - len(self.headless))]
-            return True
-        names = _names(text)
-        if any(map(is_number, names)):
+        """Read the columns' names from the first line that is no comment; return True if that line is a row already."""
+        fields = _names(text)
+        if not any(map(is_number, fields)):
+            self._take_header(text)
+            return False
+        of_remark = _names(self.remark)
+        if len(of_remark) == len(fields) or (_separator(self.remark) and set(self.needed) <= set(of_remark)):
+            self._take_header(self.remark)
+        elif self.headless and _separator(text) is None and len(fields) >= len(self.headless):
+            self.header = [*self.headless, *[""] * (len(fields) - len(self.headless))]
+        else:
             raise InputError(f"{self.name}: first line", text[:80], "a header that names the columns", self.advice)
+        return True
+
+    def _take_header(self, text: str) -> None:
+        names = _names(text)
         for name in self.needed:
             if names.count(name) != 1:
                 got = "none" if name not in names else f"{names.count(name)} of them"
@@ -120,14 +132,15 @@ class ColumnReader:
         for name in self.known:
             if names.count(name) > 1:
                 raise InputError(f"{self.name}: header", text[:80], f"one column {name} at most")
-        self.header = names
-        return False
+        self.header, self.separator = names, _separator(text)
 
     def _parse(self, lines: list[str], numbers: list[int]) -> None:
         assert self.header is not None
         indices = [self.header.index(name) for name in self.names]
+        if not self.blocks and (self.separator is None or self.separator not in lines[0]):
+            self.separator = _separator(lines[0])
         try:
-            uniform = {line.count(",") if self.separator else len(line.split()) - 1 for line in lines}
+            uniform = {line.count(self.separator) if self.separator else len(line.split()) - 1 for line in lines}
             if uniform != {len(self.header) - 1}:
                 raise ValueError
             block = np.loadtxt(lines, delimiter=self.separator, usecols=indices, comments=None, ndmin=2)
@@ -159,8 +172,12 @@ class ColumnReader:
                     raise InputError(f"{self.name}: line {number}: {name}", text.strip()[:40], "a number")
 
 
+def _separator(text: str) -> str | None:
+    return "," if "," in text else ";" if ";" in text else None
+
+
 def _names(text: str) -> list[str]:
-    return [word.strip().strip('"').lower() for word in text.split(",")]
+    return [word.strip().strip('"').lower() for word in text.split(_separator(text))]
 
 
 def _low_parts(lines: list[str], separator: str | None, indices: list[int], block: Array) -> Array:

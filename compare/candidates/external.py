@@ -25,11 +25,14 @@ from reference.model.start import Start
 from .lines import MAX_BYTES
 from .process_tree import ProcessTree
 
+MAX_COMMAND = 1 << 14  # characters; the time to split it into words grows with the square
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
 TIMEOUT_S = 600.0
 REPEATS = 3
 LONG_S = 20.0  # a program that takes longer than this, in s, is timed once, by the run that is scored
 _TAIL = 400  # characters of stderr that a message quotes
+_FOR_A_SHELL = re.compile(r"\|.*|&&?|;|(\d*|&)[<>].*")  # unquoted words that only a shell obeys
+_NO_SHELL = "No shell is used. Put the words into quotes if they are meant as they stand, or run sh -c '...'."
 _PLACEHOLDER = re.compile(r"\{(\{\w+\})\}|\{(\w+)\}")  # {{word}} stands for {word} itself
 
 
@@ -72,6 +75,8 @@ def arguments(command: str, scene: Scene) -> list[str]:
     Raises:
         InputError: a placeholder is unknown, quotes are unbalanced, or the command is empty.
     """
+    if len(command) > MAX_COMMAND:
+        raise InputError("--run", command, f"a command of at most {MAX_COMMAND} characters")
     values = placeholders(scene)
     try:
         words = shlex.split(command)
@@ -79,6 +84,9 @@ def arguments(command: str, scene: Scene) -> list[str]:
         raise InputError("--run", command, "a command with balanced quotes", f"{error}.") from None
     if not words:
         raise InputError("--run", command, "a command")
+    for word in _as_typed(command):
+        if _FOR_A_SHELL.fullmatch(word):
+            raise InputError("--run", command, f"a program and its arguments, without {word}", _NO_SHELL)
 
     def value(match: re.Match[str]) -> str:
         if match[1]:
@@ -89,6 +97,14 @@ def arguments(command: str, scene: Scene) -> list[str]:
         return values[match[2]]
 
     return [_PLACEHOLDER.sub(value, word) for word in words]
+
+
+def _as_typed(command: str) -> list[str]:
+    """Return the words with their quotes; none where escaped quotes make that impossible."""
+    try:
+        return shlex.split(command, posix=False)
+    except ValueError:
+        return []
 
 
 def run_program(
@@ -111,8 +127,9 @@ def run_program(
                 env=tree.environment,
                 start_new_session=True,
             )
-        except OSError as error:
-            raise InputError("--run", words[0], "a program that can be started", f"{error.strerror}.") from None
+        except (OSError, ValueError) as error:  # ValueError: a word with a zero byte, or that is no text
+            why = error.strerror if isinstance(error, OSError) else error
+            raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
         limits = _Limits(process, output, errors, timeout_s, max_bytes)
         try:
             with _terminable():

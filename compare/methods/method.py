@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from typing import Literal
 import numpy as np
 
 from reference import Scene
+from reference.packages import missing, switched_off
 from reference.status import Status
 from reference.table import Table
 
@@ -155,20 +155,15 @@ class Method:
 
 
 def available(method: Method) -> str | None:
-    """Return None if the method can run here, otherwise which modules are missing and how to install them."""
-    missing = [name for name in method.requires if not _installed(name)]
-    if not missing:
+    """Return None if the method can run here, otherwise what is missing and what to do."""
+    variable = switched_off(method.requires)
+    if variable is not None:
+        return f"{variable} is set: unset it"
+    absent = missing(method.requires)
+    if not absent:
         return None
     advice = f": pip install 'foucault-reference[{method.extra}]'" if method.extra else ""
-    return f"not installed ({', '.join(missing)}){advice}"
-
-
-def _installed(module: str) -> bool:
-    try:
-        spec = importlib.util.find_spec(module)
-    except ModuleNotFoundError:  # its parent package is missing
-        return False
-    return spec is not None and spec.origin is not None  # a folder without code has no origin
+    return f"not installed ({', '.join(absent)}){advice}"
 
 
 def outcome(

@@ -15,10 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
+from reference.plain_text import plain_lines
 
 from .page import MARK
 
 CSV, PAGE = "rows.csv", "index.html"
+_FORMULA = ("=", "+", "-", "@", "\t", "\n")  # may begin a formula in a spreadsheet, as OWASP lists them
 _HEAD = 1024  # bytes at the start of a page that hold its mark
 
 
@@ -108,7 +110,8 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
 
 
 def _write(path: Path, content: str) -> None:
-    with path.open("w", encoding="utf-8", newline="") as stream:
+    # a name on the command line may hold bytes that are not UTF-8; JSON too reads the escapes
+    with path.open("w", encoding="utf-8", errors="backslashreplace", newline="") as stream:
         stream.write(content)
         stream.flush()
         os.fsync(stream.fileno())
@@ -123,12 +126,28 @@ def _bring_back(old: Path, target: Path) -> None:
 
 
 def csv_text(columns: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> str:
-    """Return rows as CSV: a header line, doubles with all their digits, an empty field where there is no value."""
+    """Return rows as CSV: a header line, doubles with all their digits, an empty field where there is no value.
+
+    Control characters are written out, and what a spreadsheet would run as a formula begins with an apostrophe.
+    """
     stream = io.StringIO()
     writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
     writer.writeheader()
-    writer.writerows(rows)
+    writer.writerows({name: _harmless(value) for name, value in row.items()} for row in rows)
     return stream.getvalue()
+
+
+def _harmless(value: Any) -> Any:
+    if not isinstance(value, str):
+        return value
+    text = plain_lines(value)
+    if not text.startswith(_FORMULA):
+        return text
+    try:
+        float(text)
+    except ValueError:
+        return f"'{text}"
+    return text
 
 
 def json_text(document: Any) -> str:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import Scene
+from reference.errors import BeyondDoublesError
 from reference.model.start import Start
 from reference.precision import DOUBLE_BITS, GUARD_BITS
 
@@ -39,8 +40,15 @@ class Swing:
 
     @classmethod
     def of(cls, start: Start) -> Swing:
-        """Return the swing that follows from the release."""
+        """Return the swing that follows from the release.
+
+        Raises:
+            UnreachableError: a number of the scene is too large for binary64.
+        """
         n, v, pull = (np.array(part, dtype=float) for part in (start.n, start.v, start.k.pull))
+        rate = float(start.k.rate)
+        if not (np.isfinite((n, v, pull)).all() and math.isfinite(rate * rate)):
+            raise BeyondDoublesError
         strength = float(np.linalg.norm(pull))
         if strength == 0:
             return cls(-1.0, float(np.linalg.norm(v)), 1.0, 1.0)
@@ -50,7 +58,7 @@ class Swing:
             min(-energy / strength, 1.0),
             fastest,
             float(np.hypot(*pull[:2])) / strength,
-            float(start.k.rate) ** 2 / strength,
+            rate * rate / strength,
         )
 
     @property

@@ -157,6 +157,9 @@ def judge(
         raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
     candidate = candidate if isinstance(candidate, Candidate) else read(candidate)
+    if not candidate.t[-1] > 0:
+        advice = "The release alone says nothing of the motion. Did the program stop after its first line?"
+        raise InputError(f"{candidate.name}: t", "t = 0 alone", "at least one time above 0", advice)
     times = candidate.transits if transits is None else transits
     if t_end is not None:
         candidate = _up_to(candidate, t_end)

@@ -18,7 +18,7 @@ from reference import InputError, IntegrationError
 from reference.process import Worker
 from reference.status import Status
 
-from ..methods import METHODS
+from ..methods import METHODS, available
 from .machine import machine, single_thread
 from .row import Record
 
@@ -39,6 +39,7 @@ def declared(methods: Sequence[str] | None, field: str) -> list[tuple[str, Any, 
     Raises:
         InputError: a method is unknown, or declares no such runs.
     """
+    check_usable(methods)
     runs = {name: getattr(METHODS[name], field) for name in methods or METHODS}
     without = [name for name in methods or () if not runs[name]]
     if without:
@@ -47,6 +48,18 @@ def declared(methods: Sequence[str] | None, field: str) -> list[tuple[str, Any, 
             "methods", ", ".join(without), f"methods that declare runs in `{field}`", f"These do: {known}."
         )
     return [(name, *run) for name, declared in runs.items() for run in declared]
+
+
+def check_usable(methods: Sequence[str] | None) -> None:
+    """Refuse methods none of which can run here; None is all.
+
+    Raises:
+        InputError: a method is unknown, or a package is missing for each.
+    """
+    reasons = {name: available(METHODS[name]) for name in methods or METHODS}
+    if all(reasons.values()):
+        why = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
+        raise InputError("methods", ", ".join(reasons), "a method that can run here", f"{why}.")
 
 
 def campaign(

@@ -18,7 +18,7 @@ from reference.status import Status
 from ..methods import METHODS
 from ..rhs.swing import suited
 from ..truth import Report, golden_of
-from .campaign import Counted, campaign
+from .campaign import Counted, campaign, check_usable
 from .grid import on_doubles
 from .machine import machine
 from .measure import ladder
@@ -81,13 +81,15 @@ def plan(scene: Scene, methods: Sequence[str] | None = None, formulations: bool 
     """List the runs: each method over its settings in the formulation that suits it, and one method in all of them.
 
     Args:
-        scene: steps are scaled to its swing, and a formulation must be able to describe its motion.
+        scene: steps are scaled to its swing, and a formulation must be able to describe its motion; read as doubles.
         methods: ids; all if None.
         formulations: whether to compare the formulations in one method as well.
 
     Raises:
-        InputError: an unknown method.
+        InputError: an unknown method, none that can run here, or a number that no double holds.
     """
+    check_usable(methods)
+    scene = scene.with_values(["inputs=binary64"])
     items: list[Item] = []
     for name in methods or METHODS:
         method = METHODS[name]

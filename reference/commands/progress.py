@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, Protocol
 
 import typer
+
+from ..plain_text import plain, terminal_of
 
 NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
 MEASURED_S = 5.0  # shortest time from which the rest is estimated
@@ -34,12 +37,12 @@ def progress() -> Iterator[Show]:
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-    console = Console(stderr=True)
+    console = Console(file=terminal_of(sys.stderr))
     if not console.is_terminal:
         yield Notice
         return
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(),
         TextColumn("{task.completed:,.0f} of {task.total:,.0f} {task.fields[unit]}"),
         TimeElapsedColumn(),
@@ -59,7 +62,7 @@ def _bar(bars: Any, label: str, total: float, unit: str) -> Move:
         if not bars.tasks[task].started:
             bars.start_task(task)
         whole = whole_before if total is None else total
-        text = f"{label}: {item}" if item else label
+        text = plain(f"{label}: {item}" if item else label)
         bars.update(task, completed=completed, total=whole, description=text, visible=completed < whole)
 
     return move

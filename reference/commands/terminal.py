@@ -10,6 +10,7 @@ import typer
 
 from ..errors import InputError
 from ..nearest import did_you_mean, in_words
+from ..plain_text import plain_json
 from ..scene import field_names
 from ..shipped import scene_ids
 
@@ -39,7 +40,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on
 
 def emit(document: dict[str, Any]) -> None:
     """Print one JSON document."""
-    typer.echo(json.dumps(document, indent=1, ensure_ascii=False))
+    typer.echo(plain_json(json.dumps(document, indent=1, ensure_ascii=False)))
 
 
 def chosen(option: str, word: str, names: Iterable[str]) -> str:

@@ -6,10 +6,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
 from dataclasses import replace
 from fractions import Fraction
-from importlib.util import find_spec
 from typing import Any, ClassVar
 
 from ..inputs import Inputs
+from ..packages import missing, switched_off
 from ..taylor_step import TaylorStep
 from .plan import Plan, Report, Run
 
@@ -35,8 +35,8 @@ class Engine(ABC):
 
     @property
     def installed(self) -> bool:
-        """Whether the modules that it requires are installed."""
-        return all(find_spec(module) is not None for module in self.requires)
+        """Whether the modules that it requires are installed, and may compile."""
+        return not missing(self.requires) and not switched_off(self.requires)
 
     @abstractmethod
     def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:

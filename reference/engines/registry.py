@@ -8,6 +8,7 @@ from importlib import import_module
 from typing import Any
 
 from ..errors import InputError
+from ..packages import switched_off
 from . import AUTO, engine_names
 from .engine import Engine
 from .plan import Plan, Report, Run
@@ -30,6 +31,9 @@ def checked(name: str | None) -> str:
     if name not in engine_names():
         raise InputError("engine", name, f"one of {', '.join((AUTO, *engine_names()))}")
     engine = engines()[name]
+    variable = switched_off(engine.requires)
+    if variable is not None:
+        raise InputError("--engine", name, f"{variable} unset", "Unset it, or take --engine heyoka.")
     if not engine.installed:
         advice = f"Install it with pip install 'foucault-reference[{engine.extra}]', or take --engine heyoka."
         raise InputError("--engine", name, f"the package {', '.join(engine.requires)}, which it needs", advice)

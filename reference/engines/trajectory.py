@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import IntegrationError
+from ..errors import BeyondDoublesError, IntegrationError
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
@@ -84,17 +84,21 @@ def trajectory(
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
 
     Raises:
+        UnreachableError: a number of the scene is too large.
         IntegrationError: heyoka stops before the last time, as where the formulation is singular.
     """
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
     from .heyoka.model import RoundedModel
 
-    model = RoundedModel(FORMULATIONS[formulation], start.k, number)
-    moments = [model.numbers.of(_exact(t)) for t in times]
+    try:
+        model = RoundedModel(FORMULATIONS[formulation], start.k, number)
+        moments, state = [model.numbers.of(_exact(t)) for t in times], model.release(start)
+    except OverflowError:
+        raise BeyondDoublesError from None
     most = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * _fastest_rate(start) * float(moments[-1]))
     try:
-        states = model.propagator(tolerance).from_zero(model.release(start), moments, max_steps=most)
+        states = model.propagator(tolerance).from_zero(state, moments, max_steps=most)
     except IntegrationError as error:
         where = SINGULAR.get(formulation)
         advice = f"The formulation {formulation} is singular {where}: take momentum." if where else ""

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from ..columns import GRID, HORIZONTAL, POSITION, VELOCITY
 from ..engines.plan import Plan
 from ..engines.registry import run
-from ..errors import UnreachableError
+from ..errors import BeyondDoublesError, UnreachableError
 from ..inputs import Inputs
 from ..precision import DOUBLE, LONG_DOUBLE, NumberType, decimals_for, real
 from ..table import Table, bits_in, decimals_of, resolved
@@ -117,9 +117,7 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...]) -> Pilot:
                 for number, check in zip(pair, (look_ahead, None), strict=True)
             )
         except OverflowError:
-            raise UnreachableError(
-                "A length, force, rate or time of the scene is beyond the range of binary64."
-            ) from None
+            raise BeyondDoublesError from None
         look_ahead, steps, prec = None, coarse.steps, pair[0].prec
         grid = fine.grid.only(GRID)
         gaps, largest = grid.distance(coarse.grid), grid.largest()

@@ -12,6 +12,8 @@ import compare
 from compare import assert_agrees
 from reference import InputError, load, load_scene, trajectory
 
+TWO_ROWS = [0.0, 60.0], [[0.3, 0.4], [-0.17632673290555428, -0.4158676877474455]]
+
 
 @pytest.fixture(scope="module")
 def golden():
@@ -34,13 +36,13 @@ def test_what_nobody_asks_for_is_not_computed(monkeypatch):
     """The input floor costs a run of the variational equations."""
     asked = []
     monkeypatch.setattr("compare.score.judge.input_floor", lambda scene, until: asked.append(until) or 5e-13)
-    made = assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-15)
+    made = assert_agrees("paris", *TWO_ROWS, tolerance=1e-9)
     assert asked == []
-    assert (made.input_floor_m, made.input_floor_m, asked) == (5e-13, 5e-13, [0.0])
+    assert (made.input_floor_m, made.input_floor_m, asked) == (5e-13, 5e-13, [60.0])
 
 
 def test_lists_will_do():
-    assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-15)
+    assert_agrees("paris", *TWO_ROWS, tolerance=1e-9)
 
 
 def test_a_scene_of_ones_own_will_do(golden, states):
@@ -94,11 +96,14 @@ def test_long_doubles_keep_their_digits(golden, states):
         ([0.0], [[0.3, float("nan")]], {}, "nan in row 1"),
         ([0.0], [["0.3", "0.4"]], {}, "real numbers"),
         ([0.0], [[0.3, 0.4j]], {}, "real numbers"),
+        ([0.0], [[0.3, 0.4]], {}, "t = 0 alone"),
+        ([0.0, 1.0], [[0.3, 0.4], [0.3]], {}, "rows of different lengths"),
+        ([0.0], [[0.3, 0.4]], {"transits": ["soon"]}, "transits.*real numbers"),
         ([1.0, 0.0], [[0.3, 0.4]] * 2, {}, "strictly increasing"),
         ([1e9], [[0.3, 0.4]], {}, "run.t_end"),
         ([0.0], [[0.3, 0.4]], {"tolerance": -1.0}, "tolerance"),
         ([0.0], [[0.3, 0.4]], {"tolerance": float("nan")}, "tolerance"),
-        ([0.0], [[0.3, 0.4]], {"inputs": "floats"}, "inputs"),
+        ([60.0], [[0.3, 0.4]], {"inputs": "floats"}, "inputs"),
         ([0.0], [[0.3, 0.4]], {"transits": [2.0, 1.0]}, "transits"),
         ([0.0], [[0.3, 0.4]], {"transits": [float("inf")]}, "transits"),
     ],
@@ -138,10 +143,10 @@ def test_a_file_is_judged_by_path_and_id(golden, states, tmp_path):
 
 OTHERS = """
 def test_right(assert_agrees):
-    assert_agrees("paris", [0.0], [[0.3, 0.4]], tolerance=1e-12)
+    assert_agrees("paris", [0.0, 60.0], [[0.3, 0.4], [-0.176326733, -0.415867688]], tolerance=1e-8)
 
 def test_wrong(assert_agrees):
-    assert_agrees("paris", [0.0], [[0.3, 0.5]], tolerance=1e-12)
+    assert_agrees("paris", [0.0, 60.0], [[0.3, 0.5], [-0.176326733, -0.415867688]], tolerance=1e-8)
 """
 
 

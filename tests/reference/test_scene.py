@@ -94,6 +94,18 @@ REFUSED = [
     ("transits as a word", {"run": {"transits": "perhaps"}}, "run.transits", "true or false"),
     ("no time", {"run": {"t_end": "0"}}, "run.t_end", "above 0"),
     ("grid too fine", {"run": {"grid_step": "1e-9"}}, "run.grid_step", "grid times"),
+    ("a huge integer", {"pendulum": {"length": 10**5000}}, "pendulum.length", "between"),
+    ("digits huge", {"run": {"digits": 16**5000}}, "run.digits", "whole number"),
+    ("an exponent no Decimal has", {"release": {"x": "1e99999999999999999999", "y": "0"}}, "release.x", "between"),
+    ("a zero that costs a power of ten", {"site": {"gravity": "0e999999999"}}, "site.gravity", "between"),
+    ("Arabic digits", {"site": {"gravity": "٩"}}, "site.gravity", "decimal number"),
+    ("an Arabic exponent", {"site": {"gravity": "1e٣"}}, "site.gravity", "decimal number"),
+    ("Arabic digits of digits", {"run": {"digits": "٤٠"}}, "run.digits", "whole number"),
+    ("an escape in the title", {"title": "\x1b[31m"}, "title", "one line of text"),
+    ("two lines of source", {"source": "a\nb"}, "source", "one line of text"),
+    ("a flag that turns the line", {"flags": ["a", "\u202e"]}, "flags.1", "one line of text"),
+    ("a title that is no text", {"title": 3}, "title", "text in quotes"),
+    ("flags that are no list", {"flags": "polar"}, "flags", "a list of words"),
     ("id with a path", {"id": "../paris"}, "id", "lower-case"),
     ("unknown reading", {"inputs": "float"}, "inputs", "decimal"),
 ]
@@ -108,6 +120,35 @@ def test_bad_input_names_the_field_and_what_was_expected(sections, field, expect
     assert caught.value.field == field
     assert expected in str(caught.value)
     assert caught.value.exit_status == 2
+
+
+# as decimals in range, as doubles not: too large, rounded to 0, rounded onto an end that is excluded
+NOT_AS_DOUBLES = [
+    ("site.gravity=1e400", "at most 1.8e+308 in size"),
+    ("site.altitude=-1e309", "at most 1.8e+308 in size"),
+    ("site.inverse_flattening=1e399", "at most 1.8e+308 in size"),
+    ("site.inverse_flattening=1.0000000000000000000001", "above 1"),
+    ("pendulum.length=1e-350", "above 0"),
+    ("run.grid_step=1e-350", "above 0"),
+]
+
+
+@pytest.mark.parametrize(("assignment", "expected"), NOT_AS_DOUBLES)
+def test_ranges_hold_for_the_numbers_as_they_are_read(paris, assignment, expected):
+    with pytest.raises(InputError) as caught:
+        paris.with_values(["inputs=binary64", assignment])
+    assert caught.value.field == assignment.partition("=")[0]
+    assert expected in str(caught.value)
+    assert "read as binary64" in str(caught.value)
+
+
+@pytest.mark.parametrize("command", [("score",), ("study", "--methods", "heyoka_double")])
+def test_commands_that_read_doubles_name_the_field_too(foucault, tmp_path, command):
+    path = tmp_path / "two.csv"
+    path.write_text("t,x,y\n0,0.3,0.4\n60,0.1,0.2\n")
+    name, *more = command
+    status, _, err = foucault(name, "paris", *(more or [path]), "--set", "site.gravity=1e400")
+    assert (status, err.partition(", expected")[0]) == (2, "foucault: site.gravity: got '1e400'")
 
 
 def test_a_missing_id_is_asked_for():

@@ -55,6 +55,7 @@ def test_what_a_scene_gives_in_angles_is_also_there_in_metres():
 
 def test_no_shell_is_between(paris):
     assert arguments("echo $HOME ';' rm '*'", paris) == ["echo", "$HOME", ";", "rm", "*"]
+    assert arguments("sh -c './a | ./b > c' '|' \\> it\\'s", paris) == ["sh", "-c", "./a | ./b > c", "|", ">", "it's"]
 
 
 def test_braces_that_are_no_placeholder_stay_and_doubled_ones_too(paris):
@@ -68,6 +69,11 @@ def test_braces_that_are_no_placeholder_stay_and_doubled_ones_too(paris):
         ("prog 'open", "balanced quotes"),
         ("prog {x1}", r"one of {x0}, {y0}"),
         ("prog {X0}", r"got '{X0}'"),
+        ("prog {x0} | tr ' ' ,", r"without \|\. No shell is used"),
+        ("prog " + "9" * 200_000, "at most 16384 characters"),
+        ("prog > out.csv", "without >"),
+        ("prog 2>&1", "without 2>&1"),
+        ("make && ./prog", "without &&"),
     ],
 )
 def test_a_command_that_cannot_be_filled_in_is_refused(paris, command, words):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import subprocess
 import sys
 import zipfile
@@ -76,6 +77,19 @@ def test_what_numpy_savetxt_writes_is_read():
     np.savetxt(stream, np.array(ROWS), delimiter=",", header="t,x,y,z", fmt="%.17g")
     stream.seek(0)
     assert_read(read_stream(stream, "run"))
+
+
+@pytest.mark.parametrize("mark", ["", "# "])
+@pytest.mark.parametrize(("put", "named"), [(",", ","), (";", ";"), (" ", " "), ("\t", "  "), (" ", ","), (",", " ")])
+def test_names_are_read_whatever_separates_them(mark, put, named):
+    """White space under a header in another order was once taken for foucPend's t x y z."""
+    rows = [put.join(map(repr, (z, y, t, x))) for t, x, y, z in ROWS]
+    assert_read(read_stream(text("# of a program of mine", mark + named.join(("z", "y", "t", "x")), *rows), "run"))
+
+
+def test_velocities_under_a_header_of_white_space_are_not_taken_for_z():
+    found = read_stream(text("# t x y vx vy", "0 1 2 3 4"), "run")
+    assert {name: column[0] for name, column in found.columns.items()} == {"x": 1, "y": 2, "vx": 3, "vy": 4}
 
 
 def test_the_output_of_the_papers_program_is_read_with_its_transits():
@@ -157,7 +171,9 @@ def test_a_number_is_split_over_two_chunks_without_harm(monkeypatch):
         (["t,x", "0,1"], ("header", "none", "column y")),
         (["t,x,y,x", "0,1,2,3"], ("header", "2 of them")),
         (["t,x,y,vz,vz", "0,1,2,3,4"], ("header", "column vz at most")),
-        (["t;x;y", "0;1;2"], ("header", "separated by commas")),
+        (["t;x;y", "0,5;1,5;2,5"], ("line 2: t", "'0,5'", "a number")),
+        (["# time x y", "0 1 2"], ("header", "none in 'time x y'", "column t")),
+        (["0 1 2"], ("first line", "'0 1 2'", "header that names")),
         (["0,0.3,0.4"], ("first line", "header that names")),
         (["t,x,y", "0,0.3"], ("line 2", "2 fields", "3 as in the first line", "cut off")),
         (["t,x,y", "0,1,2", "# note", "1,1,2,3"], ("line 4", "4 fields")),
@@ -235,6 +251,55 @@ def test_a_missing_file_and_a_folder_are_refused(tmp_path):
             read(path)
 
 
+def test_a_pipe_is_read_if_somebody_writes_to_it_and_refused_if_nobody_does(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for read_pipe in (read, read_transits):
+        with pytest.raises(InputError, match="Nobody writes to this pipe"):
+            read_pipe(pipe)
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_the_output_of_a_program_is_read_from_a_pipe_also_if_it_comes_late(monkeypatch, late):
+    reader, writer = os.pipe()
+    unblock = os.set_blocking
+
+    def write_all():
+        os.write(writer, csv().getvalue())
+        os.close(writer)
+
+    def write_late(descriptor, blocking):
+        write_all()
+        unblock(descriptor, blocking)
+
+    if late:
+        monkeypatch.setattr(os, "set_blocking", write_late)
+    else:
+        write_all()
+    assert_read(read(f"/dev/fd/{reader}"))
+    os.close(reader)
+
+
+def test_a_path_that_no_file_can_have_and_a_closed_standard_input_are_refused(monkeypatch):
+    for path in ("a\0b", "\ud800"):
+        with pytest.raises(InputError, match="No file has this path"):
+            read(path)
+    monkeypatch.setattr("sys.stdin", None)
+    with pytest.raises(InputError, match="Standard input is closed"):
+        read("-")
+
+
+def test_a_device_without_end_is_refused_at_once():
+    with pytest.raises(InputError, match="a line of more than 65536 bytes"):
+        read("/dev/zero")
+
+
+def test_the_name_of_a_candidate_can_be_printed(tmp_path):
+    path = tmp_path / os.fsdecode(b"n\xff\x1b[31m.csv")
+    path.write_bytes(csv().getvalue())
+    assert read(path).name == f"{tmp_path}/n\\xff\\x1b[31m.csv"
+
+
 def test_transits_need_the_column_t_only(tmp_path):
     path = tmp_path / "zeros.csv"
     path.write_text("k,t,direction\n# first\n1,8.2,+1\n\n2,16.4,-1\n")
@@ -249,7 +314,7 @@ def test_transits_need_the_column_t_only(tmp_path):
         ("k,t\n1\n", "line 2: got '1 fields'"),
         ("k,t\n1,2\n\n2,soon\n", "line 4: t: got 'soon'"),
         ("k,t\n1,2\n2,3,4\n", "line 3: got '3 fields', expected 2"),
-        ("1 2 3 4\n", "one column t"),
+        ("1 2 3 4\n", "a header that names"),
         ("t\n2\n1\n", "1 as transit 2 after 2"),
         ("t\nnan\n", "nan as transit 1"),
         ("t\n-1\n", "from 0 on"),

@@ -187,6 +187,12 @@ def test_what_is_not_installed_says_what_brings_it():
     assert "pip install 'foucault-reference[methods]'" in available(extra)
 
 
+def test_what_numba_would_compile_is_not_run_without_its_compiler(monkeypatch):
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    assert available(METHODS["rk4"]) == "NUMBA_DISABLE_JIT is set: unset it"
+    assert available(METHODS["heyoka_double"]) is None
+
+
 def test_steps_are_scaled_to_the_swing_of_the_scene():
     rk4 = METHODS["rk4"]
     assert rk4.settings(case("paris").scene) == rk4.ladder

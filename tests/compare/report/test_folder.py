@@ -94,3 +94,25 @@ def test_numbers_that_are_none_become_null_in_json() -> None:
     text = json_text({"rows": [(math.nan, 1.5), {"deep": -math.inf}], "word": "φ"})
     assert json.loads(text) == {"rows": [[None, 1.5], {"deep": None}], "word": "φ"}
     assert "φ" in text
+
+
+@pytest.mark.parametrize("text", ["=1+1", "+cmd", "-x", "@SUM(A1)", "\t=1", "\n=1", "-1e", "+-1"])
+def test_a_spreadsheet_runs_no_text_of_ours(text):
+    (cell,) = next(csv.reader(io.StringIO(csv_text(["name"], [{"name": text}]).partition("\n")[2], newline="")))
+    assert cell == f"'{text}"
+
+
+def test_a_carriage_return_begins_no_new_row():
+    assert csv_text(["a"], [{"a": "b\rc\x1b"}]) == "a\nb\\rc\\x1b\n"
+
+
+def test_numbers_and_harmless_text_stay_as_they_are_in_csv():
+    row = {"a": -1.5, "b": "-1.5e-3", "c": "+2", "d": "rk4", "e": None, "f": "external: ./a -x =b"}
+    assert csv_text(row, [row]).splitlines()[1] == "-1.5,-1.5e-3,+2,rk4,,external: ./a -x =b"
+
+
+def test_names_that_are_no_utf_8_are_written_as_escapes(tmp_path):
+    name = os.fsdecode(b"n\xff")
+    write_files(tmp_path / "out", {"rows.json": json_text({"name": name}), "index.html": page(name, [])})
+    assert json.loads((tmp_path / "out/rows.json").read_text("utf-8")) == {"name": name}
+    assert r"n\udcff" in (tmp_path / "out/index.html").read_text("utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import time
 from decimal import Context, Decimal, localcontext
 
@@ -11,6 +12,7 @@ import pytest
 
 from reference import load, load_scene, trajectory
 from reference.engines.variants import Variants
+from reference.plain_text import plain
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 OWN = """id = "mine"
@@ -226,6 +228,26 @@ def test_a_picture_is_drawn(foucault, tmp_path, golden, states, suffix, start):
         first = text
         foucault("score", "paris", path, path, "--plot", drawn, "--no-diagnosis")
         assert drawn.read_text() == first  # the same picture has the same bytes
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png"])
+@pytest.mark.parametrize("name", [b"n\xff.csv", b"e\x1b[31m\n.csv", rb"$x^$ $\frac.csv"])
+def test_a_picture_is_drawn_whatever_the_file_is_called(foucault, tmp_path, golden, states, suffix, name):
+    pytest.importorskip("matplotlib")
+    path = write_csv(tmp_path / os.fsdecode(name), golden.t[:3], states[:3])
+    drawn = tmp_path / f"error.{suffix}"
+    status, out, err = foucault("score", "paris", path, "--plot", drawn)
+    assert (status, err) == (0, "")
+    assert out.startswith(f"{tmp_path}/{plain(os.fsdecode(name))} agrees with paris (3 rows")
+    if suffix == "svg":
+        assert "n\\xff.csv" in drawn.read_text() or name[:1] != b"n"
+
+
+def test_the_release_alone_does_not_agree(foucault):
+    """A program that dies after its first line has computed nothing."""
+    status, out, err = foucault("score", "paris", "-", stdin=b"t,x,y\n0,0.3,0.4\n")
+    assert (status, out) == (2, "")
+    assert "standard input: t: got 't = 0 alone', expected at least one time above 0" in err
 
 
 @pytest.mark.parametrize(

@@ -107,3 +107,11 @@ def test_the_runs_of_a_study_are_those_that_methods_declare() -> None:
         declared(["rk4", "rkng56"], "stability")
     with pytest.raises(InputError, match="rk5"):
         declared(["rk5"], "stability")
+
+
+def test_methods_none_of_which_can_run_are_refused_before_anything_is_solved(foucault, monkeypatch):
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    for words in (("study", "paris", "--no-formulations"), ("stability", "--scenes", "paris")):
+        status, out, err = foucault(*words, "--methods", "rk4")
+        assert (status, out) == (2, "")
+        assert "expected a method that can run here. rk4: NUMBA_DISABLE_JIT is set" in err
