@@ -23,7 +23,6 @@ signal.signal(signal.SIGHUP, signal.SIG_DFL)
 __all__ = ["make_scene"]
 
 
-
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--long", action="store_true", help="run the campaigns at full size, as `make campaign` does")
 

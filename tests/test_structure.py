@@ -26,7 +26,7 @@ FLOORS = {
         ["engines", "enclosure"],
         ["model"],
         ["scene", "table", "process", "packing", "capture", "taylor_step"],
-        ["inputs", "fields", "precision", "shipped", "columns"],
+        ["inputs", "fields", "precision", "shipped", "columns", "workspace", "machine_code"],
         ["errors", "status", "lazy"],
     ],
     "reference/engines": [
@@ -116,6 +116,7 @@ PUBLIC = {
     "reference.engines.variants": "Variants",
     "reference.inputs": "Inputs",
     "reference.lazy": "lazy",
+    "reference.machine_code": "kept",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.constants": "Constants Vector constants is_zero",
     "reference.model.earth": "axis_distance",
@@ -130,6 +131,7 @@ PUBLIC = {
     "reference.solver.sensitivity": "Sensitivity sensitivity with_value",
     "reference.status": "Status",
     "reference.table": "Table",
+    "reference.workspace": "workspace",
 }
 
 
