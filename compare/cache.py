@@ -80,6 +80,11 @@ def store(kind: str, name: str, put: Callable[[Path], object], *, executed: bool
     return None
 
 
+def prepare() -> None:
+    """Choose the place for new entries before child processes do, so that they share it, and only one line says so."""
+    next(_folders("generated", executed=True), None)
+
+
 def _folders(kind: str, executed: bool) -> Iterator[Path]:
     """Yield the folders into which an entry may go, best first."""
     base = root()

@@ -6,6 +6,7 @@ which processor, it holds: what was changed, cut short or put in another's place
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from hashlib import sha256
@@ -48,8 +49,19 @@ class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]  # numba h
         return super()._load_data(name)
 
 
+class _Places(caching.CompileResultCacheImpl):  # type: ignore[misc]
+    """Where the files may be; without a home, numba would make a folder named ~ in the working directory."""
+
+    @property
+    def _locator_classes(self) -> list[Any]:
+        places = [caching.UserProvidedCacheLocator, caching.InTreeCacheLocator]
+        return [*places, caching.UserWideCacheLocator] if Path(os.path.expanduser("~")).is_absolute() else places
+
+
 class _CheckedCache(caching.FunctionCache):  # type: ignore[misc]
     """The cache of one function."""
+
+    _impl_class = _Places
 
     def __init__(self, function: Any) -> None:
         super().__init__(function)

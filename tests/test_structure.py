@@ -109,7 +109,7 @@ PUBLIC = {
     "integrate load load_scene parse_scene scene_ids solve trajectory write",
     "reference.capture": "captured",
     "reference.columns": "STATE",
-    "reference.commands.terminal": "AsJson Assignments SceneWord emit progress",
+    "reference.commands.terminal": "AsJson Assignments SceneWord emit progress stoppable",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.engines.heyoka.model": "RoundedModel",
     "reference.engines.registry": "engines",
@@ -125,7 +125,7 @@ PUBLIC = {
     "reference.model.start": "Start scaled",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
-    "reference.process": "Emit Worker",
+    "reference.process": "Emit Worker terminable",
     "reference.scene": "MAX_ROWS RunTable",
     "reference.shipped": "data_root",
     "reference.solver.sensitivity": "Sensitivity sensitivity with_value",
@@ -155,7 +155,7 @@ HEAVY = ("heyoka", "flint", "scipy", "matplotlib", "numba")
 
 
 @pytest.mark.parametrize(
-    "script", ["import compare, reference", "import foucault; foucault.app(['--help'], standalone_mode=False)"]
+    "script", ["import compare, reference", "import foucault; foucault.commands()(['--help'], standalone_mode=False)"]
 )
 def test_starting_loads_nothing_heavy(script):
     code = f"import sys\n{script}\nprint('loaded', [name for name in {HEAVY} if name in sys.modules])"

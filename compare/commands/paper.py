@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from reference.commands.terminal import AsJson, progress
+from reference.commands.terminal import AsJson, progress, stoppable
 
 from .options import finish
 
@@ -30,7 +30,7 @@ def command(
     from ..papers.page import document
     from ..report.folder import PAGE
 
-    with progress("judging", unit="rows") as count:
+    with stoppable("nothing half was written"), progress("judging", unit="rows") as count:
         report = None if count is None else lambda place, completed, total: count(completed, total, place)
         judged = rows(report) if out is None else build(out, report)
     result = {"out": None if out is None else str(out), "rows": [document(row) for row in judged]}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from reference import InputError, Scene, load_scene
-from reference.commands.terminal import AsJson, Assignments, SceneWord, emit, progress
+from reference.commands.terminal import AsJson, Assignments, SceneWord, emit, progress, stoppable
 
 from .options import announce
 
@@ -109,7 +109,7 @@ def command(
         timed_candidates.append((_approximate(approximation, scene), None))
     scores = []
     for candidate, timing in timed_candidates:
-        with progress(f"solve {scene.id}", float(scene.run.t_end)) as report:
+        with stoppable("nothing was written"), progress(f"solve {scene.id}", float(scene.run.t_end)) as report:
             score = judge(
                 candidate,
                 scene,

@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from reference import InputError
-from reference.commands.terminal import AsJson, progress
+from reference.commands.terminal import AsJson, progress, stoppable
 
-from .options import finish, inside, listed
+from .options import finish, inside, listed, resumes
 
 
 def command(
@@ -43,7 +43,7 @@ def command(
     REPORT.check(out)
     chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
     items = declared(requested, "long_runs") if long else []
-    with progress("stability", unit="runs") as report:
+    with stoppable(resumes(out)), progress("stability", unit="runs") as report:
         cells = measure(chosen, requested, limit_s=limit, journal_path=inside(out, "cells.jsonl"), report=report)
         runs = long_runs(items, journal_path=inside(out, "long.jsonl"), report=report) if items else []
     document = document_of(cells, runs)

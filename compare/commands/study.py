@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from reference import InputError, Scene, load_scene
-from reference.commands.terminal import AsJson, Assignments, SceneWord, progress
+from reference.commands.terminal import AsJson, Assignments, SceneWord, progress, stoppable
 
-from .options import announce, finish, inside, listed, numbers
+from .options import announce, finish, inside, listed, numbers, resumes
 
 
 def command(
@@ -75,7 +75,7 @@ def command(
         problem, digits = precision_scene(scene, bits, whole=t_end is not None)
     for program in run or ():
         items += [(f"{EXTERNAL}{program}", "momentum", setting) for setting in numbers(settings, "--settings")]
-    with progress(scene.id, unit="runs") as report:
+    with stoppable(resumes(out)), progress(scene.id, unit="runs") as report:
         study = measure(
             problem,
             items=items,

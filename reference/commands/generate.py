@@ -11,7 +11,7 @@ import typer
 from ..engines import AUTO, engine_names
 from ..scene import LEVELS, load_scene
 from ..shipped import scene_ids
-from .terminal import AsJson, Assignments, SceneWord, emit, progress
+from .terminal import AsJson, Assignments, SceneWord, emit, progress, stoppable
 
 Level = StrEnum("Level", list(LEVELS))  # type: ignore[misc]  # the functional form is fine at run time
 
@@ -49,9 +49,10 @@ def command(
     check_target(folder)
     from ..solver.solve import solve
 
-    with progress(scene.id, float(scene.exact.t_end)) as report:
+    with stoppable("nothing was written"), progress(scene.id, float(scene.exact.t_end)) as report:
         solution = solve(scene, engine=engine.value, report=report)
-    write(solution, folder)
+    with stoppable("nothing half was written"):
+        write(solution, folder)
     count = len(solution.directions)
     bound = grid_bound(solution, POSITION)
     checks_s = sum(check.cpu_s for check in solution.checks) + sum(

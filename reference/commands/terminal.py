@@ -9,6 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
+from ..errors import Stopped
+
 SceneWord = Annotated[str, typer.Argument(metavar="SCENE", help="A scene's id, or the path of a TOML file.")]
 Assignments = Annotated[
     list[str] | None, typer.Option("--set", metavar="section.key=value", help="Replace one field of the scene.")
@@ -19,6 +21,19 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on
 def emit(document: dict[str, Any]) -> None:
     """Print one JSON document."""
     typer.echo(json.dumps(document, indent=1, ensure_ascii=False))
+
+
+@contextmanager
+def stoppable(outcome: str) -> Iterator[None]:
+    """Have Ctrl-C end the command meanwhile with one line that says what became of its work, or how to go on.
+
+    Raises:
+        Stopped: it was interrupted.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise Stopped(outcome) from None
 
 
 @contextmanager
