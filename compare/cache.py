@@ -21,7 +21,7 @@ import numpy as np
 
 from reference import InputError
 from reference.precision import Array
-from reference.workspace import workspace
+from reference.workspace import replace_file, workspace
 
 KEEP = 40  # entries of one kind at most; the least recently used are deleted first
 _ROOM = bytes(1 << 18)  # a disk without room for this much is full
@@ -155,14 +155,6 @@ def discard(path: Path) -> None:
             path.unlink()
 
 
-def put_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
-    """Have `write(stream)` write a file, which is put in place at once."""
-    with workspace(path.parent, "entry") as work:
-        with (work / "new").open("wb") as stream:
-            write(stream)
-        os.replace(work / "new", path)
-
-
 def arrays(kind: str, name: str, make: Callable[[], dict[str, Array]]) -> dict[str, Array]:
     """Return the arrays of an entry; `make()` computes them if it is missing, damaged, or another's under its name."""
     path = entry(kind, name)
@@ -178,7 +170,7 @@ def arrays(kind: str, name: str, make: Callable[[], dict[str, Array]]) -> dict[s
     def write(stream: BinaryIO) -> None:
         np.savez(stream, allow_pickle=False, **{_NAME: np.array(name)}, **made)
 
-    path = store(kind, name, lambda path: put_file(path, write))
+    path = store(kind, name, lambda path: replace_file(path, write))
     if path is not None:
         _prune(path.parent)
     return made

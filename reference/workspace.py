@@ -10,10 +10,11 @@ import os
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import ModuleType
+from typing import BinaryIO
 
 fcntl: ModuleType | None
 try:
@@ -47,6 +48,21 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
             continue
         finally:
             _remove(folder, parent / name)
+
+
+def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
+    """Have `write(stream)` write a file, which takes its place at once: the old one stays whole until then.
+
+    Raises:
+        OSError: the disk is full or cannot be written.
+    """
+    target = path.resolve()
+    with workspace(target.parent, target.name) as work:
+        with (work / "new").open("wb") as stream:
+            write(stream)
+            stream.flush()
+            os.fsync(stream.fileno())
+        os.replace(work / "new", target)
 
 
 class _Taken(Exception):

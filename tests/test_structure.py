@@ -131,7 +131,7 @@ PUBLIC = {
     "reference.solver.sensitivity": "Sensitivity sensitivity with_value",
     "reference.status": "Status",
     "reference.table": "Table",
-    "reference.workspace": "workspace",
+    "reference.workspace": "replace_file workspace",
 }
 
 

@@ -16,7 +16,9 @@ from string import Template
 from types import ModuleType
 from typing import Any
 
-from ..cache import entry, put_file, store
+from reference.workspace import replace_file
+
+from ..cache import entry, store
 from .program import FUNCTIONS, Program
 
 HEADER = f"""import numba as nb
@@ -77,7 +79,7 @@ def _stored(text: bytes) -> Path | None:
     with suppress(OSError):
         if path is not None and path.read_bytes() == text:  # rewriting it would make numba compile again
             return path
-    return store("generated", name, lambda path: put_file(path, lambda stream: stream.write(text)), executed=True)
+    return store("generated", name, lambda path: replace_file(path, lambda stream: stream.write(text)), executed=True)
 
 
 def _in_memory(text: str) -> ModuleType:

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from compare import cache
+from reference.workspace import replace_file
 
 SPARE = "FOUCAULT_SPARE_CACHE"
 
@@ -36,7 +37,7 @@ def test_what_fails_leaves_nothing_behind(own_cache):
         cache.arrays("kind", "name", refuse)
 
     def half(path: Path) -> None:
-        cache.put_file(path, lambda stream: [stream.write(b"half"), refuse()])
+        replace_file(path, lambda stream: [stream.write(b"half"), refuse()])
 
     with pytest.raises(RuntimeError):
         cache.store("kind", "name", half)

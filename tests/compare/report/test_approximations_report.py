@@ -27,7 +27,9 @@ def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path, mo
 
 def test_a_folder_of_somebody_elses_is_refused_before_the_work(tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_text("mine")
-    result = CliRunner().invoke(commands(), ["study", "paris", "--approximations", "--out", str(tmp_path), "--t-end", "60"])
+    result = CliRunner().invoke(
+        commands(), ["study", "paris", "--approximations", "--out", str(tmp_path), "--t-end", "60"]
+    )
     assert isinstance(result.exception, InputError)
     assert (tmp_path / "rows.csv").read_text() == "mine"
 
