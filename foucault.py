@@ -62,8 +62,7 @@ def _run() -> None:
 
 
 def _end(status: str | int | None, message: str = "") -> NoReturn:
-    if status == INTERRUPTED:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # a second Ctrl-C would show the innards of Python's own end
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # from here on Ctrl-C would only show the innards of Python's own end
     if message:
         print(f"foucault: {message}", file=sys.stderr)
     raise SystemExit(status) from None
