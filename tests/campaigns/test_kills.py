@@ -60,7 +60,7 @@ def test_a_dataset_is_the_old_or_the_new_one_and_whole(tmp_path: Path, size: Siz
         whole.append(contents(tmp_path / f"{digits}"))
     shutil.copytree(tmp_path / "20", place / "p")
     hits = old = new = left = 0
-    for ended in killed([*GENERATE, 21, "--out", place / "p"], tmp_path / "note", size(3, 50), 1):
+    for ended in killed([*GENERATE, 21, "--out", place / "p"], tmp_path / "note", size(2, 50), 1):
         hits += ended.status == -signal.SIGKILL
         now = contents(place / "p")
         assert now in whole
@@ -73,7 +73,7 @@ def test_a_dataset_is_the_old_or_the_new_one_and_whole(tmp_path: Path, size: Siz
     assert undisturbed([*GENERATE, 21, "--out", place / "p"]).status == 0
     assert contents(place / "p") == whole[1]
     assert [path.name for path in place.iterdir()] == ["p"]
-    assert hits == size(3, 50)
+    assert hits == size(2, 50)
     tally(f"generate: {hits} kills at work, dataset whole {old} old {new} new, {left} left a folder, which went")
 
 
@@ -85,7 +85,7 @@ def test_between_any_two_steps_of_its_putting_in_place_a_dataset_is_whole(
     words = [*GENERATE, 20, "--level", "computed", "--out", place / "p"]
     last = len(event_times(tmp_path / "note", words))
     before = contents(place / "p")
-    steps = size(4, 60)
+    steps = size(2, 60)
     hits = 0
     for event in range(last - 1, last - 1 - 5 * steps, -5):
         ended = ended_at(event, signal.SIGKILL, words)
@@ -149,7 +149,7 @@ def test_a_score_after_a_kill_is_the_same(tmp_path: Path, own_cache: Path, size:
     candidate = tmp_path / "mine.csv"
     candidate.write_text("t,x,y\n0,0.3,0.4\n30,0.1,0.1\n60,0.2,-0.3\n")
     words: list[object] = ["score", "paris", candidate, "--set", "site.latitude=40", "--set", "run.t_end=60", "--json"]
-    count = size(2, 20)
+    count = size(1, 20)
     times = event_times(tmp_path / "note", words)
     whole = undisturbed(words)
     hits = solved = 0
