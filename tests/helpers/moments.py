@@ -98,7 +98,7 @@ def _foucault(event: int, number: int, note: str, words: list[str]) -> None:
         main()
     finally:
         done = True
-        if event < 0:
+        if note != "-":
             Path(note).write_text(json.dumps(times))
 
 
