@@ -2,28 +2,53 @@
 
 from __future__ import annotations
 
+import os
+import signal
 import sys
-from importlib.metadata import PackageNotFoundError, version
-from typing import Annotated
+from typing import TYPE_CHECKING, NoReturn
 
-import typer
+if TYPE_CHECKING:
+    import typer
 
-from compare.commands import app as comparing
-from reference.commands import app as computing
-from reference.errors import FoucaultError
-from reference.plain_text import plain_output
+INTERRUPTED = 130
 
-app = typer.Typer(
-    no_args_is_help=True,
-    rich_markup_mode=None,
-    context_settings={"help_option_names": ["--help", "-h"]},
-)
-app.add_typer(computing)
-app.add_typer(comparing)
+
+def commands() -> typer.Typer:
+    """Return the command line; all imports are here, so that an interruption finds `main` at work."""
+    import typer
+
+    from compare.commands import app as comparing
+    from reference.commands import app as computing
+
+    app = typer.Typer(
+        no_args_is_help=True,
+        rich_markup_mode=None,
+        context_settings={"help_option_names": ["--help", "-h"]},
+    )
+    app.add_typer(computing)
+    app.add_typer(comparing)
+
+    asked = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version and exit.")
+
+    def front(_: bool = asked) -> None:
+        """Compute reference solutions of the Foucault pendulum, and judge other programs by them.
+
+        A scene is a pendulum, its site and its release. `foucault scenes` lists those that come with the project;
+        `foucault generate paris --out paris` solves one, `foucault score paris mine.csv` judges what your program
+        printed for it. `foucault COMMAND --help` explains a command.
+        """
+
+    app.callback()(front)
+    return app
 
 
 def _version(asked: bool) -> None:
+    """Print the version, if asked for it, and end."""
+    import typer
+
     if asked:
+        from importlib.metadata import PackageNotFoundError, version
+
         try:
             typer.echo(f"foucault {version('foucault-reference')}")
         except PackageNotFoundError:
@@ -31,28 +56,50 @@ def _version(asked: bool) -> None:
         raise typer.Exit
 
 
-@app.callback()
-def front(
-    _: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
-    ] = False,
-) -> None:
-    """Compute reference solutions of the Foucault pendulum, and judge other programs by them.
-
-    A scene is a pendulum, its site and its release. `foucault scenes` lists those that come with the project;
-    `foucault generate paris --out paris` solves one, `foucault score paris mine.csv` judges what your program printed
-    for it. `foucault COMMAND --help` explains a command.
-    """
-
-
 def main() -> None:
-    """Run the command line; a user's mistake ends with a message and its exit status, not a traceback."""
-    with plain_output():
-        try:
-            app(prog_name="foucault")
-        except FoucaultError as error:
-            print(f"foucault: {error}", file=sys.stderr)
-            raise SystemExit(error.exit_status) from None
+    """Run the command line; a mistake, a full disk or an interruption ends with a message and its exit status."""
+    try:
+        _run()
+    except KeyboardInterrupt:
+        _end(INTERRUPTED)
+
+
+def _run() -> None:
+    from reference.errors import FoucaultError
+    from reference.plain_text import plain_lines, plain_output
+    from reference.process import terminable
+
+    try:
+        with plain_output(), terminable():
+            try:
+                commands()(prog_name="foucault")
+            finally:
+                sys.stdout.flush()
+    except SystemExit as end:
+        _end(end.code)
+    except FoucaultError as error:
+        _end(error.exit_status, str(error))
+    except BrokenPipeError:
+        _forget_output()
+        _end(1)
+    except OSError as error:
+        _forget_output()
+        _end(2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"))
+
+
+def _end(status: str | int | None, message: str = "") -> NoReturn:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # from here on Ctrl-C would only show the innards of Python's own end
+    if message:
+        print(f"foucault: {message}", file=sys.stderr)
+    raise SystemExit(status) from None
+
+
+def _forget_output() -> None:
+    """Drop what could not be written to stdout, which Python would try again when it ends."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
@@ -23,7 +23,7 @@ from reference.shipped import data_root
 from . import cache
 
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
-DENSE_FORMAT = b"dense 3"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
+DENSE_FORMAT = b"dense 4"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 
 Report = Callable[[float], None]
@@ -56,13 +56,21 @@ def golden_of(
             return golden
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
     name = f"{scene.id}-{_hash_of_problem(problem)}"
-    path = cache.entry_path("golden", name)
+    path = cache.entry("golden", name)
     if path is not None:
-        try:
-            return _loaded(path)
-        except (DatasetError, InputError):
-            shutil.rmtree(path, ignore_errors=True)  # damaged: it is solved again
+        with suppress(DatasetError, InputError, OSError):
+            golden = _loaded(path)
+            if _is_of(golden, problem):
+                return golden
+        cache.discard(path)  # damaged, or another problem's under this name: it is solved again
     return _loaded(_solved(problem, name, announce, report))
+
+
+def _is_of(golden: Golden, problem: Scene) -> bool:
+    """Return True if a dataset is what `solve` gives for a problem: inputs, span, grid, transits, digits and level."""
+    manifest = golden.manifest
+    reached = manifest.digits == problem.run.digits and manifest.level == problem.run.level
+    return reached and _hash_of_problem(golden.scene) == _hash_of_problem(problem)
 
 
 def _loaded(folder: Path) -> Golden:
@@ -88,11 +96,17 @@ def _shortened(scene: Scene, until: float | None) -> Scene:
 def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, report: Report | None) -> Path:
     from reference import solve, write
 
-    folder = cache.writable("golden")
     if announce is not None:
-        lasting = "once" if cache.is_lasting(folder) else f"for this run only: {cache.root()} cannot be written"
-        announce(f"no golden dataset has the problem of {scene.id}: solving it to {scene.run.digits} digits, {lasting}")
-    return write(solve(scene, report=report), folder / name)
+        announce(f"no golden dataset has the problem of {scene.id}: solving it to {scene.run.digits} digits")
+    solution = solve(scene, report=report)
+    path = cache.store("golden", name, lambda path: write(solution, path))
+    if path is None:
+        got, advice = (
+            f"no place in {cache.root()} or a temporary folder",
+            "Set FOUCAULT_CACHE to a folder on another disk.",
+        )
+        raise InputError("FOUCAULT_CACHE", got, "room for a golden dataset", advice)
+    return path
 
 
 def _hash_of_problem(scene: Scene) -> str:
@@ -122,14 +136,10 @@ def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
     recipe: Any = hashlib.sha256(DENSE_FORMAT + (golden.path / "manifest.json").read_bytes())
     recipe.update(np.ascontiguousarray(times).tobytes() + repr(within).encode())
 
-    def make(path: Path) -> None:
+    def make() -> dict[str, Array]:
         truth = dense(golden, times, within)
-        with path.open("wb") as stream:
-            np.savez(stream, t=truth.t, states=truth.states, low=truth.low, bound_m=truth.bound_m, number=truth.number)
+        numbers = {"bound_m": np.array(truth.bound_m), "number": np.array(truth.number)}
+        return {"t": truth.t, "states": truth.states, "low": truth.low, **numbers}
 
-    return cache.load_or_make("dense", f"{recipe.hexdigest()[:32]}.npz", make, _read_dense)
-
-
-def _read_dense(path: Path) -> Dense:
-    with np.load(path, allow_pickle=False) as arrays:
-        return Dense(arrays["t"], arrays["states"], arrays["low"], float(arrays["bound_m"]), str(arrays["number"]))
+    found = cache.arrays("dense", f"{recipe.hexdigest()[:32]}.npz", make)
+    return Dense(found["t"], found["states"], found["low"], float(found["bound_m"]), str(found["number"]))

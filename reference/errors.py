@@ -64,3 +64,12 @@ class DatasetError(FoucaultError):
     def __init__(self, path: str, problems: list[str]) -> None:
         self.path, self.problems = path, problems
         super().__init__(f"{path}: " + "; ".join(problems))
+
+
+class Stopped(FoucaultError):
+    """The user stopped a command (Ctrl-C); the message says what became of its work."""
+
+    exit_status = 130
+
+    def __init__(self, outcome: str) -> None:
+        super().__init__(f"stopped; {outcome}")

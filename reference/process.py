@@ -10,9 +10,11 @@ import contextlib
 import os
 import pickle
 import queue
+import signal
 import subprocess
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from typing import Any, BinaryIO, cast
@@ -22,7 +24,9 @@ from .errors import FoucaultError, IntegrationError
 Emit = Callable[[Any], None]
 
 _START = "import sys; sys.path[:] = sys.argv[1:]; from reference.process import serve; serve()"
+_ENDS_WITH_PARENT = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 _LENGTH = 8  # bytes that hold the length of an object sent to a child
+LEAVE_S = 0.5  # seconds in which a child whose parent has ended can end what it has started itself
 GRACE_S = 10.0  # seconds in which a child has to end by itself once its parent has closed the pipes
 
 
@@ -56,9 +60,10 @@ class Worker:
     """
 
     def __init__(self, function: Callable[..., None], *arguments: Any) -> None:
-        self._process = subprocess.Popen(
-            [sys.executable, "-c", _START, *sys.path], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-        )
+        with _signals_held():
+            self._process = subprocess.Popen(
+                [sys.executable, "-c", _START, *sys.path], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+            )
         with contextlib.suppress(BrokenPipeError):  # the death of a child is noticed when its results are read
             self.send((function.__module__, function.__qualname__, arguments))
 
@@ -109,31 +114,94 @@ class Worker:
         self._process.kill()
 
 
+@contextlib.contextmanager
+def _signals_held() -> Iterator[None]:
+    """Hold back the signals that end a run: a process that is started meanwhile begins with them held back too."""
+    if not hasattr(signal, "pthread_sigmask"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, _ENDS_WITH_PARENT)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextlib.contextmanager
+def terminable() -> Iterator[None]:
+    """Turn SIGTERM and SIGHUP into SystemExit meanwhile, so that what was begun is cleared away.
+
+    Signals that already have a handler, or that are ignored (nohup), are left alone, as all are outside of the main
+    thread.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(number: int, _: object) -> None:
+        raise SystemExit(128 + number)
+
+    numbers = [n for n in _ENDS_WITH_PARENT if n != signal.SIGINT and signal.getsignal(n) is signal.SIG_DFL]
+    for number in numbers:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number in numbers:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _leave_ending_to_parent() -> threading.Event:
+    """Take signals that a terminal or a service manager sends to the whole group: this process ends with its parent.
+
+    They are taken and not ignored, so that a program that is started here has its own way with them. Once the event
+    that is returned is set, they end this process by an exception, so that it can end such a program.
+    """
+    ended = threading.Event()
+
+    def take(*_: object) -> None:
+        if ended.is_set():
+            raise SystemExit
+
+    for number in _ENDS_WITH_PARENT:
+        signal.signal(number, take)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, _ENDS_WITH_PARENT)
+    return ended
+
+
 def serve() -> None:
     """Run in the child: read the function and its arguments, call it, and end when the parent ends."""
+    ended = _leave_ending_to_parent()
     results = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # nothing that heyoka or others print may mix with the results
     try:
         module, name, arguments = _item()
-    except (EOFError, KeyboardInterrupt):  # the parent has ended before it sent anything
+    except EOFError:  # the parent has ended before it sent anything
         os._exit(1)
     received: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    threading.Thread(target=_receive, args=(received,), daemon=True).start()
+    threading.Thread(target=_receive, args=(received, ended), daemon=True).start()
     parent = Parent(results, received)
     try:
         getattr(import_module(module), name)(parent, *arguments)
         parent.send(True, None)
     except FoucaultError as error:
         parent.send(True, IntegrationError(str(error)))
-    except (BrokenPipeError, KeyboardInterrupt):
+    except SystemExit:
+        os._exit(0)
+    except BrokenPipeError:
         os._exit(1)
 
 
-def _receive(received: queue.SimpleQueue[Any]) -> None:
+def _receive(received: queue.SimpleQueue[Any], ended: threading.Event) -> None:
     """Take what the parent sends; leave with the parent, which has ended or closed the pipe when there is no more."""
     with contextlib.suppress(EOFError, OSError):
         while True:
             received.put(_item())
+    ended.set()
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(cast("int", threading.main_thread().ident), signal.SIGTERM)
+        time.sleep(LEAVE_S)
     os._exit(0)
 
 

@@ -67,6 +67,8 @@ def foucault(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str])
             main()
         except SystemExit as stop:
             status = int(stop.code or 0)
+        finally:
+            signal.signal(signal.SIGINT, signal.default_int_handler)  # as it ends, it has it ignored
         output = capfd.readouterr()
         return status, output.out, output.err
 

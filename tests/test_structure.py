@@ -27,7 +27,7 @@ FLOORS = {
         ["model"],
         ["scene", "table", "process", "packing", "capture", "taylor_step"],
         ["toml_document"],
-        ["inputs", "fields", "precision", "shipped", "columns"],
+        ["inputs", "fields", "precision", "shipped", "columns", "workspace", "machine_code"],
         ["lazy"],
         ["nearest"],
         ["errors", "status", "opening", "packages"],
@@ -114,7 +114,7 @@ PUBLIC = {
     "reference.capture": "captured",
     "reference.columns": "STATE",
     "reference.commands.progress": "progress",
-    "reference.commands.terminal": "AsJson Assignments SceneWord chosen completion emit refuse replacements",
+    "reference.commands.terminal": "AsJson Assignments SceneWord chosen completion emit refuse replacements stoppable",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.engines.heyoka.model": "RoundedModel",
     "reference.engines.registry": "engines",
@@ -122,6 +122,7 @@ PUBLIC = {
     "reference.errors": "BeyondDoublesError",
     "reference.inputs": "Inputs",
     "reference.lazy": "lazy",
+    "reference.machine_code": "kept",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.constants": "Constants Vector constants is_zero",
     "reference.model.earth": "axis_distance",
@@ -134,13 +135,14 @@ PUBLIC = {
     "reference.plain_text": "plain plain_lines",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
-    "reference.process": "Emit Worker",
+    "reference.process": "Emit Worker terminable",
     "reference.scene": "MAX_ROWS RunTable",
     "reference.shortened": "shortened",
     "reference.shipped": "data_root",
     "reference.solver.sensitivity": "Sensitivity sensitivity with_value",
     "reference.status": "Status",
     "reference.table": "Table",
+    "reference.workspace": "replace_file workspace",
 }
 
 
@@ -164,7 +166,7 @@ HEAVY = ("heyoka", "flint", "scipy", "matplotlib", "numba")
 
 
 @pytest.mark.parametrize(
-    "script", ["import compare, reference", "import foucault; foucault.app(['--help'], standalone_mode=False)"]
+    "script", ["import compare, reference", "import foucault; foucault.commands()(['--help'], standalone_mode=False)"]
 )
 def test_starting_loads_nothing_heavy(script):
     code = f"import sys\n{script}\nprint('loaded', [name for name in {HEAVY} if name in sys.modules])"

@@ -15,12 +15,13 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import BinaryIO
 
 from reference import InputError, Scene
 from reference.model.start import Start
+from reference.process import terminable
 
 from .lines import MAX_BYTES
 from .process_tree import ProcessTree
@@ -132,7 +133,7 @@ def run_program(
             raise InputError("--run", words[0], "a program that can be started", f"{why}.") from None
         limits = _Limits(process, output, errors, timeout_s, max_bytes)
         try:
-            with _terminable():
+            with terminable():
                 _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
         except BaseException:
@@ -185,26 +186,6 @@ class _Limits:
     def kill(self) -> None:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, signal.SIGKILL)
-
-
-@contextlib.contextmanager
-def _terminable() -> Iterator[None]:
-    """Turn SIGTERM and SIGHUP into an exception, so that the program does not outlive this process."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-
-    def stop(number: int, _: object) -> None:
-        raise SystemExit(128 + number)
-
-    numbers = [n for n in (signal.SIGTERM, signal.SIGHUP) if signal.getsignal(n) is signal.SIG_DFL]
-    for number in numbers:
-        signal.signal(number, stop)
-    try:
-        yield
-    finally:
-        for number in numbers:
-            signal.signal(number, signal.SIG_DFL)
 
 
 def _tail(errors: BinaryIO) -> str:

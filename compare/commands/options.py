@@ -110,6 +110,13 @@ def inside(folder: Path | None, name: str) -> Path | None:
     return None if folder is None else folder / name
 
 
+def resumes(folder: Path | None) -> str:
+    """Return what becomes of a campaign that is stopped, whose results go into a folder (None: nowhere)."""
+    if folder is None:
+        return "nothing was kept; with --out, the same command would go on where it stopped"
+    return "the same command with the same --out goes on where it stopped"
+
+
 def announce(text: str) -> None:
     """Print a message on stderr before work that takes long."""
     typer.echo(text, err=True)

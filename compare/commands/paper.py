@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson
+from reference.commands.terminal import AsJson, stoppable
 
 from .options import finish
 
@@ -31,7 +31,7 @@ def command(
     from ..papers.page import document
     from ..report.folder import PAGE
 
-    with progress() as show:
+    with stoppable("nothing half was written"), progress() as show:
         judging = show("judging", unit="rows and figures")
 
         def report(place: str, completed: int, total: int) -> None:

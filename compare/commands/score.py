@@ -19,6 +19,7 @@ from reference.commands.terminal import (
     emit,
     refuse,
     replacements,
+    stoppable,
 )
 
 from .options import announce
@@ -154,7 +155,7 @@ def command(
         timed_candidates.append((_approximate(approximation, scene), None))
     scores = []
     for candidate, timing in timed_candidates:
-        with progress() as show:
+        with stoppable("nothing was written"), progress() as show:
             score = judge(
                 candidate,
                 scene,

@@ -7,9 +7,9 @@ from typing import Annotated
 import typer
 
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson
+from reference.commands.terminal import AsJson, stoppable
 
-from .options import Folder, Methods, Scenes, check_installed, check_limit, finish, inside, listed
+from .options import Folder, Methods, Scenes, check_installed, check_limit, finish, inside, listed, resumes
 
 LIMIT_S = 3.0  # default of --limit
 
@@ -40,7 +40,7 @@ def command(
     chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
     check_installed(method for method, _, _ in declared(requested, "stability"))
     items = declared(requested, "long_runs") if long else []
-    with progress() as show:
+    with stoppable(resumes(out)), progress() as show:
         cells = measure(
             chosen,
             requested,

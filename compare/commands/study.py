@@ -9,7 +9,7 @@ import typer
 
 from reference import Scene, load_scene
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson, Assignments, SceneWord, refuse, replacements
+from reference.commands.terminal import AsJson, Assignments, SceneWord, refuse, replacements, stoppable
 
 from .options import (
     Commands,
@@ -23,6 +23,7 @@ from .options import (
     inside,
     listed,
     numbers,
+    resumes,
 )
 
 LIMIT_S, SETTINGS = 8.0, "0.1,0.01"  # defaults of --limit and --settings
@@ -127,7 +128,7 @@ def command(
     steps = numbers(SETTINGS if settings is None else settings, "--settings")
     for program, words in programs.items():
         items += [(program, "momentum", step) for step in (steps if SETTING in words else steps[:1])]
-    with progress() as show:
+    with stoppable(resumes(out)), progress() as show:
         study = measure(
             problem,
             items=items,

@@ -16,6 +16,7 @@ from typing import Any
 
 from reference import InputError
 from reference.plain_text import plain_lines
+from reference.workspace import workspace
 
 from .page import MARK
 
@@ -86,27 +87,31 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
         InputError: the folder cannot be written to, or `check_folder` refuses it.
     """
     check_folder(folder, texts)
-    new, old = ({name: folder / f".{name}.{word}-{os.getpid()}" for name in texts} for word in ("partial", "before"))
-    renamed: list[str] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, content in texts.items():
-            _write(new[name], content)
-            if (folder / name).exists():
-                shutil.copy2(folder / name, old[name])
-        for name in texts:
-            os.replace(new[name], folder / name)
+        with workspace(folder, "report") as work:
+            new, old = ({name: work / f"{name}.{word}" for name in texts} for word in ("new", "before"))
+            for name, content in texts.items():
+                _write(new[name], content)
+                if (folder / name).exists():
+                    shutil.copy2(folder / name, old[name])
+            _replace(folder, new, old)
+    except OSError as error:
+        advice = f"{error.strerror}."
+        raise InputError("--out", str(folder), "a folder that can be written to", advice) from None
+
+
+def _replace(folder: Path, new: Mapping[str, Path], old: Mapping[str, Path]) -> None:
+    """Rename the new files into the folder, in order; bring the old ones back if that ends in between."""
+    renamed: list[str] = []
+    try:
+        for name, path in new.items():
+            os.replace(path, folder / name)
             renamed.append(name)
-    except BaseException as error:
+    except BaseException:
         for name in renamed:
             _bring_back(old[name], folder / name)
-        if isinstance(error, OSError):
-            raise InputError("--out", str(folder), "a folder that can be written to", f"{error.strerror}.") from None
         raise
-    finally:
-        for path in (*new.values(), *old.values()):
-            with suppress(OSError):
-                path.unlink(missing_ok=True)
 
 
 def _write(path: Path, content: str) -> None:

@@ -7,18 +7,18 @@ needs it. Nothing in a source may depend on a scene's values: they are passed as
 from __future__ import annotations
 
 import hashlib
-import importlib.util
 import linecache
-import os
 import sys
-import tempfile
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from string import Template
 from types import ModuleType
 from typing import Any
 
-from ..cache import root
+from reference.workspace import replace_file
+
+from ..cache import entry, store
 from .program import FUNCTIONS, Program
 
 HEADER = f"""import numba as nb
@@ -59,50 +59,38 @@ def unpacked(letter: str, array: str, count: int) -> str:
 def compiled(body: str) -> ModuleType:
     """Return the module of a source whose functions numba compiles; decorators write `**OPTIONS`.
 
-    It is read from the cache if the very same text is there; if the cache cannot be written, it is compiled in memory.
+    Machine code is read from the cache if it belongs to the very same text; if that cannot be written, it stays in
+    memory.
     """
-    on_disk = _stored(HEADER.replace("CACHE", "True") + body)
-    if on_disk is not None:
-        return _imported(on_disk)
-    return _in_memory(HEADER.replace("CACHE", "False") + body)
+    on_disk = HEADER.replace("CACHE", "True") + body
+    path = _stored(on_disk.encode())
+    if path is None:
+        return _in_memory(HEADER.replace("CACHE", "False") + body)
+    from reference.machine_code import kept
+
+    with kept():
+        return _executed(on_disk, path.stem, str(path))
 
 
-def _stored(text: str) -> Path | None:
-    """Return the cached file of a text, written atomically if need be; None if the cache cannot be written."""
-    data = text.encode()
-    try:
-        folder = root() / "generated"
-        path = folder / f"f{hashlib.sha256(data).hexdigest()[:32]}.py"
-        if path.is_file() and path.read_bytes() == data:  # rewriting it would make numba compile again
+def _stored(text: bytes) -> Path | None:
+    """Return the cached file of a text, written if need be; None if it can be kept nowhere."""
+    name = f"f{hashlib.sha256(text).hexdigest()[:32]}.py"
+    path = entry("generated", name, executed=True)
+    with suppress(OSError):
+        if path is not None and path.read_bytes() == text:  # rewriting it would make numba compile again
             return path
-        folder.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=folder, suffix=".tmp")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            os.replace(name, path)
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
-    except OSError:
-        return None
-    return path
-
-
-def _imported(path: Path) -> ModuleType:
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[path.stem] = module  # numba's cache unpickles its functions by the module's name
-    spec.loader.exec_module(module)
-    return module
+    return store("generated", name, lambda path: replace_file(path, lambda stream: stream.write(text)), executed=True)
 
 
 def _in_memory(text: str) -> ModuleType:
     name = f"<generated {hashlib.sha256(text.encode()).hexdigest()[:12]}>"
     linecache.cache[name] = (len(text), None, text.splitlines(keepends=True), name)
+    return _executed(text, name, name)
+
+
+def _executed(text: str, name: str, file: str) -> ModuleType:
     module = ModuleType(name)
+    sys.modules[name] = module  # numba's cache unpickles its functions by the module's name
     namespace: dict[str, Any] = module.__dict__
-    exec(compile(text, name, "exec"), namespace)
+    exec(compile(text, file, "exec"), namespace)
     return module

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from pathlib import Path
 
 import numpy as np
 
@@ -15,10 +14,10 @@ from reference import Scene
 from reference.precision import Array
 from reference.solver.sensitivity import sensitivity
 
-from ..cache import load_or_make
+from ..cache import arrays
 
 TIMES = 577  # in a span, at least half of them up to the end asked for: some in every swing, or hundreds of swings
-_FORMAT = "floor 2"  # changes with the content of the cached entries, so that older ones are computed again
+_FORMAT = "floor 3"  # changes with the content of the cached entries, so that older ones are computed again
 
 
 def input_floor(scene: Scene, until: float) -> float:
@@ -33,15 +32,11 @@ def input_floor(scene: Scene, until: float) -> float:
     times = np.linspace(0.0, _span(float(scene.exact.t_end), until), TIMES) if until > 0 else np.zeros(1)
     recipe = json.dumps([_FORMAT, parts, float(times[-1])], sort_keys=True).encode()
 
-    def make(path: Path) -> None:
+    def make() -> dict[str, Array]:
         moved = sensitivity(decimal, times).rounding()[:, :3]
-        largest = np.maximum.accumulate(np.sqrt((moved**2).sum(axis=1)))
-        path.write_text(json.dumps(largest.tolist()))
+        return {"largest": np.maximum.accumulate(np.sqrt((moved**2).sum(axis=1)))}
 
-    def read(path: Path) -> Array:
-        return np.asarray(json.loads(path.read_text()), dtype=np.float64).reshape(times.shape)
-
-    largest = load_or_make("floor", f"{hashlib.sha256(recipe).hexdigest()[:32]}.json", make, read)
+    largest = arrays("floor", f"{hashlib.sha256(recipe).hexdigest()[:32]}.npz", make)["largest"]
     return float(largest[np.searchsorted(times, until)])
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 import threading
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing
@@ -18,6 +19,7 @@ from reference import InputError, IntegrationError
 from reference.process import Worker
 from reference.status import Status
 
+from .. import cache
 from ..methods import METHODS, available
 from .machine import machine, single_thread
 from .row import Record
@@ -104,6 +106,7 @@ def campaign(
     for item in items:
         if item not in results:
             groups.setdefault(item[:-1], []).append(item)
+    cache.prepare()
     for group in groups.values():
         with closing(_isolated(measure, arguments, group, patience_s, failed)) as answers:
             for item in group:
@@ -120,9 +123,9 @@ def _mark(recipe: Any) -> str:
 
 def _stored(path: Path | None) -> Iterator[tuple[tuple[str, tuple[Any, ...]], dict[str, Any]]]:
     """Yield marks with items, and results, in order; a line cut short by an interrupt is skipped."""
-    if path is None or not path.exists():
+    if path is None or not path.is_file():
         return
-    for line in path.read_text().splitlines():
+    for line in path.read_bytes().splitlines():
         try:
             record = json.loads(line)
             yield (record["recipe"], tuple(record["item"])), dict(record["result"])
@@ -135,8 +138,11 @@ def _store(path: Path | None, record: dict[str, Any]) -> None:
         return
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with path.open("a") as stream:
-            stream.write(json.dumps(record) + "\n")
+        with path.open("ab+") as stream:
+            end = stream.seek(0, os.SEEK_END)
+            stream.seek(max(0, end - 1))
+            separator = b"" if stream.read(1) in (b"", b"\n") else b"\n"  # the line before was cut short
+            stream.write(separator + json.dumps(record).encode() + b"\n")
     except OSError as error:
         raise InputError("--out", str(path), "a folder that can be written to", f"{error.strerror}.") from None
 

@@ -13,7 +13,7 @@ from ..nearest import in_words
 from ..scene import LEVELS, load_scene
 from ..shipped import scene_ids
 from .progress import progress
-from .terminal import AsJson, Assignments, SceneWord, chosen, completion, emit, replacements
+from .terminal import AsJson, Assignments, SceneWord, chosen, completion, emit, replacements, stoppable
 
 ENGINES = (AUTO, *engine_names())
 
@@ -81,12 +81,13 @@ def command(
     from ..solver.rounding import grid_decimals
     from ..solver.solve import solve
 
-    with progress() as show:
+    with stoppable("nothing was written"), progress() as show:
         solution = solve(scene, engine=engine, report=show(scene.id, float(scene.exact.t_end)))
     if engine not in (AUTO, solution.run.engine):
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
-    write(solution, folder, name)
+    with stoppable("nothing half was written"):
+        write(solution, folder, name)
     count = len(solution.directions)
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     bound = max((bounds[column] for column in POSITION), key=float)

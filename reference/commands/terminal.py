@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError
+from ..errors import InputError, Stopped
 from ..nearest import did_you_mean, in_words
 from ..plain_text import plain_json
 from ..scene import field_names
@@ -41,6 +42,19 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on
 def emit(document: dict[str, Any]) -> None:
     """Print one JSON document."""
     typer.echo(plain_json(json.dumps(document, indent=1, ensure_ascii=False)))
+
+
+@contextmanager
+def stoppable(outcome: str) -> Iterator[None]:
+    """Have Ctrl-C end the command meanwhile with one line that says what became of its work, or how to go on.
+
+    Raises:
+        Stopped: it was interrupted.
+    """
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise Stopped(outcome) from None
 
 
 def chosen(option: str, word: str, names: Iterable[str]) -> str:

@@ -26,7 +26,7 @@ def command(
     ] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Check golden datasets: files, seal, physics, and the motion integrated again."""
+    """Check golden datasets, and integrate their motion again."""
     from ..dataset.place import golden_folder
     from ..dataset.recompute import recompute as recomputed
     from ..dataset.verify import verify

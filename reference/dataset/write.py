@@ -5,14 +5,14 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import DatasetError, InputError
 from ..shipped import golden_root, keep_seal
 from ..solver.solution import Solution
+from ..workspace import OLD, workspace
 from .manifest import MANIFEST
 from .render import render
 from .verify import problems_of
@@ -30,31 +30,25 @@ def check_target(folder: Path) -> None:
         raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
     if folder.is_dir() and any(folder.iterdir()) and not (folder / MANIFEST).is_file():
         raise InputError("--out", str(folder), "a new or empty folder, or an older dataset", "Nothing was changed.")
-    parent = folder.absolute().parent
-    try:
-        parent.mkdir(parents=True, exist_ok=True)
-        with _workspace(folder):
-            pass
-    except OSError as error:
-        raise InputError("--out", str(folder), "a writable place", f"{error.strerror}.") from None
+    with _place(folder):
+        pass
 
 
 @contextmanager
-def _workspace(folder: Path) -> Iterator[Path]:
-    """Provide a new folder beside the target; remove it afterwards, and any that killed processes left behind."""
-    target = folder.absolute()
-    for stale in target.parent.glob(f".{target.name}.partial-*"):
-        with suppress(ValueError, PermissionError, ProcessLookupError):
-            try:
-                os.kill(int(stale.name.rpartition("-")[2]), 0)
-            except ProcessLookupError:
-                shutil.rmtree(stale, ignore_errors=True)
-    work = target.parent / f".{target.name}.partial-{os.getpid()}"
-    work.mkdir()
+def _place(folder: Path) -> Iterator[tuple[Path, Path]]:
+    """Provide a new folder beside the target, and the target; a symbolic link is followed.
+
+    Raises:
+        InputError: the disk is full or cannot be written, there or in what is done meanwhile.
+    """
     try:
-        yield work
-    finally:
-        shutil.rmtree(work, ignore_errors=True)
+        target = folder.resolve()
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with workspace(target.parent, target.name) as work:
+            yield work, target
+    except (OSError, RuntimeError) as error:  # the latter: links in a circle, on older versions of Python
+        advice = f"{getattr(error, 'strerror', None) or error}."
+        raise InputError("--out", str(folder), "a writable place with room for a dataset", advice) from None
 
 
 def write(solution: Solution, folder: str | Path, name: str | None = None) -> Path:
@@ -71,31 +65,31 @@ def write(solution: Solution, folder: str | Path, name: str | None = None) -> Pa
     """
     folder = Path(folder)
     check_target(folder)
-    with _workspace(folder) as work:
-        texts = render(solution, name)
+    texts = render(solution, name)
+    with _place(folder) as (work, target):
+        new = work / "new"
+        new.mkdir()
         for file, text in texts.items():
-            with (work / file).open("w", encoding="utf-8", newline="\n") as handle:
+            with (new / file).open("w", encoding="utf-8", newline="\n") as handle:
                 handle.write(text)
                 handle.flush()
                 os.fsync(handle.fileno())
-        problems = problems_of(work)
+        problems = problems_of(new)
         if problems:
             raise DatasetError(str(folder), problems)
-        _put_in_place(work, folder.absolute())
-    if folder.resolve().parent == golden_root().resolve():
-        keep_seal(folder.name, json.loads(texts[MANIFEST])["seal"])
+        _put_in_place(new, target)
+        if target.parent == golden_root().resolve():
+            keep_seal(target.name, json.loads(texts[MANIFEST])["seal"])
     return folder
 
 
-def _put_in_place(work: Path, target: Path) -> None:
-    """Replace `target` by `work`, in one step where the system can."""
+def _put_in_place(new: Path, target: Path) -> None:
+    """Replace `target` by `new`, in one step where the system can."""
     if not target.exists():
-        work.rename(target)
-    elif not _exchange(work, target):
-        older = work.with_name(work.name + ".old")  # no atomic exchange on this system: two renames
-        target.rename(older)
-        work.rename(target)
-        shutil.rmtree(older)
+        new.rename(target)
+    elif not _exchange(new, target):
+        target.rename(new.with_name(OLD))  # two steps; after an end between them, `workspace` puts it back
+        new.rename(target)
 
 
 def _exchange(a: Path, b: Path) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +11,7 @@ from small_scenes import make_scene
 
 from compare import cache
 from compare.truth import golden_of, shipped, solves, truth_at
-from reference import load, load_scene
+from reference import load, load_scene, solve, write
 
 RUN = {"t_end": "20", "grid_step": "5", "digits": 22}
 
@@ -20,7 +19,19 @@ RUN = {"t_end": "20", "grid_step": "5", "digits": 22}
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setenv("FOUCAULT_SPARE_CACHE", "")
     return tmp_path / "cache"
+
+
+def swap(a: Path, b: Path) -> None:
+    a.rename(a.with_name("other"))
+    b.rename(a)
+    a.with_name("other").rename(b)
+
+
+def flipped(data: bytes) -> bytes:
+    middle = len(data) // 2
+    return data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
 
 
 @pytest.mark.parametrize(("inputs", "folder"), [("decimal", "paris"), ("binary64", "paris.binary64")])
@@ -84,18 +95,64 @@ def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched(monke
     assert len(said) == 1  # damaged, so it was solved again
 
 
+def test_two_entries_that_were_swapped_are_solved_again():
+    scenes = [make_scene("mine", pendulum={"length": length}, run=RUN) for length in ("5", "6")]
+    first, second = (golden_of(scene).path for scene in scenes)
+    swap(first, second)
+    said: list[str] = []
+    for scene in scenes:
+        assert solves(golden_of(scene, announce=said.append), scene)
+    assert len(said) == 2
+
+
+@pytest.mark.parametrize(
+    "change", ["run.digits=21", "run.level=computed", "run.transits=false", "run.t_end=10", "run.grid_step=2"]
+)
+def test_an_entry_that_holds_less_or_other_rows_than_its_name_says_is_solved_again(change):
+    scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
+    path = golden_of(scene).path
+    write(solve(scene.with_values([change])), path)
+    said: list[str] = []
+    golden = golden_of(scene, announce=said.append)
+    assert len(said) == 1
+    assert (golden.path, golden.scene.run) == (path, scene.run)
+
+
+@pytest.mark.parametrize("kind", ["file", "folder", "full folder", "link to nothing"])
+def test_whatever_is_in_the_way_of_an_entry_is_removed(kind, own_cache):
+    scene, times = make_scene("mine", pendulum={"length": "5"}, run=RUN), np.array([0.0, 1.5])
+    first, said = truth_at(golden_of(scene), times), list[str]()
+    for path in [*(own_cache / "golden").iterdir(), *(own_cache / "dense").iterdir()]:
+        cache.discard(path)
+        if kind == "file":
+            path.write_text("in the way")
+        elif kind == "link to nothing":
+            path.symlink_to("nothing")
+        else:
+            path.mkdir()
+            if kind == "full folder":
+                (path / "thesis.txt").write_text("in the way")
+    again = truth_at(golden_of(scene, announce=said.append), times)
+    assert np.array_equal(again.states, first.states)
+    assert len(said) == 1
+    assert truth_at(golden_of(scene, announce=said.append), times).t.tolist() == times.tolist()
+    assert len(said) == 1
+    for name in ("golden", "dense"):
+        assert len(list((own_cache / name).iterdir())) == 1
+
+
 @pytest.mark.parametrize("place", ["file", "proc"])
-def test_a_cache_that_cannot_be_written_costs_time_only(place, tmp_path, monkeypatch):
+def test_a_cache_that_cannot_be_written_costs_time_only(place, tmp_path, monkeypatch, capfd):
     blocked = tmp_path / "file"
     blocked.write_text("in the way")
     monkeypatch.setenv("FOUCAULT_CACHE", str(blocked) if place == "file" else "/proc/nothing")
-    said: list[str] = []
     scene = make_scene(f"mine_{place}", pendulum={"length": "5"}, run=RUN)
-    golden = golden_of(scene, announce=said.append)
-    assert "cannot be written" in said[0]
+    golden = golden_of(scene)
     truth = truth_at(golden, np.array([0.0, 1.5]))
     assert truth.states[0, 0] == 0.3
+    assert golden_of(scene) is golden
     assert blocked.read_text() == "in the way"
+    assert capfd.readouterr().err.count("cannot be written") == 1
 
 
 def test_the_truth_is_evaluated_once_for_the_same_times(monkeypatch):
@@ -109,32 +166,24 @@ def test_the_truth_is_evaluated_once_for_the_same_times(monkeypatch):
     assert (first.bound_m, first.number) == (again.bound_m, again.number)
 
 
-def test_a_damaged_evaluation_is_made_again(own_cache):
+@pytest.mark.parametrize("damage", [lambda data: b"PK junk", lambda data: b"", lambda data: data[:-40], flipped])
+def test_a_damaged_evaluation_is_made_again(damage, own_cache):
     golden = load("paris")
     times = np.linspace(0, 90, 7)
     first = truth_at(golden, times)
-    (entry,) = (own_cache / "dense").iterdir()
-    entry.write_bytes(b"PK junk")
+    (path,) = (own_cache / "dense").iterdir()
+    whole = path.read_bytes()
+    path.write_bytes(damage(whole))
     assert np.array_equal(truth_at(golden, times).states, first.states)
-    assert entry.stat().st_size > 100
+    assert len(path.read_bytes()) == len(whole)
 
 
-def test_what_fails_leaves_nothing_behind(own_cache):
-    def fails(path: Path) -> None:
-        path.write_text("half")
-        raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        cache.load_or_make("kind", "name", fails, Path.read_text)
-    assert list((own_cache / "kind").iterdir()) == []
-
-
-def test_old_entries_go(own_cache, monkeypatch):
-    monkeypatch.setattr(cache, "KEEP", 3)
-    for i in range(6):
-        cache.load_or_make("kind", str(i), lambda path, i=i: path.write_text(str(i)), Path.read_text)
-        os.utime(own_cache / "kind" / str(i), (i, i))
-    assert sorted(path.name for path in (own_cache / "kind").iterdir()) == ["3", "4", "5"]
+def test_two_evaluations_that_were_swapped_are_made_again(own_cache):
+    golden, ends = load("paris"), (90, 95)
+    first = [truth_at(golden, np.linspace(0, end, 7)).states for end in ends]
+    swap(*(own_cache / "dense").iterdir())
+    for end, states in zip(ends, first, strict=True):
+        assert np.array_equal(truth_at(golden, np.linspace(0, end, 7)).states, states)
 
 
 def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
@@ -145,5 +194,5 @@ def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
     status, err, group = interrupted(["score", str(own), str(rows)], lambda _, err: b"solving it" in err)
     assert status == 130
     assert b"Traceback" not in err
-    assert list((own_cache / "golden").iterdir()) == []
+    assert list(own_cache.glob("golden/*")) == []
     assert gone_within(group, 10)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import signal
+import time
+from pathlib import Path
 from typing import Any
 
 from reference.errors import InputError
@@ -29,3 +31,13 @@ def refuse(parent: Any) -> None:
 def freeze(_: Any) -> None:
     """Stop this process (SIGSTOP), so that it does not notice the end of its parent."""
     os.kill(os.getpid(), signal.SIGSTOP)
+
+
+def hold(parent: Any, folder: str) -> None:
+    """Send a word, and wait; leave a file when it ends by an exception."""
+    try:
+        parent("held")
+        while True:
+            time.sleep(600)
+    finally:
+        (Path(folder) / "cleared").touch()

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import contextlib
 import os
+import signal
 import subprocess
 import sys
 import threading
+from pathlib import Path
 
+import child
 import pytest
 from child import count_to, doubled, freeze, refuse
+from places import ROOT
 
 from reference import process
 from reference.errors import IntegrationError
@@ -39,6 +43,40 @@ def test_a_child_whose_parent_ends_before_it_sends_anything_ends_without_a_word(
     command = [sys.executable, "-c", process._START, *sys.path]
     child = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
     assert (child.returncode, child.stdout, child.stderr) == (1, b"", b"")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("started", [False, True])
+def test_a_signal_to_the_whole_group_leaves_the_end_of_a_child_to_its_parent(number, started, capfd):
+    """Ctrl-C reaches children too, also while they begin; a child that ended by itself would look like a crash."""
+    worker = Worker(doubled, 3)
+    if started:
+        worker.send(1)
+        assert worker.receive() == 3
+    os.kill(worker._process.pid, number)
+    worker.send(2)
+    assert worker.receive() == 6
+    worker.stop()
+    assert worker._process.returncode == 0
+    assert capfd.readouterr().err == ""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="signals to threads")
+def test_a_child_clears_away_what_it_began_when_its_parent_is_killed(tmp_path):
+    code = f"""
+import sys; sys.path.insert(0, {str(Path(child.__file__).parent)!r})
+from child import hold
+from reference.process import Worker
+worker = Worker(hold, {str(tmp_path)!r})
+print(worker.receive(), flush=True)
+worker.receive()
+"""
+    with subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, cwd=ROOT) as parent:
+        assert parent.stdout is not None
+        assert parent.stdout.readline() == b"held\n"
+        parent.kill()
+        assert parent.stdout.read() == b""  # the child, which has the pipe too, has ended
+    assert (tmp_path / "cleared").exists()
 
 
 def test_an_error_of_the_function_arrives_as_an_integration_error():

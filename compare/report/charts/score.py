@@ -11,6 +11,7 @@ import numpy as np
 from reference import InputError
 from reference.precision import Array
 from reference.shortened import shortened
+from reference.workspace import replace_file
 
 from ...score.judge import Score
 from .drawing import COLOURS, GUIDE, check_matplotlib, line_style, logarithmic, picture, sheet
@@ -40,7 +41,7 @@ def error_picture(scores: Sequence[Score], path: Path) -> None:
         _draw(figure.subplots(), scores)
         content = picture(figure, path.suffix[1:].lower())
     try:
-        path.write_bytes(content)
+        replace_file(path, lambda stream: stream.write(content))
     except OSError as error:
         raise InputError("--plot", str(path), "a file that can be written", f"{error.strerror}.") from None
 

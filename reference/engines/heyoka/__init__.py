@@ -11,5 +11,6 @@ handler; the disk cache never hits beyond 128 bits and is switched off for `real
 - `stepper`: one scene, step by step, with events, dense output and Taylor coefficients.
 - `transits`: guards around its event detection.
 - `propagator`: any system without events, in one call.
+- `machine_code`: its cache on disk.
 - `log`: its log, captured.
 """

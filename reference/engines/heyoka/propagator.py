@@ -11,6 +11,7 @@ import heyoka as hy
 import numpy as np
 
 from ...precision import NumberType
+from .machine_code import compiling
 from .numbers import Numbers
 from .system import as_pairs
 
@@ -48,10 +49,10 @@ class Propagator:
         keywords = dict(self.numbers.keywords)
         if tolerance is not None:
             keywords["tol"] = self.numbers.of(Fraction(tolerance))
-        hy.llvm_state.set_diskcache_enabled(number.hardware)
         started = time.process_time()
         zeros = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)
-        self._ta: Any = hy.taylor_adaptive(system, zeros, fp_type=self.numbers.type, **keywords)
+        with compiling(number):
+            self._ta: Any = hy.taylor_adaptive(system, zeros, fp_type=self.numbers.type, **keywords)
         self.compile_s = time.process_time() - started
         self.steps = 0
 

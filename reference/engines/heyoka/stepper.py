@@ -15,6 +15,7 @@ from ...errors import IntegrationError
 from ...model.formulations import Formulation
 from ...model.start import Start
 from ...precision import NumberType
+from .machine_code import compiling
 from .model import RoundedModel
 from .system import System
 
@@ -68,13 +69,13 @@ class Stepper:
 
             event = hy.nt_event(system.xdot, callback=record, fp_type=self.numbers.type)
             keywords["nt_events"] = [event]
-        hy.llvm_state.set_diskcache_enabled(number.hardware)
         state = np.array(self.model.release(start), dtype=self.numbers.dtype)
         started = time.process_time()
-        self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
-        if events:
-            outputs = [system.xdot, system.xddot]
-            self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **self.numbers.keywords)
+        with compiling(number):
+            self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
+            if events:
+                outputs = [system.xdot, system.xddot]
+                self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **self.numbers.keywords)
         self.compile_s = time.process_time() - started
         self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)

@@ -17,6 +17,8 @@ from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.core import cgutils
 
+from ...machine_code import kept
+
 LANES = 8
 # a hash of all files of this folder, for cached functions to close over: numba itself looks at their own file alone
 SOURCES = "".join(sha256(path.read_bytes()).hexdigest() for path in sorted(Path(__file__).parent.glob("*.py")))
@@ -47,7 +49,8 @@ def inlined(function: Function) -> Function:
 def entry(function: Function) -> Function:
     """Compile with numba, to be called from Python; the machine code is cached on disk."""
     compiler: Any = numba.njit
-    dispatcher: Function = compiler(cache=True, **_OPTIONS)(function)
+    with kept():
+        dispatcher: Function = compiler(cache=True, **_OPTIONS)(function)
     return dispatcher
 
 

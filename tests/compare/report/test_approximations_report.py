@@ -9,14 +9,14 @@ import pytest
 from typer.testing import CliRunner
 
 from compare.report import approximations as approximation_report
-from foucault import app
+from foucault import commands
 from reference import InputError
 
 
 def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(approximation_report, "OVERS", ("time", "amplitude"))
     arguments = ["study", "hard", "--approximations", "--set", "release.angle=5", "--t-end", "60", "--json"]
-    result = CliRunner().invoke(app, [*arguments, "--out", str(tmp_path)])
+    result = CliRunner().invoke(commands(), [*arguments, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     document = json.loads(result.stdout)
     assert {row["t"] for row in document["rows"]} == {20.0, 60.0}
@@ -27,19 +27,21 @@ def test_the_study_of_approximations_writes_its_page_and_json(tmp_path: Path, mo
 
 def test_a_folder_of_somebody_elses_is_refused_before_the_work(tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_text("mine")
-    result = CliRunner().invoke(app, ["study", "paris", "--approximations", "--out", str(tmp_path), "--t-end", "60"])
+    result = CliRunner().invoke(
+        commands(), ["study", "paris", "--approximations", "--out", str(tmp_path), "--t-end", "60"]
+    )
     assert isinstance(result.exception, InputError)
     assert (tmp_path / "rows.csv").read_text() == "mine"
 
 
 def test_an_approximation_is_scored_like_a_program() -> None:
     arguments = ["score", "paris", "--approximation", "linear_3d", "--json", "--no-diagnosis"]
-    result = CliRunner().invoke(app, [*arguments, "--set", "run.t_end=3600"])
+    result = CliRunner().invoke(commands(), [*arguments, "--set", "run.t_end=3600"])
     document = json.loads(result.stdout)
     assert (result.exit_code, document["verdict"]) == (1, "disagrees")
     assert document["max_error_m"] == pytest.approx(4.06e-3, rel=0.05)
 
 
 def test_an_approximation_of_a_number_cannot_be_scored_as_a_motion() -> None:
-    result = CliRunner().invoke(app, ["score", "paris", "--approximation", "rest_triangle"])
+    result = CliRunner().invoke(commands(), ["score", "paris", "--approximation", "rest_triangle"])
     assert isinstance(result.exception, InputError)

@@ -21,7 +21,7 @@ from compare.candidates.candidate import Candidate
 from compare.score.diagnosis import diagnose
 from compare.score.errors import TrajectoryErrors
 from compare.score.judge import Score, judge
-from foucault import app
+from foucault import commands
 from reference import Scene, trajectory
 from reference.dataset.dense import Dense
 from reference.engines.variants import Variants
@@ -51,7 +51,7 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def scored(program: Path, fault: str, *options: str) -> tuple[int, dict[str, Any]]:
     command = f"{program} {fault} {WORDS} 0.01 6000"
-    result = CliRunner().invoke(app, ["score", "paris", "--run", command, "--repeats", "0", "--json", *options])
+    result = CliRunner().invoke(commands(), ["score", "paris", "--run", command, "--repeats", "0", "--json", *options])
     return result.exit_code, json.loads(result.stdout)
 
 

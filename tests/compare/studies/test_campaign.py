@@ -94,10 +94,23 @@ def test_after_an_interruption_the_results_before_it_are_there(tmp_path: Path) -
     assert [json.loads(line)["item"] for line in path.read_text().splitlines()] == [["m", "a"], ["m", "b"]]
 
 
-def test_a_journal_that_cannot_be_written_says_so(tmp_path: Path) -> None:
+@pytest.mark.parametrize("half", ['{"recipe": "cut off by a full di', "\x00\x00", "\udcff not UTF-8"])
+def test_after_half_a_line_the_next_result_has_a_line_of_its_own(tmp_path: Path, half: str) -> None:
+    path, items = tmp_path / "rows.jsonl", [("m", "a"), ("m", "b")]
+    first = run(items[:1], journal_path=path)
+    with path.open("a", errors="surrogateescape") as stream:
+        stream.write(half)
+    second = run(items, journal_path=path)
+    assert second[0] == first[0]
+    assert run(items, journal_path=path) == second
+
+
+@pytest.mark.parametrize("place", ["file/rows.jsonl", "folder"])
+def test_a_journal_that_cannot_be_written_says_so(tmp_path: Path, place: str) -> None:
     (tmp_path / "file").write_text("")
+    (tmp_path / "folder").mkdir()
     with pytest.raises(InputError, match="--out"):
-        run([("m", "a")], journal_path=tmp_path / "file" / "rows.jsonl")
+        run([("m", "a")], journal_path=tmp_path / place)
 
 
 def test_the_runs_of_a_study_are_those_that_methods_declare() -> None:

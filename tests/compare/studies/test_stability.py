@@ -16,7 +16,7 @@ from compare.runge_kutta.tableau import TableauError
 from compare.studies.character import character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.stability import Cell, cut, default_scenes, digits_asked, stability
-from foucault import app
+from foucault import commands
 from reference import InputError, load_scene, trajectory
 from reference.shipped import data_root
 from reference.status import Status
@@ -132,7 +132,7 @@ def test_the_law_of_a_known_exponent_of_time_is_named() -> None:
 
 def test_the_command_reports_rows_and_a_page(tmp_path: Path) -> None:
     words = ["stability", "--scenes", "hard,two_radians", "--methods", "rkmk4,heyoka_double", "--json"]
-    result = CliRunner().invoke(app, [*words, "--out", str(tmp_path)])
+    result = CliRunner().invoke(commands(), [*words, "--out", str(tmp_path)])
     assert result.exit_code == 0, result.output
     rows = json.loads(result.stdout)["rows"]
     assert {"scene", "method", "precision", "status", "digits", "cpu_s", "reason"} <= rows[0].keys()
@@ -140,6 +140,6 @@ def test_the_command_reports_rows_and_a_page(tmp_path: Path) -> None:
 
 
 def test_a_method_without_declared_runs_is_refused() -> None:
-    result = CliRunner().invoke(app, ["stability", "--scenes", "hard", "--methods", "rk4,rkng56"])
+    result = CliRunner().invoke(commands(), ["stability", "--scenes", "hard", "--methods", "rk4,rkng56"])
     assert isinstance(result.exception, InputError)
     assert "rkng56" in str(result.exception) and "gauss_legendre" in str(result.exception)

@@ -20,7 +20,7 @@ from compare.studies.precisions import bits_of, precision_items, precision_scene
 from compare.studies.row import Row
 from compare.studies.study import plan, study
 from compare.truth import golden_of
-from foucault import app
+from foucault import commands
 from reference import InputError, Scene, load_scene
 
 T_END = "600"
@@ -103,7 +103,7 @@ def test_a_study_goes_on_where_it_stopped_and_gives_the_same_front(short: Scene,
 
 def test_the_command_writes_a_report_and_one_json_document(tmp_path: Path) -> None:
     words = ["study", "paris", "--methods", "heyoka_double", "--no-formulations", "--t-end", T_END, "--json"]
-    result = CliRunner().invoke(app, [*words, "--out", str(tmp_path / "out")])
+    result = CliRunner().invoke(commands(), [*words, "--out", str(tmp_path / "out")])
     assert result.exit_code == 0, result.output
     document = json.loads(result.stdout)
     assert {"scene", "t_end", "reference", "rows"} <= document.keys()
@@ -117,7 +117,7 @@ def test_the_command_writes_a_report_and_one_json_document(tmp_path: Path) -> No
     [["--methods", "rk5"], ["--limit", "0"], ["--precisions", "12"], ["--precisions", "x"], ["--t-end", "-1"]],
 )
 def test_wrong_options_are_refused(options: list[str]) -> None:
-    result = CliRunner().invoke(app, ["study", "paris", *options])
+    result = CliRunner().invoke(commands(), ["study", "paris", *options])
     assert isinstance(result.exception, InputError)
     assert result.exception.exit_status == 2
 
@@ -130,7 +130,7 @@ def test_somebody_elses_program_is_a_row_of_the_study(tmp_path: Path) -> None:
     )
     command = f"python3 {script} {{t_end}} {{grid_step}}"
     words = ["study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--json"]
-    result = CliRunner().invoke(app, words)
+    result = CliRunner().invoke(commands(), words)
     assert result.exit_code == 0, result.output
     (row,) = (row for row in json.loads(result.stdout)["rows"] if row["method"] != "rkmk4")  # it has no {setting}
     assert row["method"] == "still.py"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
@@ -266,14 +267,60 @@ def test_an_older_dataset_is_replaced_also_where_folders_cannot_be_swapped(datas
     assert [path.name for path in dataset.parent.iterdir()] == ["paris"]
 
 
-def test_what_a_killed_process_left_is_cleared_and_what_a_living_one_holds_is_not(dataset, solution):
-    dead = dataset.parent / ".paris.partial-999999999"
-    alive = dataset.parent / f".paris.partial-{os.getppid()}"
-    for folder in (dead, alive):
-        folder.mkdir()
-    write(solution, dataset)
-    assert not dead.exists()
-    assert alive.exists()
+def test_an_end_between_the_two_renames_loses_nothing(dataset, solution, monkeypatch):
+    before = {path.name: path.read_bytes() for path in dataset.iterdir()}
+    renames, rename = [], Path.rename
+
+    def interrupted(self, target):
+        renames.append(target)
+        if len(renames) == 2:
+            raise KeyboardInterrupt
+        return rename(self, target)
+
+    monkeypatch.setattr(writer, "_exchange", lambda *_: False)
+    monkeypatch.setattr(Path, "rename", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write(solution, dataset)
+    assert len(renames) == 3  # out of the way, in its place, and back again
+    assert {path.name: path.read_bytes() for path in dataset.iterdir()} == before
+    assert [path.name for path in dataset.parent.iterdir()] == ["paris"]
+
+
+def test_a_target_that_is_a_link_stays_one(dataset, solution):
+    link = dataset.parent / "link"
+    link.symlink_to("paris")
+    shorter = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level="computed")
+    write(shorter, link)
+    assert link.is_symlink()
+    assert load(dataset).manifest.digits == 8
+
+
+FAILURES = [
+    (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)), "No space left on device"),
+    (OSError(errno.EROFS, os.strerror(errno.EROFS)), "Read-only file system"),
+    (PermissionError(errno.EACCES, os.strerror(errno.EACCES)), "Permission denied"),
+    (OSError(errno.EIO, os.strerror(errno.EIO)), "Input/output error"),
+]
+
+
+@pytest.mark.parametrize(("error", "words"), FAILURES, ids=[words for _, words in FAILURES])
+@pytest.mark.parametrize(
+    "place", ["os.fsync", "tempfile.mkdtemp", "pathlib.Path.mkdir", "reference.dataset.write._exchange"]
+)
+def test_a_disk_that_refuses_is_a_message_and_the_old_dataset_stays(
+    dataset, solution, monkeypatch, error, words, place
+):
+    def refuse(*_, **__):
+        raise error
+
+    before = {path.name: path.read_bytes() for path in dataset.iterdir()}
+    monkeypatch.chdir(dataset.parent)
+    with monkeypatch.context() as patch:
+        patch.setattr(place, refuse)
+        with pytest.raises(InputError, match=rf"--out: got 'paris', expected a writable place .*\. {words}\."):
+            write(solution, "paris")
+    assert {path.name: path.read_bytes() for path in dataset.iterdir()} == before
+    assert [path.name for path in dataset.parent.iterdir()] == ["paris"]
 
 
 def test_a_dataset_is_called_by_its_scene_and_by_what_was_changed(paris):

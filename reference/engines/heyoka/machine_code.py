@@ -1,0 +1,22 @@
+"""heyoka's own cache of machine code on disk: a damaged one, or none for want of a home, costs time only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import heyoka as hy
+
+from ...precision import NumberType
+from .log import watched_log
+
+
+@contextmanager
+def compiling(number: NumberType) -> Iterator[None]:
+    """Compile meanwhile; what heyoka writes to stdout about its cache is not passed on.
+
+    Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it is switched off.
+    """
+    hy.llvm_state.set_diskcache_enabled(number.hardware and bool(hy.llvm_state.get_diskcache_path()))
+    with watched_log():
+        yield

@@ -1,0 +1,106 @@
+"""Have a command send itself a signal at the n-th event that Python reports (PEP 578): any moment, at any load.
+
+Events are imports, opened files, renames, started processes, compiled code and the like: all that a command does
+to the world, and enough between for a moment to be chosen by the time that it has in an undisturbed run.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from places import ROOT
+
+PATIENCE_S = 300.0
+
+
+@dataclass(frozen=True)
+class Ended:
+    """A command that has ended: exit status (minus the signal that killed it), stdout, stderr, its process group."""
+
+    status: int
+    out: str
+    err: str
+    group: int
+
+
+def ended_at(
+    event: int, number: signal.Signals, words: Sequence[object], environment: dict[str, str] | None = None
+) -> Ended:
+    """Run `foucault words`; at an event, a signal goes to its group, or to it alone if that is SIGKILL."""
+    return _run([str(event), str(int(number)), "-"], words, environment)
+
+
+def event_times(note: Path, words: Sequence[object], environment: dict[str, str] | None = None) -> list[float]:
+    """Return the time of each event of an undisturbed `foucault words`, in s."""
+    undisturbed = _run(["-1", "0", str(note)], words, environment)
+    assert undisturbed.status in (0, 1), undisturbed.err
+    times: list[float] = json.loads(note.read_text())
+    return times
+
+
+def chosen(times: list[float], count: int, seed: int) -> list[int]:
+    """Choose events at random, every second of the run alike."""
+    source = random.Random(seed)
+    moments = [source.uniform(times[0], times[-1]) for _ in range(count)]
+    return [next(i for i, time_s in enumerate(times) if time_s >= moment) for moment in moments]
+
+
+def _run(how: list[str], words: Sequence[object], environment: dict[str, str] | None) -> Ended:
+    command = [sys.executable, __file__, *how, *map(str, words)]
+    with subprocess.Popen(
+        command,
+        cwd=ROOT,
+        env={**os.environ, **(environment or {})},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        try:
+            out, err = process.communicate(timeout=PATIENCE_S)
+        except BaseException:
+            os.killpg(process.pid, signal.SIGKILL)
+            raise
+    return Ended(process.returncode, out, err, process.pid)
+
+
+def _foucault(event: int, number: int, note: str, words: list[str]) -> None:
+    sys.path.insert(0, str(ROOT))
+    from foucault import main
+
+    times: list[float] = []
+    done = False
+
+    def hook(*_: object) -> None:
+        nonlocal done
+        if done:
+            return
+        times.append(time.monotonic())
+        if len(times) - 1 == event:
+            done = True
+            if number == signal.SIGKILL:
+                os.kill(os.getpid(), number)
+            else:
+                os.killpg(0, number)
+
+    sys.argv = ["foucault", *words]
+    sys.addaudithook(hook)
+    try:
+        main()
+    finally:
+        done = True
+        if note != "-":
+            Path(note).write_text(json.dumps(times))
+
+
+if __name__ == "__main__":
+    _foucault(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3], sys.argv[4:])
