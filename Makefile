@@ -1,6 +1,6 @@
 # Two commands on a fresh machine with python3 (3.11 or newer) and make:
 #   make golden   makes .venv of what solving needs (requirements.lock), then data/golden/paris
-#   make test     adds what this page of tests needs (requirements-test.lock), then runs lint, types and tests
+#   make test     adds what tests need (requirements-test.lock), then runs lint, types and tests
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
