@@ -1,41 +1,59 @@
 # Two commands on a fresh machine with python3 (3.11 or newer) and make:
-#   make golden   sets up .venv from requirements.lock and makes data/golden/paris
-#   make test     sets up .venv and runs lint, types and tests
+#   make golden   makes .venv of what solving needs (requirements.lock), then data/golden/paris
+#   make test     adds what tests need (requirements-test.lock), then runs lint, types and tests
 PYTHON ?= python3
 BIN := .venv/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
 .PHONY: golden test campaign lint lock clean
 
-golden: .venv/ready
+golden: .venv/solving
+	@echo "Solving 24 h of the pendulum in Paris, twice, to compare: half a minute to two minutes"
 	$(BIN)/foucault generate paris
+	@echo "Checking what was written"
 	$(BIN)/foucault verify paris
 
+# Each worker takes whole files: what a file prepares is prepared once.
 test: lint
-	$(BIN)/python -m pytest -q -n 2 --cov --cov-report=term-missing:skip-covered --cov-fail-under=95
+	@echo "Running the tests: about ten minutes"
+	$(BIN)/python -m pytest -q -n 2 --dist loadgroup --no-loadscope-reorder \
+	  --cov --cov-report=term-missing:skip-covered --cov-fail-under=95
 
 # Tests by the thousand (damaged files, forgeries, fuzzed inputs, kills): `make test` runs a short form of each.
-campaign: .venv/ready
-	$(BIN)/python -m pytest -q tests/campaigns --long
+campaign: .venv/testing
+	$(BIN)/python -m pytest -q -n 2 --dist loadgroup --long -m campaign
 
-lint: .venv/ready
+lint: .venv/testing
+	@echo "Checking style and types"
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
-.venv/ready: requirements.lock pyproject.toml
+.venv/solving: requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "foucault needs Python 3.11 or newer; $(PYTHON) is older. Try: make PYTHON=python3.12 golden" >&2; exit 2; }
 	@$(PYTHON) -c 'import venv, ensurepip' 2>/dev/null || \
 	  { echo "$(PYTHON) has no venv module. On Debian and Ubuntu: apt install python3-venv" >&2; exit 2; }
-	$(PYTHON) -m venv --clear .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps -e .
-	touch $@
+	@echo "Creating .venv"
+	@$(PYTHON) -m venv --clear .venv
+	@echo "Downloading and installing $(call packages,requirements.lock) packages into .venv"
+	@$(INSTALL) --require-hashes -r requirements.lock
+	@echo "Installing foucault itself into .venv"
+	@$(INSTALL) --no-build-isolation --no-deps -e .
+	@touch $@
 
-# For maintainers: pin again (needs uv).
+.venv/testing: .venv/solving requirements-test.lock
+	@echo "Bringing .venv to the $(call packages,requirements-test.lock) packages that tests need"
+	@$(INSTALL) --require-hashes -r requirements-test.lock
+	@touch $@
+
+# For maintainers: pin again (needs uv). The second lock contains the first.
+PIN := uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
+  --no-emit-index-url --no-header --no-annotate -q --extra fast --extra build
 lock:
-	uv pip compile pyproject.toml --universal --python-version 3.11 --extra enclose --extra methods --extra plot --extra test --extra build \
-	  --generate-hashes --no-emit-index-url --no-header --no-annotate -q -o requirements.lock
+	$(PIN) -o requirements.lock
+	$(PIN) -c requirements.lock --extra enclose --extra methods --extra plot --extra test -o requirements-test.lock
 
 clean:
 	rm -rf .venv build dist .coverage .coverage.* .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import shlex
 import signal
 import subprocess
@@ -11,7 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
-from interruption import gone_within, interrupted
+from interruption import PATIENCE_S, gone_within, interrupted
 from small_scenes import make_scene
 
 from compare.candidates.external import arguments, placeholders, run_program, timed
@@ -37,6 +38,12 @@ def ends_within(pid: int, seconds: float) -> bool:
             return True
         time.sleep(0.05)
     return False
+
+
+def children_s() -> float:
+    """CPU seconds of all children of this process that have ended."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
 
 
 def test_placeholders_are_the_scenes_own_words(paris):
@@ -84,11 +91,12 @@ def test_a_command_that_cannot_be_filled_in_is_refused(paris, command, words):
 
 def test_output_and_cpu_time_come_back():
     busy = "import time; b = time.process_time()\nwhile time.process_time() < b + 0.2: pass\nprint('t,x,y')"
+    before, begun = children_s(), time.monotonic()
     output, cpu, wall = run_program(python(busy))
     with output:
         assert output.read() == b"t,x,y\n"
-    assert 0.2 < cpu < 2
-    assert wall > 0.2
+    assert 0.2 < cpu <= children_s() - before + 1e-6  # the kernel's own count, in microseconds
+    assert 0 < wall <= time.monotonic() - begun
 
 
 def test_children_count_in_the_cpu_time():
@@ -123,8 +131,8 @@ def test_a_signal_is_a_failure_too():
 
 
 PARENT = """
-import subprocess, sys, time
-child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"])
+import signal, subprocess, sys
+child = subprocess.Popen([sys.executable, "-c", "import signal; signal.pause()"])
 open(sys.argv[1], "w").write(str(child.pid))
 {then}
 """
@@ -136,29 +144,27 @@ def parent(tmp_path, then):
 
 
 def test_a_timeout_ends_the_program_and_its_children(tmp_path):
-    words, note = parent(tmp_path, "time.sleep(60)")
-    begun = time.monotonic()
-    with pytest.raises(InputError, match=r"ends within 1\.5 s \(--timeout\)"):
-        run_program(words, timeout_s=1.5)
-    assert time.monotonic() - begun < 20
-    assert ends_within(int(note.read_text()), 5)
+    words, note = parent(tmp_path, "signal.pause()")
+    with pytest.raises(InputError, match=r"ends within 4 s \(--timeout\)"):
+        run_program(words, timeout_s=4)
+    assert ends_within(int(note.read_text()), PATIENCE_S)
 
 
 def test_what_a_program_leaves_running_is_ended(tmp_path):
     words, note = parent(tmp_path, "print('done')")
     output, _, _ = run_program(words)
     output.close()
-    assert ends_within(int(note.read_text()), 5)
+    assert ends_within(int(note.read_text()), PATIENCE_S)
 
 
 DAEMON = """
-import os, sys, time
+import os, signal, sys, time
 if os.fork() == 0:
     os.setsid()
     if os.fork() == 0:
         with open(sys.argv[1], "w") as note:
             note.write(f"{os.getpid()} {os.getsid(0)}")
-        time.sleep(60)
+        signal.pause()
     os._exit(0)
 os.wait()
 while not (os.path.exists(sys.argv[1]) and open(sys.argv[1]).read()):
@@ -167,13 +173,13 @@ while not (os.path.exists(sys.argv[1]) and open(sys.argv[1]).read()):
 
 
 @pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the mark is looked for in /proc")
-@pytest.mark.parametrize(("then", "late"), [("time.sleep(60)", True), ("print('done')", False)])
+@pytest.mark.parametrize(("then", "late"), [("signal.pause()", True), ("print('done')", False)])
 def test_what_forks_into_a_session_of_its_own_is_ended_as_well(tmp_path, then, late):
     note = tmp_path / "pid"
     words = [*python(DAEMON + then), str(note)]
     if late:
         with pytest.raises(InputError, match="--timeout"):
-            run_program(words, timeout_s=2.0)
+            run_program(words, timeout_s=4)
     else:
         run_program(words)[0].close()
     pid, session = map(int, note.read_text().split())
@@ -183,7 +189,7 @@ def test_what_forks_into_a_session_of_its_own_is_ended_as_well(tmp_path, then, l
 
 @pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the mark is looked for in /proc")
 def test_nobody_elses_processes_are_ended_with_a_program():
-    with subprocess.Popen(python("import time; time.sleep(60)"), start_new_session=True) as bystander:
+    with subprocess.Popen(python("import signal; signal.pause()"), start_new_session=True) as bystander:
         run_program(python("print(1)"))[0].close()
         assert alive(bystander.pid)
         bystander.kill()
@@ -217,7 +223,7 @@ def test_repeats_are_timed_after_a_warm_up(tmp_path):
     assert note.read_text() == "xxx"
     assert (took.runs, took.warm) == (2, True)
     assert took.spread >= 0
-    assert 0 < took.cpu_s < 10
+    assert took.cpu_s > 0
 
 
 def test_a_single_run_says_that_nothing_warmed_it_up():
@@ -228,10 +234,10 @@ def test_a_single_run_says_that_nothing_warmed_it_up():
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_interrupted_nothing_of_the_program_runs_on(tmp_path, number):
-    words, note = parent(tmp_path, "time.sleep(60)")
+    words, note = parent(tmp_path, "signal.pause()")
     command = ["score", "paris", "--run", shlex.join(words)]
     status, err, group = interrupted(command, lambda *_: note.exists() and note.read_text() != "", number)
     assert status == 128 + number
     assert b"Traceback" not in err
-    assert ends_within(int(note.read_text()), 5)
-    assert gone_within(group, 5)
+    assert ends_within(int(note.read_text()), PATIENCE_S)
+    assert gone_within(group, PATIENCE_S)

@@ -24,7 +24,6 @@ from foucault import commands
 from reference import InputError, Scene, load_scene
 
 T_END = "600"
-CLEARLY = 1.5  # a factor that other work on the machine does not turn round
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +80,8 @@ def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pyt
     assert (row.status, row.reason, row.cpu_s) == ("not_installed", "not installed (x)", None)
 
 
-def test_a_study_goes_on_where_it_stopped_and_gives_the_same_front(short: Scene, tmp_path: Path) -> None:
+def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path) -> None:
+    short = load_scene("paris", ["run.t_end=120", "inputs=binary64"])
     items = [item for item in plan(short, ["rk4", "heyoka_double", "gauss_legendre"], False) if item[2] != 0.002]
     reports: list[str] = []
     journal_path = tmp_path / "rows.jsonl"
@@ -92,12 +92,9 @@ def test_a_study_goes_on_where_it_stopped_and_gives_the_same_front(short: Scene,
     assert again.rows[:4] == first.rows
     assert len(reports) == len(items) - 4
     other = study(short, items=items)
-    costs = [{row.key: row.cpu_s for row in one.rows if row.measured} for one in (again, other)]
-    ahead = {row.key for one in (again, other) for row in front(one.rows)} & costs[0].keys() & costs[1].keys()
-    assert len(ahead) > 5
-    for one, two in itertools.combinations(ahead, 2):
-        ratios = [cost[one] / cost[two] for cost in costs]
-        assert not min(ratios) < 1 / CLEARLY < CLEARLY < max(ratios), (one, two)
+    measured = [[(*row.key, row.status, row.error_m, row.steps) for row in one.rows] for one in (again, other)]
+    assert measured[0] == measured[1]  # all but what they cost
+    assert len(front(again.rows)) > 5
     assert Row.parsed(json.loads(json.dumps(vars(again.rows[0])))) == again.rows[0]
 
 

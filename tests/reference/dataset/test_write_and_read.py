@@ -6,10 +6,8 @@ import errno
 import json
 import math
 import os
-import signal
 import subprocess
 import sys
-import time
 from fractions import Fraction
 from importlib.resources import files
 from pathlib import Path
@@ -362,40 +360,56 @@ def test_a_name_means_the_same_folder_to_those_who_write_and_those_who_read(monk
     assert golden_folder("nothing") == Path("nothing")
 
 
-WRITER = """
-import sys, reference
+KILLED = """
+import os, shutil, signal, sys
 from pathlib import Path
+import reference
+from reference.dataset.verify import problems_of
 from reference.dataset.write import write
+
+FILES = {"open", "os.mkdir", "os.scandir", "os.rename", "os.rmdir", "os.remove", "shutil.rmtree", "ctypes.dlsym"}
 solution = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level="computed")
-print("ready", flush=True)
-while True:
-    write(solution, Path(sys.argv[1]))
-    print("written", flush=True)
+target, existing = Path(sys.argv[1]), sys.argv[2] == "existing"
+write(solution, target)  # imports what it needs
+
+def killed_before(operation):
+    count = 0
+    def watch(event, _):
+        nonlocal count
+        if event in FILES:
+            count += 1
+        if event in FILES and count == operation:
+            os.kill(os.getpid(), signal.SIGKILL)
+    child = os.fork()
+    if child == 0:
+        sys.addaudithook(watch)
+        try:
+            write(solution, target)
+        finally:
+            os._exit(0)
+    return os.waitpid(child, 0)[1] == signal.SIGKILL
+
+operation, alive = 0, False
+while not alive:
+    if not existing and target.exists():
+        shutil.rmtree(target)
+    operation += 1
+    alive = not killed_before(operation)
+    there = target.exists()
+    print("whole" if there and problems_of(target) == [] else "damaged" if there else "none", flush=True)
 """
 
 
-def test_killed_at_any_of_twenty_moments_the_dataset_is_whole(tmp_path):
-    def killed_after(target: Path, seconds: float | None) -> float:
-        """Kill the writer so long after it began (None: once it has written); return how long it ran."""
-        with subprocess.Popen(
-            [sys.executable, "-c", WRITER, str(target)], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL
-        ) as process:
-            assert process.stdout is not None
-            assert process.stdout.readline() == b"ready\n"
-            start = time.monotonic()
-            if seconds is None:
-                assert process.stdout.readline() == b"written\n"
-            else:
-                time.sleep(seconds)
-            process.send_signal(signal.SIGKILL)
-            return time.monotonic() - start
-
-    one_write = killed_after(tmp_path / "existing", None)
-    for moment in range(20):
-        target = tmp_path / ("existing" if moment % 2 else f"new{moment}")
-        killed_after(target, one_write * moment / 14)
-        assert not target.exists() or problems_of(target) == []
-    assert problems_of(tmp_path / "existing") == []
+@pytest.mark.parametrize("before", ["existing", "new"])
+def test_killed_before_any_operation_on_files_the_dataset_is_whole(tmp_path, before):
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED, tmp_path / "written", before], capture_output=True, text=True, check=True
+    )
+    *found, last = done.stdout.split()
+    assert len(found) > 20  # operations, and it was killed before each
+    assert set(found) == ({"whole"} if before == "existing" else {"none", "whole"})
+    assert last == "whole"  # the last one was not killed …
+    assert [path.name for path in tmp_path.iterdir()] == ["written"]  # … and cleared what the others left
 
 
 def test_bounds_cover_the_rounding_to_the_printed_digits(dataset):

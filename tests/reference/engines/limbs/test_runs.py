@@ -183,8 +183,10 @@ print((result.grid.values, result.transits.values, result.steps))
 """
 
 
-@pytest.mark.slow
-def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, capsys):
+@pytest.mark.campaign
+def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, capsys, pytestconfig):
+    if not pytestconfig.getoption("--long"):
+        pytest.skip("compiles the engine once more, here under --long; the canaries of its products run always")
     plain = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(tmp_path)}
     command = [sys.executable, "-c", SHORT]
     generic = subprocess.run(command, env={**os.environ, **plain}, capture_output=True, text=True, check=True)
