@@ -65,6 +65,8 @@ def store(kind: str, name: str, put: Callable[[Path], object], *, executed: bool
     """
     for folder in _folders(kind, executed):
         path = folder / name
+        if path.is_symlink():  # no entry is one; what is written to it would land elsewhere
+            discard(path)
         try:
             try:
                 put(path)

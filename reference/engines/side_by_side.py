@@ -14,6 +14,7 @@ from .registry import engines, run
 
 REPORT_S = 0.2  # seconds between two reports of progress from the child
 WORTH_A_PROCESS = 4.0  # estimated CPU seconds from which a child pays for its start
+COMPILATION_S = 10.0  # or for the wait while the other run compiles on its first use
 
 
 def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None) -> tuple[Run, Run]:
@@ -25,8 +26,9 @@ def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None
         steps: about how many steps either takes.
         report: called with the simulated time, the mean of both.
     """
-    saved_s = min(engines()[plan.engine].expected_s(steps, plan.number.prec) for plan in (first, second))
-    if (os.cpu_count() or 1) < 2 or saved_s < WORTH_A_PROCESS:
+    first_s, second_s = (engines()[plan.engine].expected_s(steps, plan.number.prec) for plan in (first, second))
+    worth = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= COMPILATION_S
+    if (os.cpu_count() or 1) < 2 or not worth:
         first_run = run(first, report and (lambda t: report(t / 2)))
         end = float(first.times[-1])
         return first_run, run(second, report and (lambda t: report((end + t) / 2)))

@@ -4,5 +4,6 @@
 - `tables`: grid times, the first row, doubles, the digits of each column, order and directions of the transits.
 - `physics`: each row by itself: sphere, velocity along it, invariant, the acceleration at a transit.
 - `index`: the seal of a dataset that ships, against the one inside the package.
-- `motion`: the rows together: the scene is integrated again from its release, or else from every row to the next.
+- `motion`: the rows together: the scene is integrated again from its release; where that does not decide,
+  `shooting`: from every row to the next, within what `propagation` says of the bounds meanwhile.
 """

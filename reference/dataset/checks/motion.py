@@ -1,7 +1,7 @@
 """Check the rows together: integrate the scene again in limbs, and compare every printed number with the result.
 
 Two runs from the exact release, at two precisions, show by their disagreement how far the finer one can be trusted.
-Where even the most bits that limbs have do not decide, as on a chaotic scene, each row is integrated to the next.
+Where even the most bits that limbs have do not decide, as on a chaotic scene, `shooting` goes from row to row.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import islice
 
 from ...columns import GRID, TRANSITS
 from ...engines.limbs.size import LIMB_BITS, MOST_PREC
@@ -23,8 +24,10 @@ from ...table import Table
 from ..files import Files
 from ..manifest import Manifest
 from ..sheets import Sheet
+from . import shooting
 
 BASE_S, ROW_S, TRANSIT_S = 10.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
+MAX_ROWS = 20  # rows that are named
 PATIENCE = 4  # times that, before a run that was expected to be short is given up
 LEAST_PREC = LONG_DOUBLE_BITS + 1
 FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
@@ -47,7 +50,6 @@ def problems(files: Files, report: Progress | None = None) -> tuple[list[str], l
     expected = 2 * engines()["limbs"].expected_s(_steps(files), prec)
     if expected > allowed:
         return [], [f"{left_out}, which would take about {expected:.0f} s: --recompute does it"]
-    remarks: list[str] = []
     seek = files.scene.run.transits and manifest.transits == "complete" and "transits.csv" in files.tables
     deadline = time.process_time() + PATIENCE * allowed
     try:
@@ -56,13 +58,16 @@ def problems(files: Files, report: Progress | None = None) -> tuple[list[str], l
             fine = _run(files, prec, seek, deadline, report)
             found = _compared(files, coarse, fine, seek)
             if found is not None:
-                return found, remarks
+                return found, []
             prec += FINER_BITS
+        reason = shooting.impossible(files)
+        if not reason:
+            return list(islice(shooting.problems(files, seek), MAX_ROWS)), []
     except _TooLong:
-        return [], [f"{left_out}, which takes more than {PATIENCE * allowed:.0f} s: --recompute does it"]
+        reason = f"it takes more than {PATIENCE * allowed:.0f} s: --recompute does it"
     except (IntegrationError, UnreachableError) as error:
-        return [], [f"{left_out}: {error}"]
-    return [], [f"{left_out}: it takes more than {MOST_PREC} bits; --recompute does it"]
+        reason = str(error)
+    return [], [f"{left_out}: {reason}"]
 
 
 def _first_prec(manifest: Manifest) -> int:
