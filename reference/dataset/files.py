@@ -15,7 +15,9 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from ..errors import DatasetError, FoucaultError, InputError
+from ..nearest import did_you_mean
 from ..scene import Scene, parse_scene
+from ..shipped import seals
 from .manifest import MANIFEST, OPTIONAL, Manifest
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 
@@ -123,9 +125,8 @@ def _opened(folder: Path) -> Iterator[_Directory]:
 
 
 def _no_dataset(folder: Path) -> InputError:
-    return InputError(
-        "PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", "Make it with `foucault generate`."
-    )
+    advice = did_you_mean(folder.name, seals(), "Make it with `foucault generate`.")
+    return InputError("PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", advice)
 
 
 def _read(directory: _Directory, name: str, size: int | None) -> bytes:
