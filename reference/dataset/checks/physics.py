@@ -118,14 +118,19 @@ class _Moments:
         for row in self.rows:
             x, y, z, vx, vy, vz = (to_mpf(q, ctx) for q in row)
             if self._is_deep(row):
-                z = ctx.sqrt(k.length * k.length - x * x - y * y) * (1 if z > 0 else -1)
+                z = ctx.sqrt(max(ctx.zero, k.length * k.length - x * x - y * y)) * (1 if z > 0 else -1)
             if z and (self.at_transits or self._is_deep(row)):
                 vz = -(x * vx + y * vy) / z
             found.append(to_fraction(quantity([x, y, z, vx, vy, vz], k) + ctx.zero))
         return found
 
+    @np.errstate(all="ignore")
     def allowed(self, quantity: Quantity) -> list[Fraction]:
-        """Return how far a quantity of each state may be off by the bounds on the state."""
+        """Return how far a quantity of each state may be off by the bounds on the state.
+
+        Raises:
+            OverflowError: no double is as large.
+        """
         k = constants(self.files.scene.exact, context(GUARD_BITS)).converted(float)
         columns = [np.array([float(row[j]) for row in self.rows]) for j in range(6)]
         deep = np.array([self._is_deep(row) for row in self.rows])
@@ -145,6 +150,8 @@ class _Moments:
             step = max(NUDGE * (k.length if j < 3 else fastest or k.length), float(bound))
             ends = (of([*columns[:j], columns[j] + side * step, *columns[j + 1 :]]) for side in (1, -1))
             slopes = np.max([np.abs(end - value) for end in ends], axis=0) / step
+            if not np.isfinite(slopes).all():
+                raise OverflowError
             total = [so_far + Fraction(slope) * bound * SLACK for so_far, slope in zip(total, slopes, strict=True)]
         return total
 

@@ -31,9 +31,12 @@ def problems(files: Files) -> Iterator[str]:
 
 
 def _times(files: Files) -> Iterator[str]:
-    grid, times = files.tables["grid.csv"], files.scene.exact.grid
+    grid, inputs = files.tables["grid.csv"], files.scene.exact
+    whole = int(inputs.t_end / inputs.grid_step)
+    times = inputs.grid if whole < len(grid.rows) <= whole + 2 else []  # a scene may have millions of times
     if [Fraction(row[0]) for row in grid.rows] != times:
         yield "grid.csv: the times are not those of the scene"
+        return
     if files.manifest.decimals["grid"]["t"] != exact_decimals(tuple(times)):
         yield f"{MANIFEST}: decimals of the grid's t do not follow from the scene"
 
