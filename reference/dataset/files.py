@@ -230,7 +230,8 @@ def _parsed(text: str, header: tuple[str, ...], count: int, columns: list[tuple[
     if text.count("\n") != count + 1 or not text.endswith("\n"):
         raise ValueError(f"{text.count(chr(10)) - 1} rows, the manifest counts {count}")
     whole = re.compile(",".join(f"(?:{pattern})" for _, pattern in columns), re.ASCII)
-    rows, start = [], text.index("\n") + 1
+    rows: list[tuple[str, ...]] = []
+    start = text.index("\n") + 1
     while start < len(text):
         end = text.index("\n", start)
         line = text[start:end]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from ..errors import DatasetError
+from ..errors import BeyondDoublesError, DatasetError
 from .checks import index, motion, physics, record, tables
 from .files import Files, read_files
 
@@ -47,7 +47,7 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
     if not problems:
         try:
             problems, left_out = motion.problems(files, report)
-        except ArithmeticError:
+        except (ArithmeticError, BeyondDoublesError):
             problems, left_out = [BEYOND], []
         notes += left_out
     return Verification(problems[:MAX_PROBLEMS], notes)
@@ -70,7 +70,7 @@ def _row_by_row(files: Files) -> list[str]:
     for check in (tables, record, physics):
         try:
             problems = list(islice(check.problems(files), MAX_PROBLEMS))
-        except ArithmeticError:
+        except (ArithmeticError, BeyondDoublesError):
             problems = [BEYOND]
         if problems:
             return problems
