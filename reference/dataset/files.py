@@ -25,7 +25,8 @@ MAX_FILES = 1 << 29  # all together
 MAX_MISTAKES = 1000  # of a manifest, for each of which pydantic would make a text
 HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER}
 _NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"}
+_BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
+_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND}
 _DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
 _HEXFLOAT = r"-?0x[01][.][0-9a-f]{1,13}p[+-][0-9]{1,4}"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 from collections.abc import Callable
@@ -16,10 +17,10 @@ from reference.dataset.manifest import MANIFEST, Manifest
 from reference.dataset.place import dataset_id
 from reference.dataset.record import command, equations_of, notes_of
 from reference.dataset.render import derived_texts
-from reference.dataset.sheets import GRID_HEADER, Sheet, scene_inputs
+from reference.dataset.sheets import GRID_HEADER, TRANSITS_HEADER, Sheet, scene_inputs
 from reference.errors import FoucaultError
 from reference.model.start import Start
-from reference.precision import bits_of, fixed_decimal, rounded_up, to_fraction
+from reference.precision import GUARD_BITS, bits_of, fixed_decimal, rounded_up, to_fraction
 from reference.scene import Scene, parse_scene
 from reference.solver.rounding import exact_decimals
 
@@ -79,10 +80,10 @@ class Draft:
             scene = scene or self.scene()
             initial, drift = invariant_drift(scene, self.sheet())
             self.document["invariant"] = {"h_m2_s2": initial, "drift_m2_s2": drift}
-            self.document["files"] = {}
-            made = derived_texts(
-                Manifest.model_validate({**self.document, "seal": "", "files": _PAGES}), {"grid.csv": self.sheet()}
-            )
+            manifest = Manifest.model_validate({**self.document, "seal": "", "files": _PAGES})
+            tables = {"grid.csv": self.sheet()}
+            tables |= {"transits.csv": Sheet(TRANSITS_HEADER, [], {})} if "transits.csv" in self.texts else {}
+            made = derived_texts(manifest, tables)
         except (FoucaultError, ArithmeticError, ValueError, LookupError):
             return
         self.texts |= {name: text.encode() for name, text in made.items()}
@@ -103,9 +104,16 @@ class Draft:
         named = self.scene().with_values(["run.level=computed", "run.transits=false", *assignments])
         inputs, digits = named.exact, named.run.digits
         count = rows or int(min(MADE_UP_ROWS, inputs.t_end / inputs.grid_step))
-        times = inputs.grid if count < MADE_UP_ROWS and rows is None else [inputs.t_end * k / count for k in range(count)]
-        start = Start.of(inputs, bits_of(2 * digits) + 64)
-        numbers = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
+        times = (
+            inputs.grid if count < MADE_UP_ROWS and rows is None else [inputs.t_end * k / count for k in range(count)]
+        )
+        numbers = [Fraction(text) for text in self.sheet().rows[0][1:]]
+        with contextlib.suppress(FoucaultError):
+            start = Start.of(inputs, bits_of(2 * digits) + GUARD_BITS)
+            numbers = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
+        equations = self.document["equations"]
+        with contextlib.suppress(FoucaultError):
+            equations = equations_of(named, "inertial").model_dump()
         places = {name: min(1000, digits) for name in GRID}
         decimals = {"t": min(1000, exact_decimals(tuple(times))), **places}
         state = [fixed_decimal(value, places[name]) for name, value in zip(GRID, numbers, strict=True)]
@@ -113,6 +121,8 @@ class Draft:
         bounds = {name: bound or rounded_up(Fraction(1, 2 * 10**place)) for name, place in places.items()}
         name = dataset_id(named)
         self.texts = {"grid.csv": sheet.csv().encode(), "certified.txt": b""}
+        if named.run.transits:
+            self.texts["transits.csv"] = (",".join(TRANSITS_HEADER) + "\n").encode()
         self.document.update(
             id=name,
             notes=notes_of(named),
@@ -129,9 +139,9 @@ class Draft:
                 "transits": {},
             },
             counts={"grid": len(sheet.rows), "transits": 0, "possible": 0},
-            transits="not asked for",
+            transits="complete" if named.run.transits else "not asked for",
             cross_checks=[],
-            equations=equations_of(named, "inertial").model_dump(),
+            equations=equations,
             command=command(named, "limbs", name),
         )
         self.refit(named)
