@@ -171,7 +171,7 @@ CASES: dict[str, Case] = {
     "a thousand digits of 2 million s": scene("run.digits=1000", "run.t_end=2e6", "run.grid_step=1e6"),
     "as long as it may take": scene("run.t_end=1.5e5", "run.grid_step=1e5"),
     "chaotic for long": scene(
-        "release.x=66.9", "release.y=0", "release.vx=30", "release.vy=20", "run.t_end=1e4", "run.grid_step=1e4"),
+        "release.x=66.9", "release.y=0", "release.vx=30", "release.vy=20", "run.t_end=1e3", "run.grid_step=1e3"),
     "100 rows of a long motion": scene("run.t_end=9.9e4", "run.grid_step=1e3"),
     "100 rows of anything within bounds of 1e300": scene("run.t_end=9.9e4", "run.grid_step=1e3", bound="1e+300"),
     "an angle of 180 degrees": angle,

@@ -130,7 +130,8 @@ def _compared(files: Files, coarse: Run, fine: Run, seek: bool) -> list[str] | N
         if directions != fine.directions:
             return [f"transits.csv: {len(directions)} transits, the motion has {len(fine.directions)}"]
         assert coarse.transits is not None
-        comparisons.append(_Comparison.of(manifest, "transits", sheet, coarse.transits, fine.transits))
+        if directions:
+            comparisons.append(_Comparison.of(manifest, "transits", sheet, coarse.transits, fine.transits))
     for comparison in comparisons:
         if not comparison.decided:
             return None
