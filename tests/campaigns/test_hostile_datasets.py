@@ -28,7 +28,7 @@ NOT_INTEGRATED = "the motion was not integrated again"  # a note of `verify`: to
 
 
 def test_no_dataset_ends_in_a_traceback_a_hang_or_full_memory(size, tally, tmp_path):
-    pairs = size(0, 400)
+    pairs = size(0, 200)
     scene = reference.load_scene("paris", ["run.t_end=180", "run.digits=15"]).model_copy(update={"id": "small"})
     source = write(reference.solve(scene), tmp_path / "good" / "small")
     work = tmp_path / "work"
