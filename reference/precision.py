@@ -107,8 +107,11 @@ def decimals_for(largest: Fraction, digits: int) -> int:
 
 def magnitude(value: Fraction) -> int:
     """Return floor(log10(value)) exactly: the power of ten of the leading digit of a positive number."""
-    guess = len(str(value.numerator)) - len(str(value.denominator))
-    return guess if value >= Fraction(10) ** guess else guess - 1
+    bits = value.numerator.bit_length() - value.denominator.bit_length()
+    guess = math.floor((bits + 1) * math.log10(2))  # the value is below 2**(bits + 1); texts of integers are limited
+    while value < Fraction(10) ** guess:
+        guess -= 1
+    return guess
 
 
 def rounded_up(value: Fraction, significant: int = 2) -> str:

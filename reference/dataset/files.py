@@ -21,11 +21,14 @@ from ..shipped import seals
 from .manifest import MANIFEST, OPTIONAL, Manifest
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 
-MAX_MANIFEST = 1 << 22  # bytes
+MAX_MANIFEST = 1 << 20  # bytes
 MAX_FILE = 1 << 28
+MAX_FILES = 1 << 29  # all together
+MAX_MISTAKES = 1000  # of a manifest, for each of which pydantic would make a text
 HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER}
 _NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": "[0-9](?:[.][0-9])?e[+-][0-9]{2,4}|0"}
+_BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
+_PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND}
 _DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
 _HEXFLOAT = r"-?0x[01][.][0-9a-f]{1,13}p[+-][0-9]{1,4}"
 
@@ -64,6 +67,9 @@ def read_files(folder: Path) -> Files:
             scene = scene_of(manifest)
         except FoucaultError as error:
             raise DatasetError(str(folder), [f"the manifest's scene is refused: {error}"]) from None
+        size = sum(record.bytes for record in manifest.files.values())
+        if size > MAX_FILES:
+            raise DatasetError(str(folder), [f"{MANIFEST}: files of {size} bytes, at most {MAX_FILES} are read"])
         texts: dict[str, str] = {}
         problems = []
         for name, record in manifest.files.items():
@@ -137,16 +143,18 @@ def _read(directory: _Directory, name: str, size: int | None) -> bytes:
     """
     path = name if directory.number is not None else directory.path / name
     # without blocking, because a named pipe would wait for a writer
-    with open(os.open(path, os.O_RDONLY | _NOT_BLOCKING, dir_fd=directory.number), "rb") as stream:
-        status = os.fstat(stream.fileno())
-        if not stat.S_ISREG(status.st_mode):
-            raise OSError(0, "not a regular file")
+    number = os.open(path, os.O_RDONLY | _NOT_BLOCKING, dir_fd=directory.number)
+    status = os.fstat(number)
+    if not stat.S_ISREG(status.st_mode):
+        os.close(number)  # `open` leaves that of a folder open
+        raise OSError(0, "not a regular file")
+    with open(number, "rb") as stream:
         if size is not None and status.st_size != size:
             raise OSError(0, f"{status.st_size} bytes, the manifest says {size}")
         most = MAX_MANIFEST if size is None else MAX_FILE
         if status.st_size > most:
             raise OSError(0, f"{status.st_size} bytes, at most {most} are read")
-        return stream.read(most + 1)
+        return stream.read(status.st_size + 1)  # which is also what is taken of the memory
 
 
 def _manifest(folder: Path, directory: _Directory) -> Manifest:
@@ -164,6 +172,8 @@ def _manifest(folder: Path, directory: _Directory) -> Manifest:
     except ValidationError as error:
         if isinstance(document, dict) and document.get("schema_version") == 1:
             raise refused("is of format 1: make the dataset again with `foucault generate`") from None
+        if error.error_count() > MAX_MISTAKES:
+            raise refused(f"breaks the schema in {error.error_count()} places") from None
         details = error.errors()[0]
         where = ".".join(map(str, details["loc"]))
         raise refused(f"breaks the schema{' at ' + where if where else ''}: {details['msg']}") from None
@@ -209,7 +219,7 @@ def _pattern(header: tuple[str, ...], decimals: Mapping[str, int], name: str) ->
     found = []
     for column in header:
         places = decimals.get(column, 0)
-        plain = "-?[0-9]{1,400}" + (f"[.][0-9]{{{places}}}" if places else "")
+        plain = "-?[0-9]{1,308}" + (f"[.][0-9]{{{places}}}" if places else "")
         number = _HEXFLOAT if column.endswith("_hex") else _DOUBLE if "binary64" in name else plain
         found.append((column, _PATTERNS.get(column, number)))
     return found
@@ -221,20 +231,24 @@ def _parsed(text: str, header: tuple[str, ...], count: int, columns: list[tuple[
         raise ValueError(f"the header must be {','.join(header)}")
     if text.count("\n") != count + 1 or not text.endswith("\n"):
         raise ValueError(f"{text.count(chr(10)) - 1} rows, the manifest counts {count}")
-    lines = text.split("\n")[1:-1]
     whole = re.compile(",".join(f"(?:{pattern})" for _, pattern in columns), re.ASCII)
-    rows = []
-    for number, line in enumerate(lines, 1):
-        cells = tuple(line.split(","))
+    rows: list[tuple[str, ...]] = []
+    start = text.index("\n") + 1
+    while start < len(text):
+        end = text.index("\n", start)
+        line = text[start:end]
         if not whole.fullmatch(line):
-            raise ValueError(f"row {number}: {_wrong_cell(cells, columns)}")
-        rows.append(cells)
+            raise ValueError(f"row {len(rows) + 1}: {_wrong_cell(line, columns)}")
+        rows.append(tuple(line.split(",")))
+        start = end + 1
     return Sheet(header, rows, {})
 
 
-def _wrong_cell(cells: tuple[str, ...], columns: list[tuple[str, str]]) -> str:
-    if len(cells) != len(columns):
-        return f"{len(cells)} numbers, not {len(columns)}"
+def _wrong_cell(line: str, columns: list[tuple[str, str]]) -> str:
+    count = line.count(",") + 1
+    if count != len(columns):
+        return f"{count} numbers, not {len(columns)}"
+    cells = line.split(",")
     wrong = [(n, c) for c, (n, p) in zip(cells, columns, strict=True) if not re.fullmatch(p, c, re.ASCII)]
     name, cell = wrong[0]
     return f"{name} = {cell[:80]!r} is not a number of this column's form"

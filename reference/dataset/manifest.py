@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from fractions import Fraction
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from ..columns import GRID, TRANSITS
 from ..scene import Level, Reading
 
 MANIFEST = "manifest.json"
@@ -164,6 +166,13 @@ class Manifest(_Part):
             == (self.transits == "undecided intervals"),
             "transits: the scene says whether they are asked for": (run.get("transits") == "true")
             == (self.transits != "not asked for"),
+            "counts: a grid has two times at least": self.counts.grid >= 2,
+            f"bounds.grid: must name the columns {', '.join(GRID)}": tuple(self.bounds.grid) == GRID,
+            f"bounds.transits: must name the columns {', '.join(TRANSITS)}": tuple(self.bounds.transits)
+            == (TRANSITS if self.counts.transits else ()),
+            "bounds: a number beyond the range of binary64": all(
+                math.isfinite(float(bound)) for bound in (*self.bounds.grid.values(), *self.bounds.transits.values())
+            ),
             "notes: one for each flag": set(self.notes) == set(self.flags),
             f"files: {' and '.join(ALWAYS)} belong to every dataset": set(ALWAYS) <= set(self.files),
         }

@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from ..errors import DatasetError
+from ..errors import BeyondDoublesError, DatasetError
 from .checks import index, motion, physics, record, tables
 from .files import Files, read_files
 
 MAX_PROBLEMS = 20  # sentences returned at most
+BEYOND = "a number of the scene or of a table, or what follows from it, is beyond the range of binary64"
 
 
 @dataclass(frozen=True)
@@ -40,10 +41,14 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
         files = read_files(folder)
     except DatasetError as error:
         return Verification(error.problems[:MAX_PROBLEMS], [])
-    notes = [f"{name}: not part of the dataset, ignored" for name in files.foreign]
+    notes = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:MAX_PROBLEMS]]
+    notes += [f"and {more} more"] if (more := len(files.foreign) - MAX_PROBLEMS) > 0 else []
     problems = [*islice(index.problems(files), MAX_PROBLEMS), *_row_by_row(files)]
     if not problems:
-        problems, left_out = motion.problems(files, report)
+        try:
+            problems, left_out = motion.problems(files, report)
+        except (ArithmeticError, BeyondDoublesError):
+            problems, left_out = [BEYOND], []
         notes += left_out
     return Verification(problems[:MAX_PROBLEMS], notes)
 
@@ -63,7 +68,10 @@ def problems_of(folder: Path) -> list[str]:
 def _row_by_row(files: Files) -> list[str]:
     """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
     for check in (tables, record, physics):
-        problems = list(islice(check.problems(files), MAX_PROBLEMS))
+        try:
+            problems = list(islice(check.problems(files), MAX_PROBLEMS))
+        except (ArithmeticError, BeyondDoublesError):
+            problems = [BEYOND]
         if problems:
             return problems
     return []

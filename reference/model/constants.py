@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
+from ..errors import BeyondDoublesError
 from ..inputs import Inputs
 from ..precision import to_mpf
 from .earth import axis_distance
@@ -79,7 +80,11 @@ def is_zero(value: Any) -> bool:
 
 
 def constants(inputs: Inputs, ctx: Any) -> Constants:
-    """Return the constants of a scene, in the precision of `ctx`: a run's own and `precision.GUARD_BITS` more."""
+    """Return the constants of a scene, in the precision of `ctx`: a run's own and `precision.GUARD_BITS` more.
+
+    Raises:
+        BeyondDoublesError: the Earth is so flat that its normal at the site has no finite length.
+    """
 
     def number(value: Any) -> Any:
         return 0 if value == 0 else value
@@ -93,7 +98,10 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
     )
     # effective gravity contains the centrifugal force at the pivot: what is left is that of a pivot on the axis
     carried = inputs.gravity_is == "ellipsoid"
-    distance = axis_distance(radius, flattening, altitude, sin, cos, ctx.sqrt) if carried else ctx.zero
+    try:
+        distance = axis_distance(radius, flattening, altitude, sin, cos, ctx.sqrt) if carried else ctx.zero
+    except ZeroDivisionError:  # at the pole of an Earth as flat as a disc
+        raise BeyondDoublesError from None
     north, up = rate * cos, rate * sin
     outward = rate * rate * distance
     return Constants(

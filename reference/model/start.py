@@ -74,7 +74,7 @@ def release(inputs: Inputs, ctx: Any) -> tuple[Vector, Vector]:
     length = to_mpf(inputs.length, ctx)
     if inputs.position is not None:
         x, y, vx, vy = (to_mpf(value, ctx) for value in inputs.position)
-        z = -ctx.sqrt(length * length - x * x - y * y)
+        z = -ctx.sqrt(to_mpf(inputs.length**2 - inputs.position[0] ** 2 - inputs.position[1] ** 2, ctx))
         return (x, y, z), (vx, vy, -(x * vx + y * vy) / z)
     assert inputs.angles is not None
     angle, azimuth = (to_mpf(value / 180, ctx) for value in inputs.angles[:2])

@@ -26,8 +26,8 @@ from ..manifest import Manifest
 from ..sheets import Sheet
 from . import shooting
 
-BASE_S, ROW_S, TRANSIT_S = 10.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
 MAX_ROWS = 20  # rows that are named
+BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
 PATIENCE = 4  # times that, before a run that was expected to be short is given up
 LEAST_PREC = LONG_DOUBLE_BITS + 1
 FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
@@ -36,7 +36,33 @@ Progress = Callable[[float, float], None]  # called with the simulated time reac
 
 
 class _TooLong(Exception):
-    """A run has taken `PATIENCE` times what it may."""
+    """The runs have taken `PATIENCE` times what they may."""
+
+
+@dataclass
+class _Budget:
+    """CPU seconds that are left for the steps of all runs; compiling, before the first step, does not count."""
+
+    left: float
+
+    def watched(self, report: Callable[[float], None]) -> Callable[[float], None]:
+        """Return what a run calls from time to time; it passes the simulated time on.
+
+        Raises:
+            _TooLong: nothing is left.
+        """
+        last: float | None = None
+
+        def watch(t: float) -> None:
+            nonlocal last
+            now = time.process_time()
+            self.left -= now - (now if last is None else last)
+            last = now
+            if self.left < 0:
+                raise _TooLong
+            report(t)
+
+        return watch
 
 
 def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
@@ -51,11 +77,11 @@ def problems(files: Files, report: Progress | None = None) -> tuple[list[str], l
     if expected > allowed:
         return [], [f"{left_out}, which would take about {expected:.0f} s: --recompute does it"]
     seek = files.scene.run.transits and manifest.transits == "complete" and "transits.csv" in files.tables
-    deadline = time.process_time() + PATIENCE * allowed
+    budget = _Budget(PATIENCE * allowed)
     try:
         while prec <= MOST_PREC:
-            coarse = _run(files, prec - LIMB_BITS, seek, deadline, report)
-            fine = _run(files, prec, seek, deadline, report)
+            coarse = _run(files, prec - LIMB_BITS, seek, budget, report)
+            fine = _run(files, prec, seek, budget, report)
             found = _compared(files, coarse, fine, seek)
             if found is not None:
                 return found, []
@@ -86,16 +112,14 @@ def _steps(files: Files) -> int:
     return int(min(1e15, float(files.scene.exact.t_end) * rate)) + 1
 
 
-def _run(files: Files, prec: int, seek: bool, deadline: float, report: Progress | None) -> Run:
+def _run(files: Files, prec: int, seek: bool, budget: _Budget, report: Progress | None) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
 
-    def patient(t: float) -> None:
-        if time.process_time() > deadline:
-            raise _TooLong
+    def show(t: float) -> None:
         if report is not None:
             report(t, float(inputs.t_end))
 
-    return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), patient)
+    return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), budget.watched(show))
 
 
 def _compared(files: Files, coarse: Run, fine: Run, seek: bool) -> list[str] | None:
@@ -111,7 +135,8 @@ def _compared(files: Files, coarse: Run, fine: Run, seek: bool) -> list[str] | N
         if directions != fine.directions:
             return [f"transits.csv: {len(directions)} transits, the motion has {len(fine.directions)}"]
         assert coarse.transits is not None
-        comparisons.append(_Comparison.of(manifest, "transits", sheet, coarse.transits, fine.transits))
+        if directions:
+            comparisons.append(_Comparison.of(manifest, "transits", sheet, coarse.transits, fine.transits))
     for comparison in comparisons:
         if not comparison.decided:
             return None

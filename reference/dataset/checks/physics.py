@@ -6,7 +6,7 @@ How far a checked quantity may be off follows from the bounds of the columns, by
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
@@ -39,12 +39,12 @@ def problems(files: Files) -> Iterator[str]:
     yield from grid.not_along_the_sphere()
     constant = files.scene.exact.drag == 0
     if constant:
-        yield from grid.with_another_invariant(grid)
+        yield from grid.with_another_invariant(grid.first())
     if manifest.counts.transits and "transits.csv" in files.tables:
         transits, ax = _transits(files)
         yield from transits.off_the_sphere()
         if constant:
-            yield from transits.with_another_invariant(grid)
+            yield from transits.with_another_invariant(grid.first())
         yield from transits.with_another_acceleration(ax, manifest.bound("transits", "ax"))
 
 
@@ -96,9 +96,13 @@ class _Moments:
             if abs(sum((q * v for q, v, _, _ in pairs), Fraction(0))) > allowed:
                 yield f"{name}: the velocity is not along the sphere"
 
-    def with_another_invariant(self, grid: _Moments) -> Iterator[str]:
-        """Check that h is that of the grid's first row."""
-        first, allowed_first = grid.values(_invariant)[0], grid.allowed(_invariant)[0]
+    def first(self) -> _Moments:
+        """Return the first of the states alone."""
+        return replace(self, names=self.names[:1], rows=self.rows[:1])
+
+    def with_another_invariant(self, release: _Moments) -> Iterator[str]:
+        """Check that h is that of the release."""
+        first, allowed_first = release.values(_invariant)[0], release.allowed(_invariant)[0]
         for name, h, allowed in zip(self.names, self.values(_invariant), self.allowed(_invariant), strict=True):
             if abs(h - first) > allowed + allowed_first:
                 yield f"{name}: the invariant h differs by {float(h - first):.2g} m²/s² from that of the first row"
@@ -118,14 +122,19 @@ class _Moments:
         for row in self.rows:
             x, y, z, vx, vy, vz = (to_mpf(q, ctx) for q in row)
             if self._is_deep(row):
-                z = ctx.sqrt(k.length * k.length - x * x - y * y) * (1 if z > 0 else -1)
+                z = ctx.sqrt(max(ctx.zero, k.length * k.length - x * x - y * y)) * (1 if z > 0 else -1)
             if z and (self.at_transits or self._is_deep(row)):
                 vz = -(x * vx + y * vy) / z
             found.append(to_fraction(quantity([x, y, z, vx, vy, vz], k) + ctx.zero))
         return found
 
+    @np.errstate(all="ignore")
     def allowed(self, quantity: Quantity) -> list[Fraction]:
-        """Return how far a quantity of each state may be off by the bounds on the state."""
+        """Return how far a quantity of each state may be off by the bounds on the state.
+
+        Raises:
+            OverflowError: no double is as large.
+        """
         k = constants(self.files.scene.exact, context(GUARD_BITS)).converted(float)
         columns = [np.array([float(row[j]) for row in self.rows]) for j in range(6)]
         deep = np.array([self._is_deep(row) for row in self.rows])
@@ -145,6 +154,8 @@ class _Moments:
             step = max(NUDGE * (k.length if j < 3 else fastest or k.length), float(bound))
             ends = (of([*columns[:j], columns[j] + side * step, *columns[j + 1 :]]) for side in (1, -1))
             slopes = np.max([np.abs(end - value) for end in ends], axis=0) / step
+            if not np.isfinite(slopes).all():
+                raise OverflowError
             total = [so_far + Fraction(slope) * bound * SLACK for so_far, slope in zip(total, slopes, strict=True)]
         return total
 
