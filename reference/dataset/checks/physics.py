@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -119,11 +120,11 @@ class _Moments:
         ctx = context(bits_of(self.files.manifest.digits) + INVARIANT_BITS)
         k = constants(self.files.scene.exact, ctx)
         found = []
-        for row in self.rows:
+        for row, deep in zip(self.rows, self._deep, strict=True):
             x, y, z, vx, vy, vz = (to_mpf(q, ctx) for q in row)
-            if self._is_deep(row):
+            if deep:
                 z = ctx.sqrt(max(ctx.zero, k.length * k.length - x * x - y * y)) * (1 if z > 0 else -1)
-            if z and (self.at_transits or self._is_deep(row)):
+            if z and (self.at_transits or deep):
                 vz = -(x * vx + y * vy) / z
             found.append(to_fraction(quantity([x, y, z, vx, vy, vz], k) + ctx.zero))
         return found
@@ -137,7 +138,7 @@ class _Moments:
         """
         k = constants(self.files.scene.exact, context(GUARD_BITS)).converted(float)
         columns = [np.array([float(row[j]) for row in self.rows]) for j in range(6)]
-        deep = np.array([self._is_deep(row) for row in self.rows])
+        deep = np.array(self._deep)
 
         def of(changed: list[Array]) -> Array:
             x, y, z, vx, vy, vz = changed
@@ -146,7 +147,7 @@ class _Moments:
             vz = np.where(follows, -(x * vx + y * vy) / np.where(follows, z, 1.0), vz)
             return np.asarray(quantity([x, y, z, vx, vy, vz], k) + 0.0 * z)
 
-        value, total = of(columns), [Fraction(0)] * len(self.rows)
+        value, total, largest = of(columns), np.zeros(len(self.rows)), max(self.bounds)
         fastest = max(float(np.max(np.abs(column))) for column in columns[3:])
         for j, bound in enumerate(self.bounds):
             if not bound:
@@ -156,12 +157,14 @@ class _Moments:
             slopes = np.max([np.abs(end - value) for end in ends], axis=0) / step
             if not np.isfinite(slopes).all():
                 raise OverflowError
-            total = [so_far + Fraction(slope) * bound * SLACK for so_far, slope in zip(total, slopes, strict=True)]
-        return total
+            total += slopes * float(bound / largest)
+        return [Fraction(part) * largest * SLACK for part in total]
 
-    def _is_deep(self, row: list[Fraction]) -> bool:
-        """Return whether z follows well from x and y."""
-        return abs(row[2]) * STEEP > self.files.scene.exact.length
+    @cached_property
+    def _deep(self) -> list[bool]:
+        """Whether z follows well from x and y, for each state."""
+        length = self.files.scene.exact.length
+        return [abs(row[2]) * STEEP > length for row in self.rows]
 
 
 def _invariant(columns: list[Any], k: Constants) -> Any:

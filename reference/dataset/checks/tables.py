@@ -44,9 +44,9 @@ def _times(files: Files) -> Iterator[str]:
 def _release(files: Files) -> Iterator[str]:
     """Check that the first row is the scene's exact release."""
     start = Start.of(files.scene.exact, bits_of(2 * files.manifest.digits) + GUARD_BITS)
-    exact = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
+    released = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
     (printed,) = Sheet(files.tables["grid.csv"].header, files.tables["grid.csv"].rows[:1], {}).numbers(GRID)
-    for name, value, number in zip(GRID, exact, printed, strict=True):
+    for name, value, number in zip(GRID, released, printed, strict=True):
         if abs(number - value) > files.manifest.bound("grid", name):
             yield f"grid.csv: {name} of the first row is not that of the scene's release"
 
