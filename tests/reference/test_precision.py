@@ -66,6 +66,9 @@ def test_the_largest_number_of_a_column_gets_the_digits_asked(value, digits):
     decimals = decimals_for(value, digits)
     if decimals > 0:
         assert decimals + magnitude(value) + 1 == digits
+    else:
+        assert decimals == 0
+        assert value >= Fraction(10) ** (digits - 1)
 
 
 @given(positive)

@@ -213,6 +213,19 @@ def test_missed_and_extra_transits_disagree_and_are_named(foucault, good, golden
     assert "extra at          1234.500000 s" in out
 
 
+@pytest.mark.parametrize(("weighted", "status"), [(0.9, 0), (1.1, 1)])
+def test_one_shifted_transit_decides_about_a_perfect_run(foucault, good, golden, tmp_path, weighted, status):
+    zeros, tolerance_m, omega = golden.transits["t"].copy(), 1e-5, 2 * np.pi / 16.4
+    by = weighted * tolerance_m * omega / abs(golden.transits["ax"][100])
+    zeros[100] += by
+    path = tmp_path / "zeros.csv"
+    path.write_text("t\n" + "\n".join(map(repr, zeros.tolist())) + "\n")
+    done, out, _ = foucault("score", "paris", good, "--transits", path, "--tolerance", tolerance_m)
+    assert done == status
+    assert "10514 matched, 0 missed, 0 extra" in out
+    assert (f"shifted           {zeros[100] - by:.6f} s by {by:.2g} s  (1 in all)" in out) is bool(status)
+
+
 def test_a_release_at_rest_and_what_lies_beyond_the_end_are_no_extra_transits(foucault, good, golden, tmp_path):
     path = tmp_path / "zeros.csv"
     path.write_text("t\n" + "\n".join(map(repr, [0.0, *golden.transits["t"].tolist(), 86400.5])) + "\n")

@@ -62,6 +62,7 @@ def test_one_shifted_beyond_the_window_is_missed_and_extra():
 def test_what_the_candidate_did_not_reach_is_not_missed():
     made = against(TRUTH[:5], until=TRUTH[5] - 1)
     assert (made.matched, made.missed, made.extra) == (5, [], [])
+    assert made.undecided == []  # neither the fifteen later ones
     assert against(TRUTH[:5], until=TRUTH[5] + 1).missed == [TRUTH[5]]
 
 

@@ -24,6 +24,7 @@ from reference.dataset.write import write
 from reference.engines.limbs import integration
 from reference.engines.registry import engines
 from reference.errors import DatasetError
+from reference.precision import fixed_decimal
 
 
 @pytest.fixture(scope="module")
@@ -275,6 +276,35 @@ ORDER = {
 def test_transits_out_of_order_are_found(dataset, said):
     forge(dataset, transits=ORDER[said])
     assert said in problems(dataset)
+
+
+@pytest.mark.parametrize("direction", ["0", "+2", "-2", "2", "1", "+1.0", ""])
+def test_a_direction_is_plus_or_minus_one_and_nothing_else(dataset, direction):
+    forge(dataset, transits=lambda rows, _: rows[4].__setitem__(2, direction))
+    assert f"row 5: direction = {direction!r} is not a number of this column's form" in problems(dataset)
+
+
+def test_two_transits_at_one_time_are_found(dataset):
+    forge(dataset, transits=lambda rows, _: rows[4].__setitem__(1, rows[3][1]))
+    assert "transit 5: t is off by" in problems(dataset)
+
+
+def test_the_release_at_rest_is_no_transit(dataset):
+    """xdot is zero there, and the row keeps to every law of a moment; but t is not above 0."""
+    files = read_files(dataset)
+    x, y, z = files.tables["grid.csv"].rows[0][1:4]
+
+    def insert(rows, header):
+        first = rows[0].copy()
+        for name, text in {"t": "0", "x": x, "y": y, "z": z, "vy": "0", "direction": "+1"}.items():
+            places = len(first[header.index(name)].partition(".")[2])
+            first[header.index(name)] = text if name == "direction" else fixed_decimal(Fraction(text), places)
+        rows.insert(0, first)
+        for k, row in enumerate(rows, 1):
+            row[0] = str(k)
+
+    forge(dataset, transits=insert)
+    assert problems(dataset)
 
 
 def test_a_dataset_that_ships_has_the_seal_of_the_index(tmp_path):
