@@ -1,4 +1,4 @@
-"""The checks of single rows allow what the bounds allow and hardly more: known from the corners of the box they span."""
+"""The checks of single rows allow what the bounds allow and hardly more, as the corners of their box tell."""
 
 from __future__ import annotations
 
@@ -115,5 +115,3 @@ def test_the_acceleration_at_a_transit_may_be_off_by_its_corners(files, part, fo
     )
     allowed = own + Fraction(files.manifest.bounds.transits["ax"])
     assert said(with_change(files, "transits", "ax", part * allowed), "the equations of motion give") is found
-
-

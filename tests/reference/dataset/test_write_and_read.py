@@ -200,9 +200,16 @@ def test_a_solution_and_its_dataset_have_the_same_columns(dataset, solution):
             assert all(abs(one - other) <= unit / 2 for one, other in exact)
             assert np.allclose(table[name], printed[name], rtol=1e-15, atol=float(unit))
             bounds = zip(table.bound(name), printed.bound(name), strict=True)
-            assert all(one <= other for one, other in bounds)
+            own = list(table.bound(name)) if name == "t" else [table.largest_bounds()[name]] * len(table)
+            for (one, other), alone in zip(bounds, own, strict=True):
+                assert one + unit / 2 <= other <= (alone + unit / 2) * Fraction(11, 10)
     with pytest.raises(KeyError, match="'w' is no column"):
         golden.grid["w"]
+    assert golden.grid.bound("t") == [0] * 6
+    with pytest.raises(KeyError, match="a dataset bounds t, x, y, z, vx, vy, vz, not 'w'"):
+        golden.grid.bound("w")
+    assert golden.decimals("vx") == golden.grid.decimals("vx")
+    assert golden.path.name == "paris"
 
 
 def test_a_dataset_and_a_solution_say_in_a_line_what_they_hold(dataset, solution):
