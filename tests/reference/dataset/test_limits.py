@@ -7,12 +7,14 @@ import os
 import shutil
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from forgery import forge, moved, seal
 from small_scenes import make_scene
 
 import reference
+from reference.dataset.checks.tables import _signs_on_grid
 from reference.dataset.files import read_files
 from reference.dataset.manifest import MANIFEST
 from reference.dataset.place import MAX_ID, dataset_id
@@ -120,3 +122,19 @@ def test_an_id_of_more_than_160_characters_is_a_hash(paris, length, whole):
 @pytest.mark.parametrize("times, pair", [("", []), ("12", []), ("124", [0, 1]), ("134", [1, 2]), ("1245", [0, 1])])
 def test_the_closest_pair_is_the_first_of_the_least_distance_among_three_or_more(times, pair):
     assert _closest_pair(Sheet(("t",), [(t,) for t in times], {})) == pair
+
+
+@pytest.mark.parametrize(
+    ("t", "vx", "found"),
+    [("5", "-1", False), ("5", "1", True), ("15", "1", False), ("15", "-1", True), ("25", "-1", False),
+     ("25", "1", True), ("8.9", "1", True), ("9", "1", False), ("11", "-1", False), ("11.1", "-1", True),
+     ("18.9", "-1", True), ("19", "-1", False), ("21", "1", False), ("21.1", "1", True), ("5", "0.5", False), ("5", "0.51", True)],
+)  # fmt: skip
+def test_between_transits_xdot_has_one_sign_but_within_the_bounds_of_a_time_or_of_itself(t, vx, found):
+    """Transits at 10 and 20 s, known to 1 s, and xdot to 0.5 m/s."""
+    manifest = SimpleNamespace(bound=lambda *_: Fraction(1, 2))
+    grid = Sheet(("t", "vx"), [("0", "9"), (t, vx)], {})
+    files = SimpleNamespace(manifest=manifest, tables={"grid.csv": grid})
+    times, ones = (Fraction(10), Fraction(20)), (Fraction(1), Fraction(1))
+    said = list(_signs_on_grid(files, times, ones, (Fraction(1), Fraction(-1))))
+    assert bool(said) is found
