@@ -128,7 +128,8 @@ def test_the_closest_pair_is_the_first_of_the_least_distance_among_three_or_more
     ("t", "vx", "found"),
     [("5", "-1", False), ("5", "1", True), ("15", "1", False), ("15", "-1", True), ("25", "-1", False),
      ("25", "1", True), ("8.9", "1", True), ("9", "1", False), ("11", "-1", False), ("11.1", "-1", True),
-     ("18.9", "-1", True), ("19", "-1", False), ("21", "1", False), ("21.1", "1", True), ("5", "0.5", False), ("5", "0.51", True)],
+     ("18.9", "-1", True), ("19", "-1", False), ("21", "1", False), ("21.1", "1", True), ("5", "0.5", False),
+     ("5", "0.51", True)],
 )  # fmt: skip
 def test_between_transits_xdot_has_one_sign_but_within_the_bounds_of_a_time_or_of_itself(t, vx, found):
     """Transits at 10 and 20 s, known to 1 s, and xdot to 0.5 m/s."""
