@@ -11,7 +11,7 @@ import reference
 from reference.dataset.write import write
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def original(tmp_path_factory):
     solution = reference.solve(reference.load_scene("paris"), t_end="300", digits=20)
     return write(solution, tmp_path_factory.mktemp("golden") / "paris")

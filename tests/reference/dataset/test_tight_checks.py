@@ -9,11 +9,9 @@ from itertools import product
 import mpmath
 import pytest
 
-import reference
 from reference.columns import GRID
 from reference.dataset.checks import physics
 from reference.dataset.files import read_files
-from reference.dataset.write import write
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
 from reference.precision import context, fixed_decimal
@@ -22,9 +20,8 @@ ROW, WIDER = 3, 10**9  # bounds so wide that rounding, of which they consist, is
 
 
 @pytest.fixture(scope="module")
-def files(tmp_path_factory):
-    solution = reference.solve(reference.load_scene("paris"), t_end="300", digits=20)
-    found = read_files(write(solution, tmp_path_factory.mktemp("golden") / "paris"))
+def files(original):
+    found = read_files(original)
     wide = {
         kind: {name: str(mpmath.mpf(bound) * WIDER) for name, bound in getattr(found.manifest.bounds, kind).items()}
         for kind in ("grid", "transits")
