@@ -10,7 +10,7 @@ import mpmath
 import pytest
 
 from reference.columns import GRID
-from reference.dataset.checks import physics
+from reference.dataset.checks import physics, tables
 from reference.dataset.files import read_files
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
@@ -112,3 +112,14 @@ def test_the_acceleration_at_a_transit_may_be_off_by_its_corners(files, part, fo
     )
     allowed = own + Fraction(files.manifest.bounds.transits["ax"])
     assert said(with_change(files, "transits", "ax", part * allowed), "the equations of motion give") is found
+
+
+@pytest.mark.parametrize(("part", "found"), [(Fraction(2), False), (Fraction("2.3"), True)])
+def test_the_bound_of_a_time_is_at_most_twice_the_error_of_xdot_over_ax(files, part, found):
+    """The wide bound on xdot leaves all else far behind; bounds are rounded up to two digits, to a tenth at most."""
+    (ax,), _ = state(files, "transits", ROW, ("ax",))
+    late = part * Fraction(files.manifest.bounds.grid["vx"]) / abs(ax)
+    (old,) = list(files.tables["transits.csv"].numbers(("bound",)))[ROW]
+    wide = with_change(files, "transits", "bound", late - old)
+    problems = list(tables._bound_column(wide, wide.tables["transits.csv"]))
+    assert any("transit 4: bound" in problem and "leave open" in problem for problem in problems) is found

@@ -300,6 +300,17 @@ def test_a_target_that_is_a_link_stays_one(dataset, solution):
     assert load(dataset).manifest.digits == 8
 
 
+def test_the_seal_of_what_ships_is_kept_and_of_nothing_else(solution, tmp_path, monkeypatch):
+    kept = []
+    monkeypatch.setattr(writer, "golden_root", lambda: tmp_path / "golden")
+    monkeypatch.setattr(writer, "keep_seal", lambda *seal: kept.append(seal))
+    write(solution, tmp_path / "paris")
+    write(solution, tmp_path / "golden" / "older" / "paris")
+    assert kept == []
+    ships = write(solution, tmp_path / "golden" / "paris")
+    assert kept == [("paris", load(ships).manifest.seal)]
+
+
 FAILURES = [
     (OSError(errno.ENOSPC, os.strerror(errno.ENOSPC)), "No space left on device"),
     (OSError(errno.EROFS, os.strerror(errno.EROFS)), "Read-only file system"),
