@@ -129,6 +129,9 @@ def test_vectors_are_at_most_64_states_and_transits_with_bounds_taken_from_the_t
     assert len(found["states"]) == 64
     assert 62 <= len(found["transits"]) <= 64  # the closest pair may be among those that are evenly spread
     assert found["states"][0]["flags"] == ["release"] and found["states"][-1]["flags"] == ["end"]
+    last = len(tables["transits.csv"].rows)
+    assert [t["k"] for t in found["transits"] if "end" in t["flags"]] == [found["transits"][-1]["k"]] == [last]
+    assert (found["states"][0]["row"], found["states"][-1]["row"]) == (1, 91)
     pair = [t["k"] for t in found["transits"] if "closest_pair" in t["flags"]]
     assert pair[1] == pair[0] + 1
     assert set(found["notes"]) == {"release", "end", "closest_pair"}
