@@ -376,6 +376,18 @@ def test_transits_that_the_scene_does_not_ask_for_are_not_judged(foucault, tmp_p
     assert "were not judged" in out
 
 
+def test_transits_of_a_motion_that_is_in_one_plane_are_not_judged(foucault, tmp_path):
+    path = own_scene(tmp_path, release='x = "0"\ny = "0.2"')
+    changes = ["site.rotation_rate=0", "inputs=binary64"]
+    times = np.linspace(0, 60, 5)
+    rows = write_csv(tmp_path / "run.csv", times, trajectory(load_scene(path, changes), times))
+    zeros = tmp_path / "zeros.csv"
+    zeros.write_text("t\n1\n2\n")
+    status, out, _ = foucault("score", path, rows, "--transits", zeros, "--set", changes[0])
+    assert status == 0
+    assert "xdot is identically zero: the candidate's transits were not judged" in out
+
+
 def test_rows_a_little_beyond_the_end_are_judged(foucault, tmp_path, golden, states):
     t = np.append(golden.t[-3:-1], 86400.00000000003)
     path = write_csv(tmp_path / "late.csv", t, states[-3:])
