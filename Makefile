@@ -6,7 +6,7 @@ BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
-.PHONY: golden test campaign lint lock clean
+.PHONY: golden test campaign mutants lint lock clean
 
 golden: .venv/solving
 	@echo "Solving 24 h of the pendulum in Paris, twice, to compare: half a minute to two minutes"
@@ -23,6 +23,11 @@ test: lint
 # Tests by the thousand (damaged files, forgeries, fuzzed inputs, kills): `make test` runs a short form of each.
 campaign: .venv/testing
 	$(BIN)/python -m pytest -q -n 2 --dist loadgroup --long -m campaign
+
+# Do the tests notice a wrong source? Other draws: tests/mutants.py --seed 2, --module precision
+mutants: .venv/testing
+	@echo "Changing the source in 60 places, one at a time, and running its tests: half an hour"
+	$(BIN)/python tests/mutants.py
 
 lint: .venv/testing
 	@echo "Checking style and types"

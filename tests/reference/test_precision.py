@@ -14,11 +14,13 @@ from reference.engines.heyoka.numbers import Numbers
 from reference.precision import (
     DOUBLE,
     LONG_DOUBLE,
+    bits_of,
     cheapest_type,
     context,
     decimals_for,
     fixed_decimal,
     magnitude,
+    outward,
     real,
     rounded_up,
     to_fraction,
@@ -66,6 +68,9 @@ def test_the_largest_number_of_a_column_gets_the_digits_asked(value, digits):
     decimals = decimals_for(value, digits)
     if decimals > 0:
         assert decimals + magnitude(value) + 1 == digits
+    else:
+        assert decimals == 0
+        assert value >= Fraction(10) ** (digits - 1)
 
 
 @given(positive)
@@ -76,10 +81,44 @@ def test_a_bound_is_rounded_up_to_two_digits(value):
 
 
 def test_a_bound_of_nothing_is_zero():
-    assert rounded_up(Fraction(0)) == "0"
+    assert rounded_up(Fraction(0)) == rounded_up(Fraction(-1)) == "0"
 
 
-@pytest.mark.parametrize(("prec", "name"), [(40, "double"), (53, "double"), (54, "long_double"), (65, "real")])
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [("0.99", "9.9e-01"), ("0.991", "1.0e+00"), ("99", "9.9e+01"), ("99.1", "1.0e+02"), ("1", "1.0e+00"),
+     ("1.01", "1.1e+00"), ("1e-45", "1.0e-45"), ("1.21e120", "1.3e+120")],
+)  # fmt: skip
+def test_bounds_at_the_powers_of_ten(value, text):
+    assert rounded_up(Fraction(value)) == text
+    assert rounded_up(Fraction("0.1231"), 3) == "1.24e-01"
+
+
+@given(st.integers(1, 2000))
+def test_so_many_bits_hold_the_digits_and_one_less_do_not(digits):
+    assert 2 ** bits_of(digits) >= 10**digits > 2 ** (bits_of(digits) - 1)
+
+
+def test_the_ends_of_an_interval_are_rounded_outwards():
+    third = Fraction(1, 3)
+    assert (outward(third, -1), outward(third, 1)) == (f"0.{'3' * 20}", f"0.{'3' * 19}4")
+    assert (outward(-third, -1, 2), outward(-third, 1, 2)) == ("-0.34", "-0.33")
+    assert outward(Fraction(1, 4), -1, 2) == outward(Fraction(1, 4), 1, 2) == "0.25"
+
+
+def test_a_column_of_zeros_and_one_of_large_numbers_have_their_decimals():
+    assert decimals_for(Fraction(0), 12) == 12
+    assert decimals_for(Fraction(12345), 3) == 0  # a number has no fewer digits than it takes to write
+
+
+@pytest.mark.parametrize("value", [0, 1, -3, 2**80, -(2**80), 0.1, -0.375, 3 * 2**70])
+def test_any_number_is_its_own_fraction(value):
+    assert to_fraction(value) == Fraction(value) == to_fraction(context(100).mpf(value))
+
+
+@pytest.mark.parametrize(
+    ("prec", "name"), [(40, "double"), (53, "double"), (54, "long_double"), (64, "long_double"), (65, "real")]
+)
 def test_the_cheapest_type_that_serves_is_taken(prec, name):
     assert cheapest_type(prec).name == name
 

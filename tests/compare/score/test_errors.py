@@ -87,6 +87,37 @@ def test_few_rows_have_no_growth(golden):
         assert trajectory_errors(candidate(truth, x=1.0), truth, golden).growth_exponent is None
 
 
+@pytest.mark.parametrize(("times", "found"), [([1, 2, 3, 4], True), ([1, 2, 3, 3.9], False), ([0, 1, 2, 4], False)])
+def test_growth_needs_four_rows_after_the_release_and_four_times_the_first(golden, times, found):
+    truth = dense(golden, [float(t) for t in times])
+    made = trajectory_errors(candidate(truth, x=1.0), truth, golden)
+    assert (made.growth_exponent is not None) is found
+
+
+def test_a_component_is_relative_if_its_truth_is_known_and_an_error_is_at_least_the_bound(golden, truth):
+    end, speed = truth.states.copy(), trajectory_errors(candidate(truth), truth, golden)
+    bound = 1e-6
+    known = [*[bound] * 3, *[bound * speed.speed_m_s / speed.amplitude_m] * 3]
+    end[-1] = [1e-5, 0.5e-6, 0.0, 2 * known[3], 0.5 * known[4], 0.0]
+    made = replace(speed, truth=replace(truth, states=end), bound_m=bound)
+    assert made.scd == pytest.approx(-math.log10(0.5))  # vx: its known part over twice that
+    assert made.mescd == pytest.approx(-math.log10(max(bound / (speed.amplitude_m + 0), known[4] / speed.speed_m_s)))
+    still = replace(made, truth=replace(truth, states=np.zeros_like(end)))
+    assert still.scd is None
+
+
+def test_the_scales_are_the_largest_distance_and_speed_of_golden_and_truth_together(golden, truth):
+    made = trajectory_errors(candidate(truth), truth, golden)
+    velocities = np.column_stack([golden.vx, golden.vy, golden.vz]), truth.states[:, 3:]
+    speeds = [np.linalg.norm(rows, axis=1).max() for rows in velocities]
+    assert made.speed_m_s == pytest.approx(max(speeds), rel=1e-12)
+    assert made.amplitude_m == pytest.approx(np.hypot(golden.x, golden.y).max(), rel=1e-12)
+    wider = replace(truth, states=truth.states * 2)
+    made = trajectory_errors(candidate(wider), wider, golden)
+    assert made.amplitude_m == pytest.approx(2 * np.hypot(truth.states[:, 0], truth.states[:, 1]).max(), rel=1e-12)
+    assert made.speed_m_s == pytest.approx(2 * speeds[1], rel=1e-12)
+
+
 def test_the_amplitude_does_not_hang_on_where_the_rows_fall(golden):
     """One row near the middle of a swing, where the bob is close to the vertical."""
     t = float(golden.t[np.argmin(np.hypot(golden.x[1:200], golden.y[1:200])) + 1])

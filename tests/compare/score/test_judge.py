@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from contextlib import contextmanager
+from dataclasses import replace
 from decimal import Context, Decimal, localcontext
 
 import numpy as np
@@ -13,7 +14,7 @@ import pytest
 
 from compare.candidates.read import read
 from compare.score.judge import judge
-from reference import load, load_scene, trajectory
+from reference import InputError, load, load_scene, trajectory
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.variants import Variants
 from reference.plain_text import plain
@@ -213,6 +214,19 @@ def test_missed_and_extra_transits_disagree_and_are_named(foucault, good, golden
     assert "extra at          1234.500000 s" in out
 
 
+@pytest.mark.parametrize(("weighted", "status"), [(0.9, 0), (1.1, 1)])
+def test_one_shifted_transit_decides_about_a_perfect_run(foucault, good, golden, tmp_path, weighted, status):
+    zeros, tolerance_m, omega = golden.transits["t"].copy(), 1e-5, 2 * np.pi / 16.4
+    by = weighted * tolerance_m * omega / abs(golden.transits["ax"][100])
+    zeros[100] += by
+    path = tmp_path / "zeros.csv"
+    path.write_text("t\n" + "\n".join(map(repr, zeros.tolist())) + "\n")
+    done, out, _ = foucault("score", "paris", good, "--transits", path, "--tolerance", tolerance_m)
+    assert done == status
+    assert "10514 matched, 0 missed, 0 extra" in out
+    assert (f"shifted           {zeros[100] - by:.6f} s by {by:.2g} s  (1 in all)" in out) is bool(status)
+
+
 def test_a_release_at_rest_and_what_lies_beyond_the_end_are_no_extra_transits(foucault, good, golden, tmp_path):
     path = tmp_path / "zeros.csv"
     path.write_text("t\n" + "\n".join(map(repr, [0.0, *golden.transits["t"].tolist(), 86400.5])) + "\n")
@@ -245,6 +259,38 @@ def test_a_picture_is_drawn_whatever_the_file_is_called(foucault, tmp_path, gold
     assert out.startswith(f"{tmp_path}/{plain(os.fsdecode(name))} agrees with paris (3 rows")
     if suffix == "svg":
         assert "n\\xff.csv" in drawn.read_text() or name[:1] != b"n"
+
+
+def test_rows_and_transits_after_the_end_asked_for_are_ignored(good, golden):
+    for end, note in ((86340, "1 row after t = 86340 s ignored"), (600, "1430 rows after t = 600 s ignored")):
+        score = judge(good, "paris", t_end=end, transits=golden.transits["t"])
+        assert (score.candidate.t[-1], score.notes, score.verdict) == (end, (note,), "agrees")
+        assert score.transits.matched == int((golden.transits["t"] <= end).sum())
+    whole = judge(good, "paris", t_end=86400.0)
+    assert (len(whole.candidate.t), whole.notes) == (1441, ())
+
+
+def test_an_end_before_the_first_row_is_refused(tmp_path, golden, states):
+    late = write_csv(tmp_path / "late.csv", golden.t[5:9], states[5:9])
+    with pytest.raises(InputError, match=r"t_end: got '1', expected a time from the first row on, .* t = 300 s"):
+        judge(late, "paris", t_end=1)
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0, float("inf"), float("nan")])
+def test_a_tolerance_is_above_zero_and_finite(good, tolerance):
+    with pytest.raises(InputError, match="a positive number of metres"):
+        judge(good, "paris", tolerance=tolerance)
+
+
+def test_the_tolerance_is_a_millionth_of_the_amplitude_and_the_bound_is_added(good, golden):
+    score = judge(good, "paris")
+    assert score.tolerance_m == pytest.approx(1e-6 * np.hypot(golden.x, golden.y).max(), rel=1e-6)
+    assert score.allowed_m == score.tolerance_m + score.errors.bound_m
+    errors = score.errors
+    for position, agrees, at_bound in ((errors.bound_m, True, True), (score.allowed_m, True, False)):
+        exact = replace(score, errors=replace(errors, position=np.array([position])))
+        assert (exact.agrees, exact.at_bound) == (agrees, at_bound)
+    assert not replace(score, errors=replace(errors, position=np.array([1.01 * score.allowed_m]))).agrees
 
 
 def test_the_release_alone_does_not_agree(foucault):
@@ -328,6 +374,18 @@ def test_transits_that_the_scene_does_not_ask_for_are_not_judged(foucault, tmp_p
     status, out, _ = foucault("score", path, rows, "--transits", zeros)
     assert status == 0
     assert "were not judged" in out
+
+
+def test_transits_of_a_motion_that_is_in_one_plane_are_not_judged(foucault, tmp_path):
+    path = own_scene(tmp_path, release='x = "0"\ny = "0.2"')
+    changes = ["site.rotation_rate=0", "inputs=binary64"]
+    times = np.linspace(0, 60, 5)
+    rows = write_csv(tmp_path / "run.csv", times, trajectory(load_scene(path, changes), times))
+    zeros = tmp_path / "zeros.csv"
+    zeros.write_text("t\n1\n2\n")
+    status, out, _ = foucault("score", path, rows, "--transits", zeros, "--set", changes[0])
+    assert status == 0
+    assert "xdot is identically zero: the candidate's transits were not judged" in out
 
 
 def test_rows_a_little_beyond_the_end_are_judged(foucault, tmp_path, golden, states):

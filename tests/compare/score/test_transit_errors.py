@@ -62,6 +62,7 @@ def test_one_shifted_beyond_the_window_is_missed_and_extra():
 def test_what_the_candidate_did_not_reach_is_not_missed():
     made = against(TRUTH[:5], until=TRUTH[5] - 1)
     assert (made.matched, made.missed, made.extra) == (5, [], [])
+    assert made.undecided == []  # neither the fifteen later ones
     assert against(TRUTH[:5], until=TRUTH[5] + 1).missed == [TRUTH[5]]
 
 
@@ -117,3 +118,55 @@ def test_every_transit_is_matched_missed_or_extra_exactly_once(found):
     assert made.matched + len(made.missed) + len(made.undecided) == len(TRUTH)
     assert made.matched + len(made.extra) == len(found)
     assert (np.diff(made.at + made.errors_s) > 0).all()  # in order
+
+
+def test_a_transit_matches_within_half_a_swing_and_not_beyond():
+    one, slope = np.array([8.0]), np.array([0.05])
+    assert against([12.0], one, slope).matched == 1  # a single one: a swing is the time to it
+    assert against([12.1], one, slope).matched == 0
+    assert against([4.0], one, slope).matched == 1
+    found = against([*TRUTH[:-1], 150.0, TRUTH[-1] + 4.05])
+    assert (found.matched, found.extra) == (20, [150.0])
+
+
+def test_one_at_the_very_end_of_the_candidate_is_undecided():
+    made = against(TRUTH[:5], until=TRUTH[5])
+    assert (made.missed, made.undecided) == ([], [TRUTH[5]])
+
+
+@pytest.mark.parametrize(("part", "excused"), [(0.99, False), (1.01, True)])
+def test_a_motion_within_the_tolerance_and_no_more_excuses(part, excused):
+    depth = 1e-5 * 0.002 / 4 / OMEGA  # of the parabola between the two zeros
+    pair = against(TRUTH, PAIR, PAIR_AX, tolerance_m=part * depth)
+    assert pair.undecided == ([42.0, 42.002] if excused else [])
+    one = against(np.sort([*TRUTH, 42.0]), tolerance_m=part * 1e-8 / OMEGA, xdot=lambda t: np.full(len(t), -1e-8))
+    assert one.undecided == ([42.0] if excused else [])
+    end = against(TRUTH[:5], until=TRUTH[5] + 1e-6, tolerance_m=part * 1e-6 * 0.05 / OMEGA)
+    assert end.undecided == ([TRUTH[5]] if excused else [])
+
+
+def test_a_pair_is_excused_and_not_its_neighbours():
+    found = np.delete(PAIR, [2, 5, 6, 9])
+    made = against(found, PAIR, PAIR_AX, tolerance_m=1e-6)
+    assert (made.missed, made.undecided) == ([PAIR[2], PAIR[9]], [42.0, 42.002])
+    three = against(np.delete(PAIR, [5, 6, 7]), PAIR, PAIR_AX, tolerance_m=1e-6)
+    assert (three.missed, three.undecided) == ([PAIR[7]], [42.0, 42.002])
+
+
+@pytest.mark.parametrize(("count", "excused"), [(0, 0), (1000, 1000), (1001, 0)])
+def test_too_many_extra_ones_are_no_grazing_zeros(count, excused):
+    asked = []
+
+    def xdot(times):
+        asked.append(len(times))
+        return np.zeros(len(times))
+
+    made = against(np.sort([*TRUTH, *np.linspace(40.0, 40.5, count)]), xdot=xdot)
+    assert (len(made.undecided), len(made.extra)) == (excused, count - excused)
+    assert asked == ([count] if excused else [])
+
+
+def test_without_any_swing_a_time_has_no_weight():
+    made = transit_errors(TRUTH + 0.1, TRUTH, AX, 0.0, END, xdot=lambda _: pytest.fail("nothing to compare with"))
+    assert (made.max_conditioned_m, made.max_error_s) == (0.0, pytest.approx(0.1))
+    assert transit_errors(np.append(TRUTH, 167.0), TRUTH, AX, 0.0, END, xdot=np.zeros_like).extra == [167.0]

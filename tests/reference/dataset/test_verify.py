@@ -24,17 +24,7 @@ from reference.dataset.write import write
 from reference.engines.limbs import integration
 from reference.engines.registry import engines
 from reference.errors import DatasetError
-
-
-@pytest.fixture(scope="module")
-def original(tmp_path_factory):
-    solution = reference.solve(reference.load_scene("paris"), t_end="300", digits=20)
-    return write(solution, tmp_path_factory.mktemp("golden") / "paris")
-
-
-@pytest.fixture
-def dataset(original, tmp_path) -> Path:
-    return Path(shutil.copytree(original, tmp_path / "paris"))
+from reference.precision import fixed_decimal
 
 
 def problems(dataset: Path) -> str:
@@ -94,6 +84,22 @@ def level(document, word):
     document["command"] = document["command"].replace("--level confirmed", f"--level {word}")
 
 
+def possible(document, *intervals):
+    document["possible"] = [{"from_s": str(a), "to_s": str(b), "parity": "even"} for a, b in intervals]
+    document["counts"]["possible"], document["transits"] = len(intervals), "undecided intervals"
+
+
+def proved(document, kind, part):
+    """A proof whose radii are a part of the bounds: a tenth, but of one kind."""
+    level(document, "enclosed")
+    names = {"position_m": "position_radius_m", "velocity_m_s": "velocity_radius_m_s", "transit_s": "transit_radius_s"}
+    radii = {
+        name: f"{float(Fraction(document['bounds'][of]) * Fraction(part if of == kind else '0.1')):.3e}"
+        for of, name in names.items()
+    }
+    document["enclosure"] = {"method": "m", "prec": 1, "order": 1, "steps": 1, **radii, "agreement_bits": 1}
+
+
 # what a forger may write into a manifest, with everything else made to fit, and a word of what verify says of it
 WORDS = {
     "a proof that is none": (lambda m: level(m, "enclosed"), "a proof and the level enclosed belong together"),
@@ -128,6 +134,12 @@ WORDS = {
         lambda m: m["files"].update({"/dev/zero": m["files"]["grid.csv"]}), "breaks the schema at files"),
     "a huge number": (lambda m: m["bounds"].update(position_m="1e+999999999"), "breaks the schema at bounds"),
     "a wrong count": (lambda m: m["counts"].update(transits=35), "36 rows, the manifest counts 35"),
+    "intervals that overlap": (lambda m: possible(m, (10, 20), (19, 30)), "must be intervals in order"),
+    "an interval that ends before it begins": (lambda m: possible(m, (20, 10)), "must be intervals in order"),
+    "an interval beyond the end": (lambda m: possible(m, (299, "300.1")), "must be intervals in order"),
+    "an interval before the start": (lambda m: possible(m, ("-0.1", 1)), "must be intervals in order"),
+    "a proof wider than the bounds": (lambda m: proved(m, "position_m", "1.2"), "more than bounds.position_m"),
+    "a proof of wider times": (lambda m: proved(m, "transit_s", "1.2"), "more than bounds.transit_s"),
     "a flag without a note": (lambda m: m.update(flags=["stiff"]), "notes: one for each flag"),
 }  # fmt: skip
 
@@ -137,6 +149,20 @@ def test_a_forged_word_in_the_manifest_is_found_although_the_seal_fits(dataset, 
     change, said = WORDS[name]
     forge(dataset, manifest=change)
     assert said in problems(dataset)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda m: possible(m, (0, 10), (10, 20), (300, 300)),
+        lambda m: proved(m, "position_m", "1.09"),  # bounds are rounded up to two digits
+        lambda m: proved(m, "transit_s", "1.09"),
+    ],
+)
+def test_what_keeps_to_the_same_rules_passes(dataset, change):
+    forge(dataset, manifest=change)
+    rules = ("possible transits", "enclosure: the radius")
+    assert not any(rule in problem for problem in problems_of(dataset) for rule in rules)
 
 
 COLUMNS = [*(("grid", name) for name in GRID_HEADER[1:]), *(("transits", name) for name in TRANSITS)]
@@ -275,6 +301,35 @@ ORDER = {
 def test_transits_out_of_order_are_found(dataset, said):
     forge(dataset, transits=ORDER[said])
     assert said in problems(dataset)
+
+
+@pytest.mark.parametrize("direction", ["0", "+2", "-2", "2", "1", "+1.0", ""])
+def test_a_direction_is_plus_or_minus_one_and_nothing_else(dataset, direction):
+    forge(dataset, transits=lambda rows, _: rows[4].__setitem__(2, direction))
+    assert f"row 5: direction = {direction!r} is not a number of this column's form" in problems(dataset)
+
+
+def test_two_transits_at_one_time_are_found(dataset):
+    forge(dataset, transits=lambda rows, _: rows[4].__setitem__(1, rows[3][1]))
+    assert "transit 5: t is off by" in problems(dataset)
+
+
+def test_the_release_at_rest_is_no_transit(dataset):
+    """xdot is zero there, and the row keeps to every law of a moment; but t is not above 0."""
+    files = read_files(dataset)
+    x, y, z = files.tables["grid.csv"].rows[0][1:4]
+
+    def insert(rows, header):
+        first = rows[0].copy()
+        for name, text in {"t": "0", "x": x, "y": y, "z": z, "vy": "0", "direction": "+1"}.items():
+            places = len(first[header.index(name)].partition(".")[2])
+            first[header.index(name)] = text if name == "direction" else fixed_decimal(Fraction(text), places)
+        rows.insert(0, first)
+        for k, row in enumerate(rows, 1):
+            row[0] = str(k)
+
+    forge(dataset, transits=insert)
+    assert problems(dataset)
 
 
 def test_a_dataset_that_ships_has_the_seal_of_the_index(tmp_path):

@@ -129,6 +129,9 @@ def test_vectors_are_at_most_64_states_and_transits_with_bounds_taken_from_the_t
     assert len(found["states"]) == 64
     assert 62 <= len(found["transits"]) <= 64  # the closest pair may be among those that are evenly spread
     assert found["states"][0]["flags"] == ["release"] and found["states"][-1]["flags"] == ["end"]
+    last = len(tables["transits.csv"].rows)
+    assert [t["k"] for t in found["transits"] if "end" in t["flags"]] == [found["transits"][-1]["k"]] == [last]
+    assert (found["states"][0]["row"], found["states"][-1]["row"]) == (1, 91)
     pair = [t["k"] for t in found["transits"] if "closest_pair" in t["flags"]]
     assert pair[1] == pair[0] + 1
     assert set(found["notes"]) == {"release", "end", "closest_pair"}
@@ -200,9 +203,16 @@ def test_a_solution_and_its_dataset_have_the_same_columns(dataset, solution):
             assert all(abs(one - other) <= unit / 2 for one, other in exact)
             assert np.allclose(table[name], printed[name], rtol=1e-15, atol=float(unit))
             bounds = zip(table.bound(name), printed.bound(name), strict=True)
-            assert all(one <= other for one, other in bounds)
+            own = list(table.bound(name)) if name == "t" else [table.largest_bounds()[name]] * len(table)
+            for (one, other), alone in zip(bounds, own, strict=True):
+                assert one + unit / 2 <= other <= (alone + unit / 2) * Fraction(11, 10)
     with pytest.raises(KeyError, match="'w' is no column"):
         golden.grid["w"]
+    assert golden.grid.bound("t") == [0] * 6
+    with pytest.raises(KeyError, match="a dataset bounds t, x, y, z, vx, vy, vz, not 'w'"):
+        golden.grid.bound("w")
+    assert golden.decimals("vx") == golden.grid.decimals("vx")
+    assert golden.path.name == "paris"
 
 
 def test_a_dataset_and_a_solution_say_in_a_line_what_they_hold(dataset, solution):
@@ -291,6 +301,17 @@ def test_a_target_that_is_a_link_stays_one(dataset, solution):
     write(shorter, link)
     assert link.is_symlink()
     assert load(dataset).manifest.digits == 8
+
+
+def test_the_seal_of_what_ships_is_kept_and_of_nothing_else(solution, tmp_path, monkeypatch):
+    kept = []
+    monkeypatch.setattr(writer, "golden_root", lambda: tmp_path / "golden")
+    monkeypatch.setattr(writer, "keep_seal", lambda *seal: kept.append(seal))
+    write(solution, tmp_path / "paris")
+    write(solution, tmp_path / "golden" / "older" / "paris")
+    assert kept == []
+    ships = write(solution, tmp_path / "golden" / "paris")
+    assert kept == [("paris", load(ships).manifest.seal)]
 
 
 FAILURES = [

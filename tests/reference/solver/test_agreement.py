@@ -15,6 +15,8 @@ from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.precision import DOUBLE, real
 from reference.solver import solve as solver
+from reference.solver.agreement import _bits_lacking
+from reference.solver.pilot import MARGIN_BITS
 from reference.solver.transit_errors import with_transit_errors
 
 # in both runs these two once had the same number of limbs and, as steps were at their longest, the same steps
@@ -124,3 +126,10 @@ def test_the_time_of_a_transit_that_only_grazes_zero_is_unknown(paris):
     solution = run(Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
     table = with_transit_errors(solution, dict.fromkeys(GRID, Fraction(1)), None)
     assert set(table.bound("t")) == {10**9}
+
+
+@pytest.mark.parametrize(("units", "lacking"), [("1/4", 0), ("0.26", -1), ("1", 0), ("1.9", 1), ("1000", 10)])
+def test_runs_agree_to_a_quarter_of_the_last_digit_and_else_lack_the_bits_of_the_rest(units, lacking):
+    gap = Fraction(units) / 10**5
+    found = _bits_lacking({"x": Fraction(0), "y": gap}, {"x": 9, "y": 5})
+    assert found == (lacking + MARGIN_BITS if gap > Fraction(1, 4) / 10**5 else 0)

@@ -1,0 +1,167 @@
+"""Change one place of the source at a time, in a copy of the project, and see whether the tests of that file notice.
+
+    python tests/mutants.py --count 60 --seed 1                  # as many from each file of `TESTS` as far as possible
+    python tests/mutants.py --module checks/tables --count 20    # from the files whose path contains that
+
+Without any change all tests have to pass: `make test` first. What ends a run in an error or takes too long was noticed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import copy
+import os
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from queue import Queue
+from typing import Any, NamedTuple
+
+ROOT, WORKERS = Path(__file__).parent.parent, 2
+CPU_S, WALL_S = 120, 900  # that the tests of one mutant may take
+DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/test_", "tests/reference/solver/test_"
+LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
+TESTS = {  # files by folder, and what tests them, the quick ones first
+    "reference/dataset/checks: physics": f"{DATASET}tight_checks.py {DATASET}verify.py",
+    "reference/dataset/checks: record tables motion": f"{LIMITS} {DATASET}tight_checks.py {BITS} {DATASET}verify.py",
+    "reference/dataset/checks: index": f"{DATASET}index.py",
+    "reference/dataset: verify files place vectors": f"{LIMITS} {FILES} {DATASET}verify.py",
+    "reference/dataset: read sheets write manifest": f"{FILES} {DATASET}verify.py",
+    "compare/score: transits": f"{SCORE}transit_errors.py",
+    "compare/score: errors": f"{SCORE}errors.py",
+    "compare/score: verdict": f"{SCORE}verdict.py",
+    "compare/score: judge": f"{SCORE}judge.py",
+    "reference: precision": f"tests/reference/test_precision.py tests/reference/test_table.py {BITS}",
+    "reference/solver: rounding": f"{FILES} {SOLVER}solve.py",
+    "reference/solver: agreement transit_errors": f"{SOLVER}agreement.py {SOLVER}solve.py",
+    "reference/solver: solve": f"{BITS} {SOLVER}solve.py",
+}
+SLOW = "ships few_digits killed two_processes script same_command ten_times picture collinear 1000000 recomputing "
+SLOW += "large_angles loses_every thirty_digits effective_gravity every_transit"
+SWAPPED: dict[type, type] = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq}
+SWAPPED |= {ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In}
+SWAPPED |= {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.And: ast.Or, ast.Or: ast.And}
+
+
+class Mutant(NamedTuple):
+    file: str
+    change: str  # line: the line [before -> after]
+    source: str  # of the whole file
+    tests: str
+
+
+def others(node: Any) -> Iterator[Any]:
+    """Yield what may stand in a node's place."""
+    match node:
+        case ast.Compare():
+            for i, one in enumerate(node.ops):
+                yield _with(node, ops=[*node.ops[:i], SWAPPED[type(one)](), *node.ops[i + 1 :]])
+        case ast.BinOp() | ast.BoolOp() | ast.AugAssign() if type(node.op) in SWAPPED:
+            yield _with(node, op=SWAPPED[type(node.op)]())
+        case ast.Constant(value=int() | float()) if not isinstance(node.value, bool):
+            yield from (ast.Constant(node.value * factor or factor) for factor in (2, 100))
+        case ast.UnaryOp(op=ast.Not()):
+            yield node.operand
+        case ast.If() | ast.IfExp() if not isinstance(node.test, ast.UnaryOp):
+            yield _with(node, test=ast.UnaryOp(ast.Not(), node.test))
+        case ast.Return() | ast.Expr(value=ast.Yield() | ast.YieldFrom()):
+            yield ast.Pass()
+        case ast.Call(func=ast.Name(id="min" | "max" as name)):
+            yield _with(node, func=ast.Name("max" if name == "min" else "min"))
+
+
+def _with(node: Any, **fields: Any) -> Any:
+    changed = copy.copy(node)
+    vars(changed).update(fields)
+    return changed
+
+
+def places(node: Any) -> Iterator[tuple[Any, str, int | None]]:
+    """Yield where another node may be put, as parent, field and index; not in annotations and texts for people."""
+    spared = isinstance(node, ast.JoinedStr) or getattr(node, "name", "") in ("__repr__", "__str__")
+    spared = spared or "TYPE_CHECKING" in ast.unparse(getattr(node, "test", ast.Pass()))
+    for field, value in () if spared else ast.iter_fields(node):
+        for i, child in enumerate(value if isinstance(value, list) else [value]):
+            if isinstance(child, ast.AST) and field not in ("annotation", "returns"):
+                yield node, field, i if isinstance(value, list) else None
+                yield from places(child)
+
+
+def mutants(file: str, tests: str) -> Iterator[Mutant]:
+    """Yield every mutant of a file."""
+    source = (ROOT / file).read_text()
+    tree = ast.parse(source)
+    for parent, field, i in places(tree):
+        old = getattr(parent, field)
+        node = old if i is None else old[i]
+        for new in others(node):
+            setattr(parent, field, new if i is None else [*old[:i], new, *old[i + 1 :]])
+            before, after = (ast.unparse(part).partition("\n")[0] for part in (node, new))
+            line = source.splitlines()[node.lineno - 1].strip()
+            yield Mutant(file, f"{node.lineno}: {line}   [{before} -> {after}]", ast.unparse(tree), tests)
+            setattr(parent, field, old)
+
+
+def drawn(count: int, seed: int, module: str) -> list[Mutant]:
+    """Draw mutants, as many from each file as far as possible."""
+    draw, found = random.Random(seed), []
+    for files, tests in TESTS.items():
+        folder, _, names = files.partition(": ")
+        for file in (f"{folder}/{name}.py" for name in names.split()):
+            every = list(mutants(file, tests))
+            draw.shuffle(every)
+            found += [(i, draw.random(), mutant) for i, mutant in enumerate(every) if module in file]
+    return [mutant for _, _, mutant in sorted(found)[:count]]
+
+
+def outcome(folder: Path, mutant: Mutant) -> str:
+    """Return killed, survived or timeout for a mutant in a copy of the project."""
+    file = folder / mutant.file
+    good = file.read_bytes()
+    file.write_text(mutant.source)
+    limits = ["timeout", "--signal=KILL", str(WALL_S), "sh", "-c", f'ulimit -t {CPU_S}; exec "$@"', "sh"]
+    words = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-k"]
+    words += [f"not ({SLOW.replace(' ', ' or ')})", *mutant.tests.split()]
+    environment = {**os.environ, "PYTHONPATH": str(folder)}
+    status = subprocess.run([*limits, *words], cwd=folder, env=environment, stdout=subprocess.DEVNULL, check=False)
+    file.write_bytes(good)
+    return "survived" if status.returncode == 0 else "killed" if 0 < status.returncode < 128 else "timeout"
+
+
+def main() -> None:
+    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    options.add_argument("--count", type=int, default=60)
+    options.add_argument("--seed", type=int, default=1)
+    options.add_argument("--module", default="", help="part of the paths to choose")
+    options.add_argument("--verbose", action="store_true", help="also list what was killed")
+    chosen = options.parse_args()
+    every, copies, found = drawn(chosen.count, chosen.seed, chosen.module), Queue[Path](), Counter[tuple[str, str]]()
+
+    def run(mutant: Mutant) -> str:
+        folder = copies.get()
+        try:
+            return outcome(folder, mutant)
+        finally:
+            copies.put(folder)
+
+    with tempfile.TemporaryDirectory() as place, ThreadPoolExecutor(WORKERS) as pool:
+        for i in range(WORKERS):
+            copies.put(Path(shutil.copytree(ROOT, f"{place}/{i}", ignore=shutil.ignore_patterns(".*"))))
+        for mutant, what in zip(every, pool.map(run, every), strict=True):
+            found[mutant.file, what] += 1
+            if what != "killed" or chosen.verbose:
+                print(f"{what:9} {mutant.file}:{mutant.change}", flush=True)
+    for file in sorted({file for file, _ in found}):
+        print(f"{file:45}", *(f"{found[file, what]:3} {what}" for what in ("killed", "timeout", "survived")))
+    print(f"{len(every)} mutants, {sum(found[file, what] for file, what in found if what == 'survived')} survived")
+
+
+if __name__ == "__main__":
+    main()

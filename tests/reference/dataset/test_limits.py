@@ -1,0 +1,141 @@
+"""Limits of what `verify` reads, lists and lets pass, each tried on both sides."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from fractions import Fraction
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from forgery import forge, moved, seal
+from small_scenes import make_scene
+
+import reference
+from reference.dataset.checks.tables import _signs_on_grid
+from reference.dataset.files import read_files
+from reference.dataset.manifest import MANIFEST
+from reference.dataset.place import MAX_ID, dataset_id
+from reference.dataset.sheets import Sheet
+from reference.dataset.vectors import _closest_pair
+from reference.dataset.verify import problems_of, verify
+from reference.dataset.write import write
+from reference.errors import DatasetError
+
+
+def problems(dataset):
+    """All problems in one text."""
+    return "\n".join(verify(dataset).problems)
+
+
+def test_twenty_problems_are_listed_at_most(dataset):
+    forge(dataset, transits=lambda rows, _: [row.__setitem__(3, moved(row[3], Fraction(1))) for row in rows])
+    assert len(verify(dataset).problems) == len(problems_of(dataset)) == 20
+
+
+@pytest.mark.parametrize("size, said", [(1 << 22, "is not JSON"), ((1 << 22) + 1, "at most 4194304 are read")])
+def test_a_manifest_of_more_than_four_mebibytes_is_not_read(dataset, size, said):
+    with (dataset / MANIFEST).open("wb") as stream:
+        stream.truncate(size)
+    assert said in problems(dataset)
+    assert said in "\n".join(problems_of(dataset))
+
+
+@pytest.mark.parametrize("size, said", [(1 << 28, "a byte was changed"), ((1 << 28) + 1, "at most 268435456 are read")])
+def test_a_file_of_more_than_a_quarter_of_a_gibibyte_is_not_read(dataset, size, said):
+    document = json.loads((dataset / MANIFEST).read_text())
+    document["files"]["grid.csv"]["bytes"] = size
+    seal(dataset, document, {})
+    os.truncate(dataset / "grid.csv", size)
+    (problem,) = verify(dataset).problems
+    assert problem.startswith("grid.csv: ") and said in problem
+
+
+def sealed(dataset, name, old, new):
+    """Write a file with a text in it replaced, and a seal that fits."""
+    files = read_files(dataset)
+    assert old in files.texts[name]
+    text = files.texts[name].replace(old, new, 1)
+    seal(dataset, json.loads((dataset / MANIFEST).read_text()), {**files.texts, name: text})
+
+
+def test_a_malformed_cell_is_shown_up_to_its_eightieth_character(dataset):
+    sealed(dataset, "grid.csv", "\n120,", "\n" + "x" * 200 + ",")
+    assert f"grid.csv: row 3: t = '{'x' * 80}' is not a number of this column's form" in problems(dataset)
+
+
+def test_a_row_of_another_length_is_counted(dataset):
+    sealed(dataset, "grid.csv", "\n120,", "\n120,1,")
+    assert "grid.csv: row 3: 8 numbers, not 7" in problems(dataset)
+
+
+@pytest.mark.parametrize("factor, found", [(1, False), (3, True)])
+def test_the_bound_of_a_time_is_hardly_more_than_the_error_of_xdot_over_ax(dataset, factor, found):
+    def widen(rows, _):
+        rows[4][-1] = f"{float(factor * Fraction(rows[4][-1])):.1e}"
+
+    forge(dataset, transits=widen)
+    assert any("transit 5: bound" in problem and "leave open" in problem for problem in problems_of(dataset)) is found
+
+
+def test_the_doubles_have_the_words_of_the_decimals(dataset):
+    files = read_files(dataset)
+    row = files.texts["transits.binary64.csv"].splitlines()[3]
+    cells = row.split(",")
+    for place, new in ((0, "9"), (2, "-1" if cells[2] == "+1" else "+1"), (8, "1.0e-05")):
+        copy = Path(shutil.copytree(dataset, dataset.with_name(f"other {place}")))
+        sealed(copy, "transits.binary64.csv", row, ",".join([*cells[:place], new, *cells[place + 1 :]]))
+        assert "row 3 has another direction, number or bound" in problems(copy)
+
+
+def test_a_double_in_other_digits_than_its_own_is_found(dataset):
+    """The seventeenth digit of a double does not always change it, and then only the text is wrong."""
+    row = read_files(dataset).texts["grid.binary64.csv"].splitlines()[1]
+    x = row.split(",")[1]
+    assert float(x) == 0.3
+    sealed(dataset, "grid.binary64.csv", x, "3.0000000000000000e-01")
+    assert "x = 3.0000000000000000e-01 is not written with the digits of 0.3" in problems(dataset)
+
+
+def test_the_id_of_a_users_own_scene_names_changes_that_it_has(tmp_path):
+    scene = make_scene("mine", site={"latitude": "1"}, run={"t_end": "60", "digits": 8, "level": "computed"})
+    solution = reference.solve(scene)
+    for name in ("mine", "mine+site.latitude=1", "mine+site.latitude=1,release.x=0.3"):
+        assert problems_of(write(solution, tmp_path / name, name)) == []
+    for name in ("yours", "mine+site.latitude=2", "mine+site.latitude=1,release.x=0.4", "mine.decimal"):
+        with pytest.raises(DatasetError, match="does not follow from the scene"):
+            write(solution, tmp_path / name, name)
+
+
+@pytest.mark.parametrize("length, whole", [(MAX_ID, True), (MAX_ID + 1, False)])
+def test_an_id_of_more_than_160_characters_is_a_hash(paris, length, whole):
+    change = "pendulum.length=67."
+    number = "67." + "1" * (length - len("paris+") - len(change))
+    found = dataset_id(paris.with_values([f"pendulum.length={number}"]))
+    assert MAX_ID == 160
+    assert (found == f"paris+pendulum.length={number}") is whole
+    assert len(found) == (length if whole else len("paris+sha256=") + 16)
+
+
+@pytest.mark.parametrize("times, pair", [("", []), ("12", []), ("124", [0, 1]), ("134", [1, 2]), ("1245", [0, 1])])
+def test_the_closest_pair_is_the_first_of_the_least_distance_among_three_or_more(times, pair):
+    assert _closest_pair(Sheet(("t",), [(t,) for t in times], {})) == pair
+
+
+@pytest.mark.parametrize(
+    ("t", "vx", "found"),
+    [("5", "-1", False), ("5", "1", True), ("15", "1", False), ("15", "-1", True), ("25", "-1", False),
+     ("25", "1", True), ("8.9", "1", True), ("9", "1", False), ("11", "-1", False), ("11.1", "-1", True),
+     ("18.9", "-1", True), ("19", "-1", False), ("21", "1", False), ("21.1", "1", True), ("5", "0.5", False),
+     ("5", "0.51", True)],
+)  # fmt: skip
+def test_between_transits_xdot_has_one_sign_but_within_the_bounds_of_a_time_or_of_itself(t, vx, found):
+    """Transits at 10 and 20 s, known to 1 s, and xdot to 0.5 m/s."""
+    manifest = SimpleNamespace(bound=lambda *_: Fraction(1, 2))
+    grid = Sheet(("t", "vx"), [("0", "9"), (t, vx)], {})
+    files = SimpleNamespace(manifest=manifest, tables={"grid.csv": grid})
+    times, ones = (Fraction(10), Fraction(20)), (Fraction(1), Fraction(1))
+    said = list(_signs_on_grid(files, times, ones, (Fraction(1), Fraction(-1))))
+    assert bool(said) is found

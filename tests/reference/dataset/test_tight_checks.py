@@ -1,0 +1,125 @@
+"""The checks of single rows allow what the bounds allow and hardly more, as the corners of their box tell."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import product
+
+import mpmath
+import pytest
+
+from reference.columns import GRID
+from reference.dataset.checks import physics, tables
+from reference.dataset.files import read_files
+from reference.model.constants import constants
+from reference.model.force import acceleration, invariant
+from reference.precision import context, fixed_decimal
+
+ROW, WIDER = 3, 10**9  # bounds so wide that rounding, of which they consist, is nothing beside them
+
+
+@pytest.fixture(scope="module")
+def files(original):
+    found = read_files(original)
+    wide = {
+        kind: {name: str(mpmath.mpf(bound) * WIDER) for name, bound in getattr(found.manifest.bounds, kind).items()}
+        for kind in ("grid", "transits")
+    }
+    bounds = found.manifest.bounds.model_copy(update=wide)
+    return replace(found, manifest=found.manifest.model_copy(update={"bounds": bounds}))
+
+
+def state(files, kind, row, names):
+    (numbers,) = list(files.tables[f"{kind}.csv"].numbers(names))[row : row + 1]
+    return numbers, [Fraction(getattr(files.manifest.bounds, kind)[name]) for name in names]
+
+
+def largest(quantity, numbers, bounds):
+    """The largest change of a quantity over the corners of the box."""
+    middle = quantity(*numbers)
+    corners = product(*((q - b, q + b) for q, b in zip(numbers, bounds, strict=True)))
+    return max(abs(quantity(*corner) - middle) for corner in corners)
+
+
+def with_change(files, kind, column, by):
+    sheet = files.tables[f"{kind}.csv"]
+    rows, place = list(sheet.rows), sheet.header.index(column)
+    row = list(rows[ROW])
+    row[place] = fixed_decimal(Fraction(row[place]) + by, 60)
+    rows[ROW] = tuple(row)
+    return replace(files, tables={**files.tables, f"{kind}.csv": replace(sheet, rows=rows)})
+
+
+def said(files, word):
+    return any(word in sentence for sentence in physics.problems(files))
+
+
+def on_sphere(ctx, k, x, y, vx, vy):
+    """The state whose z and vz follow from the others, below the pivot, over l."""
+    x, y, vx, vy = (ctx.mpf(q.numerator) / q.denominator / k.length for q in map(Fraction, (x, y, vx, vy)))
+    z = -ctx.sqrt(1 - x * x - y * y)
+    return (x, y, z), (vx, vy, -(x * vx + y * vy) / z)
+
+
+def exact(value):
+    return Fraction(str(mpmath.nstr(value, 40)))
+
+
+@pytest.mark.parametrize(("part", "found"), [(Fraction(99, 100), False), (Fraction(101, 100), True)])
+@pytest.mark.parametrize("kind", ["grid", "transits"])
+def test_the_distance_from_the_pivot_may_be_off_by_its_corners(files, kind, part, found):
+    (x, y, z), bounds = state(files, kind, ROW, ("x", "y", "z"))
+    allowed = largest(lambda x, y, z: x * x + y * y + z * z, (x, y, z), bounds)
+    assert said(with_change(files, kind, "z", part * allowed / (2 * z)), "the bob is not at the distance") is found
+
+
+@pytest.mark.parametrize(("part", "found"), [(Fraction(99, 100), False), (Fraction(101, 100), True)])
+def test_the_velocity_may_leave_the_sphere_by_its_corners(files, part, found):
+    numbers, bounds = state(files, "grid", ROW, GRID)
+    allowed = largest(lambda x, y, z, u, v, w: x * u + y * v + z * w, numbers, bounds)
+    assert said(with_change(files, "grid", "vz", part * allowed / numbers[2]), "not along the sphere") is found
+
+
+@pytest.mark.parametrize(("part", "found"), [(Fraction(97, 100), False), (Fraction(108, 100), True)])
+@pytest.mark.parametrize("kind", ["grid", "transits"])
+def test_the_invariant_may_be_off_by_its_corners(files, kind, part, found):
+    ctx = context(200)
+    k = constants(files.scene.exact, ctx)
+
+    def h(x, y, *v):
+        return exact(invariant(*on_sphere(ctx, k, x, y, *(v if len(v) == 2 else (0, *v))), k))
+
+    def allowed(kind, row):
+        names = ("x", "y", "vx", "vy") if kind == "grid" else ("x", "y", "vy")
+        return largest(h, *state(files, kind, row, names))
+
+    (x, y, vy), _ = state(files, kind, ROW, ("x", "y", "vy"))
+    vx = state(files, kind, ROW, ("vx",))[0] if kind == "grid" else []
+    tiny = Fraction(1, 10**15)
+    slope = (h(x + tiny, y, *vx, vy) - h(x, y, *vx, vy)) / tiny
+    by = part * (allowed(kind, ROW) + allowed("grid", 0)) / slope
+    assert said(with_change(files, kind, "x", by), "the invariant h differs") is found
+
+
+@pytest.mark.parametrize(("part", "found"), [(Fraction(97, 100), False), (Fraction(108, 100), True)])
+def test_the_acceleration_at_a_transit_may_be_off_by_its_corners(files, part, found):
+    ctx = context(200)
+    k = constants(files.scene.exact, ctx)
+    numbers, bounds = state(files, "transits", ROW, ("x", "y", "vy"))
+    own = largest(
+        lambda x, y, vy: exact(acceleration(*on_sphere(ctx, k, x, y, 0, vy), k)[0] * k.length), numbers, bounds
+    )
+    allowed = own + Fraction(files.manifest.bounds.transits["ax"])
+    assert said(with_change(files, "transits", "ax", part * allowed), "the equations of motion give") is found
+
+
+@pytest.mark.parametrize(("part", "found"), [(Fraction(2), False), (Fraction("2.3"), True)])
+def test_the_bound_of_a_time_is_at_most_twice_the_error_of_xdot_over_ax(files, part, found):
+    """The wide bound on xdot leaves all else far behind; bounds are rounded up to two digits, to a tenth at most."""
+    (ax,), _ = state(files, "transits", ROW, ("ax",))
+    late = part * Fraction(files.manifest.bounds.grid["vx"]) / abs(ax)
+    (old,) = list(files.tables["transits.csv"].numbers(("bound",)))[ROW]
+    wide = with_change(files, "transits", "bound", late - old)
+    problems = list(tables._bound_column(wide, wide.tables["transits.csv"]))
+    assert any("transit 4: bound" in problem and "leave open" in problem for problem in problems) is found
