@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from child import said_by
 from hostile_inputs import (
     Chance,
     a_candidate,
@@ -90,16 +91,7 @@ def outcome(use: Callable[[Any], object], made: Any) -> tuple[float, str]:
 
 def command_line(words: list[str]) -> None:
     """Run a command in this process; raise an error if a traceback or an escape sequence reaches the terminal."""
-    from foucault import main
-
-    sys.argv = ["foucault", *words]
-    out, err, status = io.StringIO(), io.StringIO(), 0
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            main()
-        except SystemExit as stop:
-            status = int(stop.code or 0)
-    said = out.getvalue() + err.getvalue()
+    status, said = said_by(words)
     if status not in (0, 2, 3) or "\x1b" in said or "Traceback" in said:
         raise AssertionError(f"exit status {status}: {said[-1000:]!a}")
     if status:

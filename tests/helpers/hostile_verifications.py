@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import io
 import json
 import os
 import random
@@ -18,6 +17,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from child import said_by
 from draft import Draft
 from hostile_datasets import CASES
 
@@ -61,16 +61,7 @@ def attempt(folder: Path) -> tuple[str, str]:
     "found" by `verify`, which lists what is wrong; "refused" as no dataset; "passed". `load` refuses it, or reads as
     many numbers as are counted.
     """
-    from foucault import main
-
-    sys.argv = ["foucault", "verify", str(folder)]
-    out, err, status = io.StringIO(), io.StringIO(), 0
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            main()
-        except SystemExit as stop:
-            status = int(stop.code or 0)
-    said = out.getvalue() + err.getvalue()
+    status, said = said_by(["verify", str(folder)])
     assert status in (0, 1, 2), status
     assert "Traceback" not in said, said
     assert all(map(is_plain, said.splitlines())), ascii(said)
