@@ -17,7 +17,8 @@ FIELDS = [
 ]  # fmt: skip
 FILES = [
     *(HEAD + f"0,1,{field}\n".encode() for field in FIELDS), *(f"t\n{field}\n".encode() for field in FIELDS),
-    HEAD + b"0,1,", b"", b"\n", b"\xff\xfe", GOOD.decode().encode("utf-16"), GOOD + b"2,1,\xe9", gzip.compress(GOOD, mtime=0),
+    HEAD + b"0,1,", b"", b"\n", b"\xff\xfe", GOOD.decode().encode("utf-16"), GOOD + b"2,1,\xe9",
+    gzip.compress(GOOD, mtime=0),
     HEAD + b"0,1\n", HEAD + b"0,1,2,3\n", HEAD + b'0,"1\n2",3\n', HEAD + b"1,1,1\n0,1,1\n", HEAD + b"0," + b"1" * 10**7,
     b"PK\x03\x04", b"PK\x05\x06" + bytes(18), b"\x93NUMPY\x01\0", b"\x80\x04.", GOOD.replace(b"\n", b"\r"), b"a" * 10**7
 ]  # fmt: skip
