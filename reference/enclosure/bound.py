@@ -29,8 +29,8 @@ class World:
             sin, cos, rate = arb.sin_pi_fmpq(turn), arb.cos_pi_fmpq(turn), ball(inputs.rotation_rate)
             f, self.length, self.drag = ball(inputs.flattening), ball(inputs.length), ball(inputs.drag)
             normal = ball(inputs.equatorial_radius) / (1 - f * (2 - f) * sin * sin).sqrt()
-            push = rate * rate * (normal + ball(inputs.altitude)) * cos  # centrifugal, at the pivot
-            push = arb(0) if inputs.gravity_is == "effective" else push  # g contains it
+            # the centrifugal force at the pivot, which effective gravity contains
+            push = arb(0) if inputs.gravity_is == "effective" else rate * rate * (normal + ball(inputs.altitude)) * cos
             self.tilt = (arb(1), arb(0)) if rate.is_zero() else (sin, cos)
             self.omega = [arb(0), arb(0), rate]
             weight = [arb(0), -sin * push, cos * push - ball(inputs.gravity)]

@@ -74,7 +74,7 @@ def test_methods_of_which_none_is_installed_are_refused_with_the_command_that_in
     monkeypatch.setattr(declared, "missing", list)
     status, out, err = foucault(*words, "--out", tmp_path / "out")
     assert (status, out) == (2, "")
-    assert "rk4 is not installed (numba): pip install 'foucault-reference[methods]'" in err
+    assert "rk4: not installed (numba): pip install 'foucault-reference[methods]'" in err
     assert list(tmp_path.iterdir()) == []
 
 
