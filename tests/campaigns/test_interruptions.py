@@ -23,7 +23,7 @@ COMMANDS: dict[str, tuple[list[str], str]] = {
     "scenes": (["scenes"], ""),
     "generate": (["generate", "paris", "--t-end", "120", "--digits", "20", "--out"], "foucault: stopped; nothing "),
     "study": (STUDY, GOES_ON),
-    "study --run": ([*STUDY[:4], *("--methods", "rk4", "--settings", "1", "--run", "PROGRAM", "--out")], GOES_ON),
+    "study --run": ([*STUDY[:4], *("--methods", "rk4", "--run", "PROGRAM", "--out")], GOES_ON),
     "stability": (["stability", "--scenes", "hard", "--methods", "rk4", "--out"], GOES_ON),
 }
 
