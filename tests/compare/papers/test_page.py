@@ -33,6 +33,8 @@ def test_json_and_csv_hold_the_same_rows(built: Built) -> None:
     as_json = json.loads((folder / "rows.json").read_text(encoding="utf-8"))["rows"]
     with (folder / "rows.csv").open(encoding="utf-8", newline="") as handle:
         as_csv = list(csv.DictReader(handle))
+    for row in as_csv:  # what a spreadsheet would run begins with an apostrophe there
+        row.update({key: cell[1:] if cell[:1] == "'" and cell[1:2] in "=+-@" else cell for key, cell in row.items()})
     assert as_json == as_csv == [page.document(row) for row in rows]
     assert {"id", "place", "printed", "recomputed", "verdict"} <= set(as_json[0])
 
