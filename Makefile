@@ -16,7 +16,7 @@ golden: .venv/solving
 
 # Each worker takes whole files: what a file prepares is prepared once.
 test: lint
-	@echo "Running the tests: about ten minutes"
+	@echo "Running the tests: some twenty minutes on two cores"
 	$(BIN)/python -m pytest -q -n 2 --dist loadgroup --no-loadscope-reorder \
 	  --cov --cov-report=term-missing:skip-covered --cov-fail-under=95
 
@@ -26,7 +26,7 @@ campaign: .venv/testing
 
 # Do the tests notice a wrong source? Other draws: tests/mutants.py --seed 2, --module precision
 mutants: .venv/testing
-	@echo "Changing the source in 60 places, one at a time, and running its tests: half an hour"
+	@echo "Changing the source in 60 places, one at a time, and running its tests"
 	$(BIN)/python tests/mutants.py
 
 lint: .venv/testing

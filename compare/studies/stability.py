@@ -137,7 +137,7 @@ def stability(
 
 
 def _moved(solving: Callable[[float, int], None], solved: int, scenes: int, t_end: float, t: float) -> None:
-    """Report that so many scenes are solved, and the next one up to t in s."""
+    """Report how many scenes are solved, and the time in s that the next one has reached."""
     solving(solved + t / t_end, scenes)
 
 

@@ -14,7 +14,8 @@ from ..plain_text import plain, terminal_of
 
 NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
 MEASURED_S = 5.0  # shortest time from which the rest is estimated
-ENOUGH, LATEST_S = 0.02, 60.0  # part of the work from which it is estimated; after so many s from less
+ENOUGH = 0.02  # part of the work that is done before the rest is estimated
+LATEST_S = 60.0  # time after which it is estimated from less
 
 
 class Move(Protocol):

@@ -32,11 +32,13 @@ FileName = Literal[
 ]
 
 
-class _Part(BaseModel):
+class Part(BaseModel):
+    """A part of a document: frozen, without extra keys."""
+
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
-class Bounds(_Part):
+class Bounds(Part):
     """How far any printed number may be from the truth, rounding to its digits included: m, m/s, s, m/s².
 
     The first three are the largest of their kind, `transit_s` only where there are transits; `grid` and `transits` are
@@ -50,7 +52,7 @@ class Bounds(_Part):
     transits: dict[Name, Decimal]
 
 
-class Counts(_Part):
+class Counts(Part):
     """Rows of the tables; `possible` are transits that could not be decided."""
 
     grid: Count
@@ -58,14 +60,14 @@ class Counts(_Part):
     possible: Count
 
 
-class Invariant(_Part):
+class Invariant(Part):
     """h = v²/2 + g z - Ω²/2 (x² + q²) at t = 0 in m²/s², and its largest change over the printed rows."""
 
     h_m2_s2: Decimal
     drift_m2_s2: Decimal
 
 
-class Equations(_Part):
+class Equations(Part):
     """The formulation that the numbers come from, its compiled lines, and what the scene left out."""
 
     formulation: Name
@@ -73,7 +75,7 @@ class Equations(_Part):
     left_out: list[Text]
 
 
-class RunRecord(_Part):
+class RunRecord(Part):
     """A run: formulation, number type, order and steps of the Taylor method."""
 
     formulation: Name
@@ -90,7 +92,7 @@ class CrossCheckRecord(RunRecord):
     transit_s: Decimal | None
 
 
-class Possible(_Part):
+class Possible(Part):
     """An interval in s that may hold transits which no enclosure can decide (a grazing zero)."""
 
     from_s: Decimal
@@ -98,7 +100,7 @@ class Possible(_Part):
     parity: Literal["odd", "even", "unknown"]
 
 
-class EnclosureRecord(_Part):
+class EnclosureRecord(Part):
     """The proof: its method, size and largest radii, and the bits to which heyoka's run agrees with it."""
 
     method: Name
@@ -111,14 +113,14 @@ class EnclosureRecord(_Part):
     agreement_bits: int
 
 
-class FileRecord(_Part):
+class FileRecord(Part):
     """Size and hash of a file of the dataset."""
 
     bytes: Count
     sha256: Sha256
 
 
-class Manifest(_Part):
+class Manifest(Part):
     """`manifest.json`; numbers that matter are strings.
 
     `seal` is the sha256 of the same text with an empty seal. It finds accidents; a forger can make it again.

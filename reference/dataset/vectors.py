@@ -6,10 +6,8 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from pydantic import BaseModel, ConfigDict
-
 from ..columns import KINDS, UNITS
-from .manifest import FORMAT, Decimal, Manifest, Name, Text
+from .manifest import FORMAT, Decimal, Manifest, Name, Part, Text
 from .sheets import NUMBERS, Sheet
 
 MOST = 64  # states, and transits
@@ -20,11 +18,7 @@ NOTES = {
 }
 
 
-class _Part(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Value(_Part):
+class Value(Part):
     """A number: as a decimal, as the nearest double, and how far the decimal may be from the truth, in its unit."""
 
     decimal: Decimal
@@ -32,7 +26,7 @@ class Value(_Part):
     bound: Decimal
 
 
-class StateVector(_Part):
+class StateVector(Part):
     """The state at a grid time; `row` counts the rows of `grid.csv` from 1."""
 
     row: int
@@ -40,7 +34,7 @@ class StateVector(_Part):
     values: dict[Name, Value]
 
 
-class TransitVector(_Part):
+class TransitVector(Part):
     """A zero of xdot; `k` is its number in `transits.csv`, and the direction is +1 where xdot goes from - to +."""
 
     k: int
@@ -49,7 +43,7 @@ class TransitVector(_Part):
     values: dict[Name, Value]
 
 
-class Vectors(_Part):
+class Vectors(Part):
     """`vectors.json`: the inputs of a scene, and what a program has to give for them."""
 
     schema_version: int
@@ -107,7 +101,7 @@ def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
 
 
 def _spread(count: int, most: int) -> list[int]:
-    """Return at most so many of the rows 0 to count - 1, evenly spread, with the first and the last."""
+    """Return the numbers of at most `most` rows out of `count`, evenly spread, with the first and the last."""
     return list(range(count)) if count <= most else [i * (count - 1) // (most - 1) for i in range(most)]
 
 

@@ -16,7 +16,7 @@ BEYOND = "a number of the scene or of a table, or what follows from it, is beyon
 
 @dataclass(frozen=True)
 class Verification:
-    """What was found in a dataset.
+    """The problems of a dataset, and notes on it.
 
     Attributes:
         problems: a sentence each; none if it passes.
@@ -28,7 +28,7 @@ class Verification:
 
 
 def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
-    """Check a dataset, and integrate its scene again, which takes about a second for a day.
+    """Check a dataset, and integrate its scene again, which takes some seconds for a day of Paris.
 
     Args:
         folder: where it stands.

@@ -22,8 +22,8 @@ def problems(files: Files) -> Iterator[str]:
     """Yield what is wrong with the rows of the tables, taken by themselves and against the scene's inputs."""
     yield from _times(files)
     yield from _release(files)
+    yield from _digits(files)
     for kind in ("grid", "transits"):
-        yield from _digits(files, kind)
         yield from _doubles(files, kind)
     if files.manifest.counts.transits and "transits.csv" in files.tables:
         yield from _order(files, files.tables["transits.csv"])
@@ -51,19 +51,15 @@ def _release(files: Files) -> Iterator[str]:
             yield f"grid.csv: {name} of the first row is not that of the scene's release"
 
 
-def _digits(files: Files, kind: str) -> Iterator[str]:
-    """Check that the largest number of each column has the digits asked for."""
-    sheet, decimals = files.tables.get(f"{kind}.csv"), files.manifest.decimals.get(kind, {})  # type: ignore[call-overload]
-    if sheet is None or not sheet.rows:
-        return
-    for name in NUMBERS[kind][1:] if kind == "grid" else NUMBERS[kind]:
-        largest = max(abs(row[0]) for row in sheet.numbers((name,)))
-        bound = files.manifest.bound(kind, name)  # type: ignore[arg-type]
+def _digits(files: Files) -> Iterator[str]:
+    """Check that the largest number of each column of the grid has the digits asked for."""
+    sheet, manifest = files.tables["grid.csv"], files.manifest
+    for name in GRID:
+        largest, bound = max(abs(row[0]) for row in sheet.numbers((name,))), manifest.bound("grid", name)
         if largest > SIGNIFICANT * bound:
-            around = {decimals_for(value, files.manifest.digits) for value in (largest - bound, largest + bound)}
-            # z and vz may have as many as x and vx; a column of the transits has those of the grid
-            if decimals[name] < min(around) and kind == "grid":
-                yield f"{MANIFEST}: decimals: {name} of {kind} has fewer than {files.manifest.digits} digits"
+            around = {decimals_for(value, manifest.digits) for value in (largest - bound, largest + bound)}
+            if manifest.decimals["grid"][name] < min(around):
+                yield f"{MANIFEST}: decimals: {name} of grid has fewer than {manifest.digits} digits"
 
 
 def _doubles(files: Files, kind: str) -> Iterator[str]:
