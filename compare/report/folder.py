@@ -61,8 +61,9 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
     """
     existing = next((name for name in names if (folder / name).exists()), None)
     if (existing is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
-        got = str(folder) if existing is None else f"{folder}, which has a {existing} of its own"
-        raise InputError("--out", got, "a new folder, or one that an earlier run wrote", "Choose another name.")
+        reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
+        expected = "a new folder, or one that an earlier run wrote"
+        raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
 
 
 def _is_ours(page: Path) -> bool:

@@ -113,7 +113,7 @@ print(cache.root())
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can become a user without a passwd entry")
 def test_without_a_home_a_temporary_folder_serves_and_goes():
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(dir="/tmp") as folder:  # the folder of this run is closed to other users
         Path(folder).chmod(0o777)
         environment = {"PATH": os.environ["PATH"], "TMPDIR": folder, "PYTHONPATH": os.pathsep.join(sys.path)}
         command = [sys.executable, "-c", WITHOUT_HOME]
