@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from reference import InputError, Scene, load_scene
+from reference import InputError, load_scene
 from reference.precision import Array
 
 from ..methods import METHODS, available
@@ -14,19 +14,11 @@ from ..rhs.problem import Problem
 from .digits import mpf
 from .mathar.frequency import estimate
 from .points import paris
-from .runs import frequency, path_in, solved
+from .runs import frequency, solved
 
 FIXED_STEP = ("rk4", "rkng56", "rkng67")  # -R 4, 5, 6
 LATITUDES = tuple(range(-90, 91, 10))
 SPAN = "600"  # s of a run that measures a frequency
-
-
-def window(begin: float, span: float, scene: Scene | None = None, step: float = 0.05) -> tuple[Array, Array]:
-    """Return the times of an interval and the states of a scene there, shape (times, 6); the default is Paris."""
-    times = np.asarray(begin + np.arange(round(span / step) + 1) * step, dtype=np.float64)
-    output_times: Array = times if begin == 0 else np.concatenate(([0.0], times))
-    states = path_in(scene or load_scene("paris"), output_times)
-    return times, states[len(output_times) - len(times) :]
 
 
 @cache

@@ -74,7 +74,7 @@ def figure_4(figure: Any) -> None:
 def _snapshots() -> tuple[Array, Array]:
     """Return hours and states every 30 s."""
     times, states = paris_path()
-    return times[::120] / 3600, states[::120]
+    return times / 3600, states
 
 
 def _day(axes: Any) -> None:
@@ -106,7 +106,7 @@ def figure_6(figure: Any) -> None:
     axes = figure.subplots()
     hours, states = _snapshots()
     axes.plot(hours, np.degrees(np.arctan2(states[:, 1], states[:, 0])), ".", color=BLUE, markersize=2)
-    plane = paris_swing_plane()[::120]
+    plane = paris_swing_plane()
     for turn in (-1, 0, 1, 2):
         line = np.degrees(plane) + 180 * turn
         axes.plot(hours, np.where(np.abs(line) <= 180, line, np.nan), color=RED, linewidth=1)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 from .digits import MP, Vector, sin, sqrt
@@ -19,6 +20,7 @@ def swing_rate(p: Point) -> Any:
     return sqrt(p.gravity / p.length + rate_up(p) ** 2)
 
 
+@cache
 def matrix(p: Point) -> Any:
     """Return the matrix of the reference's model with gravity alone, linear about straight down, from unit states."""
     columns = []

@@ -29,14 +29,22 @@ def transit_times() -> list[Any]:
 
 @cache
 def paris_path() -> tuple[Array, Array]:
-    """Return times every 0.25 s for 24 h and x, y, z, vx, vy, vz there, shape (times, 6), by a long double run."""
-    times = np.arange(4 * 86400 + 1) / 4
+    """Return times every 30 s for 24 h and x, y, z, vx, vy, vz there, shape (times, 6), by a long double run."""
+    times = 30.0 * np.arange(2881)
     return times, trajectory(load_scene("paris"), times, number=LONG_DOUBLE)
 
 
 def path_in(scene: Scene, times: Array) -> Array:
     """Return x, y, z, vx, vy, vz of any scene, shape (times, 6), to about the last digit of a double."""
     return trajectory(scene, times, number=LONG_DOUBLE)
+
+
+def window(begin: float, span: float, scene: Scene | None = None, step: float = 0.05) -> tuple[Array, Array]:
+    """Return the times of an interval and the states of a scene there, shape (times, 6); the default is Paris."""
+    times = np.asarray(begin + np.arange(round(span / step) + 1) * step, dtype=np.float64)
+    output_times: Array = times if begin == 0 else np.concatenate(([0.0], times))
+    states = path_in(scene or load_scene("paris"), output_times)
+    return times, states[len(output_times) - len(times) :]
 
 
 def rotation(scene: Scene, t_end: float) -> float:
@@ -73,7 +81,7 @@ def swing_plane(scene: Scene, states: Array) -> Array:
 
 @cache
 def paris_swing_plane() -> Array:
-    """Return the azimuth of the Paris pendulum's swing plane in rad, every 0.25 s for 24 h."""
+    """Return the azimuth of the Paris pendulum's swing plane in rad, every 30 s for 24 h."""
     return swing_plane(load_scene("paris"), paris_path()[1])
 
 

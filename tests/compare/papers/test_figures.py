@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from compare.papers import figure_runs
+from compare.papers import figure_runs, runs
 from reference import load
 
 
 def test_a_window_shows_the_golden_states() -> None:
     golden = load("paris")
-    times, states = figure_runs.window(12000, 1)
+    times, states = runs.window(12000, 1)
     row = list(golden.t).index(12000.0)
     assert times[0] == 12000.0
     assert states[0, :2] == pytest.approx([golden.x[row], golden.y[row]], abs=1e-13)
@@ -27,7 +27,7 @@ def test_frequencies_are_lowest_at_the_equator_and_follow_the_estimate_within_a_
 
 def test_a_higher_order_is_nearer_to_the_truth_after_12000_s() -> None:
     pytest.importorskip("numba")
-    _, truth = figure_runs.window(12000, 20, step=0.5)
+    _, truth = runs.window(12000, 20, step=0.5)
     states = figure_runs.orders_at(12000, 20, 0.5)
     worst = [float(np.abs(states[name][:, :3] - truth[:, :3]).max()) for name in ("rk4", "rkng56", "rkng67")]
     assert worst[0] > 100 * worst[1] > 1e4 * worst[2] / 100
