@@ -15,10 +15,10 @@ from ..observed.swing_plane import rest_in_metres
 from ..position_error import difference, distance
 from ..report.charts.drawing import COLOURS, FAINT, picture, sheet
 from .digits import degrees, mpf
-from .figure_runs import estimate_at, frequencies, orders_at, window
+from .figure_runs import estimate_at, frequencies, orders_at
 from .first_principles import rest_angle
 from .points import paris
-from .runs import paris_path, paris_swing_plane
+from .runs import paris_path, paris_swing_plane, window
 
 BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))

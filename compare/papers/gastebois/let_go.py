@@ -117,8 +117,9 @@ def checks() -> list[Check]:
             "ω_f = φ/T = Ω_z with φ = -2πΩ_z/ω",
             rate_up,
             lambda p: -2 * pi * rate_up(p) / swing_rate(p) / (2 * pi / swing_rate(p)),
-            "ω_f = -Ω_z: its period is 2π/Ω_z",
+            "a sign is dropped within the line: φ/T = -Ω_z",
             lambda p: -rate_up(p),
+            "φ = y/r0 counts anticlockwise, ω_f clockwise as in 4.1: ω_f = -φ/T",
         ),
         Identity(
             "gastebois_6_3_tf",

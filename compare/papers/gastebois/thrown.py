@@ -42,14 +42,14 @@ def pantheon(s: Any = 1) -> Point:
 
 
 def _axes_turn(p: Point) -> Any:
-    """Return the angular velocity of the axis OX: X is the part of (x, y) along (cos, -sin) Ω_z t."""
+    """Return the angular velocity of the axis OX, clockwise: X is the part of (x, y) along (cos, -sin) Ω_z t."""
 
     def along(t: Any) -> Vector:
         return cos(rate_up(p) * t), -sin(rate_up(p) * t)
 
     x, y = along(p.t)
     vx, vy = vector_derivative(along, p.t)
-    return x * vy - y * vx
+    return y * vx - x * vy
 
 
 def _own_square(p: Point) -> Any:
@@ -94,8 +94,7 @@ def checks() -> list[Check]:
             "the axes OXYZ turn about Oz with the angular velocity Ω_z",
             rate_up,
             _axes_turn,
-            "with -Ω_z: clockwise in the north, as the formulas for X and Y have it",
-            lambda p: -rate_up(p),
+            remark="clockwise from above counted positive, as his 4.1 counts ω_f; so do the formulas for X and Y",
         ),
         Identity(
             "gastebois_6_2_start",

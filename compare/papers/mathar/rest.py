@@ -132,6 +132,7 @@ def checks() -> list[Check]:
             lambda p: (MP.zero, MP.zero),
             "β_x0 and β_x2 are",
             lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[2]),
+            "β_x1 vanishes at rest for any x; what must vanish with x is β_x2; at x = 0 with a moving bob",
         ),
         Identity(
             "mathar_44",

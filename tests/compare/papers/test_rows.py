@@ -38,7 +38,6 @@ KNOWN_MISPRINTS = {
     "gastebois_7_3_y": "+",
     "methods_2_centrifugal": "+m",
     "methods_2_force": "ω_p × x'",
-    "methods_end_rate": "+ω sinα",
 }
 # found by this code
 FURTHER_MISPRINTS = {
@@ -46,7 +45,6 @@ FURTHER_MISPRINTS = {
     "mathar_a_order_5": "5",
     "mathar_a_order_6": "6",
     "gastebois_2_day": "23.93",
-    "gastebois_6_2_turn": "-Ω_z",
     "gastebois_6_3_apparent": "31.73",
 }
 ENDS_BEFORE = {
