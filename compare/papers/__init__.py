@@ -1,11 +1,11 @@
 """The three source papers, one folder each: every formula and printed number recomputed, judged, and shown on a page.
 
 The papers are Mathar's (`mathar/`), Gastebois's (`gastebois/`) and a third one, which solves the linear pendulum by
-three methods (`three_methods/`). Each section of a paper is one module; its function `checks` declares one row for
+three methods (`three_methods/`). A module holds a few sections; its function `checks` declares one row for
 every printed formula, number or sentence, with the computation to compare it with. Verdicts are computed from these.
 
 - `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a misprint);
-- `catalogue.py`: the list of all sections, in the order of print;
+- `section.py`: what the rows of a section share, and the list of all sections, in the order of print;
 - `points.py`: random points at which formulas are evaluated, and the numbers of the Paris pendulum;
 - `first_principles.py`: the yardstick of formulas, from the Lagrangian; `linear.py`: the same for the linear pendulum;
 - `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
@@ -37,7 +37,7 @@ Report = Callable[[str, int, int], None]
 
 def rows(report: Report | None = None) -> list[JudgedRow]:
     """Judge every row; `report` is called with a row's place, the number of rows judged so far, and of all rows."""
-    from .catalogue import rows as judged
+    from .section import rows as judged
 
     return judged(report)
 

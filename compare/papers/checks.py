@@ -65,7 +65,11 @@ class Check(Protocol):
 
     @property
     def id(self) -> str:
-        """Paper and place in one word."""
+        """Paper and place in one word; in a declaration its end."""
+
+    @property
+    def place(self) -> str:
+        """Paper, section, equation; in a declaration its end."""
 
     def row(self) -> JudgedRow:
         """Judge the printed line."""

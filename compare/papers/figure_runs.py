@@ -12,7 +12,7 @@ from reference.precision import Array
 from ..methods import METHODS, available
 from ..rhs.problem import Problem
 from .digits import mpf
-from .mathar.frequency import estimate
+from .mathar.paris import estimate
 from .points import paris
 from .runs import frequency, solved
 

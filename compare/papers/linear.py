@@ -5,9 +5,31 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from .digits import MP, Vector, sin, sqrt
-from .mathar.slow import linearised, uniform_acceleration
+from reference.model.force import acceleration
+
+from .digits import MP, Vector, cos, scale, sin, sqrt, vector_derivative
 from .points import Point
+
+
+def turning(p: Point) -> Vector:
+    """Return Ω on east, north, up at the latitude λ."""
+    return (MP.zero, p.rate * cos(p.phi), p.rate * sin(p.phi))
+
+
+def uniform_acceleration(p: Point) -> Vector:
+    """Return x'', y'' of the reference's model with gravity alone."""
+    n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
+    return tuple(p.length * part for part in acceleration(n, v, p.uniform)[:2])
+
+
+def linearised(p: Point) -> Vector:
+    """Return x'', y'' of the reference's model without centrifugal force, linear about straight down."""
+
+    def scaled(s: Any) -> Vector:
+        moved = p.but(x=p.x * s, y=p.y * s, vx=p.vx * s, vy=p.vy * s)
+        return uniform_acceleration(moved)
+
+    return vector_derivative(scaled)
 
 
 def rate_up(p: Point) -> Any:

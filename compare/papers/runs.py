@@ -30,7 +30,7 @@ def transit_times() -> list[Any]:
 @cache
 def paris_path() -> tuple[Array, Array]:
     """Return times every 30 s for 24 h and x, y, z, vx, vy, vz there, shape (times, 6), by a long double run."""
-    times = 30.0 * np.arange(2881)
+    times = np.arange(0.0, 86430.0, 30.0)
     return times, trajectory(load_scene("paris"), times, number=LONG_DOUBLE)
 
 

@@ -9,8 +9,8 @@ from places import ROOT
 
 from compare.approximations.mathar_linear import slow_down
 from compare.papers.digits import MP, degrees, mpf, norm, pi, shown, sin, sqrt
-from compare.papers.first_principles import rest, rest_angle
-from compare.papers.mathar.frequency import (
+from compare.papers.first_principles import pull_at_rest, rest, rest_angle
+from compare.papers.mathar.paris import (
     day_frequency,
     estimate,
     first_period_frequency,
@@ -19,7 +19,6 @@ from compare.papers.mathar.frequency import (
     swings_surplus,
     transit_frequency,
 )
-from compare.papers.mathar.rest import pull_at_rest
 from compare.papers.points import paris
 from compare.papers.runs import paris_day, transit_times
 
