@@ -6,6 +6,7 @@ from typing import Any
 
 from reference.model.force import tension
 
+from ...approximations.gastebois_small import constants_of
 from ..checks import Approximate, Check, Finding, Identity, Statement, component
 from ..digits import MP, Vector, add, cos, dot, j, mpf, scale, shown, sin
 from ..linear import acceleration_of, linearised, matrix, motion, rate_up, swing_rate, uniform_acceleration
@@ -63,15 +64,9 @@ def _energy(p: Point) -> tuple[Any, Any]:
     return accelerated, -p.gravity * p.vz
 
 
-def constants_of(p: Point) -> Vector:
+def _constants(p: Point) -> Vector:
     """Return c1, c1', c2, c2' of 6.1 for the point's x, y, vx, vy."""
-    w, up = swing_rate(p), rate_up(p)
-    return (
-        ((w - up) * p.x - p.vy) / (2 * w),
-        ((w - up) * p.y + p.vx) / (2 * w),
-        ((w + up) * p.x + p.vy) / (2 * w),
-        ((w + up) * p.y - p.vx) / (2 * w),
-    )
+    return constants_of((p.x, p.y), (p.vx, p.vy), swing_rate(p), rate_up(p))
 
 
 def _phases(p: Point, t: Any) -> Vector:
@@ -81,14 +76,14 @@ def _phases(p: Point, t: Any) -> Vector:
 
 def printed_xy(p: Point, t: Any) -> Vector:
     """Return x and y of 6.1."""
-    a, b, c, d = constants_of(p)
+    a, b, c, d = _constants(p)
     cf, sf, cs, ss = _phases(p, t)
     return a * cf + b * sf + c * cs - d * ss, b * cf - a * sf + d * cs + c * ss
 
 
 def _velocity(p: Point, t: Any, last: int) -> Vector:
     """Return v_x and v_y of 6.1, the last term of v_x with sin (3) or with cos (2) of the slow phase."""
-    a, b, c, d = constants_of(p)
+    a, b, c, d = _constants(p)
     fast, slow = swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p)
     phases = _phases(p, t)
     cf, sf, cs, ss = phases
@@ -97,7 +92,7 @@ def _velocity(p: Point, t: Any, last: int) -> Vector:
 
 
 def _complex(p: Point, t: Any) -> Any:
-    a, b, c, d = constants_of(p)
+    a, b, c, d = _constants(p)
     w, up = swing_rate(p), rate_up(p)
     return (a + j * b) * MP.expj(-(w + up) * t) + (c + j * d) * MP.expj((w - up) * t)
 
@@ -176,7 +171,7 @@ def checks() -> list[Check]:
             Identity("6_1_vy", "6.1", "v_y = -c1' (ω+Ω_z) sin(ω+Ω_z)t - … + c2 (ω-Ω_z) cos(ω-Ω_z)t",
                 lambda p: _velocity(p, p.t, 3)[1], lambda p: motion(p, _as_released(p), p.t)[3]),
             *(Identity(f"6_1_{name}", "6.1", text,
-                component(constants_of, i), component(fitted_constants, i),
+                component(_constants, i), component(fitted_constants, i),
                 remark="truth: solved from x, y, vx, vy at t = 0") for i, (name, text) in enumerate((("c1",
                     "c1 = ((ω-Ω_z) x0 - v_y0) / 2ω"), ("c1p", "c1' = ((ω-Ω_z) y0 + v_x0) / 2ω"), ("c2",
                     "c2 = ((ω+Ω_z) x0 + v_y0) / 2ω"), ("c2p", "c2' = ((ω+Ω_z) y0 - v_x0) / 2ω")))),

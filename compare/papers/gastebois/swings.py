@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from ...approximations import gastebois_small
 from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement
-from ..digits import MP, Vector, cos, mpf, pi, radians, shown, sin, sqrt, vector_derivative
+from ..digits import MP, Vector, cos, mpf, pi, radians, scale, shown, sin, sqrt, vector_derivative
 from ..linear import motion, motion_at_rest, rate_up, start_at_rest, swing_rate
 from ..points import Point, points
 from ..section import Section
@@ -29,14 +30,7 @@ OWN_LAMBDA = mpf("48.97")
 
 def simple(p: Point, t: Any) -> Vector:
     """Return x, y, v_x, v_y by 6.2; r0 is the point's x."""
-    r0, w, up = p.x, swing_rate(p), rate_up(p)
-    cu, su, cw, sw = cos(up * t), sin(up * t), cos(w * t), sin(w * t)
-    return (
-        r0 * cu * cw,
-        -r0 * su * cw,
-        -r0 * w * cu * sw - r0 * up * su * cw,
-        r0 * w * su * sw - r0 * up * cu * cw,
-    )
+    return scale(p.x, gastebois_small.in_turning_axes(MP.zero, swing_rate(p), rate_up(p), t, MP))
 
 
 def in_turning_axes(p: Point, xy: Vector, t: Any) -> Vector:
@@ -82,9 +76,8 @@ def _expanded_period(p: Point) -> Any:
 
 def at_rest(p: Point, t: Any) -> Vector:
     """Return x, y of a release at rest by 6.3."""
-    r0, w, up = p.x, swing_rate(p), rate_up(p)
-    cu, su, cw, sw = cos(up * t), sin(up * t), cos(w * t), sin(w * t)
-    return (r0 * cu * cw + r0 * up / w * su * sw, -r0 * su * cw + r0 * up / w * cu * sw)
+    w, up = swing_rate(p), rate_up(p)
+    return scale(p.x, gastebois_small.in_turning_axes(up / w, w, up, t, MP)[:2])
 
 
 def _sense(motion_in_axes: Motion, p: Point, t: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from reference import load_scene
 
 from ...approximations import APPROXIMATIONS, Motion
+from ...approximations.frequency import harmonic, planar
 from ...approximations.gastebois_small import turntable_frequency
 from ...approximations.mathar_linear import slow_down
 from ..checks import Check, Finding, PrintedNumber, Statement
@@ -22,6 +24,7 @@ VII = Section("mathar_", "Mathar VII")
 STILL = ["site.rotation_rate=0"]
 
 
+@cache
 def _transit(column: str) -> list[Any]:
     return [mpf(text) for text in paris_day().transits.decimals(column)]
 
@@ -121,8 +124,7 @@ def planar_amplitude() -> Any:
 
 def planar_period() -> Any:
     """Return 4 sqrt(l/g) K(sin(φ0/2)) in s."""
-    p = paris().but(rate=MP.zero)  # so that the rest position is straight down
-    return 2 * pi * sqrt(p.length / p.gravity) * slow_down(p.case)
+    return 1 / planar(paris().case)
 
 
 def harmonic_frequency(p: Point, gravity: Any) -> Any:
@@ -215,7 +217,7 @@ def checks() -> list[Check]:
             PrintedNumber("fig7_half", ", Fig. 7", "after 12 thousand seconds detuned by approximately half a cycle",
                 "0.5", lambda: 12000 * (1 / planar_period() - day_frequency()), about=lambda: MP.one),
             PrintedNumber("vii_harmonic", ", item 1", "sqrt(g/l)/2π = 0.0608895 Hz",
-                "0.0608895", lambda: sqrt(p.gravity / p.length) / (2 * pi)),
+                "0.0608895", lambda: harmonic(p.case)),
             PrintedNumber("vii_phi0", ", item 2", "φ(0) ≈ 0.00746276 rad", "0.00746276", planar_amplitude),
             PrintedNumber("vii_period", ", item 2", "4 sqrt(l/g) K(sin(φ0/2)) ≈ 16.423225 s",
                 "16.423225", planar_period),

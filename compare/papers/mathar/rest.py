@@ -6,8 +6,9 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
+from ...approximations.rest_angle import series
 from ..checks import Approximate, Check, Finding, Identity, Statement
-from ..digits import MP, Vector, asin, cos, degrees, derivative, scale, shown, sin, sqrt
+from ..digits import MP, Vector, asin, cos, degrees, derivative, shown, sin, sqrt
 from ..first_principles import horizontal_acceleration, pull_at_rest, rest, rest_angle
 from ..points import Point, paris, points
 from ..section import Section
@@ -113,17 +114,6 @@ def _forty_four(p: Point) -> Any:
     return p.z**2 * (-zero - two * p.rate**2) / (p.z**4 * p.length**2)
 
 
-def series(p: Point) -> Vector:
-    """Return the coefficients of Ω², Ω⁴, Ω⁶ in (47), for λ = -90°."""
-    far, length, g, double = p.N + p.altitude, p.length, p.gravity, 2 * p.phi
-    c2, c4 = cos(double), cos(2 * double)
-    bracket = far**2 * (c4 + 3 * c2 + 2)
-    bracket -= far * length * (MP.mpf(37) / 8 * c4 + MP.mpf(11) / 8 + 6 * c2)
-    bracket += length**2 * (MP.mpf(35) / 8 * c4 + MP.mpf(13) / 8)
-    terms = (1 / (2 * g), (far * (1 + c2) / 2 - length * c2) / (2 * g**2), bracket / (12 * g**3))
-    return scale(sin(double) * (far - length), terms)
-
-
 @cache
 def _derived_series(p: Point) -> Vector:
     """Return the same coefficients from the reference's rest position, an even function of Ω."""
@@ -136,7 +126,7 @@ def _derived_series(p: Point) -> Vector:
 
 def series_term(i: int) -> tuple[Callable[[Point], Any], Callable[[Point], Any]]:
     """Return a coefficient as printed, and as derived."""
-    return lambda p: series(p)[i], lambda p: _derived_series(p)[i]
+    return lambda p: series(p.case)[i], lambda p: _derived_series(p)[i]
 
 
 def triangle_angle(p: Point) -> Any:
