@@ -9,8 +9,8 @@ every printed formula, number or sentence, with the computation to compare it wi
 - `points.py`: random points at which formulas are evaluated, and the numbers of the Paris pendulum;
 - `first_principles.py`: the yardstick of formulas, from the Lagrangian; `linear.py`: the same for the linear pendulum;
 - `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
-- `runs.py`: runs of the reference that numbers and sentences rest on; `figure_runs.py`: runs for the figures only;
-- `figures.py` and `captions.py`: the first paper's figures, drawn again, and their captions;
+- `runs.py`: runs of the reference that numbers and sentences rest on;
+- `figures.py`: the first paper's figures, drawn again, and their captions;
 - `page.py`: the rows and the figures as a page, and the rows as CSV and JSON.
 
 >>> from compare.papers import rows
@@ -50,8 +50,7 @@ def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
     """
     from ..report.charts.drawing import check_matplotlib
     from ..report.folder import PAGE, check_folder, write_files
-    from .figure_runs import check_methods
-    from .figures import FIGURES, svg
+    from .figures import FIGURES, check_methods, svg
     from .page import files_of
 
     check_matplotlib("--out")  # so that a missing package is reported before the work

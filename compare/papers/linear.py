@@ -7,7 +7,7 @@ from typing import Any
 
 from reference.model.force import acceleration
 
-from .digits import MP, Vector, cos, scale, sin, sqrt, vector_derivative
+from .digits import MP, Vector, cos, j, mpf, scale, sin, sqrt, vector_derivative
 from .points import Point
 
 
@@ -73,3 +73,9 @@ def acceleration_of(p: Point) -> Vector:
     ax, ay = uniform_acceleration(p)
     z, vz = p.z, p.vz
     return ax, ay, -(p.vx**2 + p.vy**2 + vz**2 + p.x * ax + p.y * ay) / z
+
+
+def turning_rates(p: Point) -> list[Any]:
+    """Return the two α of motions Z = c exp(jαt), smaller first: eigenvalues of the matrix with y = -j x."""
+    values, vectors = MP.eig(matrix(p))
+    return sorted(value.imag for i, value in enumerate(values) if abs(vectors[1, i] + j * vectors[0, i]) < mpf("1e-30"))

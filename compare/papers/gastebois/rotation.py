@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from reference import load_scene
+from reference.model.earth import axis_distance
 
 from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement
 from ..digits import (
@@ -26,9 +27,9 @@ from ..digits import (
     sqrt,
     vector_derivative,
 )
-from ..first_principles import AXIS, rotated
-from ..linear import turning
-from ..points import Point, paris
+from ..first_principles import AXIS, moving, rotated
+from ..linear import linearised, rate_up, turning, turning_rates
+from ..points import Point, paris, points
 from ..runs import rotation, solved
 from ..section import Section
 
@@ -107,6 +108,19 @@ def _tilted_frame(p: Point) -> Vector:
     """Return the acceleration of a point that moves uniformly in axes turning about an inclined axis."""
     axis = scale(1 / p.rate, turning(p))
     return vector_derivative(lambda s: rotated(add(p.position, scale(s, p.velocity)), axis, p.rate * s), 0, 2)
+
+
+def _bending(p: Point) -> Any:
+    """Return how fast the horizontal velocity turns, clockwise, where the Coriolis force acts alone."""
+    ax, ay = linearised(p.but(gravity=MP.zero))
+    return (p.vy * ax - p.vx * ay) / (p.vx**2 + p.vy**2)
+
+
+def _shorter_than_the_arc() -> Finding:
+    p = points()[0].but(azimuth_rate=MP.zero)
+    velocity = vector_derivative(lambda s: moving(p, s))
+    share = norm(velocity[:2]) / norm(velocity)
+    return Finding(share < 1, f"dx / (v dt) = {shown(share)} at θ = {shown(p.cord, 6)}")
 
 
 def _slower_when_wide() -> Finding:
@@ -204,6 +218,10 @@ def checks() -> list[Check]:
                 "11.3", lambda: 360 / SIDEREAL_DAY * sin(radians("48.846111"))),
             PrintedNumber("2_radius", "2", "R_p = 6370 km",
                 "6370e3", lambda: MEAN_RADIUS, about=lambda: MEAN_RADIUS, remark="m; mean radius of the ellipsoid"),
+            Identity("2_distance", "2", "R = R_p cosλ",
+                lambda p: p.radius * cos(p.phi),
+                lambda p: axis_distance(p.radius, 0, 0, sin(p.phi), cos(p.phi), MP.sqrt),
+                remark="truth: reference.model.earth"),
             PrintedNumber("2_day", "2", "T_p = 23,92 h", "23.92", lambda: SIDEREAL_DAY, remark="2π/Ω of WGS84"),
             PrintedNumber("2_rate", "2", "Ω = 2π/T_p = 7,297 · 10⁻⁵ rd/s",
                 "7.297e-5", lambda: 2 * pi / (SIDEREAL_DAY * 3600), from_inputs=lambda: 2 * pi / (mpf("23.92") * 3600),
@@ -221,12 +239,19 @@ def checks() -> list[Check]:
             Identity("4_1_cross", "4.1", "v_r × Ω = v_y Ω sinλ i for v_r = v_y j",
                 lambda p: (p.vy * p.rate * sin(p.phi), MP.zero, MP.zero),
                 lambda p: cross((MP.zero, p.vy, MP.zero), turning(p))),
+            Identity("4_1_curve", "4.1", "v_r²/r = 2 v_r Ω sinλ, so v_r/r = 2 Ω sinλ",
+                lambda p: 2 * rate_up(p), _bending,
+                remark="truth: how fast the velocity turns clockwise without gravity"),
+            Identity("4_1_half", "4.1", "r dφ = dx/2, so v_r/r = 2 dφ/dt",
+                lambda p: -sum(turning_rates(p)), _bending,
+                remark="the plane turns at half the difference of the two eigenvalues' sizes"),
             Identity("4_1_tf", "4.1", "T_f = 2π/ω_f = T_p / sinλ",
                 lambda p: 2 * pi / p.rate / sin(p.phi), lambda p: 2 * pi / dot(turning(p), (MP.zero, MP.zero, MP.one))),
             Approximate("4_1_small", "4.1", "ω_f = Ω sinλ for small angles",
                 narrow_swing, 2, "r0/L0", remark="T_f/T_p at the pole, r0 = 6.5 m; truth: elliptic integrals"),
             Statement("4_1_pole", "4.1", "at the poles T_f = T_p", _pole, by_run=True),
             Statement("4_1_equator", "4.1", "at the equator the plane does not turn", _equator, by_run=True),
+            Statement("4_1_dx", "4.1, remark", "if the amplitude grows, dx < v dt", _shorter_than_the_arc),
             Statement("4_1_wide", "4.1, remark", "T_f grows slightly with the amplitude",
                 _slower_when_wide, by_run=True),
             Statement("4_1_south", "4.1, remark", "in the south it turns anticlockwise seen from above",

@@ -9,11 +9,24 @@ from reference.model.force import tension
 from ...approximations.gastebois_small import constants_of
 from ..checks import Approximate, Check, Finding, Identity, Statement, component
 from ..digits import MP, Vector, add, cos, dot, j, mpf, scale, shown, sin
-from ..linear import acceleration_of, linearised, matrix, motion, rate_up, swing_rate, uniform_acceleration
+from ..linear import acceleration_of, linearised, motion, rate_up, swing_rate, turning_rates, uniform_acceleration
 from ..points import Point, points
 from ..section import Section
 
 G = Section("gastebois_", "Gastebois")
+CONSTANTS = (
+    ("c1", "c1 = ((ω-Ω_z) x0 - v_y0) / 2ω"),
+    ("c1p", "c1' = ((ω-Ω_z) y0 + v_x0) / 2ω"),
+    ("c2", "c2 = ((ω+Ω_z) x0 + v_y0) / 2ω"),
+    ("c2p", "c2' = ((ω+Ω_z) y0 - v_x0) / 2ω"),
+)
+
+
+def _flat(s: Any) -> tuple[Vector, Vector]:
+    """Return -l, 0 and z, z' at s times the point's amplitude."""
+    p = points()[0]
+    low = p.but(x=p.x * s, y=p.y * s, vx=p.vx * s, vy=p.vy * s)
+    return (-p.length, MP.zero), (low.z, low.vz)
 
 
 def _swung(s: Any) -> tuple[Any, Any]:
@@ -114,12 +127,6 @@ def _real_part() -> bool:
     return all(abs(_complex(p, p.t).real - motion(p, _as_released(p), p.t)[0]) < mpf("1e-40") for p in points())
 
 
-def _eigenvalues(p: Point) -> list[Any]:
-    """Return the imaginary rates of the matrix whose motion turns as exp(jαt): those with y = -j x."""
-    values, vectors = MP.eig(matrix(p))
-    return [value for i, value in enumerate(values) if abs(vectors[1, i] + j * vectors[0, i]) < mpf("1e-30")]
-
-
 def fitted_constants(p: Point) -> Vector:
     """Solve C1 + C2 = Z0 and -ω1 C1 + ω2 C2 = Z0'/j for c1, c1', c2, c2'."""
     fast, slow = swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p)
@@ -141,6 +148,7 @@ def checks() -> list[Check]:
                 lambda p: scale(p.mass, _forces(p)[0])),
             Identity("5_energy", "5", "v²/L0 = 2 g_a (cosθ - cosθm): conservation of energy",
                 lambda p: _energy(p)[0], lambda p: _energy(p)[1], remark="as rates: v · a = -g_a z'"),
+            Approximate("5_flat", "5", "z = -l, z' = 0", _flat, 2, "amplitude", remark="z and z' at a random point"),
             Approximate("5_square", "5", "2 g_a (cosθ - cosθm) = g_a (θm² - θ²)",
                 _swung, 2, "θm", remark="θm = 0.3, θ = 0.15"),
             Approximate("5_tension", "5", "T = m g_a", _tension, 2, "amplitude", remark="at a random point"),
@@ -158,7 +166,11 @@ def checks() -> list[Check]:
                 lambda p: tuple(-p.gravity / p.length + 2 * a * rate_up(p) for a in _rates(p)),
                 remark="at α = -Ω sinλ_a ± sqrt(ω0² + Ω² sin²λ_a)"),
             Identity("6_1_roots", "6.1", "α = -Ω sinλ_a ± ω",
-                lambda p: MP.mpc(*sorted(_rates(p))), lambda p: MP.mpc(*sorted(part.imag for part in _eigenvalues(p))),
+                lambda p: MP.mpc(*sorted(_rates(p))), lambda p: MP.mpc(*turning_rates(p)),
+                remark="truth: eigenvalues of the linear system"),
+            Identity("6_1_omegas", "6.1", "ω1 = ω + Ω_z, ω2 = ω - Ω_z",
+                lambda p: (swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p)),
+                lambda p: (-turning_rates(p)[0], turning_rates(p)[1]),
                 remark="truth: eigenvalues of the linear system"),
             Identity("6_1_solution", "6.1", "Z = C1 exp(-jω1 t) + C2 exp(jω2 t)",
                 lambda p: _complex(p, p.t), lambda p: MP.mpc(*motion(p, _as_released(p), p.t)[:2]),
@@ -170,10 +182,7 @@ def checks() -> list[Check]:
                 "the last term has cos: - c2' (ω-Ω_z) cos(ω-Ω_z)t", lambda p: _velocity(p, p.t, 2)[0]),
             Identity("6_1_vy", "6.1", "v_y = -c1' (ω+Ω_z) sin(ω+Ω_z)t - … + c2 (ω-Ω_z) cos(ω-Ω_z)t",
                 lambda p: _velocity(p, p.t, 3)[1], lambda p: motion(p, _as_released(p), p.t)[3]),
-            *(Identity(f"6_1_{name}", "6.1", text,
-                component(_constants, i), component(fitted_constants, i),
-                remark="truth: solved from x, y, vx, vy at t = 0") for i, (name, text) in enumerate((("c1",
-                    "c1 = ((ω-Ω_z) x0 - v_y0) / 2ω"), ("c1p", "c1' = ((ω-Ω_z) y0 + v_x0) / 2ω"), ("c2",
-                    "c2 = ((ω+Ω_z) x0 + v_y0) / 2ω"), ("c2p", "c2' = ((ω+Ω_z) y0 - v_x0) / 2ω")))),
+            *(Identity(f"6_1_{name}", "6.1", text, component(_constants, i), component(fitted_constants, i),
+                remark="truth: solved from x, y, vx, vy at t = 0") for i, (name, text) in enumerate(CONSTANTS)),
         ),
     ]  # fmt: skip

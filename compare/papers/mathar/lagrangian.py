@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from ..checks import Check, Finding, Identity, Statement
 from ..digits import MP, Vector, cos, derivative, shown, sin, sqrt
 from ..first_principles import (
@@ -16,6 +18,7 @@ from ..first_principles import (
     square_speed,
 )
 from ..points import Point, points
+from ..runs import paris_passage
 from ..section import Section
 from .kinematics import alpha_0, alpha_1, alpha_2
 
@@ -131,6 +134,13 @@ def _equation(i: int) -> Any:
     return lambda p: euler_lagrange(p, by_angles, *angle_state(p), i) / p.length**2
 
 
+def _azimuth_is_fast() -> Finding:
+    """Compare λ' at the passage next to the vertical with the angular frequency of the swing."""
+    near, miss = paris_passage()
+    fast, slow = float((np.hypot(near[:, 3], near[:, 4]) / miss).max()), np.sqrt(9.80665 / 67)
+    return Finding(fast > 100 * slow, f"λ' up to {fast:.12f} rad/s in Paris, sqrt(g/l) = {slow:.12f} rad/s")
+
+
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return [
@@ -163,5 +173,8 @@ def checks() -> list[Check]:
                 plane_alpha_0, _plane_alpha(0)),
             Identity("29", "(29)", "α1 = [12 terms] / (l²-x²-y²)", plane_alpha_1, _plane_alpha(1)),
             Identity("30", "(30)", "α2 = [19 terms] / (l²-x²-y²)", plane_alpha_2, _plane_alpha(2)),
+            Statement("30_fast", ", after (30)",
+                "the sine in (26) induces quick changes of λ if the pendulum approaches small φ",
+                _azimuth_is_fast, by_run=True),
         ),
     ]  # fmt: skip

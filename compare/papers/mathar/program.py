@@ -19,6 +19,7 @@ from ..runs import path_in, transit_times
 from ..section import Section
 from .paris import swings_surplus
 
+VIII = Section("mathar_", "Mathar VIII")
 A = Section("mathar_", "Mathar, appendix A")
 WGS84_INVERSE_FLATTENING = "298.257223563"  # NIMA TR8350.2, table 3.1: defining parameter
 WGS84_RATE = "7.292115e-5"  # rad/s, NIMA TR8350.2, table 3.1: defining parameter
@@ -55,6 +56,16 @@ def _order(tableau: NystromTableau, printed: str) -> dict[str, Any]:
     return {"value": lambda: MP.mpf(order_of(tableau)), "remark": remark}
 
 
+def _step_control() -> Finding:
+    """Look for a second formula of order 3 in the stages of the classical scheme, whose error it would estimate."""
+    table = [[mpf(part) for part in row] for row in rk4.TABLEAU.a]
+    nodes = [sum(row, MP.zero) for row in table]
+    inner = [sum((part * node for part, node in zip(row, nodes, strict=False)), MP.zero) for row in table]
+    conditions = MP.matrix([[MP.one] * len(nodes), nodes, [node**2 for node in nodes], inner])
+    size = MP.det(conditions)
+    return Finding(size == 0, f"determinant of the conditions of order 3: {shown(size)}; one formula meets them")
+
+
 def _by_parabola() -> Finding:
     times = np.arange(1001) / 100
     xdot = path_in(load_scene("paris"), times)[:, 3]
@@ -83,6 +94,12 @@ def _effect_of_the_digit() -> Any:
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return [
+        *VIII.rows(
+            Statement("viii_steps", "", "a program with variable Runge-Kutta-Nyström orders of the step control",
+                _step_control, "of the scheme: “Step size control is not implemented” (appendix A)",
+                lambda: not _step_control().holds,
+                remark="the classical scheme of -R 4 has no second formula that could control its step"),
+        ),
         *A.rows(
             PrintedNumber("a_day", ", -T", "24 × 3600 s is approximately 4 minutes longer than a sidereal day",
                 "4", lambda: (86400 - 2 * pi / paris().rate) / 60, remark="minutes"),

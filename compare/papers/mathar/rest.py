@@ -8,7 +8,7 @@ from typing import Any
 
 from ...approximations.rest_angle import series
 from ..checks import Approximate, Check, Finding, Identity, Statement
-from ..digits import MP, Vector, asin, cos, degrees, derivative, shown, sin, sqrt
+from ..digits import MP, Vector, asin, cos, degrees, derivative, scale, shown, sin, sqrt
 from ..first_principles import horizontal_acceleration, pull_at_rest, rest, rest_angle
 from ..points import Point, paris, points
 from ..section import Section
@@ -155,6 +155,11 @@ def _one_term(p: Point) -> Any:
     return sin(2 * p.phi) / p.gravity * (p.N + p.altitude) * p.rate**2 / 2
 
 
+def _vector_sum(p: Point) -> Vector:
+    out = p.R * p.rate**2
+    return MP.zero, -out * sin(p.phi), out * cos(p.phi) - p.gravity
+
+
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return [
@@ -192,6 +197,9 @@ def checks() -> list[Check]:
             Identity("49", "(49)", "RΩ² / sinφ = g' / sinϕ",
                 lambda p: p.R * p.rate**2 / sin(p.case.tilt), lambda p: p.case.apparent_gravity / sin(p.phi),
                 remark="the sine rule of the triangle of (48), its angle by atan2"),
+            Identity("fig2", ", Fig. 2", "g' is the vector sum of g and RΩ², which is parallel to the equatorial plane",
+                _vector_sum, lambda p: scale(p.length, p.k.pull),
+                remark="on east, north, up; truth: reference.model.constants"),
             Approximate("50", "(50)", "sinφ = RΩ² sinϕ / sqrt(g² + (RΩ²)² - 2gRΩ² cosϕ)",
                 lambda s: (triangle_angle(_shorter(s)), rest_angle(_shorter(s))), 1, "l", "rad"),
             Approximate("50_two", ", after (50)", "sinφ ≈ (sinϕ/g) RΩ² + (cosϕ sinϕ/g²) (RΩ²)² + O((RΩ²)³)",

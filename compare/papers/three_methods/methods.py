@@ -63,6 +63,25 @@ def _printed_unprimed(p: Point, rate: Any) -> Vector:
     return -k * p.x + 2 * (up + rate) * p.vy, -k * p.y - 2 * (up + rate) * p.vx
 
 
+def _substituted_pair(p: Point) -> Vector:
+    """Return the two lines before the pair, with all terms on one side."""
+    rate = _own_rate(p)
+    x, y = add((p.ax, p.ay), scale(-1, _printed_unprimed(p, rate)))
+    c, s = cos(rate * p.t), sin(rate * p.t)
+    return x * c - y * s, x * s + y * c
+
+
+def _excess(p: Point) -> Vector:
+    """Return what x', y' along a path leave over in the equations of motion."""
+    turned = primed(generic_path(p), _own_rate(p))
+    place, speed, second = turned(p.t), vector_derivative(turned, p.t), vector_derivative(turned, p.t, 2)
+    return add(second, scale(-1, coupled(p, place, speed)))
+
+
+def _widest(s: Any) -> Any:
+    return points()[0].cord * s
+
+
 def _far_below_gravity() -> Finding:
     p = paris()
     ratio = p.rate * norm((p.x, p.y)) * sqrt(p.gravity / p.length) / p.gravity
@@ -150,6 +169,10 @@ def checks() -> list[Check]:
             Identity("1_second", ", method 1",
                 "xddot' = (xddot - 2ydot ω_p - xω_p²) cosω_p t - (yddot + 2xdot ω_p - yω_p²) sinω_p t, …",
                 _second, _derived(2)),
+            Identity("1_substituted", ", method 1",
+                "(xddot + (…) x - 2(…) ydot) cosω_p t = (yddot + (…) y + 2(…) xdot) sinω_p t, …",
+                _substituted_pair, _excess,
+                remark="the scan is garbled here; the brackets are those of the pair that follows"),
             Identity("1_pair", ", method 1",
                 "xddot + (g/L - 2ω sinα ω_p - ω_p²) x - 2(ω sinα + ω_p) ydot = 0, yddot + …",
                 lambda p: _printed_unprimed(p, _own_rate(p)), lambda p: unprimed_equation(p, _own_rate(p))),
@@ -168,6 +191,8 @@ def checks() -> list[Check]:
             Approximate("1_omega3", ", method 1", "ω̃ ≈ sqrt(g/L)",
                 lambda s: (sqrt(_turned(s).gravity / _turned(s).length), printed_rate(_turned(s))), 2, "ω",
                 remark="in Paris"),
+            Approximate("1_amplitude", ", method 1", "A ω̃ = L θ_max ω̃",
+                lambda s: (_widest(s), sin(_widest(s))), 2, "θ_max", remark="A over L, at a random θ"),
             Statement("1_small", ", method 1", "ω xdot << g", _far_below_gravity),
             Identity("2_vector", ", method 2", "m xddot = -(mg/L) x - 2m (ω sinα k) × xdot",
                 lambda p: add(scale(-p.gravity / p.length, (p.x, p.y)), scale(-2, cross((MP.zero, MP.zero, rate_up(p)),
