@@ -63,16 +63,16 @@ def _triangle() -> list[Panel]:
     end = foot + share * np.array([-np.sin(phi), np.cos(phi)])
     sides = (
         ("gravity g", pivot, foot, BLACK, "-"),
-        ("RΩ²", foot, end, RED, "-"),
+        ("centrifugal RΩ²", end, foot, RED, "-"),
         ("g'", pivot, end, GREEN, "-"),
         ("rod", pivot, -0.45 * end, BLUE, DASHES[1]),
     )
-    lines, names = [], []
+    lines, names = [], []  # each name stands beside the middle of its side
     for name, begin, stop, colour, dashes in sides:
         x, y = np.linspace(begin, stop, 9).T
         lines.append(line("", x, y, colour, dashes, 1.8))
         names.append(dots(name, x[4:5], y[4:5], colour, size=0))
-    angles = [dots("φ", [-0.03], [-0.25], FAINT, size=0), dots("ϕ", [-0.05], [-0.9], FAINT, size=0)]
+    angles = [dots("φ", [-0.03], [-0.25], FAINT, size=0), dots("ϕ", [-0.04], [-0.84], FAINT, size=0)]
     return [Panel([*lines, *names, *angles], bare=True, level=True, xlim=(-0.8, 0.8), ylim=(-1.05, 0.4))]
 
 

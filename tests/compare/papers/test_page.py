@@ -70,6 +70,15 @@ def test_every_figure_is_well_formed_svg_with_text_and_lines_and_no_date(built: 
         assert "<dc:date>" not in text
 
 
+def test_letters_are_as_large_as_a_telephone_needs_them(built: Built) -> None:
+    for number in FIGURES:
+        text = (built[0] / f"figure_{number}.svg").read_text(encoding="utf-8")
+        width = float(re.search(r'<svg [^>]*?width="([\d.]+)pt"', text)[1])  # type: ignore[index]
+        sizes = [float(size) for size in re.findall(r"font(?:-size)?: ([\d.]+)px", text)]
+        assert sizes
+        assert min(sizes) * 350 / width > 8, number  # the page leaves 350 of 390 pixels to a figure
+
+
 def test_the_same_figure_has_the_same_bytes(built: Built) -> None:
     assert figures.svg(1) == (built[0] / "figure_1.svg").read_text(encoding="utf-8")
 
