@@ -37,6 +37,17 @@ def rate_up(p: Point) -> Any:
     return p.rate * sin(p.phi)
 
 
+def coupled(p: Point, place: Vector, speed: Vector) -> Vector:
+    """Return x'', y'' of the pair that all three print, Mathar as (51)-(52): -g/l x + 2Ω_z vy, -g/l y - 2Ω_z vx."""
+    pull, up = p.gravity / p.length, rate_up(p)
+    return -pull * place[0] + 2 * up * speed[1], -pull * place[1] - 2 * up * speed[0]
+
+
+def coupled_at(p: Point) -> Vector:
+    """Return the same at the point's own place and speed."""
+    return coupled(p, (p.x, p.y), (p.vx, p.vy))
+
+
 def swing_rate(p: Point) -> Any:
     """Return ω = sqrt(ω0² + Ω_z²)."""
     return sqrt(p.gravity / p.length + rate_up(p) ** 2)

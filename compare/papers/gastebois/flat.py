@@ -6,7 +6,7 @@ from typing import Any
 
 from ..checks import Approximate, Check, Identity
 from ..digits import Vector, cos, sin, vector_derivative
-from ..linear import linearised, rate_up
+from ..linear import coupled, coupled_at, linearised, rate_up
 from ..points import Point, points
 from ..section import Section
 from .lagrangian import angle_accelerations, angle_functions
@@ -72,14 +72,6 @@ def _flat_end(p: Point) -> Vector:
     return -p.gravity * cl * theta + 2 * up * across, -p.gravity * sl * theta - 2 * up * along
 
 
-def _harmonic(p: Point) -> Vector:
-    """Return -ω0² x + 2 y'Ω sinλ_a and its partner at the small-angle x, y."""
-    x, y = _flat(p)
-    vx, vy = vector_derivative(lambda s: _flat(p, s))
-    square, up = p.gravity / p.length, rate_up(p)
-    return -square * x + 2 * vy * up, -square * y - 2 * vx * up
-
-
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return [
@@ -100,9 +92,9 @@ def checks() -> list[Check]:
                 lambda p: _flat_middle(p, 1)[1]),
             Identity("7_3_end", "7.3", "x'' = -g_a cosφ θ + 2Ω sinλ_a (…), y'' = -g_a sinφ θ - 2Ω sinλ_a (…)",
                 _flat_end, _flat_solved),
-            Identity("7_3_5", "7.3", "the equations of section 5 again", _harmonic, _flat_solved),
+            Identity("7_3_5", "7.3", "the equations of section 5 again",
+                lambda p: coupled(p, _flat(p), vector_derivative(lambda s: _flat(p, s))), _flat_solved),
             Identity("7_3_5b", "7.3", "x'' = -g_a x/L0 + 2y'Ω sinλ_a, y'' = -g_a y/L0 - 2x'Ω sinλ_a",
-                lambda p: (-p.gravity * p.x / p.length + 2 * p.vy * rate_up(p), -p.gravity * p.y / p.length - 2 * p.vx *
-                    rate_up(p)), linearised),
+                coupled_at, linearised),
         ),
     ]  # fmt: skip

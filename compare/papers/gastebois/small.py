@@ -9,7 +9,16 @@ from reference.model.force import tension
 from ...approximations.gastebois_small import constants_of
 from ..checks import Approximate, Check, Finding, Identity, Statement, component
 from ..digits import MP, Vector, add, cos, dot, j, mpf, scale, shown, sin
-from ..linear import acceleration_of, linearised, motion, rate_up, swing_rate, turning_rates, uniform_acceleration
+from ..linear import (
+    acceleration_of,
+    coupled_at,
+    linearised,
+    motion,
+    rate_up,
+    swing_rate,
+    turning_rates,
+    uniform_acceleration,
+)
 from ..points import Point, points
 from ..section import Section
 
@@ -54,11 +63,6 @@ def _with_tension(p: Point) -> Vector:
         -pull * p.x / p.length + 2 * p.vy * up - 2 * p.vz * north,
         -pull * p.y / p.length - 2 * p.vx * up,
     )
-
-
-def _small(p: Point) -> Vector:
-    square, up = p.gravity / p.length, rate_up(p)
-    return -square * p.x + 2 * p.vy * up, -square * p.y - 2 * p.vx * up
 
 
 def _forces(p: Point) -> tuple[Vector, Vector]:
@@ -155,7 +159,7 @@ def checks() -> list[Check]:
             Identity("5_long", "5", "x'' = -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, y'' = -T/m y/L0 - 2x'Ω sinλ_a",
                 _with_tension, uniform_acceleration, remark="truth: reference.model.force with gravity alone"),
             Identity("5_small", "5", "x'' = -ω0² x + 2y'Ω sinλ_a, y'' = -ω0² y - 2x'Ω sinλ_a",
-                _small, linearised, remark="truth: reference.model.force with gravity alone, linear"),
+                coupled_at, linearised, remark="truth: reference.model.force with gravity alone, linear"),
             Statement("6_1_part", "6.1", "x is the 'partie entière' (whole part) of Z",
                 _whole_part, "partie réelle: x is the real part", _real_part),
             Identity("6_1_z", "6.1", "Z'' = -ω0² Z - 2 j Z' Ω sinλ_a",

@@ -9,7 +9,7 @@ from ...approximations.mathar_items import derivatives, truncated
 from ..checks import Approximate, Check, Identity, PrintedNumber
 from ..digits import MP, Vector, cos, scale, shown, sin, sqrt
 from ..first_principles import in_rate, pull_at_rest
-from ..linear import linearised, uniform_acceleration
+from ..linear import coupled_at, linearised, uniform_acceleration
 from ..points import Point, paris
 from ..section import Section
 from .cartesian import solved
@@ -41,12 +41,6 @@ def _depth_is_length(p: Point) -> Vector:
     """Return x'', y'' of item 5, in the term with g: z replaced by l."""
     g = p.gravity / p.length
     return (-g * p.x, -g * p.y)
-
-
-def harmonic(p: Point) -> Vector:
-    """Return x'', y'' by (51), (52), with hats and dots where they belong."""
-    pull, turn = p.gravity / p.length, 2 * p.rate * sin(p.phi)
-    return (-pull * p.x + turn * p.vy, -pull * p.y - turn * p.vx)
 
 
 def _dropped(simplified: Callable[[Point], Vector], turning: bool = False) -> Callable[[Any], tuple[Vector, Vector]]:
@@ -94,7 +88,7 @@ def _cosine(s: Any) -> tuple[Vector, Vector]:
 
 def _whole(s: Any) -> tuple[Vector, Vector]:
     p = _swinging(s, paris().rate)
-    return harmonic(p), uniform_acceleration(p)
+    return coupled_at(p), uniform_acceleration(p)
 
 
 def _pulled(p: Point) -> Vector:

@@ -7,12 +7,11 @@ from typing import Any
 
 from ..checks import Approximate, Check, Finding, Identity, Statement
 from ..digits import MP, Vector, add, cos, cross, derivative, j, mpf, norm, scale, shown, sin, sqrt, vector_derivative
-from ..linear import linearised, motion, rate_up
+from ..linear import coupled, linearised, motion, rate_up
 from ..points import Point, paris, points
 from ..section import Section
 from .setting import (
     axes_rate,
-    coupled,
     generic_path,
     measured_rate,
     primed,
@@ -80,6 +79,12 @@ def _excess(p: Point) -> Vector:
 
 def _widest(s: Any) -> Any:
     return points()[0].cord * s
+
+
+def _two_ways(p: Point) -> Vector:
+    pull, rate = p.gravity / p.length, axes_rate(p)
+    first = sqrt(pull - 2 * p.rate * rate * sin(p.phi) - rate**2)
+    return first, sqrt(pull + 2 * rate / sin(p.phi) * rate * sin(p.phi) - rate**2)
 
 
 def _far_below_gravity() -> Finding:
@@ -180,12 +185,10 @@ def checks() -> list[Check]:
                 lambda p: unprimed_equation(p.but(x=MP.zero, y=MP.zero), axes_rate(p)), lambda p: (MP.zero, MP.zero),
                 remark="x'', y'' that velocities alone give"),
             Identity("1_simple", ", method 1", "xddot + ω̃² x = 0, yddot + ω̃² y = 0",
-                lambda p: scale(-(printed_rate(p) ** 2), (p.x, p.y)), lambda p: unprimed_equation(p, axes_rate(p))),
+                lambda p: scale(-stiffness(p), (p.x, p.y)), lambda p: unprimed_equation(p, axes_rate(p))),
             Identity("1_omega", ", method 1",
                 "ω̃ = sqrt(g/L - 2ωω_p sinα - ω_p²) = sqrt(g/L + 2(ω_P/sinα) ω_p sinα - ω_p²)",
-                lambda p: (sqrt(p.gravity / p.length - 2 * p.rate * axes_rate(p) * sin(p.phi) - axes_rate(p) ** 2),
-                    sqrt(p.gravity / p.length + 2 * axes_rate(p) / sin(p.phi) * axes_rate(p) * sin(p.phi) - axes_rate(p)
-                    ** 2)), lambda p: (measured_rate(p), measured_rate(p)),
+                _two_ways, lambda p: (measured_rate(p), measured_rate(p)),
                 remark="truth: eigenvalues of the decoupled pair"),
             Identity("1_omega2", ", method 1", "ω̃ = sqrt(g/L + ω_p²)", printed_rate, measured_rate),
             Approximate("1_omega3", ", method 1", "ω̃ ≈ sqrt(g/L)",
@@ -210,7 +213,7 @@ def checks() -> list[Check]:
                 lambda p: coupled(p, (p.x, p.y), (p.vx - axes_rate(p) * p.y, p.vy + axes_rate(p) * p.x))),
             Identity("2_end", ", method 2", "xddot' = -(g/L) x' - ω_p² x'",
                 lambda p: scale(-stiffness(p), (p.x, p.y)), _moved_acceleration),
-            Identity("2_omega", ", method 2", "ω = sqrt(g/L + ω_p²)", lambda p: sqrt(stiffness(p)), measured_rate),
+            Identity("2_omega", ", method 2", "ω = sqrt(g/L + ω_p²)", printed_rate, measured_rate),
             Identity("3_z", ", method 3", "zddot + 2iω_P zdot + (g/L) z = 0, ω_P = ω sinα",
                 _equation, lambda p: MP.mpc(*linearised(p)),
                 remark="ω_P with the other sign than in method 1 and in the conclusion, where it is the axes' -ω sinα"),
@@ -218,7 +221,7 @@ def checks() -> list[Check]:
                 _substituted, lambda p: MP.zero),
             Identity("3_simple", ", method 3", "wddot + (g/L + ω_P²) w = 0",
                 lambda p: -stiffness(p) * _spun(p)[0], lambda p: _spun(p)[2]),
-            Identity("3_omega", ", method 3", "ω = sqrt(g/L + ω_P²)", lambda p: sqrt(stiffness(p)), measured_rate),
+            Identity("3_omega", ", method 3", "ω = sqrt(g/L + ω_P²)", printed_rate, measured_rate),
             Statement("end_frame", ", conclusion",
                 "in axes that turn at -ω sinα: simple harmonic, frequency sqrt(g/L + ω_P²)",
                 _simple_in_frame),

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..checks import Approximate, Check, Finding, Identity, Statement
 from ..digits import MP, Vector, add, cos, cross, dot, mpf, norm, scale, shown, sin, sqrt, unit, vector_derivative
-from ..linear import acceleration_of, linearised, rate_up, turning, uniform_acceleration
+from ..linear import acceleration_of, coupled, coupled_at, linearised, rate_up, turning, uniform_acceleration
 from ..points import Point, points
 from ..section import Section
 
@@ -18,12 +18,6 @@ Path = Callable[[Any], Vector]
 def axes_rate(p: Point) -> Any:
     """Return ω_p = -ω sinα."""
     return -rate_up(p)
-
-
-def coupled(p: Point, place: Vector, speed: Vector) -> Vector:
-    """Return the acceleration by the two equations: -g/L x + 2ω sinα vy, -g/L y - 2ω sinα vx."""
-    k, up = p.gravity / p.length, rate_up(p)
-    return -k * place[0] + 2 * up * speed[1], -k * place[1] - 2 * up * speed[0]
 
 
 def primed(path: Path, rate: Any) -> Path:
@@ -67,7 +61,7 @@ def stiffness(p: Point) -> Any:
 
 def printed_rate(p: Point) -> Any:
     """Return ω̃ = sqrt(g/L + ω_p²)."""
-    return sqrt(p.gravity / p.length + axes_rate(p) ** 2)
+    return sqrt(stiffness(p))
 
 
 def measured_rate(p: Point) -> Any:
@@ -128,7 +122,7 @@ def checks() -> list[Check]:
                 lambda s: (2 * rising(s).rate * rising(s).vx * cos(rising(s).phi), acceleration_of(rising(s))[2]), 1,
                 "amplitude", "m/s²", "at a random point; the cord's vertical pull differs from mg by as much"),
             Identity("pair", "", "xddot + (g/L) x = 2ω sinα ydot, yddot + (g/L) y = -2ω sinα xdot",
-                lambda p: coupled(p, (p.x, p.y), (p.vx, p.vy)), linearised,
+                coupled_at, linearised,
                 remark="truth: reference.model.force with gravity alone, linear"),
         ),
     ]  # fmt: skip
