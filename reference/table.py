@@ -127,17 +127,20 @@ class Table:
             for row in self.values
         ]
 
-    def undecided(self, decimals: Mapping[str, int]) -> tuple[str, str] | None:
-        """Return the first number, as column and text, of which the bounds do not decide each printed digit, or None.
+    def undecided(self, decimals: Mapping[str, int]) -> tuple[Fraction, str, str] | None:
+        """Return the least known of the numbers of which the bounds do not decide each printed digit, or None.
 
-        It is decided if every number within the bound is printed alike.
+        It comes as its bound in units of the last printed digit, its column and its text. A number is decided if every
+        number within the bound is printed alike.
         """
         units, unit = [10 ** decimals[name] for name in self.columns], 1 << self.bits
+        worst: tuple[Fraction, str, str] | None = None
         for row, errors in zip(self.values, self.errors, strict=True):
             for name, value, error, ten in zip(self.columns, row, errors, units, strict=True):
                 if rounded((value - error) * ten, unit) != rounded((value + error) * ten, unit):
-                    return name, with_decimal_point(rounded(value * ten, unit), decimals[name])
-        return None
+                    text = with_decimal_point(rounded(value * ten, unit), decimals[name])
+                    worst = max((Fraction(error * ten, unit), name, text), worst or (Fraction(0), "", ""))
+        return worst
 
 
 def resolved(largest: Mapping[str, Fraction], errors: Mapping[str, Fraction]) -> dict[str, Fraction]:

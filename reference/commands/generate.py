@@ -117,5 +117,7 @@ def command(
     source = solution.run
     rows = f"{len(solution.times)} grid times, {count} transits"
     typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}")
+    if solution.not_checked:
+        typer.echo(f"The proof finds all transits; no run with event detection confirms them: {solution.not_checked}", err=True)
     typer.echo(f"every position within {bound} m; {source.formulation}, {source.number}, {source.steps} steps")
     typer.echo(f"CPU: run {solution.run.cpu_s:.2f} s, check {checks_s:.2f} s, pilot {solution.pilot_s:.2f} s")

@@ -1,8 +1,8 @@
 """A proof of a run: intervals that contain the true state and every transit (THEOREM.md); needs python-flint.
 
-Trusted, and enough to believe a proof: `balls`, `bound`, `columns`, `transits`. Untrusted, because the bound measures
-whatever they get wrong: `approximant` and `frames`, which propose polynomials, `plan`, which chooses the precision, and
-`run` and `defects`, which pass steps on. `shapes` only declares. Endpoints of intervals are Fractions; no flint
+Trusted, and enough to believe a proof: `balls`, `bound`, `columns`, `transits`, and `course`, which drives them.
+Untrusted, because the bound measures whatever they get wrong: `approximant` and `frames`, which propose polynomials,
+`plan`, which chooses the precision, and `run`, which passes steps on. `shapes` only declares. Endpoints of intervals are Fractions; no flint
 object leaves this package.
 """
 

@@ -4,14 +4,14 @@ Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, 
 """
 
 from fractions import Fraction
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
 from ..taylor_step import TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, dot, fixed, interval, norm, size, times, upper
-from .shapes import Interval, Sizes, Tube
+from .shapes import Covered, Interval, Sizes, Tube
 
 
 class World:
@@ -100,8 +100,9 @@ class Piece:
         """Return balls of p(s) and p'(s)."""
         return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v]
 
+    @cached_property
     def sizes(self) -> Sizes:
-        """Return the defects and norms, from integers but for the radii of the constants (section 6)."""
+        """The defects and norms, from integers but for the radii of the constants (section 6)."""
         k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits
         (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], self.tension - k.whole[1]
         d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, self.tension), p, strict=True)]
@@ -123,6 +124,8 @@ def error_rate(k: Scaled, size_p: arb) -> arb:
 
 def tube(k: Scaled, d: Sizes, eta: arb, gamma: arb) -> Tube:
     """Return the bounds of position, velocity and acceleration from |e| <= eta and |g| <= gamma (section 7)."""
+    if not eta < 2:
+        raise ArithmeticError("a bound is as wide as the sphere")
     turn, gw = d.k + k.omega_size, k.drag_size * k.omega_size
     u = gamma + turn * eta + d.d1
     torque = k.c_size * eta + k.omega_size * gamma + k.drag_size * gamma + gw * (1 + d.p) * eta + d.d2
@@ -139,8 +142,8 @@ class Carried:
 
     def join(self, piece: Piece) -> Vector:
         """Return bounds of the jumps in p and K from the end of the step before to the start of `piece`."""
-        if piece.begin != self.time:
-            raise ArithmeticError("steps must join")
+        if piece.begin != self.time or piece.world is not self.world:
+            raise ArithmeticError("steps must join, and be of one scene")
         ends = (piece.values(ball(s)) for s in (piece.step.low, piece.step.high))
         start, end = ([*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))] for p, v in ends)
         self.time, self.last, before = piece.end, end, self.last
@@ -152,10 +155,10 @@ class Radius(Carried):
 
     eta = arb(0)
 
-    def advance(self, piece: Piece, d: Sizes) -> Tube:
-        """Carry the radius over `piece`, whose sizes are `d`."""
+    def advance(self, piece: Piece) -> Covered:
+        """Carry the radius over a piece."""
         with ctx.workprec(self.world.prec):
-            k, jump = piece.k, self.join(piece)
+            k, jump, d = piece.k, self.join(piece), piece.sizes
         with ctx.workprec(SHORT):
             span, gw, ck = ball(piece.step.high - piece.step.low), k.drag_size * k.omega_size, k.c_size + d.k**2
             start, source = upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.world.w0), d.d2 / k.w + d.d1
@@ -163,20 +166,21 @@ class Radius(Carried):
             far = upper(((1 + d.k / k.w) * start + span * source) * (span * error_rate(k, d.p)).exp())
             rate = (k.below.max(k.above + (k.speed + k.w * far) ** 2) + ck * far + gw * d.p) / (2 * k.w)
             self.eta = upper((start + span * (ck * d.tau / (2 * k.w) + source)) * (span * rate).exp())
-            return tube(k, d, self.eta, (k.w + d.k) * self.eta)
+            return Covered(piece, tube(k, d, self.eta, (k.w + d.k) * self.eta))
 
 
-def state(piece: Piece, t: Tube, s: arb) -> tuple[Vector, Vector]:
+def state(covered: Covered, s: arb) -> tuple[Vector, Vector]:
     """Return balls that contain the true r and r' at `s`."""
-    p, v = piece.values(s)
-    return [x + arb(0, t.eta) for x in p], [x + arb(0, t.u) for x in v]
+    p, v = covered.piece.values(s)
+    return [x + arb(0, covered.tube.eta) for x in p], [x + arb(0, covered.tube.u) for x in v]
 
 
-def output(world: World, piece: Piece, t: Tube, time: Fraction) -> list[Interval]:
+def output(covered: Covered, time: Fraction) -> list[Interval]:
     """Return position and velocity at an output time, in m and m/s; at 0 those of the release itself."""
+    piece, world = covered.piece, covered.piece.world
     with ctx.workprec(world.prec):
         if not piece.begin <= time <= piece.end:
             raise ArithmeticError("the tube holds on its own step only")
-        r, v = state(piece, t, ball((time - piece.step.centre) / piece.step.h))
+        r, v = state(covered, ball((time - piece.step.centre) / piece.step.h))
         moving = [world.turned(r, -1), world.turned(times(1 / piece.k.h, v), -1)]
         return [interval(x * world.length) for part in (moving if time else world.release) for x in part]

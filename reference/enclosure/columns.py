@@ -7,7 +7,7 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, dot, size, times, upper
 from .bound import Carried, Piece, World, error_rate, tube
-from .shapes import Sizes, Tube
+from .shapes import Covered, Proposal
 
 FINE = 50  # a column's coefficients are integers over 2^FINE
 CUT = 48  # terms of p and K in the residuals, which are multiplied by the small z_j
@@ -20,9 +20,9 @@ class Columns(Carried):
         super().__init__(world)
         self.rest, self.z, self.carried = [arb(0)] * 6, [arb(0)] * 6, arb_mat(6, 6)
 
-    def advance(self, piece: Piece, d: Sizes, proposal: list[list[list[int]]]) -> Tube:
+    def advance(self, piece: Piece, proposal: Proposal) -> Covered:
         """Carry the box of the z_j over `piece`; `proposal[j]` holds the six polynomials of column j."""
-        k, step, columns = piece.k, piece.step, [[fmpz_poly(f) for f in c] for c in proposal]
+        k, step, d, columns = piece.k, piece.step, piece.sizes, [[fmpz_poly(f) for f in c] for c in proposal]
         with ctx.workprec(self.world.prec):
             slack = add(self.join(piece), self.rest)
         with ctx.workprec(2 * SHORT):
@@ -36,7 +36,7 @@ class Columns(Carried):
             d1, d2, span = d1 + zp * zk, d2 + k.drag_size * k.omega_size * zp**2, ball(step.high - step.low)
             left = upper(span * (d2 / k.w + d1) * (span * error_rate(k, d.p + zp)).exp())
             self.rest = [left] * 3 + [upper(left * self.world.w0)] * 3
-            return tube(k, d, zp + left, zk + left * k.w)
+            return Covered(piece, tube(k, d, zp + left, zk + left * k.w))
 
 
 GRID = [(i, j) for i in range(6) for j in range(6)]

@@ -1,17 +1,14 @@
-"""Run a proof: from an approximant's steps to enclosed states and transits, on all cores, with more bits if needed.
+"""Run a proof: from an approximant's steps to enclosed states and transits, with more bits if needed.
 
-Untrusted: no bound is computed here. Every step goes, with its defect, to the trusted functions, which check that the
-steps join.
+Untrusted: no bound is computed here. Every step goes to the trusted `Course`, whose results are handed on as they are.
 """
 
 from __future__ import annotations
 
-import os
-from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from itertools import chain, islice, pairwise
+from itertools import chain, pairwise
 from math import ceil
 from time import process_time
 from typing import Any, cast
@@ -19,23 +16,18 @@ from typing import Any, cast
 from flint import arb
 
 from ..errors import UnreachableError
-from ..process import Worker
 from ..taylor_step import TaylorStep
 from .approximant import polynomials
-from .bound import Piece, Radius, World, output
-from .columns import Columns
-from .defects import compute_defects, unpacked
+from .bound import World
+from .course import Course
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, plan_for, short
-from .shapes import EnclosedTransit, Interval, Sizes
-from .transits import Scan
+from .shapes import EnclosedTransit, Interval
 
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
 ATTEMPTS = 4  # at rising precision
 LEAST_RAISE = 8  # bits from one attempt to the next
-CHUNK = 32  # steps sent to a process at once
-AHEAD = 2  # chunks that a process may hold
-WORTH = 500  # duration times angular frequency below which a second process costs more than it saves
+USELESS = 2**12  # a state known this many times less closely than requested ends an attempt at once
 TINY = -1e9  # stands for the logarithm of a width that is 0
 PARTS = ("candidate", "defect", "bound", "transits")  # as datasets name them: the first is the approximant
 
@@ -45,7 +37,7 @@ State = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
 
 @dataclass(frozen=True)
 class ProofCost:
-    """CPU seconds by part, of all processes; `candidate` is the approximant's share, by the name that datasets use."""
+    """CPU seconds by part; `candidate` is the approximant's share, by the name that datasets use."""
 
     candidate: float
     defect: float
@@ -90,7 +82,6 @@ def enclose(
     radius: Fraction,
     approximant: Approximant,
     transits: bool = True,
-    workers: int | None = None,
     progress: Callable[[float], None] | None = None,
     method: str | None = None,
 ) -> Enclosure:
@@ -103,7 +94,6 @@ def enclose(
         approximant: function of a precision in bits that gives steps from t = 0 to the last time, as `pair` yields
             them; it is called again, with more bits, where the bounds are too wide.
         transits: also enclose all zeros of xdot.
-        workers: processes that may be used, this one included; None for one a core.
         progress: called with the part of the time span that is proved.
         method: "radius" or "columns"; None for the one that is likely to be cheaper.
 
@@ -119,8 +109,8 @@ def enclose(
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
     for _ in range(ATTEMPTS):
         try:
-            run = _Run(inputs, plan, list(times), transits, workers, progress)
-            return run.prove(approximant, radius)
+            run = _Run(inputs, plan, list(times), radius, transits, progress)
+            return run.prove(approximant)
         except _TooWide as error:
             reason, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
         except (ArithmeticError, ValueError) as error:
@@ -156,43 +146,59 @@ class _Run:
         inputs: Any,
         plan: ProofPlan,
         times: list[Fraction],
+        radius: Fraction,
         transits: bool,
-        workers: int | None,
         progress: Callable[[float], None] | None,
     ) -> None:
-        self.inputs, self.plan, self.times, self.progress = inputs, plan, times, progress
+        self.inputs, self.plan, self.times, self.radius, self.progress = inputs, plan, times, radius, progress
         self.transits = transits
-        self.workers = workers or os.cpu_count() or 1
         self.end = times[-1]
         self.clock = _Clock()
 
-    def prove(self, approximant: Approximant, radius: Fraction) -> Enclosure:
-        """Prove all steps; raise _TooWide if a state is known less closely than to `radius`."""
+    def prove(self, approximant: Approximant) -> Enclosure:
+        """Prove all steps; raise _TooWide if a state is known less closely than to the radius."""
         steps = iter(approximant(self.plan.bits))
         first = next(steps, None)
         if first is None:
             raise UnreachableError("enclosure: the approximant is empty.")
         bits, order = first.bits, len(first.coefficients[0]) - 1
         self.clock.lap("candidate")
-        self.world = world = World(self.inputs, bits + SCENE_GUARD_BITS)
+        world = World(self.inputs, bits + SCENE_GUARD_BITS)
+        columns = ColumnSource(world) if self.plan.method == "columns" else None
+        course = Course(world, self.times, columns is not None, self.transits)
+        count = known = 0
         self.clock.lap("bound")
-        scan = Scan(world) if self.transits and not world.still else None
-        states, count = self._steps(self._until(chain([first], steps)), scan)
-        transits = (scan.finish() if self.end else []) if scan else None
+        for step in self._until(chain([first], steps)):
+            proposal = columns.propose(step, [_log(z) for z in course.columns.z]) if columns else None
+            self.clock.lap("candidate")
+            course.advance(polynomials(step), proposal, self.clock.lap)
+            count += 1
+            if len(course.states) > known:
+                known = len(course.states)
+                self._check_widths(course.states[-1:], self.times[known - 1], USELESS, bits)
+            if self.progress:
+                self.progress(float((step.centre + step.h * step.high) / self.end) if self.end else 1.0)
+        states, transits = course.finish()
         self.clock.lap("transits")
-        widths = [[(i.high - i.low) / 2 for i in row] for row in states]
-        position = max(max(row[:3]) for row in widths)
-        velocity = max(max(row[3:6]) for row in widths)
-        if max(position, velocity) > radius:
-            ratio = max(position, velocity) / radius
-            more = 8 * ceil((ratio.numerator.bit_length() - ratio.denominator.bit_length() + 6) / 8)
-            reason = f"{bits} bits gave {short(position)} m and {short(velocity)} m/s ({self.plan.method})"
-            raise _TooWide(reason, bits + more)
+        position, velocity = self._check_widths(states, self.end, 1, bits)
         rows = cast("list[State]", [tuple(row) for row in states])
         cost = ProofCost(**self.clock.parts)
         return Enclosure(
             self.times, rows, transits, world.still, bits, order, count, self.plan.method, position, velocity, cost
         )
+
+    def _check_widths(self, states: list[list[Interval]], time: Fraction, factor: int, bits: int) -> list[Fraction]:
+        """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""
+        widths = [[(i.high - i.low) / 2 for i in row] for row in states]
+        position, velocity = (max(max(row[part]) for row in widths) for part in (slice(3), slice(3, 6)))
+        if max(position, velocity) > factor * self.radius:
+            missing = _magnitude(max(position, velocity) / self.radius) + 6
+            # what the rest of the run will lose, if it is like what lies behind
+            lost = max(0, bits + _magnitude(position / self.inputs.length))
+            missing += ceil(lost * (self.end - time) / time) if time else lost
+            reason = f"{bits} bits gave {short(position)} m and {short(velocity)} m/s ({self.plan.method})"
+            raise _TooWide(reason, bits + 8 * ceil(missing / 8))
+        return [position, velocity]
 
     def _until(self, steps: Iterator[TaylorStep]) -> Iterator[TaylorStep]:
         """Yield the steps up to the end of the run, the last one cut there."""
@@ -205,75 +211,10 @@ class _Run:
             yield step
         raise UnreachableError(f"enclosure: the approximant ends before {float(self.end):g} s.")
 
-    def _steps(self, steps: Iterator[TaylorStep], scan: Scan | None) -> tuple[list[list[Interval]], int]:
-        """Prove the steps one by one; return the states at the output times and the number of steps."""
-        world, states, count, waiting = self.world, [], 0, deque(self.times)
-        bound: Radius | Columns = Radius(world)
-        columns = None
-        if self.plan.method == "columns":
-            bound, columns = Columns(world), ColumnSource(world)
-        for piece, sizes in self._with_sizes(steps):
-            if columns is None:
-                tube = cast(Radius, bound).advance(piece, sizes)
-            else:
-                box = cast(Columns, bound)
-                proposal = columns.propose(piece.step, [_log(z) for z in box.z])
-                self.clock.lap("candidate")
-                tube = box.advance(piece, sizes, proposal)
-            while waiting and waiting[0] <= piece.end:
-                states.append(output(world, piece, tube, waiting.popleft()))
-            self.clock.lap("bound")
-            if scan:
-                scan.advance(piece, tube)
-                self.clock.lap("transits")
-            count += 1
-            if self.progress:
-                self.progress(float(piece.end / self.end) if self.end else 1.0)
-        return states, count
 
-    def _with_sizes(self, steps: Iterator[TaylorStep]) -> Iterator[tuple[Piece, Sizes]]:
-        """Yield each step with its defect, computed here or in other processes."""
-        world = self.world
-        if self.workers < 2 or float(self.end) * float(world.w0) < WORTH:
-            for step in steps:
-                self.clock.lap("candidate")
-                piece = Piece(self.world, polynomials(step))
-                sizes = piece.sizes()
-                self.clock.lap("defect")
-                yield piece, sizes
-            return
-        processes = [Worker(compute_defects, self.inputs, world.prec) for _ in range(self.workers - 1)]
-        try:
-            yield from self._shared(steps, processes)
-        finally:
-            for process in processes:
-                process.kill()
-                process.stop()
-
-    def _shared(self, steps: Iterator[TaylorStep], processes: list[Worker]) -> Iterator[tuple[Piece, Sizes]]:
-        """Send the steps to the processes in turn, and yield them with their defects in order."""
-        sent: deque[tuple[Worker, list[TaylorStep]]] = deque()
-        turn = 0
-        while True:
-            chunk = list(islice(steps, CHUNK))
-            self.clock.lap("candidate")
-            if chunk:
-                process = processes[turn % len(processes)]
-                process.send(chunk)
-                sent.append((process, chunk))
-                turn += 1
-                self.clock.lap("defect")
-            if not sent:
-                return
-            if chunk and len(sent) < AHEAD * len(processes) + 1:
-                continue
-            process, chunk = sent.popleft()
-            rows, cpu = process.receive()
-            self.clock.parts["defect"] += cpu
-            for step, sizes in zip(chunk, unpacked(rows), strict=True):
-                piece = Piece(self.world, polynomials(step))
-                self.clock.lap("defect")
-                yield piece, sizes
+def _magnitude(ratio: Fraction) -> int:
+    """Return the logarithm to base 2, about."""
+    return ratio.numerator.bit_length() - ratio.denominator.bit_length()
 
 
 def _log(z: arb) -> float:

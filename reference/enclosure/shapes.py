@@ -55,6 +55,16 @@ class Tube(NamedTuple):
     a: arb
 
 
+class Covered(NamedTuple):
+    """A step's piece with the tube that the motion stays in: what `advance` returns, and output and scan take."""
+
+    piece: Any
+    tube: Tube
+
+
+Proposal = list[list[list[int]]]  # six columns of six polynomials of integers
+
+
 class Leaf(NamedTuple):
     """A part of a step where xdot may be 0: `bend` is the sign of xddot (M, monotone), or 0 (R, undecided)."""
 

@@ -1,12 +1,15 @@
 """TRUSTED. Transits enclosed: every zero of xdot in (0, T], which are single, and where (THEOREM.md, section 8)."""
 
+from fractions import Fraction
 from functools import reduce
 
 from flint import arb, arb_poly, ctx
 
 from .balls import SHORT, add, ball, dot, interval, times
-from .bound import Piece, World, state
-from .shapes import EnclosedTransit, Interval, Leaf, Tube
+from .bound import World, state
+from .shapes import Covered, EnclosedTransit, Interval, Leaf
+
+MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible transit
 
 
 def sign(x: arb) -> int:
@@ -17,7 +20,8 @@ def sign(x: arb) -> int:
 class Slope:
     """xdot lies in f ± u and xddot in f' ± a on a piece, f = p'_x; all in scaled time."""
 
-    def __init__(self, piece: Piece, tube: Tube) -> None:
+    def __init__(self, covered: Covered) -> None:
+        self.covered, (piece, tube) = covered, covered
         self.piece, self.tube, self.centre = piece, tube, ball(piece.step.centre)
         self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
@@ -32,7 +36,7 @@ class Slope:
 
     def bend(self, s: arb) -> arb:
         """Return a ball that contains x''' on the ball `s`, by the equations of motion (section 7)."""
-        k, (r, v) = self.piece.k, state(self.piece, self.tube, s)
+        k, (r, v) = self.piece.k, state(self.covered, s)
         a = [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
         F, F1 = k.force(r, v), add(k.force(v, a), times(-1, k.c))
         rate: arb = F1[0] - v[0] * (dot(v, v) + dot(r, F)) - r[0] * (2 * dot(v, a) + dot(v, F) + dot(r, F1))
@@ -43,19 +47,23 @@ class Scan:
     """Bisects the steps into leaves and closes clusters of those that are not E, also across steps (section 8)."""
 
     def __init__(self, world: World) -> None:
-        self.world, self.begun, self.left = world, False, 0
+        self.world, self.begun, self.left, self.time, self.leaves = world, False, 0, Fraction(0), 0
         self.end: tuple[Slope, arb] | None = None
         self.found, self.cluster = list[EnclosedTransit](), list[Leaf]()
 
-    def advance(self, piece: Piece, tube: Tube) -> None:
+    def advance(self, covered: Covered) -> None:
         """Sort the leaves of the next step."""
+        piece = covered.piece
+        if piece.begin != self.time or piece.world is not self.world:
+            raise ArithmeticError("steps must join, and be of one scene")
         with ctx.workprec(self.world.prec):
-            slope, low, high = Slope(piece, tube), ball(piece.step.low), ball(piece.step.high)
-            self.end = slope, high
+            slope, low, high = Slope(covered), ball(piece.step.low), ball(piece.step.high)
+            self.end, self.time, self.leaves = (slope, high), piece.end, 0
             self.left = self.left if self.begun else sign(slope.at(0, low))
             self._sort(slope, low, high, 0)
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
+        self.leaves += 1
         # most leaves are decided at low precision, and only a few need all bits
         with ctx.workprec(SHORT if depth < 4 else self.world.prec):
             whole, middle = low.union(high), ((low + high) / 2).mid()
@@ -71,7 +79,12 @@ class Scan:
                 way = last
         if way:
             self._close(way)
-        elif bend or 2 * depth >= self.world.prec or not speed.abs_upper() > 3 * slope.tube.u:
+        elif (
+            bend
+            or 2 * depth >= self.world.prec
+            or self.leaves > MOST_LEAVES
+            or not speed.abs_upper() > 3 * slope.tube.u
+        ):
             self.cluster.append(Leaf(bend, low, high, slope))
         else:
             self._sort(slope, low, middle, depth + 1)
@@ -87,6 +100,8 @@ class Scan:
     def _close(self, right: int) -> None:
         leaves, product, self.cluster, self.left = self.cluster, self.left * right, [], right
         steady = {leaf.bend for leaf in leaves} in ({1}, {-1})
+        if not leaves and product < 0:
+            raise ArithmeticError("two enclosures contradict each other")
         if not leaves or (steady and product > 0):
             return
         ends = ((leaves[0].slope.piece, leaves[0].low), (leaves[-1].slope.piece, leaves[-1].high))
@@ -102,7 +117,7 @@ class Scan:
     def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:
         rows = []
         for slope, s in touched(leaves, t):
-            r, v = (self.world.turned(a, -1) for a in state(slope.piece, slope.tube, s))
+            r, v = (self.world.turned(a, -1) for a in state(slope.covered, s))
             rows.append([*r, v[1] / slope.piece.k.h, slope.at(1, s) / slope.piece.k.h**2])
         return [interval(reduce(arb.union, x) * self.world.length) for x in zip(*rows, strict=True)]
 

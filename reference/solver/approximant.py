@@ -6,7 +6,6 @@ they arrive; the pipe provides back-pressure. The proof bounds the defect of eve
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fractions import Fraction
@@ -22,7 +21,6 @@ from ..taylor_step import TaylorStep
 
 COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
 BATCH = 32  # steps sent at once
-LEAST_PREC = 96  # bits of the shortest proof
 
 
 @dataclass
@@ -55,12 +53,6 @@ class Feed:
         else:
             self._steps = _paired(engine.name, self.inputs, self.times, prec, self._runs)
         return self._steps
-
-    @property
-    def workers(self) -> int:
-        """Number of processes that the proof may use: two, or one if a child computes the run."""
-        child = fastest(LEAST_PREC, self.engine).own_process
-        return 1 if child else min(2, os.cpu_count() or 1)
 
     def finished(self) -> Run:
         """Exhaust the steps and return the run, with its states at `times`."""

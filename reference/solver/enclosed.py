@@ -9,13 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from itertools import pairwise
+from math import ceil
 from typing import Any
 
 from ..columns import GRID, POSITION, TRANSITS, VELOCITY
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import InputError, IntegrationError, UnreachableError
-from ..precision import cheapest_type
+from ..precision import cheapest_type, rounded_up
 from ..scene import Scene
 from ..table import Table, bits_in
 from .approximant import COEFFICIENT_BITS, Feed
@@ -24,10 +26,14 @@ from .rounding import UndecidedRounding, check_decided
 from .solution import CrossCheck, Proof, Solution, Source
 
 ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
-ROUNDING_TRIES = 3  # radii that are tried before giving up
-FINER = 2**16  # the next radius is smaller by this factor
+ROUNDING_TRIES = 8  # radii that are tried before giving up
+FINER = 2**16  # the next radius is smaller by this factor at least,
+SPARE = 2**20  # and at least so small that the widest undecided number is known to this part of its last digit
+TIE = Fraction(1, 2**40)  # of the last digit: a number that lies so near to the middle of two decimals is a tie
 USUAL_DIGITS, FINER_DIGITS = 9, 27  # of the run with event detection, at first and on a second try
 EVALUATION_BITS = 12  # bits that a run may lose when its polynomial is evaluated, so that it misses its ball
+MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
+SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 TABLE_BITS = 64  # the tables' integers carry this many bits more than the proof, so that rounding costs nothing
 
 
@@ -58,21 +64,24 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, repor
                 radius=radius,
                 transits=scene.run.transits,
                 approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
-                workers=feed.workers,
                 progress=report and _scaled(report, span),
             )
             try:
                 solution = _solution(scene, times, enclosed, feed.finished(), pilot)
                 check_decided(solution)
             except UndecidedRounding as undecided:
-                radius, reason = radius / FINER, str(undecided)
+                tried, reason, advice = radius, str(undecided), "Ask for fewer digits."
+                if undecided.width < TIE:
+                    advice = "It lies between two decimals as nearly as can be told: ask for one digit more."
+                    break
+                radius = radius / max(FINER, ceil(SPARE * undecided.width))
             else:
                 return solution
     finally:
         feed.stop()
     raise UnreachableError(
-        f"{reason} Balls of {float(radius * FINER):.1e} m were tried.",
-        "A number may lie exactly between two decimals: ask for one digit more.",
+        f"{reason} Balls of {rounded_up(tried)} m were tried.",
+        advice,
     )
 
 
@@ -95,12 +104,15 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     undecided: list[Any] = []
     for transit in enclosed.transits or ():
         (decided if transit.kind == "one" else undecided).append(transit)
-    transits = None
+    directions = [z.direction for z in decided]
+    transits, not_checked = None, ""
     if enclosed.transits is not None:
         transits = Table.of_intervals(TRANSITS, [[getattr(z, name) for name in TRANSITS] for z in decided], bits)
-        checks.append(
-            _transit_check(scene, times, grid, transits, [z.direction for z in decided], pilot, bool(undecided))
-        )
+        check = _transit_check(scene, times, grid, transits, directions, pilot, bool(undecided))
+        if isinstance(check, CrossCheck):
+            checks.append(check)
+        else:
+            not_checked = check
     size, gap = (max(of[name] for name in POSITION) for of in (pilot.largest, gaps))
     proof = Proof(
         method=enclosed.method,
@@ -115,9 +127,18 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     )
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)
-    directions = [z.direction for z in decided]
     return Solution(
-        scene, times, grid, transits, directions, Source.of(approximant), tuple(checks), pilot.cpu_s, proof, possible
+        scene,
+        times,
+        grid,
+        transits,
+        directions,
+        Source.of(approximant),
+        tuple(checks),
+        pilot.cpu_s,
+        proof,
+        possible,
+        not_checked,
     )
 
 
@@ -144,24 +165,46 @@ def _transit_check(
     directions: list[int],
     pilot: Pilot,
     any_undecided: bool,
-) -> CrossCheck:
+) -> CrossCheck | str:
     """Check that heyoka's event detection finds the enclosed transits, and no others unless some are undecided.
 
+    Returns:
+        The check, or why it could not be made: the proof does not rest on it.
+
     Raises:
-        IntegrationError: it does not; names the first transit that differs.
+        IntegrationError: the run finds other transits; names the first that differs.
     """
+    usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
+    least = _bits_to_see(transits, times[-1], pilot)
+    contradiction: IntegrationError | None = None
+    for prec in (max(usual, least), max(finer, least + finer - usual)):
+        if prec > MOST_CHECK_PREC:
+            reason: Exception = UnreachableError(f"A run would take {prec} bits to see transits so flat.")
+            break
+        try:
+            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, transits=True))
+        except (UnreachableError, OverflowError) as error:
+            reason = error
+            break
+        try:
+            gap = _transit_gap(event_run, transits, directions, pilot, any_undecided)
+        except IntegrationError as error:  # the motion may amplify errors too much for so few digits
+            contradiction = reason = error
+        else:
+            return CrossCheck.of(event_run, grid.distance(event_run.grid).largest(), gap)
+    if contradiction is not None:
+        raise contradiction
+    return str(reason)
 
-    def run_with_events(digits: int) -> Run:
-        number = cheapest_type(pilot.bits_for(digits, times[-1], checked=False))
-        return run(Plan(scene.exact, "momentum", number, times, transits=True))
 
-    event_run = run_with_events(USUAL_DIGITS)
-    try:
-        gap = _transit_gap(event_run, transits, directions, pilot, any_undecided)
-    except IntegrationError:  # the motion amplifies errors too much for so few digits
-        event_run = run_with_events(FINER_DIGITS)
-        gap = _transit_gap(event_run, transits, directions, pilot, any_undecided)
-    return CrossCheck.of(event_run, grid.distance(event_run.grid).largest(), gap)
+def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
+    """Return the bits at which xdot between any two transits is far above a run's rounding errors."""
+    if not len(transits):
+        return 0
+    times = [Fraction(0), *transits.exact("t"), end]
+    apart = min((b - a for a, b in pairwise(times) if b > a), default=end)
+    least = min(map(abs, transits.exact("ax"))) * apart
+    return pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS if least else MOST_CHECK_PREC + 1
 
 
 def _transit_gap(event_run: Run, transits: Table, directions: list[int], pilot: Pilot, any_undecided: bool) -> Fraction:

@@ -34,18 +34,22 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
 
 
 def check_decided(solution: Solution) -> None:
-    """Raise `UndecidedRounding` where a proven interval does not decide a printed digit."""
+    """Raise `UndecidedRounding`, for the widest of them, where proven intervals do not decide a printed digit."""
     tables: list[tuple[Table, dict[str, int]]] = [(solution.grid, grid_decimals(solution))]
     if solution.transits is not None:
         tables.append((solution.transits, transit_decimals(solution)))
-    for table, decimals in tables:
-        number = table.undecided(decimals)
-        if number is not None:
-            raise UndecidedRounding(*number)
+    undecided = [number for table, decimals in tables if (number := table.undecided(decimals)) is not None]
+    if undecided:
+        raise UndecidedRounding(*max(undecided))
 
 
 class UndecidedRounding(UnreachableError):
-    """A proven interval holds a number halfway between two printed ones: a finer enclosure is needed."""
+    """A proven interval holds a number halfway between two printed ones: a finer enclosure is needed.
 
-    def __init__(self, column: str, text: str) -> None:
+    Attributes:
+        width: half-width of the widest of these intervals, in units of the last printed digit.
+    """
+
+    def __init__(self, width: Fraction, column: str, text: str) -> None:
         super().__init__(f"The enclosure of {column} = {text} does not decide its last digit.")
+        self.width = width

@@ -94,6 +94,8 @@ class Solution:
         pilot_s: CPU seconds of the pilot runs, which the precision was chosen from.
         proof: the enclosure, at the level enclosed.
         possible: intervals in s, each with a parity, that may hold transits which the proof could not decide.
+        not_checked: why no run with event detection confirms a proof's transits; empty where one does. The proof does
+            not rest on it, and one that finds other transits is an error.
 
     `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,); both tables have
     `table["x"]`, the same, `table.exact("x")` as fractions, and `table.bound("x")`.
@@ -109,6 +111,7 @@ class Solution:
     pilot_s: float = 0.0
     proof: Proof | None = None
     possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
+    not_checked: str = ""
 
     @property
     def level(self) -> Level:

@@ -173,10 +173,9 @@ def carry(inputs: Inputs, proposal, columns: bool = False):
     for step in proposal:
         piece = Piece(world, step)
         more = [source.propose(step, [float(z) for z in bound.z])] if source else []
-        yield world, piece, bound.advance(piece, piece.sizes(), *more)
+        yield bound.advance(piece, *more)
 
 
 def last_state(inputs: Inputs, proposal, columns: bool = False):
-    *_, (world, piece, tube) = carry(inputs, proposal, columns)
-    with ctx.workprec(world.prec):
-        return output(world, piece, tube, piece.end)
+    *_, last = carry(inputs, proposal, columns)
+    return output(last, last.piece.end)

@@ -35,8 +35,8 @@ def recurrence(inputs: Inputs) -> Callable[[int], Iterator[TaylorStep]]:
 
 
 def prove(inputs: Inputs, times: Sequence[Fraction], radius: Fraction) -> Enclosure:
-    """Enclose a run of the recurrence, in this process alone."""
-    return enclose(inputs, times, radius=radius, approximant=recurrence(inputs), workers=1)
+    """Enclose a run of the recurrence."""
+    return enclose(inputs, times, radius=radius, approximant=recurrence(inputs))
 
 
 class Recurrence:

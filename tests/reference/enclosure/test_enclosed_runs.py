@@ -1,6 +1,5 @@
 """The whole way: from a scene and a width to states that are proved, or to a refusal."""
 
-import os
 from fractions import Fraction
 from itertools import islice, pairwise
 
@@ -66,25 +65,6 @@ def test_both_methods_agree_on_a_steep_scene():
         for m in ("radius", "columns")
     )
     assert all(a.low <= b.high and b.low <= a.high for a, b in zip(one, six, strict=True))
-
-
-def test_more_processes_change_nothing_and_leave_none_behind(monkeypatch):
-    monkeypatch.setattr("reference.enclosure.run.WORTH", 0)
-    started = []
-    popen = __import__("subprocess").Popen
-    monkeypatch.setattr("subprocess.Popen", lambda *a, **k: started.append(popen(*a, **k)) or started[-1])
-    alone, shared = (
-        enclose(PARIS, [Fraction(300)], radius=WANTED, approximant=recurrence(PARIS), workers=n) for n in (1, 3)
-    )
-    assert alone.states == shared.states
-    assert alone.transits == shared.transits
-    assert len(started) == 2
-    assert all(p.poll() is not None for p in started)
-
-
-def test_one_core_is_enough(monkeypatch):
-    monkeypatch.setattr(os, "cpu_count", lambda: 1)
-    assert enclose(PARIS, [Fraction(30)], radius=WANTED, approximant=recurrence(PARIS)).steps > 1
 
 
 def test_precision_rises_until_the_width_is_reached(monkeypatch):

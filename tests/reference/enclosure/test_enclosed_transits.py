@@ -12,16 +12,16 @@ from flint import arb, ctx
 from scipy.integrate import solve_ivp
 
 from reference.enclosure.bound import Piece, World
-from reference.enclosure.shapes import Leaf, Tube
+from reference.enclosure.shapes import Covered, Leaf, Tube
 from reference.enclosure.transits import Scan, Slope, contract
 from reference.taylor_step import TaylorStep
 
 
 def scan(inputs, proposal, columns=False):
     seen = None
-    for world, piece, tube in carry(inputs, proposal, columns):
-        seen = seen or Scan(world)
-        seen.advance(piece, tube)
+    for covered in carry(inputs, proposal, columns):
+        seen = seen or Scan(covered.piece.world)
+        seen.advance(covered)
     return seen.finish()
 
 
@@ -140,11 +140,12 @@ def test_no_transits_where_xdot_is_zero_for_ever(inputs):
 
 @pytest.mark.parametrize("inputs", [scene(drag="0.2", rotation_rate="0.01"), scene(x="0", y="0.5")])
 def test_third_derivative_by_the_equations_is_that_of_a_good_polynomial(inputs):
-    _, piece, tube = next(carry(inputs, steps(inputs, Fraction(5))))
+    covered = next(carry(inputs, steps(inputs, Fraction(5))))
+    piece = covered.piece
     third = piece.v[0].derivative().derivative()
     for place in ("-0.7", "0", "0.4"):
         with ctx.workprec(128):
-            gap = Slope(piece, tube).bend(arb(place)) - third(arb(place)) / piece.unit
+            gap = Slope(covered).bend(arb(place)) - third(arb(place)) / piece.unit
         assert gap.abs_upper() < arb("1e-30")
 
 
@@ -156,7 +157,7 @@ def parabola(delta, u):
     step = TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, whole)
     world = World(scene(vx="1"), 264)
     out = Scan(world)
-    out.advance(Piece(world, step), Tube(arb(u), arb(u), arb(u) * 10))
+    out.advance(Covered(Piece(world, step), Tube(arb(u), arb(u), arb(u) * 10)))
     return out.finish()
 
 
@@ -178,9 +179,10 @@ def test_two_zeros_that_are_close_are_told_apart():
 
 def test_a_step_shorter_than_the_precision_is_refused():
     world, third = World(scene(), 128), Fraction(1, 3)
-    step = TaylorStep(Fraction(1), Fraction(1), third, third + Fraction(1, 2**200), 128, ([0, 1 << 128], *[[0]] * 3))
+    row = [0, 1 << 128]
+    step = TaylorStep(-third, Fraction(1), third, third + Fraction(1, 2**200), 128, (row, *[[0]] * 3))
     with pytest.raises(ArithmeticError, match="too short"):
-        Scan(world).advance(Piece(world, step), Tube(arb(0), arb(0), arb(0)))
+        Scan(world).advance(Covered(Piece(world, step), Tube(arb(0), arb(0), arb(0))))
 
 
 def test_newton_asks_nothing_about_times_outside_of_its_leaves():
@@ -188,7 +190,7 @@ def test_newton_asks_nothing_about_times_outside_of_its_leaves():
     with ctx.workprec(world.prec):
         row = [0, 1 << 128, 1 << 127]  # xdot = 1 + s
         piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
-        slope, third = Slope(piece, Tube(arb(0), arb(0), arb(0))), arb(1) / 3
+        slope, third = Slope(Covered(piece, Tube(arb(0), arb(0), arb(0)))), arb(1) / 3
         # a leaf narrower than a ball: whether the middle of the ball lies in it is not known
         leaf, time = Leaf(1, third, third, slope), 1 + third
         assert contract([leaf], time, time).overlaps(time)

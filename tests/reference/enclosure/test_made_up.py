@@ -12,7 +12,7 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, World
-from reference.enclosure.shapes import Leaf, Tube
+from reference.enclosure.shapes import Covered, Leaf, Tube
 from reference.enclosure.transits import Scan, Slope, touched
 from reference.taylor_step import TaylorStep
 
@@ -38,7 +38,7 @@ def made_up(edges, xdot, u, rng):
         step = TaylorStep(c, h, (a - c) / h, (b - c) / h, BITS, (row, *[[0]] * 3))
         with ctx.workprec(64):
             tube = Tube(arb(0), (ball(u) + arb(2) ** -180).upper(), (ball(u) + arb(2) ** -180).upper())
-        scan.advance(Piece(world, step), tube)
+        scan.advance(Covered(Piece(world, step), tube))
     return scan.finish()
 
 
@@ -105,8 +105,8 @@ def test_the_third_derivative_holds_for_every_state_in_the_tube():
             k, zero = piece.k, [0, 0, 0]
             F, F1 = free(k, r, v, k.c), free(k, v, a, zero)
             exact = F1[0] - v[0] * (dot(v, v) + dot(r, F)) - r[0] * (2 * dot(v, a) + dot(v, F) + dot(r, F1))
-            assert abs(Slope(piece, tube).bend(ball(s)) - exact.mid()).lower() <= arb(2) ** -90
-            assert Slope(piece, tube).bend(ball(s)).contains(exact.mid())
+            assert abs(Slope(Covered(piece, tube)).bend(ball(s)) - exact.mid()).lower() <= arb(2) ** -90
+            assert Slope(Covered(piece, tube)).bend(ball(s)).contains(exact.mid())
 
 
 def test_three_zeros_within_the_tube_are_odd_and_not_one():
@@ -141,9 +141,8 @@ def test_from_rest_the_third_derivative_must_keep_its_sign_on_the_whole_leaf():
     rows = tuple([int(q * 2**BITS) for q in row] for row in (x, m, [-1], [0]))
     tiny = arb(2) ** -180
     scan = Scan(world)
-    scan.advance(
-        Piece(world, TaylorStep(Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, rows)), Tube(tiny, tiny, tiny)
-    )
+    piece = Piece(world, TaylorStep(Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, rows))
+    scan.advance(Covered(piece, Tube(tiny, tiny, tiny)))
     assert any(f.t.low <= Fraction(1, 4) <= f.t.high for f in scan.finish())
 
 
@@ -154,7 +153,7 @@ def test_at_a_boundary_both_steps_are_asked():
         for low, high, y in ((Fraction(0), third, 0), (third, Fraction(1), 1)):
             rows = ([0, -(2**128) // 3, 2**127], [y << 120], [0], [0])  # xdot = s - 1/3
             piece = Piece(world, TaylorStep(Fraction(0), Fraction(1), low, high, 128, rows))
-            slope = Slope(piece, Tube(*[arb(2) ** -100] * 3))
+            slope = Slope(Covered(piece, Tube(*[arb(2) ** -100] * 3)))
             leaves.append(Leaf(1, ball(low), ball(high), slope))
         assert len(touched(leaves, ball(third))) == 2
         scan = Scan(world)
@@ -179,7 +178,7 @@ def test_at_a_boundary_both_steps_are_asked():
 def test_constants_below_the_last_bit_still_count(changes, rows, least):
     world = World(scene(length="1", **changes), 192)
     piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 64, rows))
-    assert piece.sizes().d2 >= ball(least)
+    assert piece.sizes.d2 >= ball(least)
 
 
 def test_sides_that_contradict_a_cluster_are_refused():
@@ -189,7 +188,7 @@ def test_sides_that_contradict_a_cluster_are_refused():
     )
     scan = Scan(world)  # xdot = 4 + s/8
     with ctx.workprec(128):
-        scan.cluster, scan.left = [Leaf(1, arb(-1), arb(1), Slope(piece, Tube(arb(0), arb(0), arb(0))))], -1
+        scan.cluster, scan.left = [Leaf(1, arb(-1), arb(1), Slope(Covered(piece, Tube(arb(0), arb(0), arb(0)))))], -1
         with pytest.raises(ArithmeticError, match="contradict"):
             scan._close(1)
 

@@ -9,7 +9,7 @@ from flint import arb, ctx, fmpz_poly
 
 from reference.enclosure.balls import ball, fixed, integer, interval, norm, size, upper
 from reference.enclosure.bound import Piece, Radius, World, output
-from reference.enclosure.shapes import Tube
+from reference.enclosure.shapes import Covered, Tube
 from reference.taylor_step import TaylorStep
 
 WIDE = arb(1, 0.5)  # all of [1/2, 3/2]
@@ -68,8 +68,8 @@ def test_a_tube_is_asked_on_its_own_step_only():
     world = World(scene(), 128)
     piece = piece_at(world, (0, 0, -1))
     with pytest.raises(ArithmeticError, match="own step"):
-        output(world, piece, Tube(arb(0), arb(0), arb(0)), Fraction(3, 2))
-    got = output(world, piece, Tube(arb(1) / 67, arb(2) / 67, arb(0)), Fraction(1, 2))
+        output(Covered(piece, Tube(arb(0), arb(0), arb(0))), Fraction(3, 2))
+    got = output(Covered(piece, Tube(arb(1) / 67, arb(2) / 67, arb(0))), Fraction(1, 2))
     assert all(i.high - i.low >= 2 for i in got[:3])
     assert all(i.high - i.low >= 4 for i in got[3:])
 

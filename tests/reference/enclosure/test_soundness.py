@@ -67,12 +67,12 @@ def first_piece(true, other, method):
         bound.last = here
         if method is Columns:
             bound.rest = [x.abs_upper() for x in gap]
-            return world, piece, bound.advance(piece, piece.sizes(), ColumnSource(world).propose(step, [0.0] * 6))
+            return world, piece, bound.advance(piece, ColumnSource(world).propose(step, [0.0] * 6)).tube
         radial = sum((a * b for a, b in zip(world.r, gap[3:], strict=True)), arb(0))
         flat = [g - radial * r for g, r in zip(gap[3:], world.r, strict=True)]
         square = sum((x**2 for x in gap[:3]), arb(0)) + sum((x**2 for x in flat), arb(0)) / world.w0**2
         bound.eta = square.sqrt().upper()
-    return world, piece, bound.advance(piece, piece.sizes())
+    return world, piece, bound.advance(piece).tube
 
 
 @pytest.mark.parametrize("method", [Radius, Columns])
@@ -202,7 +202,7 @@ def test_a_useless_radius_is_refused(eta):
     piece, bound = Piece(world, step), Radius(world)
     bound.eta = eta
     with pytest.raises(ArithmeticError):
-        bound.advance(piece, piece.sizes())
+        bound.advance(piece)
 
 
 def test_a_release_that_may_be_on_the_horizontal_is_refused():
@@ -242,5 +242,5 @@ def test_two_orders_and_methods_overlap():
 
 
 def test_every_piece_of_a_run_reports_a_tube():
-    tubes = [tube for _, _, tube in carry(PARIS, steps(PARIS, Fraction(30)))]
+    tubes = [covered.tube for covered in carry(PARIS, steps(PARIS, Fraction(30)))]
     assert all(x.is_finite() and x > 0 for tube in tubes for x in tube)

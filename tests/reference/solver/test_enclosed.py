@@ -112,25 +112,6 @@ def test_scenes_that_bounds_find_hard_are_proved(name, engine):
     assert solution.possible == ()
 
 
-@pytest.mark.parametrize("engine", ["heyoka", "limbs"])
-def test_helpers_prove_the_same_of_any_engine(monkeypatch, engine):
-    if engine == "limbs":
-        pytest.importorskip("numba")
-    scene = reference.load_scene("paris", ["run.t_end=120"])
-    times = tuple(scene.exact.grid)
-    monkeypatch.setattr("reference.enclosure.run.WORTH", 0)
-    proofs = []
-    for workers in (1, 2):
-        feed = Feed(scene.exact, times, engine)
-        proofs.append(
-            enclosure.enclose(scene.exact, times, radius=Fraction(1, 10**40), approximant=feed, workers=workers)
-        )
-        feed.stop()
-    alone, shared = proofs
-    assert alone.states == shared.states
-    assert alone.transits == shared.transits
-
-
 def test_xdot_identically_zero_has_no_transits_to_enclose():
     planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run=SHORT)
     assert reference.solve(planar).transits is None
