@@ -1,4 +1,4 @@
-"""Large integers as words of 60 bits, to send through a pipe and to hand to FLINT: cheaper than Python's integers."""
+"""Large integers as digits of radix 2^22, to hand on without making them: what limbs are, and what a proof sums."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-WORD_BITS = 60  # of a word: it fits an int64, and FLINT holds it without allocating memory
+DIGIT_BITS = 22
 
 
-class Words(Sequence[list[int]]):
-    """Rows of integers; every word is in [0, 2**60), but the highest carries the sign.
+class Digits(Sequence[list[int]]):
+    """Rows of integers.
 
     Attributes:
-        table: shape (rows, words, length of a row), lowest word first.
+        table: shape (rows, digits, length of a row), highest digit first; digits may be negative.
     """
 
-    def __init__(self, table: npt.NDArray[np.int64]) -> None:
+    def __init__(self, table: npt.NDArray[np.int32]) -> None:
         self.table = table
 
     def __len__(self) -> int:
@@ -27,7 +27,7 @@ class Words(Sequence[list[int]]):
 
     def __getitem__(self, row: Any) -> Any:
         """Return the integers of a row."""
-        *low, high = self.table[row].astype(object)
-        for word in reversed(low):
-            high = (high << WORD_BITS) + word
+        high, *low = self.table[row].astype(object)
+        for digit in low:
+            high = (high << DIGIT_BITS) + digit
         return high.tolist()

@@ -13,7 +13,6 @@ from typing import Any
 
 from flint import ctx, fmpz, fmpz_poly
 
-from ..packing import WORD_BITS, Words
 from ..taylor_step import EARTH, TaylorStep
 from .balls import dot, integer
 from .bound import World, scaled
@@ -21,20 +20,6 @@ from .bound import World, scaled
 AXES_GUARD_BITS = 16  # precision of the scene's constants beyond the coefficients that they turn
 GRAIN = 64  # step sizes are rescaled by multiples of 1/GRAIN
 LOPSIDED = Fraction(33, 32)  # largest ratio of the time step before to its own that an expansion is stretched to cover
-
-
-def polynomials(step: TaylorStep) -> TaylorStep:
-    """Return the step with FLINT's polynomials, which are built faster from words than from large integers."""
-    packed, unit = step.coefficients, fmpz(1) << WORD_BITS
-    if not isinstance(packed, Words):
-        return step
-    rows = []
-    for words in packed.table.tolist():
-        polynomial = fmpz_poly(words.pop())
-        while words:
-            polynomial = polynomial * unit + fmpz_poly(words.pop())
-        rows.append(polynomial)
-    return step._replace(rows=rows)
 
 
 def turned(inputs: Any, chain: Iterable[TaylorStep]) -> Iterator[TaylorStep]:

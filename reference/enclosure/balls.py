@@ -69,6 +69,6 @@ def size(a: Vector) -> arb:
     return upper(upper(sum((x.abs_upper() ** 2 for x in a), arb(0))).sqrt())
 
 
-def norm(f: Vector, bits: int) -> arb:
-    """Return an upper bound of the sup norm on |s| <= 1 of a vector of integer polynomials over 2^bits."""
-    return size([arb_poly(x)(UNIT) / (fmpz(1) << bits) for x in f])
+def norm(f: Any, bits: int) -> arb:
+    """Return an upper bound of the sup norm on |s| <= 1 of an integer polynomial over 2^bits."""
+    return upper((arb_poly(f)(UNIT) / (fmpz(1) << bits)).abs_upper())

@@ -3,15 +3,21 @@
 Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H. A name of a size is an upper bound.
 """
 
+from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache
 from typing import Any
 
+import numpy as np
 from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
+from ..packing import DIGIT_BITS, Digits
 from ..taylor_step import TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, dot, fixed, interval, norm, size, times, upper
 from .shapes import Covered, Interval, Sizes, Tube
+
+
+TINY = arb(2) ** -SHORT  # a wider ball needs the polynomials themselves
 
 
 class World:
@@ -19,6 +25,8 @@ class World:
 
     Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z.
     """
+
+    by_flint = False  # whether polynomials given by their digits are bounded by FLINT all the same, as an audit does
 
     def __init__(self, inputs: Any, prec: int) -> None:
         if inputs.drag < 0 or inputs.length <= 0:
@@ -92,29 +100,79 @@ class Piece:
         if not -1 <= step.low < step.high <= 1 or step.h <= 0:
             raise ArithmeticError("a step must lie in -1 <= s <= 1, where its sizes hold")
         self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)
-        *self.p, self.tension = map(fmpz_poly, step.coefficients)
-        self.v, self.unit = [f.derivative() for f in self.p], fmpz(1) << step.bits
+        self.unit, self.rows = fmpz(1) << step.bits, step.coefficients
+        self.digits = None
+        if isinstance(self.rows, Digits) and not world.by_flint:
+            from .digits import DigitRows
+
+            self.digits = DigitRows(self.rows.table, self.k.whole)
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
+    @cached_property
+    def p(self) -> Vector:
+        """The polynomials of p."""
+        return [polynomial(self.rows, i) for i in range(3)]
+
+    @cached_property
+    def v(self) -> Vector:
+        """Those of p'."""
+        return [f.derivative() for f in self.p]
+
+    @cached_property
+    def xdot(self) -> fmpz_poly:
+        """The polynomial of xdot."""
+        return polynomial(self.rows, 0).derivative()
+
     def values(self, s: arb) -> tuple[Vector, Vector]:
-        """Return balls of p(s) and p'(s)."""
-        return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v]
+        """Return balls of p(s) and p'(s); a small part of `s` may lie beyond [-1, 1], where nothing is asked."""
+        if self.digits is None or s.rad() > TINY:
+            return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v]
+        (n, e), off = s.mid().man_exp(), s.rad()
+        point = max(Fraction(-1), min(Fraction(int(n)) * Fraction(2) ** int(e), Fraction(1)))
+        _, rates, bends = zip(*self.norms[4:], strict=True)
+        return self.digits.values(point, off, rates, 0), self.digits.values(point, off, bends, 1)
+
+    @cached_property
+    def norms(self) -> list[list[arb]]:
+        """The norms of d, τ, x, m, w and of their first two derivatives."""
+        return self.digits.norms() if self.digits else self._norms()
 
     @cached_property
     def sizes(self) -> Sizes:
         """The defects and norms, from integers but for the radii of the constants (section 6)."""
-        k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits
-        (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], self.tension - k.whole[1]
-        d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, self.tension), p, strict=True)]
-        d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
-        d, tau = add(d, times(drag, v)) if drag else d, dot(p, p) - unit * unit
+        k = self.k
         with ctx.workprec(SHORT):
-            t, t1, t2 = (norm([f], 2 * bits) for f in (tau, tau.derivative(), tau.derivative().derivative()))
-            size_p, v1, v2 = upper((1 + t).sqrt()), norm(v, bits), norm(a, bits)
-            defect = size_p * (norm(d, 2 * bits) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
+            *d, (t, t1, t2), x, m, w = self.norms
+            v1, v2 = (size([f[n] for f in (x, m, w)]) for n in (1, 2))
+            size_p = upper((1 + t).sqrt())
+            defect = size_p * (size([f[0] for f in d]) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
             speed, rate = v1 + k.omega_size * size_p, v2 + k.omega_size * v1
             first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + t2 * size_p / 2
             return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
+
+    def _norms(self) -> list[list[arb]]:
+        """Return the norms by polynomials of large integers."""
+        k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits
+        tension = polynomial(self.rows, 3)
+        (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], tension - k.whole[1]
+        d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, tension), p, strict=True)]
+        d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
+        d, tau = add(d, times(drag, v)) if drag else d, dot(p, p) - unit * unit
+        rows = [*((f, 2 * bits) for f in (*d, tau)), *((f, bits) for f in p)]
+        return [[norm(g, n) for g in (f, f.derivative(), f.derivative().derivative())] for f, n in rows]
+
+
+def polynomial(rows: Sequence[Any], i: int) -> fmpz_poly:
+    """Return a row of coefficients as a polynomial."""
+    if not isinstance(rows, Digits):
+        return fmpz_poly(rows[i])
+    out, unit = fmpz_poly(), fmpz(1) << 2 * DIGIT_BITS
+    table = rows.table[i].astype(int)
+    if len(table) % 2:
+        table = np.concatenate((np.zeros_like(table[:1]), table))
+    for pair in ((table[::2] << DIGIT_BITS) + table[1::2]).tolist():
+        out = out * unit + fmpz_poly(pair)
+    return out
 
 
 def error_rate(k: Scaled, size_p: arb) -> arb:

@@ -17,7 +17,6 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..taylor_step import TaylorStep
-from .approximant import polynomials
 from .bound import World
 from .course import Course
 from .frames import ColumnSource
@@ -171,7 +170,7 @@ class _Run:
         for step in self._until(chain([first], steps)):
             proposal = columns.propose(step, [_log(z) for z in course.columns.z]) if columns else None
             self.clock.lap("candidate")
-            course.advance(polynomials(step), proposal, self.clock.lap)
+            course.advance(step, proposal, self.clock.lap)
             count += 1
             if len(course.states) > known:
                 known = len(course.states)

@@ -70,7 +70,7 @@ def test_a_digit_is_decided_just_where_both_ends_of_the_interval_are_printed_ali
     undecided = one.undecided({"x": places})
     assert (undecided is None) == (ends[0] == ends[1])
     if undecided:
-        assert undecided == ("x", one.printed({"x": places})[0][0])
+        assert undecided == (Fraction(error * 10**places, 2**30), "x", one.printed({"x": places})[0][0])
 
 
 @given(st.fractions(), st.fractions(min_value=0))

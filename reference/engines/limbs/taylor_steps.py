@@ -8,17 +8,16 @@ from fractions import Fraction
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 
-from ...packing import WORD_BITS, Words
+from ...packing import Digits
 from ...taylor_step import TaylorStep
 from ..plan import Plan, Run
 from .integration import integration_of
-from .lanes import LANES, entry
+from .lanes import LANES
 from .limb import Array
 from .run import result
 from .series import TENSION, M, W, X
-from .size import LIMB_BITS, fraction_bits
+from .size import fraction_bits
 
 ROWS = np.array((X, M, W, TENSION))
 ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since every step must be proved
@@ -45,35 +44,14 @@ def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, Non
         series = integration.out.series.reshape(POLYNOMIALS_PER_CALL, -1).copy()
         for (grains, length), of_step in zip(integration.out.steps.reshape(-1, 2).tolist(), series, strict=True):
             t = grains * grain
-            yield TaylorStep(t, length * grain, start, end, bits, partial(_words, of_step, limb_count))
+            yield TaylorStep(t, length * grain, start, end, bits, partial(_digits, of_step, limb_count))
             if t > last:
                 ahead = True
                 break
     return result(integration, plan, time.process_time() - spent)
 
 
-def _words(series: Array, limb_count: int) -> Words:
+def _digits(series: Array, limb_count: int) -> Digits:
     """Return the rows x, m, w and h² λ of a step, lowest order first."""
-    words, orders = LIMB_BITS * limb_count // WORD_BITS + 1, len(series) // (LANES * limb_count)
-    table = np.empty((len(ROWS), words, orders), dtype=np.int64)
-    write_words(table, series, ROWS, limb_count)
-    return Words(table)
-
-
-@entry
-def write_words(to: npt.NDArray[np.int64], series: Array, rows: npt.NDArray[np.int64], limb_count: int) -> None:
-    """Write the limbs of the lanes `rows` as words of WORD_BITS bits, shape (rows, words, orders)."""
-    for i in range(to.shape[0]):
-        for k in range(to.shape[2]):
-            word, bits, over, place = 0, 0, 0, 0
-            for q in range(limb_count - 1, -1, -1):
-                value = int(series[(k * limb_count + q) * LANES + rows[i]]) + over
-                over = value >> LIMB_BITS
-                limb, room = value - (over << LIMB_BITS), WORD_BITS - bits
-                if room <= LIMB_BITS:
-                    to[i, place, k] = word | (limb & ((1 << room) - 1)) << bits
-                    word, bits, place = limb >> room, LIMB_BITS - room, place + 1
-                else:
-                    word |= limb << bits
-                    bits += LIMB_BITS
-            to[i, place, k] = word + (over << bits)
+    limbs = series.reshape(-1, limb_count, LANES)[:, :, ROWS]
+    return Digits(np.ascontiguousarray(limbs.transpose(2, 1, 0), dtype=np.int32))
