@@ -58,6 +58,9 @@ def command(
         ),
     ] = AUTO,
     no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for transits, xdot = 0.")] = False,
+    audit: Annotated[
+        bool, typer.Option("--audit", help="At the level enclosed, prove it again by FLINT alone: the same digits.")
+    ] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
@@ -82,7 +85,7 @@ def command(
     from ..solver.solve import solve
 
     with stoppable("nothing was written"), progress() as show:
-        solution = solve(scene, engine=engine, report=show(scene.id, float(scene.exact.t_end)))
+        solution = solve(scene, engine=engine, audit=audit, report=show(scene.id, float(scene.exact.t_end)))
     if engine not in (AUTO, solution.run.engine):
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
@@ -118,6 +121,8 @@ def command(
     rows = f"{len(solution.times)} grid times, {count} transits"
     typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}")
     if solution.not_checked:
-        typer.echo(f"The proof finds all transits; no run with event detection confirms them: {solution.not_checked}", err=True)
+        typer.echo(
+            f"The proof finds all transits; no run with event detection confirms them: {solution.not_checked}", err=True
+        )
     typer.echo(f"every position within {bound} m; {source.formulation}, {source.number}, {source.steps} steps")
     typer.echo(f"CPU: run {solution.run.cpu_s:.2f} s, check {checks_s:.2f} s, pilot {solution.pilot_s:.2f} s")

@@ -16,7 +16,6 @@ from ..taylor_step import TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, dot, fixed, interval, norm, size, times, upper
 from .shapes import Covered, Interval, Sizes, Tube
 
-
 TINY = arb(2) ** -SHORT  # a wider ball needs the polynomials themselves
 
 
@@ -26,7 +25,7 @@ class World:
     Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z.
     """
 
-    by_flint = False  # whether polynomials given by their digits are bounded by FLINT all the same, as an audit does
+    audit: Any = None  # called with FLINT's polynomials and with the digits, where the first are to be taken
 
     def __init__(self, inputs: Any, prec: int) -> None:
         if inputs.drag < 0 or inputs.length <= 0:
@@ -102,10 +101,13 @@ class Piece:
         self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)
         self.unit, self.rows = fmpz(1) << step.bits, step.coefficients
         self.digits = None
-        if isinstance(self.rows, Digits) and not world.by_flint:
+        if isinstance(self.rows, Digits):
             from .digits import DigitRows
 
             self.digits = DigitRows(self.rows.table, self.k.whole)
+            if world.audit:
+                world.audit(self.measured(), self.digits)
+                self.digits = None
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
     @cached_property
@@ -135,23 +137,12 @@ class Piece:
     @cached_property
     def norms(self) -> list[list[arb]]:
         """The norms of d, τ, x, m, w and of their first two derivatives."""
-        return self.digits.norms() if self.digits else self._norms()
+        if self.digits:
+            return self.digits.norms()
+        return [[norm(g, bits) for g in derivatives] for derivatives, bits in self.measured()]
 
-    @cached_property
-    def sizes(self) -> Sizes:
-        """The defects and norms, from integers but for the radii of the constants (section 6)."""
-        k = self.k
-        with ctx.workprec(SHORT):
-            *d, (t, t1, t2), x, m, w = self.norms
-            v1, v2 = (size([f[n] for f in (x, m, w)]) for n in (1, 2))
-            size_p = upper((1 + t).sqrt())
-            defect = size_p * (size([f[0] for f in d]) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
-            speed, rate = v1 + k.omega_size * size_p, v2 + k.omega_size * v1
-            first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + t2 * size_p / 2
-            return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
-
-    def _norms(self) -> list[list[arb]]:
-        """Return the norms by polynomials of large integers."""
+    def measured(self) -> list[tuple[list[fmpz_poly], int]]:
+        """Return d, τ, x, m, w with their first two derivatives, over 2 to the power that follows."""
         k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits
         tension = polynomial(self.rows, 3)
         (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], tension - k.whole[1]
@@ -159,7 +150,7 @@ class Piece:
         d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
         d, tau = add(d, times(drag, v)) if drag else d, dot(p, p) - unit * unit
         rows = [*((f, 2 * bits) for f in (*d, tau)), *((f, bits) for f in p)]
-        return [[norm(g, n) for g in (f, f.derivative(), f.derivative().derivative())] for f, n in rows]
+        return [([f, f.derivative(), f.derivative().derivative()], n) for f, n in rows]
 
 
 def polynomial(rows: Sequence[Any], i: int) -> fmpz_poly:

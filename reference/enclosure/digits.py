@@ -6,7 +6,7 @@ stands for 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t
 
 from collections.abc import Iterable
 from fractions import Fraction
-from functools import lru_cache, reduce
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -24,11 +24,14 @@ TOP_ROWS = 3  # in which a sum below 2^62 is carried on
 
 def check(rows: Any, constants: Any) -> tuple[int, int]:
     """Return bounds of the products' sums in `defects` and of p's digits; raise ArithmeticError if one may overflow."""
-    (_, digits, orders), at_most = rows.shape, [int(max(x.max(), -x.min())) for x in (rows[:3], rows[3], constants)]
-    p, tension, constant = at_most
+    (_, digits, orders), parts = rows.shape, (rows[:3], rows[3], constants)
+    p, tension, constant = (max(int(x.max()), -int(x.min())) for x in parts)  # -x.min() itself may overflow
     most = digits * orders * p * (tension + 5 * constant + 3 * p)
     linear = orders**2 * p << DIGIT_BITS
-    if most + linear + (constant + (1 << DIGIT_BITS) << DIGIT_BITS) >= 1 << 62 or 2 * max(orders * p, constant) >= 1 << 31:
+    if (
+        most + linear + (constant + (1 << DIGIT_BITS) << DIGIT_BITS) >= 1 << 62
+        or 2 * max(orders * p, tension, constant) >= 1 << 31
+    ):
         raise ArithmeticError("sums of digits may overflow")
     return most, p
 
@@ -67,7 +70,9 @@ with kept():
                 for k in range(PAD, terms + PAD, 4):
                     a, b = np.int32(twice * f[q, k]), np.int32(twice * f[q, k + 1])
                     c, d = np.int32(twice * f[q, k + 2]), np.int32(twice * f[q, k + 3])
-                    out = line[k - PAD : k - PAD + count + PAD]  # slices, so that the compiler knows each index to be >= 0
+                    out = line[
+                        k - PAD : k - PAD + count + PAD
+                    ]  # slices, so that the compiler knows each index to be >= 0
                     r0, r1, r2, r3 = row[3:], row[2:], row[1:], row[: count + PAD]
                     for j in range(count + PAD):
                         out[j] += a * r0[j] + b * r1[j] + c * r2[j] + d * r3[j]
@@ -160,7 +165,10 @@ with kept():
 
 def whole(digits: Iterable[int]) -> fmpz:
     """Return the integer of digits, the highest first."""
-    return fmpz(reduce(lambda above, digit: (above << DIGIT_BITS) + digit, digits, 0))
+    n = 0
+    for digit in digits:
+        n = (n << DIGIT_BITS) + digit
+    return fmpz(n)
 
 
 def split(n: int, count: int) -> list[int]:
@@ -188,7 +196,10 @@ class DigitRows:
         cut = 0 if more >= self.count - 1 else (4 * self.orders * self.most >> DIGIT_BITS) + 1
         last = -DIGIT_BITS * (self.count + 1 + more) + 2
         out = []
-        for f, extra, place in [*((f, cut, last) for f in products), *((f, 0, 1 - DIGIT_BITS * self.count) for f in own)]:
+        for f, extra, place in [
+            *((f, cut, last) for f in products),
+            *((f, 0, 1 - DIGIT_BITS * self.count) for f in own),
+        ]:
             sums = (whole(x) + extra * (2 * self.orders) ** n for n, x in enumerate(f.tolist()))
             out.append([arb((n, fmpz(place))) for n in sums])
         return out
@@ -201,4 +212,6 @@ class DigitRows:
         off = near + arb((fmpz(2 * count + 1), fmpz(DIGIT_BITS * (2 - count))))
         last, left = fmpz(1 - DIGIT_BITS * count), fmpz(2 * self.count * self.orders**2 * self.largest)
         sums = summed(self.padded[n, :3], table).tolist()
-        return [arb((whole(x), last)) + arb(0, rate * off + arb((left, last))) for x, rate in zip(sums, rates, strict=True)]
+        return [
+            arb((whole(x), last)) + arb(0, rate * off + arb((left, last))) for x, rate in zip(sums, rates, strict=True)
+        ]

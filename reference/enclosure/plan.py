@@ -12,7 +12,8 @@ from .bound import World
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris
 COLUMN_MARGIN_BITS = 14  # lost besides where the error is carried in columns
-RADIUS_SHARE = 0.2  # share of the target bits that one radius may lose before columns are cheaper
+RADIUS_BITS = 400  # up to which one radius is always cheaper than columns: a step by columns takes six times as long
+RADIUS_SHARE = 0.2  # beyond that, share of the target bits that one radius may lose before columns are cheaper
 LEAST_BITS, MAX_BITS = 96, 2048
 
 
@@ -34,7 +35,8 @@ def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None) -
     loss = span * float(max(world.below, world.above + world.speed**2, key=float)) / (2 * w) / 0.693
     ratio = inputs.length / radius
     target = ratio.numerator.bit_length() - ratio.denominator.bit_length() + log2(2 + span * w)
-    method = method or ("radius" if loss <= RADIUS_SHARE * target + MARGIN_BITS else "columns")
+    cheap = target + MARGIN_BITS + loss <= RADIUS_BITS or loss <= RADIUS_SHARE * target + MARGIN_BITS
+    method = method or ("radius" if cheap else "columns")
     extra = loss if method == "radius" else COLUMN_MARGIN_BITS + 2 * log2(2 + span * w) / 2
     bits = max(LEAST_BITS, 8 * ceil((target + MARGIN_BITS + extra) / 8))
     if bits > MAX_BITS:

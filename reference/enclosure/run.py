@@ -17,6 +17,7 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..taylor_step import TaylorStep
+from .audit import compare
 from .bound import World
 from .course import Course
 from .frames import ColumnSource
@@ -83,6 +84,7 @@ def enclose(
     transits: bool = True,
     progress: Callable[[float], None] | None = None,
     method: str | None = None,
+    audit: bool = False,
 ) -> Enclosure:
     """Prove where the pendulum is at `times` (s, increasing), and every transit up to the last of them.
 
@@ -95,6 +97,7 @@ def enclose(
         transits: also enclose all zeros of xdot.
         progress: called with the part of the time span that is proved.
         method: "radius" or "columns"; None for the one that is likely to be cheaper.
+        audit: prove by FLINT alone, and have the sums of digits compared with its integers.
 
     Raises:
         UnreachableError: no bound of this width was reached; says how wide it is.
@@ -108,7 +111,7 @@ def enclose(
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
     for _ in range(ATTEMPTS):
         try:
-            run = _Run(inputs, plan, list(times), radius, transits, progress)
+            run = _Run(inputs, plan, list(times), radius, transits, progress, audit)
             return run.prove(approximant)
         except _TooWide as error:
             reason, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
@@ -148,9 +151,10 @@ class _Run:
         radius: Fraction,
         transits: bool,
         progress: Callable[[float], None] | None,
+        audit: bool,
     ) -> None:
         self.inputs, self.plan, self.times, self.radius, self.progress = inputs, plan, times, radius, progress
-        self.transits = transits
+        self.transits, self.audit = transits, audit
         self.end = times[-1]
         self.clock = _Clock()
 
@@ -163,6 +167,7 @@ class _Run:
         bits, order = first.bits, len(first.coefficients[0]) - 1
         self.clock.lap("candidate")
         world = World(self.inputs, bits + SCENE_GUARD_BITS)
+        world.audit = compare if self.audit else None
         columns = ColumnSource(world) if self.plan.method == "columns" else None
         course = Course(world, self.times, columns is not None, self.transits)
         count = known = 0

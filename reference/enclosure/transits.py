@@ -7,9 +7,9 @@ from flint import arb, arb_poly, ctx
 
 from .balls import SHORT, add, ball, dot, interval, times
 from .bound import World, state
+from .guess import near_zero
 from .shapes import Covered, EnclosedTransit, Interval, Leaf
 
-POLISH = 6  # steps of Newton's method from the middle of a leaf to a zero
 MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible transit
 
 
@@ -129,21 +129,9 @@ def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
     return [(slope, s.intersection(whole)) for slope, s, whole in parts if s.overlaps(whole)]
 
 
-def near_zero(leaf: Leaf) -> arb:
-    """Return the time of a zero of p'_x, about: a proposal, which proves nothing."""
-    (f, _), (g, _) = leaf.slope.forms
-    full, s = ctx.prec, ((leaf.low + leaf.high) / 2).mid()
-    with ctx.workprec(SHORT):
-        for _ in range(POLISH):
-            s = (s - f(s) / (rate := g(s))).mid()
-    for _ in range(-(-full // SHORT)):
-        s = (s - f(s) / rate.mid()).mid()
-    return (leaf.slope.centre + s * leaf.slope.piece.k.h).mid()
-
-
 def contract(leaves: list[Leaf], begin: arb, end: arb) -> arb | None:
     """Narrow a zero by interval Newton where xddot keeps its sign; None if it proves that there is no zero."""
-    t, middle, shrinks = begin.union(end), near_zero(leaves[len(leaves) // 2]), True
+    t, middle, shrinks = begin.union(end), near_zero(leaves[len(leaves) // 2]).mid(), True
     middle = middle if begin < middle < end else t.mid()
     while shrinks and begin < middle < end:  # outside the leaves nothing is known
         speed = reduce(arb.union, (f.at(0, s) / f.piece.k.h for f, s in touched(leaves, middle)))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
+from functools import partial
 from itertools import pairwise
 from math import ceil
 from typing import Any
@@ -22,7 +23,7 @@ from ..scene import Scene
 from ..table import Table, bits_in
 from .approximant import COEFFICIENT_BITS, Feed
 from .pilot import Pilot, run_pilot
-from .rounding import UndecidedRounding, check_decided
+from .rounding import UndecidedRounding, check_decided, grid_decimals, transit_decimals
 from .solution import CrossCheck, Proof, Solution, Source
 
 ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
@@ -37,8 +38,12 @@ SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 TABLE_BITS = 64  # the tables' integers carry this many bits more than the proof, so that rounding costs nothing
 
 
-def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:
+def solve_enclosed(
+    scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None, audit: bool = False
+) -> Solution:
     """Enclose a scene's states and transits so tightly that every digit asked for is decided.
+
+    With `audit` the same run is then proved again by FLINT alone, which has to give the same digits.
 
     Raises:
         InputError: python-flint is not installed.
@@ -52,13 +57,33 @@ def solve_enclosed(scene: Scene, times: tuple[Fraction, ...], engine: str, repor
         raise InputError("--level", "enclosed", f"the package {error.name}, which the proof needs", advice) from None
 
     pilot = run_pilot(scene.exact, times)
+    solution = _decided(scene, times, engine, report, pilot, enclosure.enclose)
+    if audit:
+        again = _decided(scene, times, engine, report, pilot, partial(enclosure.enclose, audit=True))
+        if _digits(again) != _digits(solution):
+            raise IntegrationError("FLINT alone proves other digits.")
+    return solution
+
+
+def _digits(solution: Solution) -> Any:
+    """Return all digits of a solution, and which transits are decided."""
+    tables = [solution.grid.printed(grid_decimals(solution))]
+    if solution.transits is not None:
+        tables.append(solution.transits.printed(transit_decimals(solution)))
+    return tables, solution.directions, [parity for *_, parity in solution.possible]
+
+
+def _decided(
+    scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None, pilot: Pilot, enclose: Any
+) -> Solution:
+    """Return a solution with every digit decided, proved by `enclose`."""
     span = float(times[-1])
     radius = _usual_unit(pilot, scene.run.digits) / 2**ROUNDING_BITS
     feed = Feed(scene.exact, times, engine)
 
     try:
         for _ in range(ROUNDING_TRIES):
-            enclosed = enclosure.enclose(
+            enclosed = enclose(
                 scene.exact,
                 times,
                 radius=radius,

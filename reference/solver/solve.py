@@ -15,7 +15,7 @@ from ..columns import GRID
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
 from ..engines.side_by_side import run_both
-from ..errors import UnreachableError
+from ..errors import InputError, UnreachableError
 from ..precision import LONG_DOUBLE, real
 from ..scene import Scene
 from ..table import Table
@@ -43,6 +43,7 @@ def solve(
     t_end: str | None = None,
     transits: bool | None = None,
     engine: str | None = None,
+    audit: bool = False,
     report: Report | None = None,
 ) -> Solution:
     """Solve a scene to the digits and the level asked for (the scene's own by default).
@@ -55,6 +56,7 @@ def solve(
         transits: whether to find every zero of xdot.
         engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that is installed. At
             the level confirmed the run that confirms is always heyoka's.
+        audit: at the level enclosed, prove the same run again by FLINT alone, and require the same digits.
         report: called with the simulated time reached, in s.
 
     Returns:
@@ -69,10 +71,12 @@ def solve(
     inputs, settings = scene.exact, scene.run
     times = tuple(inputs.grid)
     engine = checked(engine)
+    if audit and settings.level != "enclosed":
+        raise InputError("audit", settings.level, "the level enclosed", "Nothing else has a proof to audit.")
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
 
-        return solve_enclosed(scene, times, engine, report)
+        return solve_enclosed(scene, times, engine, report, audit)
     pilot = run_pilot(inputs, times)
     if settings.level == "computed":
         return _computed(scene, times, pilot, engine, report)

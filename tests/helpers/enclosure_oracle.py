@@ -10,7 +10,6 @@ import heyoka as hy
 import mpmath as mp
 import numpy as np
 from enclosure_recurrence import Recurrence
-from flint import ctx
 
 from reference.enclosure.approximant import pair
 from reference.enclosure.bound import Piece, Radius, World, output

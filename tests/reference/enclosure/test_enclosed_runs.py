@@ -4,18 +4,16 @@ from fractions import Fraction
 from itertools import islice, pairwise
 
 import mpmath as mp
-import numpy as np
 import pytest
 from enclosure_oracle import PARIS, contains, scene, steep_truth, steps, truth
 from enclosure_recurrence import Recurrence, prove, recurrence
-from flint import ctx, fmpz_poly
+from flint import ctx
 
 from reference.enclosure import enclose, turned
-from reference.enclosure.approximant import pair, polynomials
+from reference.enclosure.approximant import pair
 from reference.enclosure.balls import integer
 from reference.enclosure.bound import World
 from reference.errors import UnreachableError
-from reference.packing import Words
 from reference.taylor_step import LOCAL, TaylorStep
 
 WANTED = Fraction(1, 10**40)
@@ -172,14 +170,3 @@ def test_numbers_too_far_apart_for_any_precision_are_refused():
     inputs = scene(length="1e-300", x="1e-301", y="0")
     with pytest.raises(UnreachableError, match="no precision can be chosen"):
         enclose(inputs, [Fraction(60)], radius=Fraction(1, 10**340), approximant=recurrence(inputs))
-
-
-def test_words_are_the_integers_that_they_stand_for():
-    rows = [[-(2**196), 2**196 - 1, 0, -1, 1, 2**60, -(2**60)], [5] * 7, [-7] * 7, [2**59 - 1] * 7]
-    table = [[[n >> 60 * w & 2**60 - 1 for n in row] for w in range(3)] + [[n >> 180 for n in row]] for row in rows]
-    words = Words(np.array(table, dtype=np.int64))
-    step = TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 197, words)
-    assert list(words) == rows
-    assert polynomials(step).coefficients == [fmpz_poly(row) for row in rows]
-    plain = step._replace(rows=rows)
-    assert polynomials(plain) is plain

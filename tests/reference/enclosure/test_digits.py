@@ -1,0 +1,101 @@
+"""Sums of digits are FLINT's integers, what is left out is bounded, and sums that may overflow are refused."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from random import Random
+
+import numpy as np
+import pytest
+from enclosure_oracle import PARIS, scene
+from flint import arb, ctx, fmpq, fmpz
+
+pytest.importorskip("numba")
+
+from reference.enclosure.audit import compare
+from reference.enclosure.bound import Piece, World
+from reference.enclosure.digits import DigitRows, check, split, whole
+from reference.packing import DIGIT_BITS, Digits
+from reference.taylor_step import TaylorStep
+
+MOST = 1 << (DIGIT_BITS - 1)
+WORLDS = [World(PARIS, 400), World(scene(drag="0.3", rotation_rate="-0.7", equatorial_radius="5"), 400)]
+
+
+def table(rng: Random) -> np.ndarray:
+    """Digits that descend as a series does, or not at all, of any sign, or the largest that there are."""
+    count, orders = rng.randint(2, 9), rng.randint(1, 40)
+    kind, rows = rng.randrange(4), np.zeros((4, count, orders), np.int32)
+    for i in range(4):
+        for q in range(count):
+            for k in range(orders if kind else min(orders, 3 * q + 2)):
+                largest = rng.choice((-MOST, MOST))
+                rows[i, q, k] = (
+                    largest if kind == 1 else rng.randint(-MOST, MOST) if kind != 2 else rng.choice((0, largest))
+                )
+    if kind == 3:
+        rows[3, 0] *= 3
+    return rows
+
+
+def piece_of(rows: np.ndarray, world: World) -> Piece:
+    bits = DIGIT_BITS * rows.shape[1] - 1
+    return Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, Digits(rows)))
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_all_rows_give_the_integers_of_flint_and_fewer_a_bound(seed):
+    rng = Random(seed)
+    piece = piece_of(table(rng), rng.choice(WORLDS))
+    compare(piece.measured(), piece.digits)  # raises if not
+    spoilt = DigitRows(piece.rows.table.copy(), piece.k.whole)
+    spoilt.rows[rng.randrange(3), -1, 0] ^= 1
+    with pytest.raises(ArithmeticError, match="audit"):
+        compare(piece.measured(), spoilt)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_values_contain_those_of_the_polynomials(seed):
+    rng = Random(seed)
+    piece = piece_of(table(rng), WORLDS[0])
+    s = rng.choice((Fraction(-1), Fraction(1), Fraction(0), Fraction(rng.randint(-999, 999), 1000)))
+    with ctx.workprec(600):
+        ball = arb(fmpq(s.numerator, s.denominator))
+        for kind, polynomials in zip(piece.values(ball), (piece.p, piece.v), strict=True):
+            for got, f in zip(kind, polynomials, strict=True):
+                assert got.contains(f(ball).mid() / piece.unit)
+                assert got.rad() < arb(2) ** (60 - piece.step.bits)
+
+
+def test_a_ball_of_times_is_widened_by_the_speed():
+    piece = piece_of(table(Random(3)), WORLDS[0])
+    with ctx.workprec(400):
+        s = arb("0.25", arb(2) ** -100)
+        for got, f in zip(piece.values(s)[0], piece.p, strict=True):
+            assert got.contains(f(s.lower()).mid() / piece.unit)
+            assert got.contains(f(s.upper()).mid() / piece.unit)
+
+
+@pytest.mark.parametrize("n", [0, 1, -1, 2**195, -(2**196), 12345678901234567890])
+def test_digits_of_an_integer_are_that_integer(n):
+    assert whole(split(n, 9)) == fmpz(n)
+
+
+@pytest.mark.parametrize("spoil", [2**30, -(2**31), 2**31 - 1])
+def test_digits_whose_sums_may_overflow_are_refused(spoil):
+    rows = np.full((4, 9, 90), MOST, np.int32)
+    constants = np.zeros((5, 9), np.int64)
+    check(rows, constants)
+    for place in ((0, 0, 0), (3, 8, 89)):
+        bad = rows.copy()
+        bad[place] = spoil
+        with pytest.raises(ArithmeticError, match="overflow"):
+            check(bad, constants)
+    with pytest.raises(ArithmeticError, match="overflow"):
+        check(rows, constants + 2**40)
+
+
+def test_digits_hand_out_the_integers_that_they_stand_for():
+    rows = [[-(2**196), 2**196 - 1, 0, -1, 1, 2**60, -(2**60)], [5] * 7]
+    digits = Digits(np.array([np.array([split(n, 9) for n in row]).T for row in rows], np.int64))
+    assert list(digits) == rows
