@@ -141,6 +141,19 @@ class Piece:
             return self.digits.norms()
         return [[norm(g, bits) for g in derivatives] for derivatives, bits in self.measured()]
 
+    @cached_property
+    def sizes(self) -> Sizes:
+        """The defects and norms, from integers but for the radii of the constants (section 6)."""
+        k = self.k
+        with ctx.workprec(SHORT):
+            *d, (t, t1, t2), x, m, w = self.norms
+            v1, v2 = (size([f[n] for f in (x, m, w)]) for n in (1, 2))
+            size_p = upper((1 + t).sqrt())
+            defect = size_p * (size([f[0] for f in d]) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
+            speed, rate = v1 + k.omega_size * size_p, v2 + k.omega_size * v1
+            first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + t2 * size_p / 2
+            return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
+
     def measured(self) -> list[tuple[list[fmpz_poly], int]]:
         """Return d, τ, x, m, w with their first two derivatives, over 2 to the power that follows."""
         k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits

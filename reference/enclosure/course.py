@@ -25,10 +25,7 @@ class Course:
         """Take the next step; `lap` is told which part of the work is done."""
         piece = Piece(self.world, step)
         lap("defect" if piece.sizes else "")
-        if self.radius:
-            covered = self.radius.advance(piece)
-        else:
-            covered = self.columns.advance(piece, proposal)
+        covered = self.radius.advance(piece) if self.radius else self.columns.advance(piece, proposal)
         while len(self.states) < len(self.times) and self.times[len(self.states)] <= piece.end:
             self.states.append(output(covered, self.times[len(self.states)]))
         lap("bound")

@@ -72,7 +72,7 @@ with kept():
                     c, d = np.int32(twice * f[q, k + 2]), np.int32(twice * f[q, k + 3])
                     out = line[
                         k - PAD : k - PAD + count + PAD
-                    ]  # slices, so that the compiler knows each index to be >= 0
+                    ]  # the compiler knows their indices to be >= 0
                     r0, r1, r2, r3 = row[3:], row[2:], row[1:], row[: count + PAD]
                     for j in range(count + PAD):
                         out[j] += a * r0[j] + b * r1[j] + c * r2[j] + d * r3[j]
@@ -205,7 +205,7 @@ class DigitRows:
         return out
 
     def values(self, s: Fraction, near: arb, rates: list[arb], n: int) -> list[arb]:
-        """Return balls of the n-th derivative of p within `near` of s, from bounds for that of the next one on [-1, 1]."""
+        """Return balls of the n-th derivative of p within `near` of s, from bounds of the next one on [-1, 1]."""
         count = self.count + 2
         table = power_table(s, self.orders, count)
         # the powers are cut, and s is; and the rows below the last are left out

@@ -12,7 +12,8 @@ import reference.enclosure
 HOME = Path(reference.enclosure.__file__).parent
 TRUSTED = ("balls", "bound", "columns", "course", "digits", "transits")
 ARRAYS = {"digits": {"numpy", "numba"}, "bound": {"numpy"}}  # integers only
-BUDGET = 420  # lines of code
+PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
+BUDGET = 560  # lines of code
 BARE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
 SCOPES = (ast.Module, ast.ClassDef, ast.FunctionDef)
 
@@ -58,7 +59,7 @@ def test_trusted_code_says_so_and_holds_no_floating_point(name):
 
 @pytest.mark.parametrize("name", TRUSTED)
 def test_trusted_code_imports_nothing_untrusted(name):
-    declarations = {"shapes", "taylor_step", "packing", "machine_code"} | ARRAYS.get(name, set())
+    declarations = {"shapes", "taylor_step", "packing", "machine_code", *PROPOSALS} | ARRAYS.get(name, set())
     allowed = {"__future__", "collections.abc", "fractions", "functools", "typing", "flint", *declarations, *TRUSTED}
     for node in ast.walk(ast.parse(source(name))):
         if isinstance(node, ast.ImportFrom):
