@@ -5,6 +5,7 @@ Who drives it proposes steps and columns, and can do no harm: there is a result 
 
 from collections.abc import Callable
 from fractions import Fraction
+from typing import Any
 
 from ..taylor_step import TaylorStep
 from .bound import Piece, Radius, World, output
@@ -18,14 +19,14 @@ class Course:
 
     def __init__(self, world: World, times: list[Fraction], columns: bool, transits: bool) -> None:
         self.world, self.times, self.states = world, tuple(times), list[list[Interval]]()
-        self.radius, self.columns = (None, Columns(world)) if columns else (Radius(world), None)
+        self.bound: Any = Columns(world) if columns else Radius(world)
         self.scan = Scan(world) if transits and not world.still else None
 
-    def advance(self, step: TaylorStep, proposal: Proposal | None, lap: Callable[[str], None]) -> None:
-        """Take the next step; `lap` is told which part of the work is done."""
+    def advance(self, step: TaylorStep, proposal: tuple[Proposal, ...], lap: Callable[[str], None]) -> None:
+        """Take the next step, and columns if it is proved by them; `lap` is told which part of the work is done."""
         piece = Piece(self.world, step)
         lap("defect" if piece.sizes else "")
-        covered = self.radius.advance(piece) if self.radius else self.columns.advance(piece, proposal)
+        covered = self.bound.advance(piece, *proposal)
         while len(self.states) < len(self.times) and self.times[len(self.states)] <= piece.end:
             self.states.append(output(covered, self.times[len(self.states)]))
         lap("bound")
@@ -35,7 +36,8 @@ class Course:
 
     def finish(self) -> tuple[list[list[Interval]], list[EnclosedTransit] | None]:
         """Return the states at `times`, and the transits; None if not requested or if xdot is zero for ever."""
-        end, bound = self.times[-1], self.radius or self.columns
-        if len(self.states) < len(self.times) or (end and bound.time != end):
+        end = self.times[-1]
+        if len(self.states) < len(self.times) or (end and self.bound.time != end):
             raise ArithmeticError("the steps do not end with the run")
-        return self.states, self.scan and (self.scan.finish() if end else [])
+        transits = self.scan.finish() if self.scan and end else []
+        return self.states, transits if self.scan else None

@@ -4,7 +4,7 @@ Nothing here is a float, and no sum can overflow: `check` refuses what could (TH
 stands for 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from functools import lru_cache
 from typing import Any
@@ -36,9 +36,11 @@ def check(rows: Any, constants: Any) -> tuple[int, int]:
     return most, p
 
 
+compiled: Callable[[Any], Any] = njit(cache=True)
+
 with kept():
 
-    @njit(cache=True)
+    @compiled
     def padded(rows: Any) -> Any:
         """Return the rows of digits between zeros, and those of the derivatives."""
         polynomials, digits, orders = rows.shape
@@ -51,15 +53,15 @@ with kept():
                         f[1, i, q, k - 1 + PAD] = k * rows[i, q, k]
         return f
 
-    @njit(cache=True)
-    def used(row: Any) -> int:
+    @compiled
+    def used(row: Any) -> Any:
         """Return the number of orders up to the last digit that is not 0."""
         k = row.size - 2 * PAD
         while k and not row[k - 1 + PAD]:
             k -= 1
         return k
 
-    @njit(cache=True)
+    @compiled
     def multiply(to: Any, f: Any, g: Any, alike: bool) -> None:
         """Add the product of two polynomials to the sums, in the rows that these have; `alike` says that f is g."""
         for q in range(f.shape[0]):
@@ -70,14 +72,12 @@ with kept():
                 for k in range(PAD, terms + PAD, 4):
                     a, b = np.int32(twice * f[q, k]), np.int32(twice * f[q, k + 1])
                     c, d = np.int32(twice * f[q, k + 2]), np.int32(twice * f[q, k + 3])
-                    out = line[
-                        k - PAD : k - PAD + count + PAD
-                    ]  # the compiler knows their indices to be >= 0
+                    out = line[k - PAD : k - PAD + count + PAD]  # the compiler knows their indices to be >= 0
                     r0, r1, r2, r3 = row[3:], row[2:], row[1:], row[: count + PAD]
                     for j in range(count + PAD):
                         out[j] += a * r0[j] + b * r1[j] + c * r2[j] + d * r3[j]
 
-    @njit(cache=True)
+    @compiled
     def weigh(to: Any) -> Any:
         """Return the sums over the orders n of |c|, n |c| and n (n - 1) |c|, in digits of TOP_ROWS more rows."""
         rows, orders = to.shape
@@ -96,7 +96,7 @@ with kept():
                 out[2, t] += n * (n - 1) * digits[t]
         return out
 
-    @njit(cache=True)
+    @compiled
     def defects(rows: Any, constants: Any, more: int) -> tuple[Any, Any]:
         """Return the weighed sums of d (three components) and τ, and of p; with more = L - 1 nothing is left out.
 
@@ -130,7 +130,7 @@ with kept():
             two[i] = weigh(rows[i].astype(np.int64))
         return one, two
 
-    @njit(cache=True)
+    @compiled
     def powers(s: Any, orders: int, sign: int) -> Any:
         """Return the digits of the powers of sign s, cut; row q of s in [0, 1] and of these stands for 2^(-22 q)."""
         out, sums = np.zeros((s.size, orders), np.int32), np.zeros(s.size, np.int64)
@@ -148,7 +148,7 @@ with kept():
             out[:, 1::2] *= -1
         return out
 
-    @njit(cache=True)
+    @compiled
     def summed(f: Any, s: Any) -> Any:
         """Return the sums, by row, of padded polynomials times the powers `s`; row t stands for 2^(1 - 22 t)."""
         out = np.zeros((f.shape[0], s.shape[0] + 1), np.int64)
@@ -204,7 +204,7 @@ class DigitRows:
             out.append([arb((n, fmpz(place))) for n in sums])
         return out
 
-    def values(self, s: Fraction, near: arb, rates: list[arb], n: int) -> list[arb]:
+    def values(self, s: Fraction, near: arb, rates: Sequence[arb], n: int) -> list[arb]:
         """Return balls of the n-th derivative of p within `near` of s, from bounds of the next one on [-1, 1]."""
         count = self.count + 2
         table = power_table(s, self.orders, count)

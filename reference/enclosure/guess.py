@@ -19,4 +19,5 @@ def near_zero(leaf: Leaf) -> arb:
             s = (s - f(s) / (rate := g(s))).mid()
     for _ in range(-(-full // SHORT)):
         s = (s - f(s) / rate.mid()).mid()
-    return (leaf.slope.centre + s * leaf.slope.piece.k.h).mid()
+    time: arb = (leaf.slope.centre + s * leaf.slope.piece.k.h).mid()
+    return time

@@ -173,7 +173,7 @@ class _Run:
         count = known = 0
         self.clock.lap("bound")
         for step in self._until(chain([first], steps)):
-            proposal = columns.propose(step, [_log(z) for z in course.columns.z]) if columns else None
+            proposal = (columns.propose(step, [_log(z) for z in course.bound.z]),) if columns else ()
             self.clock.lap("candidate")
             course.advance(step, proposal, self.clock.lap)
             count += 1

@@ -28,7 +28,8 @@ class Slope:
 
     def at(self, n: int, s: arb) -> arb:
         """Return a ball that contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
-        return self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
+        value: arb = self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
+        return value
 
     def rate(self, s: arb) -> arb:
         """Return a ball that contains xddot on `s`; about the middle of `s` where the series about 0 shows no sign."""

@@ -21,7 +21,7 @@ def course(proposed, times=TIMES):
     proposed = list(proposed)
     one = Course(World(PARIS, proposed[0].bits + 64), times, columns=False, transits=True)
     for step in proposed:
-        one.advance(step, None, lambda _: None)
+        one.advance(step, (), lambda _: None)
     return one
 
 

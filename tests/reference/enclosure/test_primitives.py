@@ -20,7 +20,7 @@ def test_a_size_is_that_of_the_farthest_point():
     assert size([arb(3), arb(0), arb(4)]) >= 5 > size([arb(3), arb(0), arb("3.99")])
     assert size([arb(0, 3), arb(0), arb(0, 4)]) >= 5
     assert size([arb(-3, 1), arb(0), arb(0)]) >= 4
-    assert norm([fmpz_poly([1, -1, 1])], 1) >= 1.5
+    assert norm(fmpz_poly([1, -1, 1]), 1) >= 1.5
 
 
 @pytest.mark.parametrize("prec", [4, 64])
