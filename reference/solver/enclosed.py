@@ -94,6 +94,7 @@ def _decided(
             try:
                 solution = _solution(scene, times, enclosed, feed.finished(), pilot)
                 check_decided(solution)
+                solution = _cross_checked(solution, pilot)
             except UndecidedRounding as undecided:
                 tried, reason, advice = radius, str(undecided), "Ask for fewer digits."
                 if undecided.width < TIE:
@@ -130,14 +131,9 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     for transit in enclosed.transits or ():
         (decided if transit.kind == "one" else undecided).append(transit)
     directions = [z.direction for z in decided]
-    transits, not_checked = None, ""
+    transits = None
     if enclosed.transits is not None:
         transits = Table.of_intervals(TRANSITS, [[getattr(z, name) for name in TRANSITS] for z in decided], bits)
-        check = _transit_check(scene, times, grid, transits, directions, pilot, bool(undecided))
-        if isinstance(check, CrossCheck):
-            checks.append(check)
-        else:
-            not_checked = check
     size, gap = (max(of[name] for name in POSITION) for of in (pilot.largest, gaps))
     proof = Proof(
         method=enclosed.method,
@@ -163,8 +159,25 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
         pilot.cpu_s,
         proof,
         possible,
-        not_checked,
     )
+
+
+def _cross_checked(solution: Solution, pilot: Pilot) -> Solution:
+    """Return a solution with the check of its transits, or with the reason why that could not be made."""
+    if solution.transits is None:
+        return solution
+    check = _transit_check(
+        solution.scene,
+        solution.times,
+        solution.grid,
+        solution.transits,
+        solution.directions,
+        pilot,
+        bool(solution.possible),
+    )
+    if isinstance(check, CrossCheck):
+        return replace(solution, checks=(*solution.checks, check))
+    return replace(solution, not_checked=check)
 
 
 def _checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
@@ -241,8 +254,9 @@ def _transit_gap(event_run: Run, transits: Table, directions: list[int], pilot: 
     xdot_error, rounding = pilot.estimates(prec)["vx"], event_run.plan.times[-1] / 2 ** (prec - EVALUATION_BITS)
     remaining = iter(zip(found, event_run.directions, strict=True))
     largest = Fraction(0)
-    for k, (t, ax, direction) in enumerate(zip(transits.exact("t"), transits.exact("ax"), directions, strict=True), 1):
-        allowed = xdot_error / abs(ax) + rounding
+    rows = zip(*(transits.exact(name) for name in ("t", "ax")), transits.bound("t"), directions, strict=True)
+    for k, (t, ax, bound, direction) in enumerate(rows, 1):
+        allowed = bound + xdot_error / abs(ax) + rounding
         gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= allowed), None)
         if gap is None:
             raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {float(t)} s.")

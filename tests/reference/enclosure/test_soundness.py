@@ -17,7 +17,9 @@ from reference.enclosure.approximant import pair
 from reference.enclosure.balls import add, ball, cross
 from reference.enclosure.bound import Piece, Radius, World
 from reference.enclosure.columns import Columns
+from reference.enclosure.digits import split
 from reference.enclosure.frames import ColumnSource
+from reference.packing import DIGIT_BITS, Digits
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth
@@ -139,15 +141,33 @@ def start_moved(inputs, size):
     return replace(inputs, angles=(inputs.angles[0] + size, *inputs.angles[1:]))
 
 
-def test_sabotaged_approximants_are_all_covered_or_refused(size, tally):
-    rng, accepted, refused, harmed = Random(11), 0, 0, 0
-    enough = size(25, 220)
+def in_digits(step):
+    """The same step, its coefficients as digits over the next power of two that these have."""
+    count = -(-(step.bits + 1) // DIGIT_BITS)
+    up, orders = DIGIT_BITS * count - 1 - step.bits, max(map(len, step.coefficients))
+    table = np.zeros((4, count, orders), np.int64)
+    for i, row in enumerate(step.coefficients):
+        for k, c in enumerate(row):
+            table[i, :, k] = split(int(c) << up, count)
+    # signed digits, as a series has them: the leading ones of a small coefficient are 0
+    for q in range(count - 1, 0, -1):
+        over = table[:, q] >> (DIGIT_BITS - 1)
+        table[:, q] -= over << DIGIT_BITS
+        table[:, q - 1] += over
+    return step._replace(bits=step.bits + up, rows=Digits(table.astype(np.int32)))
+
+
+@pytest.mark.parametrize("digits", [False, True], ids=["by FLINT", "by digits"])
+def test_sabotaged_approximants_are_all_covered_or_refused(digits, size, tally):
+    rng, accepted, refused, harmed = Random(11 + digits), 0, 0, 0
+    enough = size(13, 220)
     references = {name: truth(inputs, [end], 300)[0] for name, (inputs, end, _) in SABOTAGED.items()}
     while accepted < enough:
         name = rng.choice(list(SABOTAGED))
         inputs, end, columns = SABOTAGED[name]
         try:
-            got = last_state(inputs, sabotage(rng, inputs, end), columns)
+            proposed = sabotage(rng, inputs, end)
+            got = last_state(inputs, map(in_digits, proposed) if digits else proposed, columns)
         except (ArithmeticError, ValueError):
             refused += 1
             continue
@@ -156,7 +176,8 @@ def test_sabotaged_approximants_are_all_covered_or_refused(size, tally):
         harmed += max(i.high - i.low for i in got) > Fraction(1, 10**20)
     assert harmed > accepted / 2  # most of them did move the solution
     assert refused < accepted
-    tally(f"approximants: {accepted + refused} sabotaged, {accepted} covered, {refused} refused")
+    way = "digits" if digits else "FLINT"
+    tally(f"approximants by {way}: {accepted + refused} sabotaged, {accepted} covered, {refused} refused")
 
 
 @pytest.mark.parametrize("columns", [False, True])
