@@ -243,3 +243,22 @@ def test_an_error_in_the_feeds_process_arrives(paris):
     with pytest.raises(IntegrationError):
         list(feed(64))
     feed.stop()
+
+
+def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(monkeypatch):
+    digits = pytest.importorskip("reference.enclosure.digits")
+    scene = make_scene(run={**SHORT, "t_end": "30", "digits": 20})
+    audited = reference.solve(scene, audit=True)
+    assert grid_sheet(audited) == grid_sheet(reference.solve(scene))
+    honest = digits.DigitRows.norms
+    monkeypatch.setattr(
+        digits.DigitRows, "norms", lambda self, *more: [[x / 2 for x in f] for f in honest(self, *more)]
+    )
+    reference.solve(scene)  # half of the defect still bounds these few digits: only the audit can tell
+    with pytest.raises(UnreachableError, match="audit: the sums of digits are not FLINT's"):
+        reference.solve(scene, audit=True)
+
+
+def test_an_audit_without_a_proof_is_refused():
+    with pytest.raises(InputError, match="audit"):
+        reference.solve(make_scene(run={**SHORT, "level": "computed"}), audit=True)
