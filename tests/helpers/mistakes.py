@@ -48,7 +48,9 @@ def case(number: int) -> Case:
         release={"x": repr(x), "y": repr(y)}, run={"t_end": repr(end), "grid_step": repr(out), "digits": 20},
     ).with_values(["inputs=binary64"])  # fmt: skip
     steps = int(np.ceil(out / (period / 900)))
-    made = Case(number, scene, {"l": length, "lat": latitude, "x0": x, "y0": y, "tend": end, "out": out, "h": out / steps})
+    made = Case(
+        number, scene, {"l": length, "lat": latitude, "x0": x, "y0": y, "tend": end, "out": out, "h": out / steps}
+    )
     count = int(rng.choice([1, 2, 3], p=[0.4, 0.35, 0.25]))
     groups: set[str] = set()
     kinds = list(rng.permutation(len(_KINDS)))

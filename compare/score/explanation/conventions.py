@@ -16,6 +16,8 @@ import numpy as np
 
 from reference.precision import Array
 
+ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
+ROUGHLY = 0.03  # of the distance from the vertical: a release in another unit may be off by this
 NEAR = 2e-5  # of the distance from the vertical: a row 0 nearer than this to the release is the release
 LENGTHS = (
     (100.0, "centimetres"), (1000.0, "millimetres"), (1e-3, "kilometres"), (1 / 0.3048, "feet"),
@@ -130,12 +132,13 @@ def _heights(rows: Rows, release: Array, length: float) -> Rows:
         if (square >= length * length).any():
             continue
         on_sphere = -np.sqrt(length * length - square)
-        if np.abs(column - on_sphere).max() > 1e-3 * length:
+        if np.abs(column - on_sphere).max() > ALIKE * length:
             continue
         flat = float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere))
+        drift = float(np.ptp(np.sqrt(square + column * column)))
         if scale == 1 and order == (0, 1, 2) and signs[2] == 1 and shift == 0:
-            near = np.abs(column - on_sphere).max() <= max(20 * rows.noise, 0.1 * float(np.ptp(on_sphere)))
-            return rows if near and not flat else _without_height(rows, flat)
+            kept = drift <= max(20 * rows.noise, 1e-7 * length)
+            return rows if kept and not flat else _without_height(rows, flat, drift)
         text = {
             (1, 0.0): "", (-1, 0.0): "counts z downwards", (1, length): "counts z from the lowest point",
             (-1, -length): "counts z from the lowest point, downwards", (-1, length): "counts z downwards",
@@ -147,13 +150,13 @@ def _heights(rows: Rows, release: Array, length: float) -> Rows:
         if order != (0, 1, 2):
             vertical = "xyz"[order[2]]
             found.append(Convention("vertical_is_not_z", f"calls the vertical {vertical}", length))
-        if flat:
-            return _without_height(replace(rows, conventions=(*rows.conventions, *found)), flat)
+        if flat or drift > max(20 * rows.noise, 1e-7 * length):
+            return _without_height(replace(rows, conventions=(*rows.conventions, *found)), flat, drift)
         if scale != 1:
             continue
         right = np.column_stack([plane, column])
         return replace(rows, positions=right, conventions=(*rows.conventions, *found))
-    return _without_height(rows, False)
+    return _without_height(rows, False, 0.0)
 
 
 def _vertical(length: float) -> Iterator[tuple[float, tuple[int, int, int], tuple[int, int, int], float]]:
@@ -162,11 +165,14 @@ def _vertical(length: float) -> Iterator[tuple[float, tuple[int, int, int], tupl
             yield 1.0, order, (1, 1, sign), shift
 
 
-def _without_height(rows: Rows, flat: bool) -> Rows:
+def _without_height(rows: Rows, flat: bool, drift: float) -> Rows:
     """Leave the heights out of the explanation: they are not those of a bob on its cord."""
     found = rows.conventions
     if flat:
         found = (*found, Convention("z_constant", "gives z a constant: its bob does not rise as it swings"))
+    elif drift:
+        text = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
+        found = (*found, Convention("off_the_sphere", text, drift))
     return replace(rows, positions=np.ascontiguousarray(rows.positions[:, :2]), conventions=found)
 
 
@@ -194,6 +200,14 @@ def _axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
             if scale != 1 and right.shape[1] == 3:
                 right = _scaled_height(right, length)
             changed = (*rows.conventions, *found)
+            return replace(rows, positions=right, noise=rows.noise / scale, conventions=changed)
+    for scale, text in scales[1:]:
+        near = np.abs(row[:2] / scale - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2]))
+        if near:  # another unit, and a release that is a little off
+            size = _apart(rows.positions / scale, rows.positions)
+            right = rows.positions / scale
+            right = _scaled_height(right, length) if right.shape[1] == 3 else right
+            changed = (*rows.conventions, Convention("unit_of_length", text, size))
             return replace(rows, positions=right, noise=rows.noise / scale, conventions=changed)
     angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
     tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))

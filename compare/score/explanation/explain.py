@@ -26,9 +26,11 @@ RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
 TRIED = 6  # readings of a family that are run
 _FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
+LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
+STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
 CLEAN = 1e-3  # of what an integrator does: a named one leaves less
 MODEL = 0.3  # decades by which a simpler family has to be better than the sphere
-NAMED_SHARE = 0.1  # of the error that may be left if causes are to be named
+NAMED_SHARE = 0.03  # of the error that may be left if causes are to be named
 FITTED_SHARE = 0.01  # and if one of them is a fitted number
 FITTED = {"linear": ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")}
 MODELS = {
@@ -118,13 +120,15 @@ def _of_rows(
     found.sort(key=lambda one: one[0])
     _, family, best = found[0]
     share = FITTED_SHARE if any(cause.free for cause in best.causes) else NAMED_SHARE
-    if best.rest > share * error:
+    if best.rest > max(share * error, 1.5 * rows.noise):
         return plain
     reader = Reader(replace(right, kind=family.kind), family.fit, floor)
     named = list(_sized(best, reader, right, pendulum, rows, truth))
     left = rows.positions - _positions(best.program, pendulum, rows)
     corrected = _largest(left)
-    named = [cause for cause in _loose(named, corrected) if len(named) == 1 or not _trifling(cause, allowed_m)]
+    named = [
+        cause for cause in _loose(named, corrected, frequency) if len(named) == 1 or not _trifling(cause, allowed_m)
+    ]
     simple = {cause.stage for cause in best.causes} <= {"gravity", "model"}
     result = None
     if simple and corrected <= allowed_m and all(one.id in HARMLESS for one in rows.conventions):
@@ -288,20 +292,40 @@ def _sized(
         before = after
 
 
-def _loose(named: list[SizedCause], left: float) -> Iterator[SizedCause]:
+def _loose(named: list[SizedCause], left: float, frequency: float) -> Iterator[SizedCause]:
     """Call an integrator by its name only where that leaves next to nothing; else say that its error is like it.
 
     An integrator with a variable step moves the frequency and the amplitude as no fixed step does: numbers that were
     fitted beside it and do less than it are part of the same error.
     """
+    fitted = {cause.id: cause for cause in named if cause.shift is not None}
+    drag = fitted.get("pendulum.drag")
+    for word in ("site.gravity", "pendulum.length"):
+        other = fitted.get(word)
+        if drag is None or other is None or other.shift is None or drag.shift is None or other.value is None:
+            continue
+        if abs(other.shift) < STEP_LIKE * abs(other.value) and abs(drag.shift) < 0.1 * STEP_LIKE * frequency:
+            # frequency and amplitude off together and by this little: no input does that, a step does
+            size = drag.size_m + other.size_m
+            named = [cause for cause in named if cause not in (drag, other)]
+            named.append(SizedCause("integrator_loose", LOOSE, size, "integrator"))
+            yield from named
+            return
     size = max((cause.size_m for cause in named if cause.stage == "integrator"), default=0.0)
     loose = size > 0 and left > CLEAN * size
     for cause in named:
+        if cause.id in ("site.gravity", "pendulum.length") and _like_a_step(cause) and left > CLEAN * cause.size_m:
+            if not size:
+                yield replace(cause, id="integrator_loose", text=LOOSE, value=None, shift=None, uncertainty=None)
+            continue
         if loose and cause.stage == "integrator":
-            text = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
-            yield replace(cause, id="integrator_loose", text=text, value=None)
+            yield replace(cause, id="integrator_loose", text=LOOSE, value=None, shift=None, uncertainty=None)
         elif not (loose and cause.value is not None and cause.size_m < size):
             yield cause
+
+
+def _like_a_step(cause: SizedCause) -> bool:
+    return cause.value is not None and cause.shift is not None and abs(cause.shift) < STEP_LIKE * abs(cause.value)
 
 
 def _trifling(cause: SizedCause, allowed_m: float) -> bool:

@@ -20,6 +20,7 @@ from .causes import Cause
 from .pendulum import Fit
 from .programs import Program
 
+ENOUGH = 5000  # combinations that are tried
 BEAM = 20  # combinations that are kept of each size
 MOST = 5  # causes at most
 SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
@@ -62,7 +63,7 @@ class Reader:
         nothing = self._judged((), self.right)
         best, beam = [nothing], [nothing]
         seen: set[frozenset[int]] = set()
-        least = nothing.score
+        least, tried = nothing.score, 0
         for _ in range(MOST):
             longer: list[Reading] = []
             for reading in beam:
@@ -72,6 +73,9 @@ class Reader:
                     key = frozenset((*map(id, reading.causes), id(cause)))
                     if cost + cause.cost > least or cause.group in groups or key in seen:
                         continue
+                    tried += 1
+                    if tried > ENOUGH:
+                        break
                     if cause.stage != "integrator":  # whose first step depends on the program before it
                         seen.add(key)
                     found = None if _clash(reading.causes, cause) else self._with(reading, cause)
@@ -189,11 +193,10 @@ _SCALES = {"g": 1.0, "length": 1.0, "latitude": 10.0, "rate": 7e-5, "drag": 1e-5
 def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
     """Return whether a cause would undo another: no rotation leaves nothing to be said of the Coriolis force."""
     words = {one.id for one in together} | {cause.id}
-    if "no_rotation" in words or "no_coriolis" in words:
-        return bool({one.group for one in (*together, cause)} & {"latitude", "frame"}) or (
-            "no_rotation" in words and bool({"coriolis"} & {one.group for one in (*together, cause)})
-        )
-    return False
+    groups = {one.group for one in (*together, cause)}
+    if "no_rotation" in words:
+        return bool(groups & {"latitude", "frame", "coriolis"})
+    return "no_coriolis" in words and "frame" in groups
 
 
 def with_kind(program: Program, kind: str) -> Program:
