@@ -139,7 +139,7 @@ PUBLIC = {
     "reference.scene": "MAX_ROWS RunTable",
     "reference.shortened": "shortened",
     "reference.shipped": "data_root seals",
-    "reference.solver.sensitivity": "Sensitivity sensitivity with_value",
+    "reference.solver.sensitivity": "sensitivity",
     "reference.status": "Status",
     "reference.table": "Table",
     "reference.workspace": "replace_file workspace",

@@ -27,6 +27,7 @@ from ..candidates.external import Timing
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..observed.turn_and_delay import SwingErrors
+from ..rhs.constants import constants_in_double
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
 from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
 from .explanation.explain import explain as explained
@@ -235,7 +236,7 @@ def judge(
         swing=errors.swing(_rest(scene)),
         drifts=drifts(candidate, problem),
         transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
-        notes=candidate.notes + ((unjudged,) if unjudged else ()),
+        notes=candidate.notes + ((unjudged,) if unjudged else ()) + _flung_off(problem),
         covers=covers,
         as_model=as_model,
     )
@@ -277,6 +278,16 @@ def _rest(scene: Scene) -> tuple[float, float]:
     except UnreachableError:
         return 0.0, 0.0
     return float(x), float(y)
+
+
+def _flung_off(scene: Scene) -> tuple[str, ...]:
+    """Return a warning where the centrifugal force at the suspension is larger than gravity."""
+    k = constants_in_double(scene.exact)
+    outward, gravity = float(k.rate) ** 2 * float(k.axis_distance) * k.length, float(k.gravity) * k.length
+    if outward <= gravity:
+        return ()
+    advice = "with site.gravity_is=effective g contains that force"
+    return (f"the centrifugal force at the suspension, {outward:.3g} m/s², is larger than g: {advice}",)
 
 
 def _unjudged(golden: Golden) -> str | None:

@@ -45,7 +45,6 @@ class _Family:
 
     kind: str
     fit: Fit
-    rows: Array
 
 
 def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
@@ -111,9 +110,9 @@ def _of_rows(
         likely = reader.readings(known)[:TRIED]
         likely += [reader.without(one, cause) for one in likely[:2] for cause in one.causes]
         for one in likely:  # the distance from the fit is linear in theta: what counts is the program itself
-            left = _rms(rows.positions - _positions(one.program, pendulum, rows))
-            if math.isfinite(left):
-                run = reader.scored(one.causes, one.program, left)
+            leaves = _rms(rows.positions - _positions(one.program, pendulum, rows))
+            if math.isfinite(leaves):
+                run = reader.scored(one.causes, one.program, leaves)
                 found.append((run.score + extra, family, run))
     if not found:
         return plain
@@ -169,10 +168,10 @@ def _families(rows: Rows, right: Program, pendulum: Pendulum, frequency: float, 
         phasors, rest = fitted
         if rest < best:
             best, phasors_of_best = rest, phasors
-        yield _Family(kind, _fit_of(phasors, rest, rows.times, right), seen)
+        yield _Family(kind, _fit_of(phasors, rest, rows.times, right))
     sphere = _sphere(rows, right, pendulum, phasors_of_best, best, floor)
     if sphere is not None:
-        yield _Family("sphere", sphere, rows.positions)
+        yield _Family("sphere", sphere)
 
 
 def _sphere(

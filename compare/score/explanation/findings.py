@@ -1,4 +1,4 @@
-"""What an explanation says: conventions, sized causes, the model within which a file is exact, what is left."""
+"""The findings of an explanation: conventions, sized causes, the model that a file is exact within, what is left."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What fixed-step integrators make of an oscillator: exact for linear models, the leading order for others.
+"""Fixed-step integrators of an oscillator: what their rows show, exact for linear models, else to leading order.
 
 A Runge-Kutta method multiplies the phasor exp(iγt) by its stability polynomial R(iγh) every step, so that the rows show
 the rate log R(iγh)/(ih) in place of γ. Semi-implicit Euler couples position and velocity: its 2 × 2 propagator is used.

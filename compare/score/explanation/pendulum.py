@@ -53,8 +53,8 @@ class Pendulum:
         own = [gradient * part for part in self.square]
         k = Constants(
             length=float(length),
-            turn=tuple(float(part) for part in turn),
-            pull=tuple(float(part) for part in pull),
+            turn=(float(turn[0]), float(turn[1]), float(turn[2])),
+            pull=(float(pull[0]), float(pull[1]), float(pull[2])),
             centrifugal=(own[0] - pointing, own[1] - pointing, own[2], own[3] + 2 * pointing),
             drag=drag,
         )

@@ -1,4 +1,4 @@
-"""What a program computes with: the numbers of a scene as a program may read them, and the `theta` that follows.
+"""Programs: the numbers of a scene as a program may read them, its choices, and the `theta` that follows.
 
 A `Program` is the scene's numbers and a handful of choices; each mistake changes one of them. `theta` is what the
 motion depends on (`pendulum.NAMES`), so that many programs are held against one fit without running any.
