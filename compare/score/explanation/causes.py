@@ -107,6 +107,9 @@ def _gravity(right: Program) -> Iterator[Cause]:
         yield Cause("sphere", "earth", text, _set(flattening=0.0), stage="gravity")
         text = f"treats the Earth as a sphere of radius {MEAN_RADIUS:.0f} m"
         yield Cause("mean_sphere", "earth", text, _set(flattening=0.0, radius=MEAN_RADIUS), stage="gravity")
+    if right.radius and right.rate and right.gravity_reading == "ellipsoid":
+        text = "takes site.altitude to be {value}"
+        yield Cause("site.altitude", "earth", text, lambda p: p, RARE + FITTED, "altitude", "gravity")
     for g in COMMON_GRAVITY:
         if abs(g - right.g) > 1e-9:
             yield Cause(f"gravity_{g:g}", "g", f"computes with g = {g:g} m/s²", _set(g=g))

@@ -336,7 +336,7 @@ def _trifling(cause: SizedCause, allowed_m: float) -> bool:
 
 def _number(cause: Cause, value: float, right: Program) -> str:
     unit = {"g": " m/s²", "length": " m", "latitude": " degrees", "drag": " 1/s", "step": " s", "x": " m", "y": " m",
-            "vx": " m/s", "vy": " m/s"}.get(cause.free, "")  # fmt: skip
+            "altitude": " m", "vx": " m/s", "vy": " m/s"}.get(cause.free, "")  # fmt: skip
     if cause.free == "rate":
         return f"{value / right.rate:.8g}"
     if cause.free == "step":

@@ -18,6 +18,9 @@ from .integrators import Method
 from .phasors import Phasors
 
 
+HIGHEST = 12000.0  # m, above and below the ellipsoid: nobody hangs a pendulum farther out
+
+
 @dataclass(frozen=True)
 class Program:
     """The numbers and choices of a program; SI units, angles in degrees.
@@ -95,7 +98,7 @@ class Program:
         inside = self.x * self.x + self.y * self.y < self.length * self.length or self.kind == "linear"
         return (
             self.g >= 0 and self.length > 0 and self.drag >= 0 and abs(self.latitude) <= 90 and inside
-            and self.radius >= 0 and self.step >= 0 and math.isfinite(self.rate)
+            and self.radius >= 0 and abs(self.altitude) <= HIGHEST and self.step >= 0 and math.isfinite(self.rate)
         )  # fmt: skip
 
     @property
