@@ -74,7 +74,11 @@ def _explained(found: Explanation, known: list[dict[str, Any]]) -> dict[str, Any
     conventions = [{"id": one.id, "text": f"your file {one.text}", "size_m": one.size_m} for one in found.conventions]
     causes = [
         {"id": one.id, "text": f"your program {one.text}", "size_m": one.size_m}
-        | {key: getattr(one, key) for key in ("value", "shift", "uncertainty") if math.isfinite(getattr(one, key) or 0.0)}
+        | {
+            key: getattr(one, key)
+            for key in ("value", "shift", "uncertainty")
+            if math.isfinite(getattr(one, key) or 0.0)
+        }
         for one in found.causes
     ]
     diagnosis = found.diagnosis

@@ -17,7 +17,6 @@ from reference.precision import Array
 from .integrators import Method
 from .phasors import Phasors
 
-
 HIGHEST = 12000.0  # m, above and below the ellipsoid: nobody hangs a pendulum farther out
 
 

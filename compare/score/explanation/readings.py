@@ -187,7 +187,17 @@ class Reader:
         return found
 
 
-_SCALES = {"g": 1.0, "length": 1.0, "latitude": 10.0, "rate": 7e-5, "drag": 1e-5, "vx": 1e-3, "vy": 1e-3, "late": 1.0, "altitude": 100.0}
+_SCALES = {
+    "g": 1.0,
+    "length": 1.0,
+    "latitude": 10.0,
+    "rate": 7e-5,
+    "drag": 1e-5,
+    "vx": 1e-3,
+    "vy": 1e-3,
+    "late": 1.0,
+    "altitude": 100.0,
+}
 
 
 def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
