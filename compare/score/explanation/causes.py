@@ -146,7 +146,7 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
         yield rate("rate_factor", text, factor * right.rate, NAMED if factor > 2 else 0.45)
         if natural and factor > 2:
             yield rate("rate_factor", f"{text}, in a solar day", sign * factor * solar, 0.4)
-    yield rate("no_rotation", "leaves out the rotation of the Earth", 0.0, 0.65)
+    yield rate("no_rotation", "leaves out the rotation of the Earth", 0.0, 0.45)
     text = "turns {value} times as fast as the scene's Earth"
     yield Cause("site.rotation_rate", "rate", text, lambda p: p, FITTED, "rate")
     text = "gives the Coriolis force the wrong sign: its plane turns the wrong way"
