@@ -196,7 +196,7 @@ def _sphere(
         if not rows.starts:
             guess[9:11] = phasors.speed.real, phasors.speed.imag
         guesses.insert(0, guess)
-        if rest < max(2 * rows.noise, 1e-3 * floor):
+        if rest < 1e-3 * floor:
             linear = guess.copy()
             linear[5] = -phasors.square.real
             linear[9:11] = phasors.speed.real, phasors.speed.imag

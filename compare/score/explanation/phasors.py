@@ -116,7 +116,7 @@ def as_angles(plane: ComplexArray, length: float) -> ComplexArray:
 def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[complex, complex]]:
     """Return first values of γ1, γ2: from linear prediction where rows are evenly spaced, and the scene's own."""
     guesses = [(complex(near), complex(-near))]
-    step = (times[-1] - times[0]) / (len(times) - 1)
+    step = float(np.median(np.diff(times)))
     even = np.abs(np.diff(times) - step) < 1e-6 * step
     run = _longest(even)
     if run[1] - run[0] >= 8:

@@ -114,7 +114,7 @@ def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int
         ("site.gravity", "9.80667", 4),  # the first minutes show nothing but the rounding of the output
         ("site.latitude", "30", 17),
         ("pendulum.drag", "1e-6", 17),
-        ("pendulum.length", "70", 17),
+        ("pendulum.length", "67.05", 17),
     ],
 )
 def test_an_input_is_found_whether_its_shift_is_small_or_large(
