@@ -99,7 +99,7 @@ def test_a_random_fault_gets_no_diagnosis(program: Path) -> None:
     assert (status, said["verdict"], said["diagnosis"]) == (1, "disagrees", None)
 
 
-def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int = 400) -> Score:
+def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int = 1441) -> Score:
     """Score a candidate that solves the scene with another input and prints `decimals` decimals."""
     read_as = scene.with_values(["inputs=binary64"])
     times = np.linspace(0.0, float(scene.run.t_end), rows)
