@@ -126,7 +126,9 @@ def _of_rows(
     left = rows.positions - _positions(best.program, pendulum, rows)
     corrected = _largest(left)
     named = [
-        cause for cause in _loose(named, corrected, frequency) if len(named) == 1 or not _trifling(cause, allowed_m)
+        cause
+        for cause in _loose(named, max(corrected - 5 * rows.noise, 0.0), frequency)
+        if len(named) == 1 or not _trifling(cause, allowed_m)
     ]
     simple = {cause.stage for cause in best.causes} <= {"gravity", "model"}
     result = None
