@@ -4,9 +4,17 @@
 >>> score = assert_agrees("paris", [0.0, 60.0], [[0.3, 0.4], [-0.176326733, -0.415867688]], tolerance=1e-8)
 >>> score.errors.max_m < 1e-8
 True
+
+Two rows say little: with `covers=1` the times have to reach the end of the scene.
+
+>>> score.covered < 0.001
+True
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,8 +23,9 @@ from reference import InputError, Scene
 from reference.precision import Array
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
+from .candidates.external import placeholders
 from .score.judge import Score, judge
-from .score.verdict import diagnosis_lines
+from .score.verdict import explanation_lines, percent
 
 
 def assert_agrees(
@@ -26,6 +35,8 @@ def assert_agrees(
     *,
     tolerance: float | None = None,
     transits: npt.ArrayLike | None = None,
+    covers: float = 0.0,
+    as_model: bool = False,
     inputs: str = "auto",
 ) -> Score:
     """Assert that positions agree with the truth of a scene.
@@ -36,15 +47,17 @@ def assert_agrees(
         states: x, y in m; or x, y, z in m; or these and vx, vy, vz in m/s: shape (rows, 2), (rows, 3) or (rows, 6).
         tolerance: largest position error allowed, in m; a millionth of the amplitude if None, as in `foucault score`.
         transits: times of xdot = 0 in s, if they are to be compared as well.
+        covers: share of the scene's span, from 0 to 1, that the times have to reach; 1 is all of it.
+        as_model: whether agreement as a named simplification of the model is enough.
         inputs: decimal, binary64 or auto, as in `foucault score --inputs`.
 
     Returns:
         The score, with more measures of the error.
 
     Raises:
-        AssertionError: the trajectory disagrees; the message gives time, component, expected, got, difference, what is
-            allowed, and the mistake that explains it, if one does.
-        InputError: an array has the wrong shape, a number is not finite, or no time is above 0.
+        AssertionError: the trajectory disagrees, or has no row after t = 0; the message gives time, component,
+            expected, got, difference, what is allowed, and the causes that were found.
+        InputError: an array has the wrong shape, or a number is not finite.
     """
     rows, times = _array(states, "states"), _array(t, "t")
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
@@ -57,10 +70,39 @@ def assert_agrees(
         transits=transit_times,
         tolerance=tolerance,
         inputs=inputs,
+        covers=covers,
+        as_model=as_model,
     )
-    if not result.agrees:
+    if not result.passes:
         raise AssertionError(message(result))
     return result
+
+
+@dataclass(frozen=True)
+class SceneCase:
+    """A scene to test a program with.
+
+    Attributes:
+        scene: the problem.
+        tolerance: largest position error allowed in m; None for a millionth of the amplitude.
+    """
+
+    scene: Scene
+    tolerance: float | None = None
+
+    @property
+    def inputs(self) -> dict[str, float]:
+        """The scene's numbers by the words that `foucault score --run` fills in, such as x0, latitude and t_end."""
+        return {name: float(word) for name, word in placeholders(self.scene).items() if name != "gravity_is"}
+
+    @property
+    def t(self) -> Array:
+        """The scene's grid times in s; any others will do."""
+        return np.array([float(time) for time in self.scene.exact.grid])
+
+    def assert_agrees(self, t: npt.ArrayLike, states: npt.ArrayLike, **more: Any) -> Score:
+        """Assert that a trajectory agrees with the truth, as `assert_agrees` does."""
+        return assert_agrees(self.scene, t, states, **{"tolerance": self.tolerance, **more})
 
 
 def _array(values: npt.ArrayLike, name: str) -> Array:
@@ -85,6 +127,11 @@ def message(result: Score) -> str:
         f"  difference {worst.difference:+.3e} m",
         f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
     ]
+    each = ", ".join(f"{name} {abs(one.difference):.2g}" for name, one in result.worst_of_each.items())
+    lines.append(f"  worst of each: {each}")
+    if result.falls_short:
+        demanded = f"{percent(result.covers)} demanded" if result.covers else "no row after t = 0"
+        lines.append(f"  covers {percent(result.covered)} of the scene's {result.scene.run.t_end} s: {demanded}")
     if transits is not None and (transits.missed or transits.extra or transits.max_conditioned_m > result.allowed_m):
         lines.append(
             f"  transits: {transits.matched} matched, missed at {transits.missed[:3]}, extra at {transits.extra[:3]},"
@@ -92,4 +139,4 @@ def message(result: Score) -> str:
         lines.append(
             f"  largest error {transits.max_error_s:.3e} s, weighted by |ax| {transits.max_conditioned_m:.3e} m"
         )
-    return "\n".join([*lines, *(f"  {line}" for line in diagnosis_lines(result))])
+    return "\n".join([*lines, *(f"  {line}" for line in explanation_lines(result))])

@@ -16,6 +16,18 @@ LARGEST = 1e100  # a larger number means that the run has blown up; below, squar
 ADVICE = "Wanted: t, x, y and, if there, z, vx, vy, vz."
 
 
+class NotFiniteError(InputError):
+    """A candidate holds a number that is not finite: the run has blown up."""
+
+
+@dataclass(frozen=True)
+class Convention:
+    """How a candidate was read, or seems to be meant, where that is not plain: a stable word, and what to tell."""
+
+    id: str
+    text: str
+
+
 @dataclass(frozen=True, repr=False)
 class Candidate:
     """A trajectory to be judged.
@@ -27,6 +39,7 @@ class Candidate:
         low: low parts of t and `columns`, for numbers with more digits than a double: the number is double + low part.
         transits: times of xdot = 0 in s that came with it, or None.
         notes: remarks that a reader ought to know.
+        conventions: what reading found out about names, units and scales.
     """
 
     name: str
@@ -35,6 +48,7 @@ class Candidate:
     low: dict[str, Array] = field(default_factory=dict, repr=False)
     transits: Array | None = field(default=None, repr=False)
     notes: tuple[str, ...] = ()
+    conventions: tuple[Convention, ...] = ()
 
     def __repr__(self) -> str:
         return f"Candidate({Path(self.name).name}: {len(self.t)} rows of t, {', '.join(self.columns)})"
@@ -43,6 +57,23 @@ class Candidate:
     def extended(self) -> bool:
         """True if some number has more digits than a double holds."""
         return bool(self.low)
+
+    @property
+    def positions(self) -> bool:
+        """True if it has positions; False for one that has transits alone."""
+        return "x" in self.columns
+
+    @classmethod
+    def of_transits(cls, name: str, times: Array) -> Candidate:
+        """Make a candidate of transits alone, times in s in order: all that is known of it is that vx = 0 there.
+
+        Raises:
+            InputError: no time is above 0.
+        """
+        t = np.unique(times[times > 0])
+        if not len(t):
+            raise InputError(f"{name}: t", "no transit after t = 0", "at least one", "Did the program stop early?")
+        return cls(name, t, {"vx": np.zeros(len(t))}, transits=times)
 
     @classmethod
     def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
@@ -61,7 +92,7 @@ class Candidate:
             invalid = ~(np.abs(column) <= LARGEST)  # true for NaN as well
             if invalid.any():
                 row = int(np.argmax(invalid))
-                raise InputError(
+                raise NotFiniteError(
                     f"{name}: {word}",
                     f"{column[row]} in row {row + 1}",
                     f"a finite number below {LARGEST:g} in size",
@@ -104,7 +135,8 @@ def checked_transits(times: Array, name: str) -> Array:
     """Check transit times and return them as doubles.
 
     Raises:
-        InputError: they are not one-dimensional, not finite, negative, or do not increase.
+        InputError: they are not one-dimensional, not finite, negative, or decrease; a time that stands there twice
+            is an extra transit.
     """
     if times.ndim != 1:
         raise InputError(name, f"shape {times.shape}", "one-dimensional times in s")
@@ -113,12 +145,12 @@ def checked_transits(times: Array, name: str) -> Array:
         raise InputError(name, f"{times[row]} as transit {row + 1}", "finite times in s")
     if len(times) and times[0] < 0:
         raise InputError(name, f"{times[0]:.17g} as transit 1", "times from 0 on, in s")
-    unordered = np.diff(times) <= 0
+    unordered = np.diff(times) < 0
     if unordered.any():
         row = int(np.argmax(unordered))
         raise InputError(
             name,
             f"{times[row + 1]:.17g} as transit {row + 2} after {times[row]:.17g}",
-            "strictly increasing times in s",
+            "times in s that increase",
         )
     return np.asarray(times, dtype=np.float64)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from .explanation.findings import Explanation
 from .judge import Score
 
 
@@ -19,6 +20,7 @@ def document(score: Score) -> dict[str, Any]:
         "inputs": score.scene.inputs,
         "why_inputs": score.why_inputs,
         "rows": len(errors.t),
+        "covered": score.covered,
         "covered_s": [float(errors.t[0]), float(errors.t[-1])],
         "max_error_m": errors.max_m,
         "rms_error_m": errors.rms_m,
@@ -37,8 +39,14 @@ def document(score: Score) -> dict[str, Any]:
         "h_drift_m2_s2": score.drifts.get("h_m2_s2"),
         "length_drift_m": score.drifts.get("length_m"),
         "worst": score.worst._asdict(),
+        "worst_of_each": {name: worst._asdict() for name, worst in score.worst_of_each.items()},
         "transits": None,
         "reference": {"level": score.golden.manifest.level, "bound_m": errors.bound_m},
+        "grade": score.grade,
+        "conventions": [{"id": one.id, "text": one.text} for one in score.candidate.conventions],
+        "model": None,
+        "causes": [],
+        "corrected": None,
         "diagnosis": None,
         "notes": list(score.notes),
     }
@@ -56,6 +64,28 @@ def document(score: Score) -> dict[str, Any]:
         }
     if score.timing is not None:
         fields["timing"] = vars(score.timing)
-    if score.diagnosis is not None:
-        fields["diagnosis"] = vars(score.diagnosis)
+    if score.explanation is not None:
+        fields |= _explained(score.explanation, fields["conventions"])
     return fields
+
+
+def _explained(found: Explanation, known: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the keys that an explanation fills."""
+    conventions = [{"id": one.id, "text": f"your file {one.text}", "size_m": one.size_m} for one in found.conventions]
+    causes = [
+        {"id": one.id, "text": f"your program {one.text}", "size_m": one.size_m}
+        | {
+            key: getattr(one, key)
+            for key in ("value", "shift", "uncertainty")
+            if math.isfinite(getattr(one, key) or 0.0)
+        }
+        for one in found.causes
+    ]
+    diagnosis = found.diagnosis
+    return {
+        "conventions": [*known, *conventions],
+        "model": None if found.model is None else vars(found.model),
+        "causes": causes,
+        "corrected": {"max_error_m": found.corrected_m} if math.isfinite(found.corrected_m) else None,
+        "diagnosis": None if diagnosis is None else vars(diagnosis),
+    }

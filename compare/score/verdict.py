@@ -8,13 +8,18 @@ from itertools import islice
 
 from .judge import Score
 
+MERE = ("decimals", "digits", "single_precision", "z_constant", "off_the_sphere")  # nothing to put right
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
 
 
 def lines(score: Score) -> Iterator[str]:
     """Yield the verdict line by line."""
     errors = score.errors
-    yield f"{score.candidate.name} {score.verdict} with {score.scene.id} ({_span(score)})"
+    yield f"{score.candidate.name} {_verdict(score)} ({_span(score)})"
+    if not score.covered:
+        yield from _row("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
+    elif score.falls_short:
+        yield from _row("covers too little", percent(score.covered), f"{percent(score.covers)} demanded")
     yield from _row("largest error", f"{errors.max_m:.3g} m", _largest(score))
     yield from _row("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth_exponent))
     scale = f"largest error over the amplitude {errors.amplitude_m:.4g} m"
@@ -24,6 +29,8 @@ def lines(score: Score) -> Iterator[str]:
     worst = score.worst
     numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
     yield from _row("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
+    each = (f"{name} {abs(one.difference):.2g} {_unit(name)}" for name, one in score.worst_of_each.items())
+    yield from _row("worst of each", ", ".join(each))
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
         yield from _row("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
@@ -37,21 +44,59 @@ def lines(score: Score) -> Iterator[str]:
         yield from _row("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
     yield from _row("inputs read as", score.scene.inputs, score.why_inputs)
     yield from _row("reference", f"{score.golden.manifest.level}", f"within {errors.bound_m:.2g} m at these times")
-    yield from diagnosis_lines(score)
+    yield from explanation_lines(score)
+    for one in score.candidate.conventions:
+        yield f"Reading: {one.text}."
     for note in score.notes:
         yield f"Note: {note}."
 
 
-def diagnosis_lines(score: Score) -> Iterator[str]:
-    """Yield what is known of the reason for the error, if it was looked for."""
-    if score.diagnosis is not None:
-        yield score.diagnosis.text
-    elif score.looked:
-        yield "No single mistake known to foucault explains 99 % of the error."
+def _verdict(score: Score) -> str:
+    if score.grade == score.verdict:
+        return f"{score.verdict} with {score.scene.id}"
+    assert score.explanation is not None and score.explanation.model is not None
+    return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}"
+
+
+def explanation_lines(score: Score) -> Iterator[str]:
+    """Yield what is known of the reasons for the error, if they were looked for."""
+    found = score.explanation
+    if found is None:
+        return
+    for convention in found.conventions:
+        yield f"Your file {convention.text}."
+    if found.model is not None:
+        yield (
+            f"As that model it is exact to {found.model.exact_to_m:.2g} m; "
+            f"against the full Lagrangian it is {found.model.costs_m:.3g} m off:"
+        )
+    elif found.causes:
+        yield "It seems that your program, most fundamental first,"
+    for cause in found.causes:
+        yield f"- {cause.text}: {cause.size_m:.3g} m"
+    if found.slip:
+        yield found.slip
+    if found.causes or any(one.id not in MERE for one in found.conventions):
+        yield f"With {'this' if len(found.causes) == 1 else 'all this'} put right, {found.corrected_m:.2g} m are left."
+    elif not found.slip:
+        yield "No mistake known to foucault explains the error."
 
 
 def _row(name: str, value: str, remark: str = "") -> Iterator[str]:
     yield f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
+
+
+def _unit(component: str) -> str:
+    return "m/s" if component.startswith("v") else "m"
+
+
+def percent(share: float) -> str:
+    """Return a share to three digits, rounded down: 100 % is all of it."""
+    if not share > 0:
+        return "0 %"
+    percents = 100 * share * (1 + 1e-9)  # 29 and not 28.9 for 0.29
+    unit = 10.0 ** (math.floor(math.log10(percents)) - 2)
+    return f"{math.floor(percents / unit) * unit:.6g} %"
 
 
 def _one_decimal(digits: float | None) -> str:
@@ -60,8 +105,9 @@ def _one_decimal(digits: float | None) -> str:
 
 def _span(score: Score) -> str:
     t, end = score.errors.t, score.scene.run.t_end
-    rows = "1 row" if len(t) == 1 else f"{len(t)} rows"
-    return f"{rows}, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s"
+    what = "row" if score.candidate.positions else "transit"
+    rows = f"1 {what}" if len(t) == 1 else f"{len(t)} {what}s"
+    return f"{rows}, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s: {percent(score.covered)}"
 
 
 def _largest(score: Score) -> str:

@@ -68,8 +68,24 @@ def test_a_failure_names_the_mistake_as_score_does(golden):
     run = trajectory(still, golden.t[:61])
     with pytest.raises(AssertionError) as caught:
         assert_agrees("paris", golden.t[:61], run[:, :2])
-    assert "It seems that your program leaves out" in str(caught.value).splitlines()[-1]
-    assert "allowed 7.112e-07 m" in str(caught.value)  # a millionth of the amplitude, as `foucault score` allows
+    said = str(caught.value)
+    assert "leaves out the rotation of the Earth" in said
+    assert "allowed 7.112e-07 m" in said  # a millionth of the amplitude, as `foucault score` allows
+    assert "worst of each: x 0." in said
+
+
+def test_agreement_as_a_simpler_model_is_enough_if_that_is_asked_for(golden):
+    """The harmonic pendulum on a turntable, of the gravity that an observer measures."""
+    t = golden.t[:61]
+    motion = compare.APPROXIMATIONS["linear_g"]
+    states = motion.trajectory(load_scene("paris"), t.tolist())[:, :2]
+    with pytest.raises(AssertionError) as caught:
+        assert_agrees("paris", t, states)
+    assert "linear" in str(caught.value)
+    score = assert_agrees("paris", t, states, as_model=True)
+    assert not score.agrees and score.passes
+    with pytest.raises(AssertionError):
+        assert_agrees("paris", t, states + 1e-3 * np.sin(t)[:, None] ** 3, as_model=True)
 
 
 def test_a_failure_of_transits_tells_which(golden, states):
@@ -77,6 +93,14 @@ def test_a_failure_of_transits_tells_which(golden, states):
     with pytest.raises(AssertionError, match="missed at") as caught:
         assert_agrees("paris", golden.t, states[:, :2], tolerance=1e-6, transits=zeros)
     assert f"{golden.transits['t'][5]!r}".removeprefix("np.float64(")[:9] in str(caught.value)
+
+
+def test_what_says_nothing_or_too_little_of_the_motion_fails():
+    with pytest.raises(AssertionError, match="covers 0 % of the scene's 86400 s: no row after t = 0"):
+        assert_agrees("paris", [0.0], [[0.3, 0.4]])
+    with pytest.raises(AssertionError, match=r"covers 0\.0694 % of the scene's 86400 s: 100 % demanded"):
+        assert_agrees("paris", *TWO_ROWS, covers=1)
+    assert assert_agrees("paris", *TWO_ROWS, covers=60 / 86400).covered == 60 / 86400
 
 
 def test_long_doubles_keep_their_digits(golden, states):
@@ -96,14 +120,14 @@ def test_long_doubles_keep_their_digits(golden, states):
         ([0.0], [[0.3, float("nan")]], {}, "nan in row 1"),
         ([0.0], [["0.3", "0.4"]], {}, "real numbers"),
         ([0.0], [[0.3, 0.4j]], {}, "real numbers"),
-        ([0.0], [[0.3, 0.4]], {}, "t = 0 alone"),
         ([0.0, 1.0], [[0.3, 0.4], [0.3]], {}, "rows of different lengths"),
         ([0.0], [[0.3, 0.4]], {"transits": ["soon"]}, "transits.*real numbers"),
         ([1.0, 0.0], [[0.3, 0.4]] * 2, {}, "strictly increasing"),
-        ([1e9], [[0.3, 0.4]], {}, "run.t_end"),
+        ([1e9], [[0.3, 0.4]], {}, "from 0 to 86400 s"),
         ([0.0], [[0.3, 0.4]], {"tolerance": -1.0}, "tolerance"),
         ([0.0], [[0.3, 0.4]], {"tolerance": float("nan")}, "tolerance"),
         ([60.0], [[0.3, 0.4]], {"inputs": "floats"}, "inputs"),
+        ([60.0], [[0.3, 0.4]], {"covers": 2.0}, "covers"),
         ([0.0], [[0.3, 0.4]], {"transits": [2.0, 1.0]}, "transits"),
         ([0.0], [[0.3, 0.4]], {"transits": [float("inf")]}, "transits"),
     ],
@@ -157,6 +181,42 @@ def test_the_fixture_is_found_in_somebody_elses_tests(tmp_path):
     assert "1 failed, 1 passed" in done.stdout
     assert "y at t = 0.0 s (row 0)" in done.stdout
     assert "got        0.5" in done.stdout
+
+
+SCENES = """
+import numpy as np, pytest
+from reference import load_scene, trajectory
+
+@pytest.mark.foucault_scenes("conical", paris=1e-9)
+def test_right(foucault_scene):
+    scene = foucault_scene.scene.with_values(["run.t_end=60", "inputs=binary64"])
+    t = foucault_scene.t[foucault_scene.t <= 60]
+    foucault_scene.assert_agrees(t, trajectory(scene, t)[:, :2])
+
+@pytest.mark.foucault_scenes(paris=1e-9, hard=1.0)
+def test_release(foucault_scene):
+    x0, y0 = foucault_scene.inputs["x0"], foucault_scene.inputs["y0"]
+    foucault_scene.assert_agrees([0.0, 1e-4], [[x0, y0], [x0 + 1e-6, y0]])
+
+def test_without_scenes(assert_agrees):
+    pass
+"""
+
+
+def test_a_test_runs_over_several_scenes_with_a_tolerance_each(tmp_path):
+    (tmp_path / "test_theirs.py").write_text(SCENES)
+    words = [sys.executable, "-m", "pytest", "-q", "-W", "error", "--strict-markers", "-p", "no:cacheprovider"]
+    done = subprocess.run([*words, "-rA", str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "1 failed, 4 passed" in done.stdout, done.stdout
+    for name in ("right[conical]", "right[paris]", "release[hard]"):
+        assert f"PASSED test_theirs.py::test_{name}" in done.stdout
+    assert "FAILED test_theirs.py::test_release[paris]" in done.stdout
+    (tmp_path / "test_theirs.py").write_text("def test_mine(foucault_scene):\n    pass\n")
+    done = subprocess.run([*words, str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (
+        done.returncode != 0
+        and "name scenes with @pytest.mark.foucault_scenes(paris=1e-8)" in done.stdout + done.stderr
+    )
 
 
 def test_the_examples_in_the_docstrings_run():

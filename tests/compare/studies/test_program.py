@@ -1,0 +1,121 @@
+"""A program of the user's on difficult scenes: right where it is right, and told where, when and how it breaks."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+
+import numpy as np
+import pytest
+
+from compare.studies.program import measured
+from compare.studies.stability import cut
+from compare.truth import golden_of
+from reference import load_scene, trajectory
+from reference.status import Status
+
+PROGRAM = """
+import sys
+import numpy as np
+rows = np.load(sys.argv[1])
+end, what = float(sys.argv[2]), sys.argv[3]
+print("t,x,y")
+for t, x, y in rows[rows[:, 0] <= end]:
+    if what == "stops" and t > 4:
+        break
+    if what == "drifts" and t > 5:
+        x += 0.2
+    if what == "blows" and t > 5:
+        x = float("nan")
+    print(t, x, y, sep=",")
+if what == "fails":
+    sys.exit("no more")
+if what == "dies":
+    import os
+    os.kill(os.getpid(), 11)
+if what == "hangs":
+    import signal
+    signal.pause()
+"""
+
+
+@pytest.fixture(scope="module")
+def scene():
+    return cut(load_scene("hard", ["run.t_end=10", "run.grid_step=1"]))
+
+
+@pytest.fixture(scope="module")
+def command(tmp_path_factory, scene):
+    folder = tmp_path_factory.mktemp("program")
+    (folder / "p.py").write_text(PROGRAM)
+    times = np.linspace(0, 10, 41)  # other times than those of the grid
+    np.save(folder / "rows.npy", np.column_stack([times, trajectory(scene, times)[:, :2]]))
+    return " ".join(map(shlex.quote, [sys.executable, str(folder / "p.py"), str(folder / "rows.npy")])) + " {t_end} "
+
+
+@pytest.mark.parametrize(
+    ("what", "status", "said"),
+    [
+        ("works", Status.OK, ""),
+        ("stops", Status.GAVE_UP, "its output ends at t = 4 s of 10 s"),
+        ("drifts", Status.OK, ""),  # whether that is too much is judged against what it was asked for
+        ("blows", Status.NOT_FINITE, "nan in row 22"),
+        ("fails", Status.GAVE_UP, "exit status 1"),
+        ("dies", Status.CRASHED, "exit status -11"),
+        ("hangs", Status.OUT_OF_TIME, "ends within 3 s"),
+    ],
+)
+def test_each_way_to_break_has_its_word(scene, command, what, status, said):
+    run = measured("mine", command + what, 0.01, scene, golden_of(scene, 34), 1.0 if what == "hangs" else 20.0)
+    assert run.row.status == status
+    assert said in run.row.reason
+    if what == "works":
+        assert run.row.error_m < 1e-9
+    if what == "drifts":
+        assert run.breaks_at(0.1) == 5.25
+        assert run.breaks_at(1.0) is None
+
+
+SHORT = """id = "short"
+[pendulum]
+length = "1"
+[release]
+angle = "80"
+azimuth = "10"
+[run]
+t_end = "10"
+grid_step = "1"
+"""
+
+
+def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole(foucault, command, tmp_path):
+    pytest.importorskip("scipy")
+    pytest.importorskip("matplotlib")
+    path = tmp_path / "short.toml"
+    path.write_text(SHORT)
+    times = np.linspace(0, 10, 41)
+    np.save(tmp_path / "rows.npy", np.column_stack([times, trajectory(cut(load_scene(path)), times)[:, :2]]))
+    words = command.replace(command.split()[2], str(tmp_path / "rows.npy"))
+    out = tmp_path / "out"
+    programs = {"right": f"{words} works", "<drifting>": f"{words} drifts {'x' * 3000}"}
+    options = [word for name, run in programs.items() for word in ("--run", run, "--name", name)]
+    status, text, _ = foucault("stability", "--scenes", path, "--methods", "scipy_dop853", *options, "--out", out)
+    assert status == 0
+    assert f"<drifting> breaks on 1 of 1 scenes: {path} (wrong from t = 5.25 s on)." in text
+    assert "right breaks on 0 of 1 scenes." in text
+    document = json.loads((out / "stability.json").read_text())
+    assert document["programs"] == programs
+    cells = {row["method"]: row for row in document["rows"]}
+    assert (cells["right"]["status"], cells["right"]["wrong_from_s"]) == ("ok", None)
+    assert cells["right"]["digits"] > 9
+    drifting = cells["<drifting>"]
+    assert (drifting["status"], drifting["wrong_from_s"], drifting["asked"]) == ("silently_wrong", 5.25, 6.0)
+    assert drifting["reason"].startswith("From t = 5.25 s on it is wrong.")
+    page = (out / "index.html").read_text()
+    assert "x" * 500 not in page and "&lt;drifting&gt;" in page and "<drifting>" not in page
+
+
+def test_what_cannot_be_run_is_refused_before_any_work(foucault):
+    assert foucault("stability", "--name", "mine")[0] == 2
+    assert foucault("stability", "--run", "./p {nonsense}")[0] == 2
