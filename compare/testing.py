@@ -4,6 +4,11 @@
 >>> score = assert_agrees("paris", [0.0, 60.0], [[0.3, 0.4], [-0.176326733, -0.415867688]], tolerance=1e-8)
 >>> score.errors.max_m < 1e-8
 True
+
+Two rows say little: with `covers=1` the times have to reach the end of the scene.
+
+>>> score.covered < 0.001
+True
 """
 
 from __future__ import annotations
@@ -16,7 +21,7 @@ from reference.precision import Array
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .score.judge import Score, judge
-from .score.verdict import diagnosis_lines
+from .score.verdict import diagnosis_lines, percent
 
 
 def assert_agrees(
@@ -26,6 +31,7 @@ def assert_agrees(
     *,
     tolerance: float | None = None,
     transits: npt.ArrayLike | None = None,
+    covers: float = 0.0,
     inputs: str = "auto",
 ) -> Score:
     """Assert that positions agree with the truth of a scene.
@@ -36,15 +42,16 @@ def assert_agrees(
         states: x, y in m; or x, y, z in m; or these and vx, vy, vz in m/s: shape (rows, 2), (rows, 3) or (rows, 6).
         tolerance: largest position error allowed, in m; a millionth of the amplitude if None, as in `foucault score`.
         transits: times of xdot = 0 in s, if they are to be compared as well.
+        covers: share of the scene's span, from 0 to 1, that the times have to reach; 1 is all of it.
         inputs: decimal, binary64 or auto, as in `foucault score --inputs`.
 
     Returns:
         The score, with more measures of the error.
 
     Raises:
-        AssertionError: the trajectory disagrees; the message gives time, component, expected, got, difference, what is
-            allowed, and the mistake that explains it, if one does.
-        InputError: an array has the wrong shape, a number is not finite, or no time is above 0.
+        AssertionError: the trajectory disagrees, or has no row after t = 0; the message gives time, component,
+            expected, got, difference, what is allowed, and the mistake that explains it, if one does.
+        InputError: an array has the wrong shape, or a number is not finite.
     """
     rows, times = _array(states, "states"), _array(t, "t")
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
@@ -57,6 +64,7 @@ def assert_agrees(
         transits=transit_times,
         tolerance=tolerance,
         inputs=inputs,
+        covers=covers,
     )
     if not result.agrees:
         raise AssertionError(message(result))
@@ -85,6 +93,9 @@ def message(result: Score) -> str:
         f"  difference {worst.difference:+.3e} m",
         f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
     ]
+    if result.falls_short:
+        demanded = f"{percent(result.covers)} demanded" if result.covers else "no row after t = 0"
+        lines.append(f"  covers {percent(result.covered)} of the scene's {result.scene.run.t_end} s: {demanded}")
     if transits is not None and (transits.missed or transits.extra or transits.max_conditioned_m > result.allowed_m):
         lines.append(
             f"  transits: {transits.matched} matched, missed at {transits.missed[:3]}, extra at {transits.extra[:3]},"

@@ -44,6 +44,23 @@ class Candidate:
         """True if some number has more digits than a double holds."""
         return bool(self.low)
 
+    @property
+    def positions(self) -> bool:
+        """True if it has positions; False for one that has transits alone."""
+        return "x" in self.columns
+
+    @classmethod
+    def of_transits(cls, name: str, times: Array) -> Candidate:
+        """Make a candidate of transits alone, times in s in order: all that is known of it is that vx = 0 there.
+
+        Raises:
+            InputError: no time is above 0.
+        """
+        t = np.unique(times[times > 0])
+        if not len(t):
+            raise InputError(f"{name}: t", "no transit after t = 0", "at least one", "Did the program stop early?")
+        return cls(name, t, {"vx": np.zeros(len(t))}, transits=times)
+
     @classmethod
     def of(cls, name: str, t: Array, columns: dict[str, Array], **more: object) -> Candidate:
         """Check the arrays and make a candidate of them.
@@ -104,7 +121,8 @@ def checked_transits(times: Array, name: str) -> Array:
     """Check transit times and return them as doubles.
 
     Raises:
-        InputError: they are not one-dimensional, not finite, negative, or do not increase.
+        InputError: they are not one-dimensional, not finite, negative, or decrease; a time that stands there twice
+            is an extra transit.
     """
     if times.ndim != 1:
         raise InputError(name, f"shape {times.shape}", "one-dimensional times in s")
@@ -113,12 +131,12 @@ def checked_transits(times: Array, name: str) -> Array:
         raise InputError(name, f"{times[row]} as transit {row + 1}", "finite times in s")
     if len(times) and times[0] < 0:
         raise InputError(name, f"{times[0]:.17g} as transit 1", "times from 0 on, in s")
-    unordered = np.diff(times) <= 0
+    unordered = np.diff(times) < 0
     if unordered.any():
         row = int(np.argmax(unordered))
         raise InputError(
             name,
             f"{times[row + 1]:.17g} as transit {row + 2} after {times[row]:.17g}",
-            "strictly increasing times in s",
+            "times in s that increase",
         )
     return np.asarray(times, dtype=np.float64)

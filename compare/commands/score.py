@@ -74,6 +74,14 @@ def command(
             "--tolerance", metavar="M", help="Allow position errors up to this, in m (default: 1e-6 of the amplitude)."
         ),
     ] = None,
+    covers: Annotated[
+        float | None,
+        typer.Option(
+            "--covers",
+            metavar="SHARE",
+            help="Demand that the rows reach this share of the scene's span; 1 is all of it (default: any).",
+        ),
+    ] = None,
     t_end: Annotated[
         str | None,
         typer.Option(
@@ -127,10 +135,11 @@ def command(
     scene = load_scene(scene_word, replacements(set_, options, UNUSED))
     if tolerance is not None and not 0 < tolerance < float("inf"):
         raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
-    if not candidates and run is None and approximation is None:
-        raise InputError(
-            "CANDIDATE", "nothing", "a file, - for stdin, --run or --approximation", "Name what is to be scored."
-        )
+    if covers is not None and not 0 < covers <= 1:
+        raise InputError("--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1")
+    if not candidates and run is None and approximation is None and transits is None:
+        expected = "a file, - for stdin, --run, --transits or --approximation"
+        raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
     if [*(candidates or ()), transits].count("-") > 1:
         raise InputError("CANDIDATE", "- more than once", "standard input once", "It can be read only once.")
     if run is None:
@@ -148,11 +157,13 @@ def command(
     from ..score.judge import judge
 
     transit_times = None if transits is None else read_transits(transits)
-    timed_candidates: list[tuple[Candidate, Timing | None]] = [(read(name), None) for name in candidates or ()]
+    timed_candidates: list[tuple[Candidate | None, Timing | None]] = [(read(name), None) for name in candidates or ()]
     if run is not None:
         timed_candidates.append(_run(run, scene, timeout, repeats))
     if approximation is not None:
         timed_candidates.append((_approximate(approximation, scene), None))
+    if not timed_candidates:
+        timed_candidates.append((None, None))  # transits alone
     scores = []
     for candidate, timing in timed_candidates:
         with stoppable("nothing was written"), progress() as show:
@@ -163,6 +174,7 @@ def command(
                 tolerance=tolerance,
                 inputs=inputs,
                 t_end=None if t_end is None else float(scene.exact.t_end),
+                covers=covers or 0.0,
                 explain=not no_diagnosis,
                 announce=announce,
                 report=show(f"the truth of {scene.id}", float(scene.exact.t_end)),

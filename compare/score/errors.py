@@ -34,7 +34,8 @@ class TrajectoryErrors:
     Attributes:
         t: times in s, shape (rows,).
         components: candidate minus truth per column that the candidate has, in m or m/s.
-        position: distance from the truth in m over the position columns that the candidate has, shape (rows,).
+        position: distance from the truth in m over the position columns that the candidate has, shape (rows,); if it
+            has transits alone, the truth's |vx|/ω there, by which the motion has to be off.
         truth: at those times.
         bound_m: bound of the truth's own error, in m.
         amplitude_m: the truth's largest distance from the vertical in m, the scale of the digits.
@@ -92,7 +93,9 @@ class TrajectoryErrors:
         return self._digits_at_the_end(self.amplitude_m, self.speed_m_s)
 
     def _digits_at_the_end(self, of_position: float, of_velocity: float) -> float | None:
-        ratios = []
+        ratios: list[float] = []
+        if "x" not in self.components:
+            return None
         for i, name in enumerate(COLUMNS):
             known = self.bound_m * (1.0 if i < 3 else self.speed_m_s / self.amplitude_m)
             truth = abs(float(self.truth.states[-1, i]))
@@ -108,10 +111,13 @@ class TrajectoryErrors:
     def worst(self) -> tuple[int, str]:
         """Row and component of the largest error in position."""
         row = int(np.argmax(self.position))
-        return row, max(
-            (name for name in ("x", "y", "z") if name in self.components),
-            key=lambda name: abs(float(self.components[name][row])),
-        )
+        names = [name for name in self.components if name in ("x", "y", "z")] or [*self.components]
+        return row, max(names, key=lambda name: abs(float(self.components[name][row])))
+
+    @property
+    def worst_rows(self) -> dict[str, int]:
+        """Row of the largest error of each column."""
+        return {name: int(np.argmax(np.abs(column))) for name, column in self.components.items()}
 
     @property
     def growth_exponent(self) -> float | None:
@@ -123,6 +129,8 @@ class TrajectoryErrors:
 
     def swing(self, rest: tuple[float, float]) -> SwingErrors:
         """Fit the turn of the swing plane and the delay; `rest` is x, y of the rest position in m."""
+        if "x" not in self.components:
+            return SwingErrors(*(np.empty(0) for _ in range(3)))
         error = np.column_stack([self.components["x"], self.components["y"]])
         return swing_errors(self.t, self.truth.states, error, rest)
 
@@ -144,11 +152,20 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden) -> Tra
             # the truth is known at the double t; the candidate's row belongs to t + t_low
             low = low if t_low is None or rates is None else low - rates[:, i] * t_low
             components[name] = difference(candidate.columns[name], truth.states[:, i], low)
-    position = distance(components[name] for name in ("x", "y", "z") if name in components)
     amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
     amplitude = max(float(part.max()) for part in amplitudes) or float(golden.scene.exact.length)
     speed = max(float(distance(part).max()) for part in ((golden.vx, golden.vy, golden.vz), truth.states.T[3:]))
+    if candidate.positions:
+        position = distance(components[name] for name in ("x", "y", "z") if name in components)
+    else:
+        position = np.abs(components["vx"]) / (swing_rate(golden.scene, speed) or math.inf)
     return TrajectoryErrors(candidate.t, components, position, truth, truth.bound_m, amplitude, speed)
+
+
+def swing_rate(scene: Scene, speed_m_s: float) -> float:
+    """Return the rate in rad/s by which an error of vx becomes one of position: of small swings, or of a faster bob."""
+    k = constants_in_double(scene.exact)
+    return max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), speed_m_s / float(k.length))
 
 
 def _rates(states: Array, k: Constants) -> Array:

@@ -15,6 +15,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from reference import Golden, InputError, Scene, UnreachableError, load_scene
 from reference.dataset.dense import WITHIN
 from reference.precision import Array
@@ -24,14 +26,14 @@ from ..candidates.external import Timing
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..observed.turn_and_delay import SwingErrors
-from ..rhs.constants import constants_in_double
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
 from .diagnosis import Diagnosis, diagnose
-from .errors import TrajectoryErrors, drifts, trajectory_errors
+from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
 from .input_floor import input_floor
 from .transits import TransitErrors, transit_errors
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
+WHOLE = 1e-6  # a program that counts its steps ends this near to the end, as a part of the span, and has covered it
 
 
 class Worst(NamedTuple):
@@ -62,6 +64,7 @@ class Score:
         diagnosis: the likely reason for the error, or None.
         looked: whether a diagnosis was looked for.
         notes: remarks that a reader ought to know.
+        covers: share of the scene's span that was demanded, from 0 to 1.
     """
 
     candidate: Candidate
@@ -77,6 +80,7 @@ class Score:
     diagnosis: Diagnosis | None = None
     looked: bool = False
     notes: tuple[str, ...] = ()
+    covers: float = 0.0
 
     def __repr__(self) -> str:
         return f"Score({self.verdict} with {self.scene.id}: {self.errors.max_m:.2g} m)"
@@ -89,10 +93,32 @@ class Score:
     @property
     def worst(self) -> Worst:
         """The component in which the largest position error shows most."""
-        row, name = self.errors.worst
+        return self._at(*self.errors.worst)
+
+    @property
+    def worst_of_each(self) -> dict[str, Worst]:
+        """The largest error of each column."""
+        return {name: self._at(row, name) for name, row in self.errors.worst_rows.items()}
+
+    def _at(self, row: int, name: str) -> Worst:
         expected, got = self.errors.truth.states[row, COLUMNS.index(name)], self.candidate.columns[name][row]
         difference = self.errors.components[name][row]
         return Worst(float(self.errors.t[row]), name, float(expected), float(got), float(difference))
+
+    @cached_property
+    def covered(self) -> float:
+        """Share of the scene's span up to the last row, from 0 to 1; of transits alone, up to the next true one."""
+        last, end = float(self.errors.t[-1]), float(self.scene.exact.t_end)
+        if not self.candidate.positions:
+            later = self.golden.transits["t"]
+            later = later[later > last + self.tolerance_m / self.errors.speed_m_s]
+            last = float(later[0]) if len(later) else float(self.golden.t[-1])
+        return 1.0 if last >= end * (1 - WHOLE) else last / end
+
+    @property
+    def falls_short(self) -> bool:
+        """True if it says nothing of the motion, having no row after t = 0, or covers less than is demanded."""
+        return self.covered < self.covers or not self.covered > 0
 
     @property
     def allowed_m(self) -> float:
@@ -106,9 +132,9 @@ class Score:
 
     @property
     def agrees(self) -> bool:
-        """True if no error of a position or a transit is above `allowed_m`, and no transit is missed or extra."""
+        """True if nothing is off by more than `allowed_m`, missed, extra or left out."""
         transits = self.transits
-        return not self.off_path and (
+        return not (self.off_path or self.falls_short) and (
             transits is None or not (transits.missed or transits.extra or transits.max_conditioned_m > self.allowed_m)
         )
 
@@ -124,13 +150,14 @@ class Score:
 
 
 def judge(
-    candidate: Candidate | str | Path,
+    candidate: Candidate | str | Path | None,
     scene: Scene | str | Path,
     *,
     transits: Array | None = None,
     tolerance: float | None = None,
     inputs: str = "auto",
     t_end: float | None = None,
+    covers: float = 0.0,
     explain: bool = True,
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
@@ -138,12 +165,13 @@ def judge(
     """Judge a candidate against the truth of a scene.
 
     Args:
-        candidate: the trajectory, at its own times, or the path of its file.
+        candidate: the trajectory, at its own times, or the path of its file; None to judge transits alone.
         scene: the problem that it claims to solve: a scene, its id, or the path of a TOML file.
         transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
         tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
         t_end: end of the comparison in s; later rows and transits are ignored, and a note says so.
+        covers: share of the scene's span, from 0 to 1, that the rows have to reach for it to agree.
         explain: whether to look for the reason if a position is off.
         announce: called with a message before the scene is solved, which takes long.
         report: called with the simulated time reached, in s, while the scene is solved.
@@ -156,10 +184,13 @@ def judge(
     if tolerance is not None and not 0 < tolerance < math.inf:
         raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
     scene = scene if isinstance(scene, Scene) else load_scene(scene)
-    candidate = candidate if isinstance(candidate, Candidate) else read(candidate)
-    if not candidate.t[-1] > 0:
-        advice = "The release alone says nothing of the motion. Did the program stop after its first line?"
-        raise InputError(f"{candidate.name}: t", "t = 0 alone", "at least one time above 0", advice)
+    if not 0 <= covers <= 1:
+        raise InputError("covers", f"{covers:g}", "a share of the scene's span, from 0 to 1")
+    if candidate is None:
+        end = float(scene.exact.t_end)
+        candidate = Candidate.of_transits("transits", np.empty(0) if transits is None else transits[transits <= end])
+    elif not isinstance(candidate, Candidate):
+        candidate = read(candidate)
     times = candidate.transits if transits is None else transits
     if t_end is not None:
         candidate = _up_to(candidate, t_end)
@@ -170,6 +201,8 @@ def judge(
     errors = trajectory_errors(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
     allowed = TOLERANCE * errors.amplitude_m if tolerance is None else tolerance
     unjudged = None if times is None else _unjudged(golden)
+    if unjudged and not candidate.positions:
+        raise InputError("transits", unjudged, "a trajectory as well", "Print t,x,y.")
     result = Score(
         candidate=candidate,
         scene=problem,
@@ -181,8 +214,9 @@ def judge(
         drifts=drifts(candidate, problem),
         transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
         notes=candidate.notes + ((unjudged,) if unjudged else ()),
+        covers=covers,
     )
-    if explain and result.off_path:
+    if explain and result.off_path and candidate.positions and result.covered:
         return replace(result, diagnosis=diagnose(candidate, errors, problem), looked=True)
     return result
 
@@ -231,8 +265,6 @@ def _unjudged(golden: Golden) -> str | None:
 
 
 def _transits(times: Array, golden: Golden, errors: TrajectoryErrors, tolerance_m: float) -> TransitErrors:
-    k = constants_in_double(golden.scene.exact)
-    omega = max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), errors.speed_m_s / k.length)
     end = float(golden.scene.exact.t_end)
     # a release at rest is no transit, and beyond its end the truth is not known
     judged = times[(times > 0) & (times <= end)]
@@ -243,7 +275,7 @@ def _transits(times: Array, golden: Golden, errors: TrajectoryErrors, tolerance_
         judged,
         truth["t"],
         truth["ax"],
-        omega,
+        swing_rate(golden.scene, errors.speed_m_s),
         min(float(errors.t[-1]), end),
         tolerance_m=tolerance_m,
         xdot=lambda at: truth_at(golden, at).states[:, 3],

@@ -76,7 +76,7 @@ def transit_errors(
     """Match a candidate's transits with the truth's.
 
     Args:
-        times: the candidate's, increasing, in s.
+        times: the candidate's, in order, in s; of equal ones all but one are extra.
         truth: the truth's times, increasing, in s.
         ax: the truth's d²x/dt² at its transits, in m/s².
         omega: angular frequency of the motion in rad/s.
@@ -93,7 +93,8 @@ def transit_errors(
     excused = _vanishing(missed, truth, weight, until, tolerance_m)
     spurious = np.zeros(len(extra), dtype=bool)
     if xdot is not None and 0 < len(extra) <= MOST_EXTRA and omega:
-        spurious = np.abs(xdot(times[extra])) / omega <= tolerance_m
+        doubled = np.isin(times[extra], times[1:][np.diff(times) == 0])  # no motion has a transit twice
+        spurious = (np.abs(_at(times[extra], xdot)) / omega <= tolerance_m) & ~doubled
     return TransitErrors(
         errors,
         errors * weight[matched],
@@ -102,6 +103,12 @@ def transit_errors(
         truth[matched],
         sorted([*truth[missed[excused]].tolist(), *times[extra[spurious]].tolist()]),
     )
+
+
+def _at(times: Array, xdot: Callable[[Array], Array]) -> Array:
+    """Return xdot at times of which some may be equal."""
+    once, back = np.unique(times, return_inverse=True)
+    return np.asarray(xdot(once)[back])
 
 
 def _owners(times: Array, truth: Array) -> npt.NDArray[np.int64]:

@@ -15,6 +15,10 @@ def lines(score: Score) -> Iterator[str]:
     """Yield the verdict line by line."""
     errors = score.errors
     yield f"{score.candidate.name} {score.verdict} with {score.scene.id} ({_span(score)})"
+    if not score.covered:
+        yield from _row("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
+    elif score.falls_short:
+        yield from _row("covers too little", percent(score.covered), f"{percent(score.covers)} demanded")
     yield from _row("largest error", f"{errors.max_m:.3g} m", _largest(score))
     yield from _row("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth_exponent))
     scale = f"largest error over the amplitude {errors.amplitude_m:.4g} m"
@@ -24,6 +28,8 @@ def lines(score: Score) -> Iterator[str]:
     worst = score.worst
     numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
     yield from _row("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
+    each = (f"{name} {abs(one.difference):.2g} {_unit(name)}" for name, one in score.worst_of_each.items())
+    yield from _row("worst of each", ", ".join(each))
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
         yield from _row("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
@@ -54,14 +60,28 @@ def _row(name: str, value: str, remark: str = "") -> Iterator[str]:
     yield f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
 
 
+def _unit(component: str) -> str:
+    return "m/s" if component.startswith("v") else "m"
+
+
+def percent(share: float) -> str:
+    """Return a share to three digits, rounded down: 100 % is all of it."""
+    if not share > 0:
+        return "0 %"
+    percents = 100 * share * (1 + 1e-9)  # 29 and not 28.9 for 0.29
+    unit = 10.0 ** (math.floor(math.log10(percents)) - 2)
+    return f"{math.floor(percents / unit) * unit:.6g} %"
+
+
 def _one_decimal(digits: float | None) -> str:
     return "none" if digits is None else f"{round(digits, 1) + 0.0:.1f}"
 
 
 def _span(score: Score) -> str:
     t, end = score.errors.t, score.scene.run.t_end
-    rows = "1 row" if len(t) == 1 else f"{len(t)} rows"
-    return f"{rows}, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s"
+    what = "row" if score.candidate.positions else "transit"
+    rows = f"1 {what}" if len(t) == 1 else f"{len(t)} {what}s"
+    return f"{rows}, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s: {percent(score.covered)}"
 
 
 def _largest(score: Score) -> str:

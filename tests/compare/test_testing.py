@@ -79,6 +79,14 @@ def test_a_failure_of_transits_tells_which(golden, states):
     assert f"{golden.transits['t'][5]!r}".removeprefix("np.float64(")[:9] in str(caught.value)
 
 
+def test_what_says_nothing_or_too_little_of_the_motion_fails():
+    with pytest.raises(AssertionError, match="covers 0 % of the scene's 86400 s: no row after t = 0"):
+        assert_agrees("paris", [0.0], [[0.3, 0.4]])
+    with pytest.raises(AssertionError, match=r"covers 0\.0694 % of the scene's 86400 s: 100 % demanded"):
+        assert_agrees("paris", *TWO_ROWS, covers=1)
+    assert assert_agrees("paris", *TWO_ROWS, covers=60 / 86400).covered == 60 / 86400
+
+
 def test_long_doubles_keep_their_digits(golden, states):
     wide = states[:3, :2].astype(np.longdouble)
     wide[1, 0] += np.longdouble("1e-18")
@@ -96,7 +104,6 @@ def test_long_doubles_keep_their_digits(golden, states):
         ([0.0], [[0.3, float("nan")]], {}, "nan in row 1"),
         ([0.0], [["0.3", "0.4"]], {}, "real numbers"),
         ([0.0], [[0.3, 0.4j]], {}, "real numbers"),
-        ([0.0], [[0.3, 0.4]], {}, "t = 0 alone"),
         ([0.0, 1.0], [[0.3, 0.4], [0.3]], {}, "rows of different lengths"),
         ([0.0], [[0.3, 0.4]], {"transits": ["soon"]}, "transits.*real numbers"),
         ([1.0, 0.0], [[0.3, 0.4]] * 2, {}, "strictly increasing"),
@@ -104,6 +111,7 @@ def test_long_doubles_keep_their_digits(golden, states):
         ([0.0], [[0.3, 0.4]], {"tolerance": -1.0}, "tolerance"),
         ([0.0], [[0.3, 0.4]], {"tolerance": float("nan")}, "tolerance"),
         ([60.0], [[0.3, 0.4]], {"inputs": "floats"}, "inputs"),
+        ([60.0], [[0.3, 0.4]], {"covers": 2.0}, "covers"),
         ([0.0], [[0.3, 0.4]], {"transits": [2.0, 1.0]}, "transits"),
         ([0.0], [[0.3, 0.4]], {"transits": [float("inf")]}, "transits"),
     ],

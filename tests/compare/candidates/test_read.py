@@ -98,6 +98,7 @@ def test_the_output_of_the_papers_program_is_read_with_its_transits():
     found = read_stream(text(*lines), "run")
     assert_read(found)
     assert found.transits.tolist() == [8.2178, 16.4356]
+    assert found.positions
 
 
 def test_an_archive_is_read_with_its_transits():

@@ -93,7 +93,7 @@ def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(
 def test_the_table_says_the_same_in_words(foucault, good):
     status, out, _ = foucault("score", "paris", good)
     assert status == 0
-    assert "good.csv agrees with paris (1441 rows, t = 0 to 86400 of 86400 s)" in out
+    assert "good.csv agrees with paris (1441 rows, t = 0 to 86400 of 86400 s: 100 %)" in out
     for word in (
         "largest error",
         "digits",
@@ -295,9 +295,70 @@ def test_the_tolerance_is_a_millionth_of_the_amplitude_and_the_bound_is_added(go
 
 def test_the_release_alone_does_not_agree(foucault):
     """A program that dies after its first line has computed nothing."""
-    status, out, err = foucault("score", "paris", "-", stdin=b"t,x,y\n0,0.3,0.4\n")
-    assert (status, out) == (2, "")
-    assert "standard input: t: got 't = 0 alone', expected at least one time above 0" in err
+    status, out, _ = foucault("score", "paris", "-", stdin=b"t,x,y\n0,0.3,0.4\n")
+    assert status == 1
+    assert out.startswith("standard input disagrees with paris (1 row, t = 0 to 0 of 86400 s: 0 %)")
+    assert "covers nothing      no row after t = 0" in out
+
+
+@pytest.mark.parametrize(
+    ("rows", "share", "status"), [(1441, 1, 0), (1440, 1, 1), (1440, 0.999, 0), (721, 0.5, 0), (720, 0.5, 1)]
+)
+def test_a_share_of_the_span_can_be_demanded(foucault, tmp_path, golden, states, rows, share, status):
+    path = write_csv(tmp_path / "part.csv", golden.t[:rows], states[:rows])
+    assert foucault("score", "paris", path)[0] == 0
+    done, out, _ = foucault("score", "paris", path, "--covers", share)
+    assert done == status
+    assert ("covers too little" in out) is bool(status)
+    assert json.loads(foucault("score", "paris", path, "--json")[1])["covered"] == min(1, (rows - 1) / 1440)
+
+
+def test_transits_alone_are_a_candidate(foucault, tmp_path, golden):
+    zeros = golden.transits["t"]
+    path = tmp_path / "zeros.csv"
+
+    def score(times, *words):
+        path.write_text("t\n" + "".join(f"{t!r}\n" for t in np.asarray(times).tolist()))
+        status, out, _ = foucault("score", "paris", "--transits", path, "--json", *words)
+        return status, json.loads(out)
+
+    status, said = score([0.0, *zeros, 86400.5], "--covers", 1)
+    assert (status, said["covered"], said["transits"]["matched"]) == (0, 1.0, 10514)
+    assert said["max_error_m"] < 1e-11
+    off = zeros[:100] + 1e-3
+    status, said = score(off)
+    assert (status, said["verdict"], said["diagnosis"]) == (1, "disagrees", None)
+    weighted = np.abs(golden.transits["ax"][:100]).max() * 1e-3 / (2 * np.pi / 16.4356)
+    assert said["max_error_m"] == pytest.approx(weighted, rel=1e-3)
+    assert said["worst"]["component"] == "vx"
+    assert said["covered"] == pytest.approx(zeros[100] / 86400)
+    assert score(np.delete(zeros, 7))[1]["transits"]["missed"] == 1
+    path.write_text("t\n8.2\n")
+    status, _, err = foucault("score", own_scene(tmp_path, transits="false"), "--transits", path)
+    assert status == 2
+    assert "were not judged" in err and "expected a trajectory as well" in err
+
+
+def test_a_doubled_transit_is_an_extra_one(foucault, good, golden, tmp_path):
+    path = tmp_path / "zeros.csv"
+    times = np.repeat(golden.transits["t"], [1] * 99 + [2] + [1] * 10414).tolist()
+    path.write_text("t\n" + "\n".join(map(repr, times)) + "\n")
+    status, out, _ = foucault("score", "paris", good, "--transits", path)
+    assert status == 1
+    assert "10514 matched, 0 missed, 1 extra" in out
+    assert f"extra at          {golden.transits['t'][99]:.6f} s" in out
+
+
+def test_the_worst_of_each_column_is_told(foucault, tmp_path, golden, states):
+    wrong = states.copy()
+    for row, column, error in ((3, "x", 1e-6), (5, "y", -2e-6), (7, "vz", 3e-6)):
+        wrong[row, COLUMNS.index(column)] += error
+    path = write_csv(tmp_path / "wrong.csv", golden.t, wrong)
+    said = json.loads(foucault("score", "paris", path, "--json", "--no-diagnosis")[1])["worst_of_each"]
+    assert list(said) == list(COLUMNS)
+    assert (said["x"]["t"], said["y"]["t"], said["vz"]["t"]) == (180.0, 300.0, 420.0)
+    assert said["y"]["difference"] == pytest.approx(-2e-6)
+    assert "x 1e-06 m, y 2e-06 m" in foucault("score", "paris", path, "--no-diagnosis")[1]
 
 
 @pytest.mark.parametrize(
@@ -400,7 +461,7 @@ def test_one_row_of_two_columns_is_enough(foucault, tmp_path, golden, states, co
     path = write_csv(tmp_path / "one.csv", golden.t[7:8], picked, columns)
     status, out, _ = foucault("score", "paris", path)
     assert status == 0
-    assert "(1 row, t = 420 to 420 of 86400 s)" in out
+    assert "(1 row, t = 420 to 420 of 86400 s: 0.486 %)" in out
 
 
 def test_errors_as_large_as_numbers_go_are_judged(foucault, tmp_path, golden, states):

@@ -23,9 +23,11 @@ SHIFTED = TransitErrors(
 
 def score(**changes):
     most = {
-        "candidate": Made(name="mine.csv"), "verdict": "disagrees", "scene": RUN, "errors": ERRORS, "at_bound": False,
+        "candidate": Made(name="mine.csv", positions=True), "covered": 1 / 24, "covers": 0.0, "falls_short": False,
+        "verdict": "disagrees", "scene": RUN, "errors": ERRORS, "at_bound": False,
         "tolerance_m": 5e-7, "allowed_m": 1e-3, "input_floor_m": 1e-12, "why_inputs": "as asked",
         "worst": Made(component="y", t=10.0, expected=0.25, got=0.252, difference=0.002),
+        "worst_of_each": {"x": Made(difference=-0.001), "y": Made(difference=0.002), "vx": Made(difference=3e-5)},
         "swing": Made(largest_turn=math.pi / 180, largest_delay=0.5), "drifts": {"h_m2_s2": 1e-9, "length_m": 2e-9},
         "transits": SHIFTED, "timing": Made(runs=3, warm=True, cpu_s=1.5, wall_s=2.5), "looked": True,
         "golden": Made(manifest=Made(level="confirmed")), "diagnosis": Made(text="It is the wind."), "notes": ("late",),
@@ -37,12 +39,13 @@ def test_every_line_is_said():
     assert (
         "\n".join(lines(score()))
         == """\
-mine.csv disagrees with paris (3 rows, t = 0 to 3600 of 86400 s)
+mine.csv disagrees with paris (3 rows, t = 0 to 3600 of 86400 s: 4.16 %)
   largest error       0.002 m  (tolerance 5e-07 m; 2e+09 times the input floor of 1e-12 m)
   rms, at the end     0.001 m, 0.0005 m  (grows like t^1.50)
   digits              2.4  (largest error over the amplitude 0.5 m)
   scd, mescd at end   1.0, 0.0  (relative to the truth; to 0.5 m, 0.2 m/s + |truth|)
   worst               y at t = 10 s  (expected 0.25, got 0.252)
+  worst of each       x 0.001 m, y 0.002 m, vx 3e-05 m/s
   swing plane, phase  1 degrees, 0.5 s  (fitted)
   drifts              h by 1e-09 m²/s², |r| - l by 2e-09 m
   transits            3 matched, 4 missed, 3 extra  (largest error 0.5 s, weighted by |ax|: 0.05 m)
@@ -68,12 +71,13 @@ def test_what_a_score_has_not_is_not_said():
     assert (
         "\n".join(lines(shorter))
         == """\
-mine.csv disagrees with paris (1 row, t = 60 to 60 of 86400 s)
+mine.csv disagrees with paris (1 row, t = 60 to 60 of 86400 s: 4.16 %)
   largest error       0.002 m  (at or below the reference's bound)
   rms, at the end     0.001 m, 0.0005 m
   digits              2.4  (largest error over the amplitude 0.5 m)
   scd, mescd at end   none, 0.0  (relative to the truth; to 0.5 m, 0.2 m/s + |truth|)
   worst               y at t = 10 s  (expected 0.25, got 0.252)
+  worst of each       x 0.001 m, y 0.002 m, vx 3e-05 m/s
   transits            0 matched, 0 missed, 0 extra  (largest error 0 s, weighted by |ax|: 0 m)
   took                1.5 CPU s, 2.5 s  (one run, no warm-up)
   inputs read as      binary64  (as asked)
