@@ -16,6 +16,14 @@ LARGEST = 1e100  # a larger number means that the run has blown up; below, squar
 ADVICE = "Wanted: t, x, y and, if there, z, vx, vy, vz."
 
 
+@dataclass(frozen=True)
+class Convention:
+    """How a candidate was read, or seems to be meant, where that is not plain: a stable word, and a sentence for people."""
+
+    id: str
+    text: str
+
+
 @dataclass(frozen=True, repr=False)
 class Candidate:
     """A trajectory to be judged.
@@ -27,6 +35,7 @@ class Candidate:
         low: low parts of t and `columns`, for numbers with more digits than a double: the number is double + low part.
         transits: times of xdot = 0 in s that came with it, or None.
         notes: remarks that a reader ought to know.
+        conventions: what reading found out about names, units and scales.
     """
 
     name: str
@@ -35,6 +44,7 @@ class Candidate:
     low: dict[str, Array] = field(default_factory=dict, repr=False)
     transits: Array | None = field(default=None, repr=False)
     notes: tuple[str, ...] = ()
+    conventions: tuple[Convention, ...] = ()
 
     def __repr__(self) -> str:
         return f"Candidate({Path(self.name).name}: {len(self.t)} rows of t, {', '.join(self.columns)})"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import Any
 
 from .judge import Score
@@ -41,6 +42,7 @@ def document(score: Score) -> dict[str, Any]:
         "worst_of_each": {name: worst._asdict() for name, worst in score.worst_of_each.items()},
         "transits": None,
         "reference": {"level": score.golden.manifest.level, "bound_m": errors.bound_m},
+        "conventions": [asdict(one) for one in score.candidate.conventions],
         "diagnosis": None,
         "notes": list(score.notes),
     }

@@ -44,6 +44,8 @@ def lines(score: Score) -> Iterator[str]:
     yield from _row("inputs read as", score.scene.inputs, score.why_inputs)
     yield from _row("reference", f"{score.golden.manifest.level}", f"within {errors.bound_m:.2g} m at these times")
     yield from diagnosis_lines(score)
+    for one in score.candidate.conventions:
+        yield f"Reading: {one.text}."
     for note in score.notes:
         yield f"Note: {note}."
 

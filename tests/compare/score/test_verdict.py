@@ -23,7 +23,7 @@ SHIFTED = TransitErrors(
 
 def score(**changes):
     most = {
-        "candidate": Made(name="mine.csv", positions=True), "covered": 1 / 24, "covers": 0.0, "falls_short": False,
+        "candidate": Made(name="mine.csv", positions=True, conventions=[Made(text="t is in ms")]), "covered": 1 / 24, "covers": 0.0, "falls_short": False,
         "verdict": "disagrees", "scene": RUN, "errors": ERRORS, "at_bound": False,
         "tolerance_m": 5e-7, "allowed_m": 1e-3, "input_floor_m": 1e-12, "why_inputs": "as asked",
         "worst": Made(component="y", t=10.0, expected=0.25, got=0.252, difference=0.002),
@@ -57,6 +57,7 @@ mine.csv disagrees with paris (3 rows, t = 0 to 3600 of 86400 s: 4.16 %)
   inputs read as      binary64  (as asked)
   reference           confirmed  (within 3e-30 m at these times)
 It is the wind.
+Reading: t is in ms.
 Note: late."""
     )
 
@@ -82,7 +83,8 @@ mine.csv disagrees with paris (1 row, t = 60 to 60 of 86400 s: 4.16 %)
   took                1.5 CPU s, 2.5 s  (one run, no warm-up)
   inputs read as      binary64  (as asked)
   reference           confirmed  (within 3e-30 m at these times)
-No single mistake known to foucault explains 99 % of the error."""
+No single mistake known to foucault explains 99 % of the error.
+Reading: t is in ms."""
     )
     none = list(lines(score(transits=None, timing=None, input_floor_m=0.0, diagnosis=None, looked=False)))
     assert not any(line.startswith(("  transits", "  took", "No single")) for line in none)
