@@ -1,9 +1,11 @@
-"""Read a candidate from a NumPy archive (.npz): arrays t, x, y and any of z, vx, vy, vz, transits."""
+"""Read a candidate from NumPy's files: arrays t, x, y and others by name (.npz), or one table of rows (.npy, .npz)."""
 
 from __future__ import annotations
 
 import tempfile
 import zipfile
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import BinaryIO
 
 import numpy as np
@@ -12,15 +14,19 @@ from reference import InputError
 from reference.precision import Array
 
 from .candidate import COLUMNS, Candidate, candidate_of, checked_transits
+from .layout import Layout, Naming, guessed, layout, unnamed
 from .lines import CHUNK, MAX_BYTES
+from .names import meaning
 
 MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read, unpacked: two million rows of long doubles
-_KEYS = ("t", *COLUMNS, "transits")
-_MEMBERS = {member for key in _KEYS for member in (key, f"{key}.npy")}
+MOST_ARRAYS = 1000
+NEEDED = ("t", "x", "y")
+TRANSITS = "transits"
+TABLE = "arr_0"  # the name that numpy.savez gives to an array without one
 _EXPECTED = "arrays t, x, y and, if there, z, vx, vy, vz, transits"
 
 
-def read_archive(stream: BinaryIO, head: bytes, name: str) -> Candidate:
+def read_archive(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
     """Read a candidate from the bytes of an .npz archive, of which `head` has been read already.
 
     Raises:
@@ -28,36 +34,86 @@ def read_archive(stream: BinaryIO, head: bytes, name: str) -> Candidate:
     """
     with tempfile.TemporaryFile() as spool:
         _bounded(stream, head, spool, name)
-        columns = {key: _real(array, f"{name}: {key}") for key, array in _arrays(spool, name).items()}
-    if "t" not in columns:
-        raise InputError(
-            name, f"arrays {', '.join(columns) or 'of other names'}", "an array t", f"Wanted: {_EXPECTED}."
-        )
-    times = columns.pop("transits", None)
-    transits = None if times is None else checked_transits(np.asarray(times, dtype=np.float64), f"{name}: transits")
-    return candidate_of(name, columns, transits)
+        arrays = _arrays(spool, name)
+    if not arrays:
+        raise InputError(name, "none of them", _EXPECTED)
+    if [*arrays] == [TABLE]:
+        return _of_table(arrays[TABLE], name, naming)
+    if naming.columns:
+        raise InputError("--columns", ",".join(naming.columns), "no such option for arrays with names")
+    times = arrays.pop(TRANSITS, None)
+    transits = None
+    if times is not None:
+        field = f"{name}: {TRANSITS}"
+        transits = checked_transits(np.asarray(_real(times, field), dtype=np.float64), field)
+    made = layout([*arrays], NEEDED, COLUMNS[2:], naming.units, name)
+    return _candidate(name, [*arrays.values()], made, transits)
 
 
-def _bounded(stream: BinaryIO, head: bytes, spool: BinaryIO, name: str) -> None:
+def read_array(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
+    """Read a candidate from the bytes of an .npy file: a table of rows, or an array of records with names.
+
+    Raises:
+        InputError: the file is too large or damaged, or its columns are not known.
+    """
+    with tempfile.TemporaryFile() as spool:
+        _bounded(stream, head, spool, name, MAX_UNPACKED)
+        try:
+            array = np.load(spool, allow_pickle=False)
+        except Exception as error:  # numpy raises several kinds of errors for a damaged file
+            raise InputError(name, "a damaged .npy file", "a table of real numbers", f"{error}.") from None
+    if array.dtype.names and array.ndim == 1 and not naming.columns:
+        words = array.dtype.names
+        return _candidate(name, [array[word] for word in words], layout(words, NEEDED, COLUMNS[2:], naming.units, name))
+    return _of_table(array, name, naming)
+
+
+def _of_table(array: object, name: str, naming: Naming) -> Candidate:
+    """Make a candidate of a table, shape (rows, columns); the user names its columns, or their number does."""
+    table = _real(array, name)
+    count = table.shape[1] if table.ndim == 2 else 0
+    words: Sequence[str] | None = naming.columns or (unnamed(count, NEEDED) if count else None)
+    if words is None or len(words) != count:
+        expected = f"a table of {len(words)} columns" if words else "a table of 3, 4 or 7 columns, t, x, y first"
+        raise InputError(name, f"shape {table.shape}", expected, "One row for each time; --columns names the columns.")
+    made = layout([word or "-" for word in words], NEEDED, COLUMNS[2:], naming.units, "--columns")
+    if not naming.columns:
+        made = replace(made, conventions=(guessed(words), *made.conventions))
+    return _candidate(name, [table[:, i] for i in range(count)], made)
+
+
+def _candidate(name: str, arrays: Sequence[object], made: Layout, transits: Array | None = None) -> Candidate:
+    """Make a candidate of arrays of which each column is the one at its place, in SI units."""
+    columns = {column: _real(arrays[i], f"{name}: {column}") for column, i in made.places.items()}
+    found = candidate_of(name, columns, transits)
+    scaled, low = made.converted({"t": found.t, **found.columns}, found.low)
+    return replace(found, t=scaled.pop("t"), columns=scaled, low=low, conventions=made.conventions)
+
+
+def _bounded(stream: BinaryIO, head: bytes, spool: BinaryIO, name: str, most: int = MAX_BYTES) -> None:
     """Copy the stream to a file, up to a limit: a zip archive is read from its end."""
     total, data = 0, head
     while data:
         total += len(data)
-        if total > MAX_BYTES:
-            raise InputError(name, f"more than {MAX_BYTES} bytes", f"at most {MAX_BYTES} bytes", "Thin the output out.")
+        if total > most:
+            raise InputError(name, f"more than {most} bytes", f"at most {most} bytes", "Thin the output out.")
         spool.write(data)
         data = stream.read(CHUNK)
     spool.seek(0)
 
 
 def _arrays(data: BinaryIO, name: str) -> dict[str, object]:
+    """Return the arrays whose names mean something, or the only one if it has no name."""
     try:
         with zipfile.ZipFile(data) as archive:
-            size = sum(member.file_size for member in archive.infolist() if member.filename in _MEMBERS)
+            members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
+        wanted = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
+        wanted = wanted or [word for word in members if word == TABLE]
+        size = sum(members[word].file_size for word in wanted)
         if size <= MAX_UNPACKED:
             data.seek(0)
             with np.load(data, allow_pickle=False) as arrays:
-                return {key: arrays[key] for key in _KEYS if key in arrays.files}
+                return {word: arrays[word] for word in wanted}
     except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
         raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
     raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")

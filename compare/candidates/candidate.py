@@ -18,7 +18,7 @@ ADVICE = "Wanted: t, x, y and, if there, z, vx, vy, vz."
 
 @dataclass(frozen=True)
 class Convention:
-    """How a candidate was read, or seems to be meant, where that is not plain: a stable word, and a sentence for people."""
+    """How a candidate was read, or seems to be meant, where that is not plain: a stable word, and what to tell."""
 
     id: str
     text: str

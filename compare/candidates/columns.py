@@ -1,7 +1,7 @@
-"""Read columns of numbers from text: one header line that names them, and rows.
+"""Read columns of numbers from text: lines of which one may name the columns, and rows.
 
-Fields are separated by commas, semicolons or white space. Lines that start with # are comments, and the header may be
-one. Columns of other names are ignored.
+Fields are separated by commas, semicolons, tabs or white space. A line that begins with #, %, ! or // is a comment, and
+the header may be one. Columns of other names are not read.
 """
 
 from __future__ import annotations
@@ -15,11 +15,16 @@ import numpy as np
 from reference import InputError
 from reference.precision import Array
 
+from .candidate import Convention
 from .decimals import low_part, low_part_of_time
+from .header import Header
+from .layout import Layout, Naming
 from .lines import chunks, is_number
+from .rows import Spelling, comment, spelling
 
 MAX_ROWS = 2_000_000
 SAMPLE = 50  # rows of a chunk that are searched for numbers with more digits than a double's
+DECIMAL_COMMA = Convention("decimal_comma", "numbers have a comma for the decimal point")
 
 
 class ColumnReader:
@@ -29,9 +34,10 @@ class ColumnReader:
         name: its name in messages.
         needed: columns that must be there; times come first.
         optional: columns that are read if they are there.
-        headless: first columns of a text without a header, separated by white space; empty if it needs a header.
+        naming: what the user says of the columns.
         expected: what the text ought to be, for the message about an empty one.
-        comment: called with each comment, without its #, and the number of its line.
+        on_comment: called with each comment, without its mark, and the number of its line.
+        repeats: whether times may be equal.
     """
 
     def __init__(
@@ -39,25 +45,24 @@ class ColumnReader:
         name: str,
         needed: tuple[str, ...],
         optional: tuple[str, ...] = (),
-        headless: tuple[str, ...] = (),
+        naming: Naming | None = None,
         expected: str = "a CSV file with a column t",
-        comment: Callable[[str, int], None] = lambda text, line: None,
+        on_comment: Callable[[str, int], None] = lambda text, line: None,
+        repeats: bool = False,
     ) -> None:
-        self.name, self.needed, self.headless = name, needed, headless
-        self.expected, self.comment = expected, comment
-        self.known = [*needed, *optional]
-        more = f" and, if there, {', '.join(optional)}" if optional else ""
-        self.advice = f"The first line names the columns: {', '.join(needed)}{more}."
-        self.header: list[str] | None = None  # names of all columns, once known
-        self.remark = ""  # the last comment before the first row that may be the header
-        self.separator: str | None = None  # of the header, then of the rows; None is white space
+        self.name, self.expected = name, expected
+        self.on_comment, self.repeats = on_comment, repeats
+        self.header = Header(name, needed, optional, naming or Naming())
+        self.spelled = Spelling(None)
+        self.layout: Layout | None = None  # once a row has been seen
+        self.fields = 0  # of a row
         self.blocks: list[Array] = []
         self.low_blocks: list[Array] = []
         self.rows = self.line = 0
         self.cut_off = False  # the last line does not end with a newline
 
     def columns(self, stream: BinaryIO, head: bytes = b"") -> tuple[dict[str, Array], dict[str, Array]]:
-        """Return the columns by name, and their low parts if some number has more digits than a double holds.
+        """Return the columns by name in SI units, and their low parts if some number is finer than a double.
 
         Args:
             stream: bytes in UTF-8.
@@ -69,22 +74,24 @@ class ColumnReader:
         for lines, complete in chunks(stream, self.name, head):
             self.cut_off = not complete
             self._read_lines(lines)
-        if self.header is None and self.remark:
-            self._take_header(self.remark)
-        if self.header is None:
-            raise InputError(self.name, "no header and no rows", self.expected, self.advice)
-        low = any(block.any() for block in self.low_blocks)
-        return self._joined(self.blocks), self._joined(self.low_blocks) if low else {}
-
-    def _joined(self, blocks: list[Array]) -> dict[str, Array]:
-        table = np.concatenate(blocks) if blocks else np.empty((0, len(self.names)))
-        return {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(self.names)}
+        if self.layout is None:
+            raise self.header.refuse(self.expected)
+        finer = any(block.any() for block in self.low_blocks)
+        return self.layout.converted(self._joined(self.blocks), self._joined(self.low_blocks) if finer else {})
 
     @property
-    def names(self) -> list[str]:
-        """Names of the columns that are read."""
-        assert self.header is not None
-        return [name for name in self.known if name in self.header]
+    def conventions(self) -> tuple[Convention, ...]:
+        """What is not plain about the way in which it was read."""
+        said = () if self.layout is None else self.layout.conventions
+        return (*said, DECIMAL_COMMA) if self.spelled.decimal_comma else said
+
+    def _joined(self, blocks: list[Array]) -> dict[str, Array]:
+        table = np.concatenate(blocks)
+        return {name: np.ascontiguousarray(table[:, i]) for i, name in enumerate(self._places)}
+
+    @property
+    def _places(self) -> dict[str, int]:
+        return {} if self.layout is None else self.layout.places
 
     def _read_lines(self, lines: list[str]) -> None:
         rows: list[str] = []
@@ -93,12 +100,12 @@ class ColumnReader:
             text = line.strip().removeprefix("\ufeff")
             if not text:
                 continue
-            if text[0] == "#":
-                comment = text[1:].strip()
-                if self.header is None and set(self.known) & set(_names(comment)):
-                    self.remark = comment  # numpy.savetxt writes the header as a comment
-                self.comment(comment, number)
-            elif self.header is not None or self._read_header(text):
+            remark = comment(text)
+            if remark is not None:
+                if self.layout is None:
+                    self.header.add(number, remark, True)
+                self.on_comment(remark, number)
+            elif self.layout is not None or self._begins(text, number):
                 rows.append(text)
                 numbers.append(number)
         self.line += len(lines)
@@ -108,76 +115,50 @@ class ColumnReader:
         if rows:
             self._parse(rows, numbers)
 
-    def _read_header(self, text: str) -> bool:
-        """Read the columns' names from the first line that is no comment; return True if that line is a row already."""
-        fields = _names(text)
-        if not any(map(is_number, fields)):
-            self._take_header(text)
+    def _begins(self, text: str, number: int) -> bool:
+        """Return True if a line is the first row, after taking from it and the lines above which column is where."""
+        spelled = spelling(text)
+        if spelled is None:
+            self.header.add(number, text, False)
             return False
-        of_remark = _names(self.remark)
-        if len(of_remark) == len(fields) or (_separator(self.remark) and set(self.needed) <= set(of_remark)):
-            self._take_header(self.remark)
-        elif self.headless and _separator(text) is None and len(fields) >= len(self.headless):
-            self.header = [*self.headless, *[""] * (len(fields) - len(self.headless))]
-        else:
-            raise InputError(f"{self.name}: first line", text[:80], "a header that names the columns", self.advice)
+        self.spelled = spelled
+        self.layout, self.fields = self.header.layout(text, spelled, number)
         return True
 
-    def _take_header(self, text: str) -> None:
-        names = _names(text)
-        for name in self.needed:
-            if names.count(name) != 1:
-                got = "none" if name not in names else f"{names.count(name)} of them"
-                raise InputError(f"{self.name}: header", f"{got} in {text[:80]!r}", f"one column {name}", self.advice)
-        for name in self.known:
-            if names.count(name) > 1:
-                raise InputError(f"{self.name}: header", text[:80], f"one column {name} at most")
-        self.header, self.separator = names, _separator(text)
-
     def _parse(self, lines: list[str], numbers: list[int]) -> None:
-        assert self.header is not None
-        indices = [self.header.index(name) for name in self.names]
-        if not self.blocks and (self.separator is None or self.separator not in lines[0]):
-            self.separator = _separator(lines[0])
+        separator, indices = self.spelled.separator, [*self._places.values()]
+        lines = [self.spelled.plain(line) for line in lines]
         try:
-            uniform = {line.count(self.separator) if self.separator else len(line.split()) - 1 for line in lines}
-            if uniform != {len(self.header) - 1}:
+            uniform = {line.count(separator) if separator else len(line.split()) - 1 for line in lines}
+            if uniform != {self.fields - 1}:
                 raise ValueError
-            block = np.loadtxt(lines, delimiter=self.separator, usecols=indices, comments=None, ndmin=2)
+            block = np.loadtxt(lines, delimiter=separator, usecols=indices, comments=None, ndmin=2)
         except ValueError:
             self._refuse_bad_line(lines, numbers)
             raise InputError(self.name, "a number that cannot be read", "decimal numbers") from None
         if self.blocks:
             self._check_order(self.blocks[-1][-1, 0], block[0, 0], numbers[0])
         self.blocks.append(block)
-        self.low_blocks.append(_low_parts(lines, self.separator, indices, block))
+        self.low_blocks.append(_low_parts(lines, separator, indices, block))
 
     def _check_order(self, before: float, after: float, line: int) -> None:
         """Refuse a stream whose times do not increase from chunk to chunk at once, not after a gigabyte."""
-        if math.isfinite(before) and math.isfinite(after) and after <= before:
+        unordered = after < before if self.repeats else after <= before
+        if math.isfinite(before) and math.isfinite(after) and unordered:
             raise InputError(
                 f"{self.name}: line {line}", f"t = {after:.17g} after {before:.17g}", "strictly increasing times"
             )
 
     def _refuse_bad_line(self, lines: list[str], numbers: list[int]) -> None:
-        """Raise an error for the first line that has another number of fields than the header, or no number in one."""
-        assert self.header is not None
+        """Raise an error for the first line that has another number of fields than the first, or no number in one."""
         for line, number in zip(lines, numbers, strict=True):
-            fields = line.split(self.separator)
-            if len(fields) != len(self.header):
-                got, expected = f"{len(fields)} fields", f"{len(self.header)} as in the first line"
+            fields = line.split(self.spelled.separator)
+            if len(fields) != self.fields:
+                got, expected = f"{len(fields)} fields", f"{self.fields} as in the first row"
                 raise InputError(f"{self.name}: line {number}", got, expected, "Is the line cut off?")
-            for name, text in zip(self.header, fields, strict=True):
-                if name in self.known and not is_number(text.strip()):
-                    raise InputError(f"{self.name}: line {number}: {name}", text.strip()[:40], "a number")
-
-
-def _separator(text: str) -> str | None:
-    return "," if "," in text else ";" if ";" in text else None
-
-
-def _names(text: str) -> list[str]:
-    return [word.strip().strip('"').lower() for word in text.split(_separator(text))]
+            for name, i in self._places.items():
+                if not is_number(fields[i].strip()):
+                    raise InputError(f"{self.name}: line {number}: {name}", fields[i].strip()[:40], "a number")
 
 
 def _low_parts(lines: list[str], separator: str | None, indices: list[int], block: Array) -> Array:

@@ -9,7 +9,7 @@ import errno
 import os
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -19,38 +19,46 @@ from reference.opening import open_at_once
 from reference.plain_text import plain
 from reference.precision import Array
 
-from .archive import read_archive
+from .archive import read_archive, read_array
 from .candidate import Candidate, checked_transits
 from .columns import ColumnReader
+from .layout import Naming
 from .text import read_text
 
-_TELLING = 4  # bytes that tell an archive from text
+_TELLING = 6  # bytes that tell an archive from text
+_READERS = {b"PK": read_archive, b"\x93NUMPY": read_array}
 
 
-def read(source: str | Path) -> Candidate:
+def read(source: str | Path, *, columns: Sequence[str] = (), units: Sequence[str] = ()) -> Candidate:
     """Read a candidate from a file, or from standard input if `source` is "-".
+
+    Args:
+        source: the file's path.
+        columns: names of its columns in order, `-` for one that is not read; none if a header names them.
+        units: of its times and lengths where no header names them, such as ms and cm; SI units if none.
 
     Raises:
         InputError: the candidate cannot be read; the message names the line.
     """
     with _opened(source, "CANDIDATE", "a readable file, or - for standard input") as (stream, head, name):
-        return read_stream(stream, name, head)
+        return read_stream(stream, name, head, Naming(tuple(columns), tuple(units)))
 
 
-def read_stream(stream: BinaryIO, name: str, head: bytes = b"") -> Candidate:
+def read_stream(stream: BinaryIO, name: str, head: bytes = b"", naming: Naming | None = None) -> Candidate:
     """Read a candidate in any of the formats from a stream of bytes, of which `head` has been read already."""
     head += stream.read(_TELLING - len(head))
-    return (read_archive if head.startswith(b"PK") else read_text)(stream, head, name)
+    reader = next((one for start, one in _READERS.items() if head.startswith(start)), read_text)
+    return reader(stream, head, name, naming or Naming())
 
 
-def read_transits(source: str | Path) -> Array:
+def read_transits(source: str | Path, units: Sequence[str] = ()) -> Array:
     """Read times of xdot = 0 in s from a CSV file with a column t, or from standard input if `source` is "-".
 
     Raises:
         InputError: the file cannot be read; the message names the line.
     """
     with _opened(source, "--transits", "a readable CSV file") as (stream, head, name):
-        columns, _ = ColumnReader(name, ("t",)).columns(stream, head)
+        columns, _ = ColumnReader(name, ("t",), naming=Naming((), tuple(units)), repeats=True).columns(stream, head)
         return checked_transits(columns["t"], name)
 
 

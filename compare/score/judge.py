@@ -21,6 +21,7 @@ from reference import Golden, InputError, Scene, UnreachableError, load_scene
 from reference.dataset.dense import WITHIN
 from reference.precision import Array
 
+from ..candidates.against_scene import beyond_the_cord, check_times
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
 from ..candidates.read import read
@@ -195,6 +196,10 @@ def judge(
     if t_end is not None:
         candidate = _up_to(candidate, t_end)
         times = None if times is None else times[times <= t_end]
+    check_times(candidate, scene)
+    scale = beyond_the_cord(candidate, scene) if candidate.positions else None
+    if scale is not None:
+        candidate = replace(candidate, conventions=(*candidate.conventions, scale))
     problem, why = _reading(candidate, scene, inputs)
     digits = scene.run.digits if candidate.extended else DIGITS
     golden = golden_of(problem, digits, announce, report, float(candidate.t[-1]))

@@ -35,9 +35,9 @@ def csv(rows=ROWS, header="t,x,y,z"):
     return text(header, *(",".join(map(repr, row)) for row in rows))
 
 
-def archive(**arrays):
+def archive(*tables, **arrays):
     stream = io.BytesIO()
-    np.savez(stream, **arrays)
+    np.savez(stream, *tables, **arrays)
     stream.seek(0)
     return stream
 
@@ -70,6 +70,38 @@ def test_columns_may_come_in_any_order_and_others_are_passed_over():
 def test_spaces_quotes_capitals_a_byte_order_mark_and_windows_line_ends_do_no_harm():
     lines = ['\ufeff "T", X ,y, z ', *(" , ".join(map(repr, row)) + " " for row in ROWS), "", "# the end"]
     assert_read(read_stream(io.BytesIO("\r\n".join([*lines, ""]).encode()), "run"))
+
+
+def test_what_numpy_saves_is_read(tmp_path):
+    """A table without names, by itself or in an archive, and records with names of their own."""
+    table = np.array(ROWS)
+    for stream in (io.BytesIO(), archive(table)):
+        if not stream.getbuffer().nbytes:
+            np.save(stream, table)
+            stream.seek(0)
+        found = read_stream(stream, "run")
+        assert_read(found)
+        assert [one.id for one in found.conventions] == ["no_header"]
+    records = np.array(ROWS, dtype=[("time", float), ("pos_x", float), ("y", float), ("z", float)])
+    np.save(tmp_path / "a.npy", records)
+    assert_read(read(tmp_path / "a.npy"))
+    np.save(tmp_path / "a.npy", table[:, [1, 0, 2, 3]])
+    assert_read(read(tmp_path / "a.npy", columns=["x", "t", "y", "z"]))
+
+
+@pytest.mark.parametrize(
+    ("array", "words"),
+    [
+        (np.zeros((2, 5)), ("shape (2, 5)", "--columns")),
+        (np.zeros(3), ("shape (3,)", "One row for each time")),
+        (np.zeros((2, 3), dtype=complex), ("complex128", "real numbers")),
+    ],
+)
+def test_a_table_of_other_columns_is_refused(array, words):
+    stream = io.BytesIO()
+    np.save(stream, array)
+    stream.seek(0)
+    refused(stream, *words)
 
 
 def test_what_numpy_savetxt_writes_is_read():
@@ -169,14 +201,19 @@ def test_a_number_is_split_over_two_chunks_without_harm(monkeypatch):
     [
         ([], ("no header", "CSV", "t, x, y and, if there, z, vx, vy, vz")),
         (["t,x,y"], ("no rows", "at least one")),
-        (["t,x", "0,1"], ("header", "none", "column y")),
-        (["t,x,y,x", "0,1,2,3"], ("header", "2 of them")),
-        (["t,x,y,vz,vz", "0,1,2,3,4"], ("header", "column vz at most")),
-        (["t;x;y", "0,5;1,5;2,5"], ("line 2: t", "'0,5'", "a number")),
-        (["# time x y", "0 1 2"], ("header", "none in 'time x y'", "column t")),
-        (["0 1 2"], ("first line", "'0 1 2'", "header that names")),
-        (["0,0.3,0.4"], ("first line", "header that names")),
-        (["t,x,y", "0,0.3"], ("line 2", "2 fields", "3 as in the first line", "cut off")),
+        (["t,x", "0,1"], ("header", "no y in t, x", "column y")),
+        (["t,x,y,x", "0,1,2,3"], ("header", "x, x", "one column x")),
+        (["t,x,y,vz,vz", "0,1,2,3,4"], ("header", "vz, vz", "one column vz")),
+        (["t,pos_x,x_pos,y", "0,1,2,3"], ("header", "pos_x, x_pos", "one column x", "--columns")),
+        (["# clock x y", "0 1 2"], ("header", "no t in clock, x, y", "column t")),
+        (["a b c", "0 1 2"], ("header", "no t in a, b, c", "column t")),
+        (["# t x y", "a b c", "0 1 2"], ("header", "no t in a, b, c", "column t")),
+        (["t,x (px),y (px)", "0,1,2"], ("header: x (px)", "'px'", "a unit of x that is known")),
+        (["0 1 2 3 4"], ("first line", "'0 1 2 3 4'", "header that names", "--columns")),
+        (["0,0.3"], ("first line", "header that names")),
+        (["t,x,y", "0,0.3"], ("line 2", "2 fields", "3 as in the header, line 1", "cut off")),
+        (["t,x,y", "t,x,z"], ("line 2", "'t,x,z'", "a row of numbers")),
+        (["a wise man's fear"], ("line 1", "a wise man", "a CSV file")),
         (["t,x,y", "0,1,2", "# note", "1,1,2,3"], ("line 4", "4 fields")),
         (["t,x,y", "0,1,2", "1,one,2"], ("line 3: x", "'one'", "a number")),
         (["t,x,y", "0,1_0,2"], ("line 2: x", "'1_0'")),
@@ -201,7 +238,8 @@ def test_what_is_wrong_with_a_text_is_said_with_its_place(lines, words):
 @pytest.mark.parametrize(
     ("arrays", "words"),
     [
-        ({"x": [1.0], "y": [1.0]}, ("an array t",)),
+        ({"x": [1.0], "y": [1.0]}, ("no t in x, y", "one column t")),
+        ({"energy": [1.0]}, ("none of them", "arrays t, x, y")),
         ({"t": [0.0], "x": [1.0]}, ("column y",)),
         ({"t": [0.0, 1.0], "x": [1.0], "y": [1.0, 2.0]}, ("run: x", "shape (1,)", "2 numbers")),
         ({"t": [[0.0]], "x": [1.0], "y": [1.0]}, ("run: t", "shape (1, 1)")),
@@ -225,7 +263,8 @@ def test_an_archive_with_pickles_inside_is_not_opened():
 def test_a_zip_file_of_something_else_is_refused():
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as made:
-        made.writestr("t", "0 1 2")
+        for name in "txy":
+            made.writestr(name, "0 1 2")
     refused(io.BytesIO(stream.getvalue()), "no NumPy array")
 
 
@@ -311,10 +350,11 @@ def test_transits_need_the_column_t_only(tmp_path):
     ("content", "words"),
     [
         ("", "column t"),
-        ("time\n1\n", "one column t"),
+        ("clock\n1\n", "no t in clock, expected one column t"),
         ("k,t\n1\n", "line 2: got '1 fields'"),
         ("k,t\n1,2\n\n2,soon\n", "line 4: t: got 'soon'"),
         ("k,t\n1,2\n2,3,4\n", "line 3: got '3 fields', expected 2"),
+        ("t\nsoon\n", "line 2: got 'soon', expected a row of numbers"),
         ("1 2 3 4\n", "a header that names"),
         ("t\n2\n1\n", "1 as transit 2 after 2"),
         ("t\nnan\n", "nan as transit 1"),

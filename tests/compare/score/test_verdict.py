@@ -23,7 +23,8 @@ SHIFTED = TransitErrors(
 
 def score(**changes):
     most = {
-        "candidate": Made(name="mine.csv", positions=True, conventions=[Made(text="t is in ms")]), "covered": 1 / 24, "covers": 0.0, "falls_short": False,
+        "candidate": Made(name="mine.csv", positions=True, conventions=[Made(text="t is in ms")]),
+        "covered": 1 / 24, "covers": 0.0, "falls_short": False,
         "verdict": "disagrees", "scene": RUN, "errors": ERRORS, "at_bound": False,
         "tolerance_m": 5e-7, "allowed_m": 1e-3, "input_floor_m": 1e-12, "why_inputs": "as asked",
         "worst": Made(component="y", t=10.0, expected=0.25, got=0.252, difference=0.002),

@@ -1,0 +1,132 @@
+"""What a word of a header means: the column, its unit and its direction, in the words that programs use.
+
+`pos_x`, `X (cm)`, `east`, `x/m` and `position x` are x; `time [ms]`, `t_s` and `seconds` are t; `vx`, `xdot`, `dx/dt`
+and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other sign.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from dataclasses import dataclass
+from fractions import Fraction
+
+from reference import InputError
+
+from .units import size_of
+
+DIRECTIONS = {
+    "east": ("x", 1), "eastward": ("x", 1), "eastwards": ("x", 1), "easting": ("x", 1), "west": ("x", -1),
+    "westward": ("x", -1), "westwards": ("x", -1), "north": ("y", 1), "northward": ("y", 1), "northwards": ("y", 1),
+    "northing": ("y", 1), "south": ("y", -1), "southward": ("y", -1), "southwards": ("y", -1), "up": ("z", 1),
+    "upward": ("z", 1), "upwards": ("z", 1), "vertical": ("z", 1), "down": ("z", -1), "downward": ("z", -1),
+    "downwards": ("z", -1),
+}  # fmt: skip
+_AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | DIRECTIONS
+_AXIS = "|".join(sorted(_AXES, key=len, reverse=True))
+_PLACE = "position|pos|coordinate|coord|displacement|disp|location|loc"
+_SPEED = "velocity|vel|speed"
+_POSITION = re.compile(rf"(?:{_PLACE}|bob|r)?([xyz])?({_AXIS})(?:{_PLACE}|axis)?")
+_VELOCITY = re.compile(rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_SPEED}|dot|prime)|d()({_AXIS})dt")
+_TIME = {
+    "t", "time", "times", "zeit", "temps", "tiempo", "tempo", "elapsed", "elapsedtime", "timeelapsed", "simtime",
+    "simulationtime", "timestamp", "tsim",
+}  # fmt: skip
+_TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")  # a column that is called so
+_BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
+_AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a word of a header means.
+
+    Attributes:
+        column: t, x, y, z, vx, vy or vz.
+        factor: by which its numbers come to SI units and to the column's direction; None if the unit is not known.
+        unit: as printed; empty if there is none.
+        rank: 0 for the column's own name, 1 for it in capitals, 2 for another word.
+    """
+
+    column: str
+    factor: Fraction | None
+    unit: str
+    rank: int
+
+
+def meaning(word: str, units: dict[str, str]) -> Meaning | None:
+    """Return what a word of a header means; None for a column that is not read.
+
+    Args:
+        word: as printed.
+        units: units that hold where the word names none, by column.
+
+    Raises:
+        InputError: its unit contradicts `units`.
+    """
+    text = unquoted(word)
+    for name, said in _parts(text):
+        found = _column(name)
+        if found is None:
+            continue
+        (column, sign, rank), unit = found, said
+        rank = 2 if said == text else rank  # it is called by its unit
+        if said.lower() in DIRECTIONS and column != "t":
+            turned, sign = DIRECTIONS[said.lower()]
+            column, unit, rank = f"{column[:-1]}{turned}", "", 2
+        if said.lower() in ("t", "time") and column != "t":
+            unit = ""  # x(t)
+        size = size_of(unit, column) if unit else Fraction(1)
+        if size is None:
+            if _BRACKETS.fullmatch(text):
+                return Meaning(column, None, unit, rank)
+            continue  # it may be no unit
+        if not unit and column in units:
+            unit = units[column]
+            size = size_of(unit, column) or Fraction(1)
+        elif unit and size != 1 and column in units and size_of(units[column], column) != size:
+            raise InputError("--units", units[column], f"no other unit of {column} than {unit}, as its header says")
+        return Meaning(column, size * sign, unit, rank)
+    return None
+
+
+def unquoted(word: str) -> str:
+    """Return a word without white space around it and without a pair of quotes."""
+    text = word.strip()
+    return text[1:-1].strip() if len(text) > 1 and text[0] == text[-1] and text[0] in "\"'`" else text
+
+
+def _parts(text: str) -> list[tuple[str, str]]:
+    """Return the ways to take a word apart into a name and a unit, the most likely first."""
+    brackets = _BRACKETS.fullmatch(text)
+    if brackets:
+        return [(brackets[1], brackets[2])]
+    ways = [(text, "")]
+    if _TIME_UNITS.fullmatch(text.lower()):
+        ways.append(("t", text))
+    after = _AFTER.fullmatch(text)
+    if after:
+        ways.append((after[1], after[2]))
+    return ways
+
+
+def _column(name: str) -> tuple[str, int, int] | None:
+    """Return the column, sign and rank of a name without a unit."""
+    if name in ("t", "x", "y", "z", "vx", "vy", "vz"):
+        return name, 1, 0
+    if name.lower() in ("t", "x", "y", "z", "vx", "vy", "vz"):
+        return name.lower(), 1, 1
+    plain = unicodedata.normalize("NFD", name.lower()).replace("\u0307", "dot")
+    plain = re.sub(r"['’′]$", "prime", plain)
+    plain = "".join(letter for letter in plain if letter.isalnum())
+    if plain in _TIME:
+        return "t", 1, 2
+    for pattern, speed in ((_POSITION, ""), (_VELOCITY, "v")):
+        match = pattern.fullmatch(plain)
+        if match:
+            given = [group for group in match.groups() if group]
+            axis, sign = _AXES[given[-1]]
+            if len(given) > 1 and given[-1] not in DIRECTIONS:
+                return None
+            return f"{speed}{axis}", sign, 2
+    return None
