@@ -1,4 +1,4 @@
-"""What a candidate's scales say against its scene: times in another unit, positions beyond the reach of the cord."""
+"""Times beyond a scene's end and positions beyond the reach of its cord: the units that they may be in."""
 
 from __future__ import annotations
 

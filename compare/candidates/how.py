@@ -1,4 +1,4 @@
-"""How to write a candidate's file, in three lines of each language: the header, a row, and the command that saves them."""
+"""Three lines of each language that write a candidate's file: the header, a row, and the command that saves them."""
 
 from __future__ import annotations
 

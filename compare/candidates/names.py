@@ -1,4 +1,4 @@
-"""What a word of a header means: the column, its unit and its direction, in the words that programs use.
+"""The meaning of a word of a header: its column, unit and direction, in the words that programs use.
 
 `pos_x`, `X (cm)`, `east`, `x/m` and `position x` are x; `time [ms]`, `t_s` and `seconds` are t; `vx`, `xdot`, `dx/dt`
 and `v_x` are vx; `west`, `south` and `down` are x, y and z with the other sign.

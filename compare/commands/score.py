@@ -2,32 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from reference import InputError, Scene, load_scene
-from reference.commands.progress import progress
-from reference.commands.terminal import (
-    AsJson,
-    Assignments,
-    SceneWord,
-    chosen,
-    completion,
-    emit,
-    refuse,
-    replacements,
-    stoppable,
-)
+from reference import InputError, load_scene, scene_ids
+from reference.commands.terminal import AsJson, Assignments, chosen, completion, emit, refuse, replacements
 
-from .options import announce
+from .options import listed
 
 if TYPE_CHECKING:
-    from ..candidates.candidate import Candidate
-    from ..candidates.external import Timing
-    from ..score.judge import Score
+    from ..suite.outcome import Outcome
 
 MAX_REPEATS = 1000
 TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats
@@ -44,20 +30,69 @@ def _approximation_ids() -> list[str]:
     return list(motions())
 
 
+def _how(language: str | None) -> None:
+    """Print how to write a candidate's file in a language, and end."""
+    if language is not None:
+        from ..candidates.how import how
+
+        typer.echo(how(language))
+        raise typer.Exit
+
+
 def command(
-    scene_word: SceneWord,
+    scene_word: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="SCENE",
+            help="A scene's id, or the path of a TOML file; with --suite none.",
+            autocompletion=completion(scene_ids),
+        ),
+    ] = None,
     candidates: Annotated[
         list[str] | None,
-        typer.Argument(metavar="CANDIDATE", help="Files to score: CSV, foucPend's output or .npz; - is stdin."),
+        typer.Argument(metavar="CANDIDATE", help="Files to score: text with named columns, .npy, .npz; - is stdin."),
+    ] = None,
+    suite: Annotated[
+        Path | None,
+        typer.Option(
+            "--suite",
+            metavar="DIR",
+            help="Score each file of this folder by the scene that it is named after: paris.csv.",
+        ),
+    ] = None,
+    how: Annotated[
+        str | None,
+        typer.Option(
+            "--how",
+            metavar="LANGUAGE",
+            help="Print how to write such a file in c, fortran, python, julia, javascript … and end.",
+            callback=_how,
+            is_eager=True,
+        ),
+    ] = None,
+    columns: Annotated[
+        str | None,
+        typer.Option(
+            "--columns", metavar="t,x,y,…", help="Names of a file's columns in order; - for one that is not read."
+        ),
+    ] = None,
+    units: Annotated[
+        str | None,
+        typer.Option("--units", metavar="A,B", help="Units of times and lengths, such as ms,cm (default: s,m)."),
     ] = None,
     transits: Annotated[
         str | None,
         typer.Option(
-            "--transits", metavar="FILE", help="Score transits too: a CSV file with times of xdot = 0 in its column t."
+            "--transits",
+            metavar="FILE",
+            help="Score transits too, or alone: a file with times of xdot = 0 in a column t.",
         ),
     ] = None,
     run: Annotated[
         str | None, typer.Option("--run", metavar="'COMMAND'", help="Run this program and score its output.")
+    ] = None,
+    name: Annotated[
+        str | None, typer.Option("--name", metavar="WORD", help="Name of the program of --run (default: the program).")
     ] = None,
     approximation: Annotated[
         str | None,
@@ -120,30 +155,48 @@ def command(
         bool, typer.Option("--no-diagnosis", help="Do not look for the reason of an error.")
     ] = False,
     set_: Assignments = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="With --suite: write a page, a badge, CSV and JSON into this folder."
+        ),
+    ] = None,
+    junit: Annotated[
+        Path | None, typer.Option("--junit", metavar="FILE", help="Write the outcome as JUnit XML, a test for each.")
+    ] = None,
+    github: Annotated[
+        bool, typer.Option("--github", help="Print annotations for GitHub Actions too, and write the job's summary.")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
     """Score a program's output against the truth.
 
-    Exit status 0: agrees, 1: disagrees.
+    Exit status 0: agrees, 1: disagrees, 2: cannot be judged; of several candidates, the largest.
 
     --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
     {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
     {azimuth_rate} {t_end} {grid_step}.
     """
     reading = None if chosen("--inputs", inputs, INPUTS) == "auto" else inputs
-    options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
-    scene = load_scene(scene_word, replacements(set_, options, UNUSED))
+    if as_json:
+        refuse({"--github": github}, "together with --json")
+    if run is None:
+        refuse({"--timeout": timeout, "--repeats": repeats, "--name": name}, "without --run")
+    if suite is None:
+        refuse({"--out": out}, "without --suite")
+        options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
+        if scene_word is None:
+            raise InputError("SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them.")
+        scene = load_scene(scene_word, replacements(set_, options, UNUSED))
+    else:
+        others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
+        refuse({**others, "--set": set_ or None, "--t-end": t_end, "--columns": columns}, "together with --suite")
     if tolerance is not None and not 0 < tolerance < float("inf"):
         raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
     if covers is not None and not 0 < covers <= 1:
         raise InputError("--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1")
-    if not candidates and run is None and approximation is None and transits is None:
-        expected = "a file, - for stdin, --run, --transits or --approximation"
-        raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
     if [*(candidates or ()), transits].count("-") > 1:
         raise InputError("CANDIDATE", "- more than once", "standard input once", "It can be read only once.")
-    if run is None:
-        refuse({"--timeout": timeout, "--repeats": repeats}, "without --run")
     timeout, repeats = TIMEOUT_S if timeout is None else timeout, REPEATS if repeats is None else repeats
     if not 0 < timeout < float("inf"):
         raise InputError("--timeout", f"{timeout:g}", "a positive number of seconds")
@@ -153,79 +206,57 @@ def command(
         from ..report.charts.score import check_target
 
         check_target(plot)
-    from ..candidates.read import read, read_transits
-    from ..score.judge import judge
+    from ..candidates.layout import Naming
+    from .judging import Judging
 
-    transit_times = None if transits is None else read_transits(transits)
-    timed_candidates: list[tuple[Candidate | None, Timing | None]] = [(read(name), None) for name in candidates or ()]
-    if run is not None:
-        timed_candidates.append(_run(run, scene, timeout, repeats))
-    if approximation is not None:
-        timed_candidates.append((_approximate(approximation, scene), None))
-    if not timed_candidates:
-        timed_candidates.append((None, None))  # transits alone
-    scores = []
-    for candidate, timing in timed_candidates:
-        with stoppable("nothing was written"), progress() as show:
-            score = judge(
-                candidate,
-                scene,
-                transits=transit_times,
-                tolerance=tolerance,
-                inputs=inputs,
-                t_end=None if t_end is None else float(scene.exact.t_end),
-                covers=covers or 0.0,
-                explain=not no_diagnosis,
-                announce=announce,
-                report=show(f"the truth of {scene.id}", float(scene.exact.t_end)),
-            )
-        scores.append(replace(score, timing=timing))
-    if plot is not None:
+    naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
+    judging = Judging(naming, tolerance, covers or 0.0, inputs, not no_diagnosis)
+    if suite is not None:
+        outcomes = judging.suite(suite, out)
+    else:
+        end = None if t_end is None else float(scene.exact.t_end)
+        outcomes = judging.files(scene, candidates or (), transits, end)
+        if run is not None:
+            outcomes.append(judging.program(scene, run, name or "the program", transits, end, timeout, repeats))
+        if approximation is not None:
+            outcomes.append(judging.approximation(scene, approximation, transits, end))
+        if not outcomes and transits is not None:
+            outcomes.append(judging.transits(scene, transits, end))
+        if not outcomes:
+            expected = "a file, - for stdin, --run, --transits or --approximation"
+            raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
+        if len(outcomes) == 1 and outcomes[0].error is not None and not (github or junit):
+            raise outcomes[0].error
+    _show(outcomes, as_json, plot, junit, github)
+    if out is not None and not as_json:
+        typer.echo(f"{out / 'index.html'}: the page; badge.svg is beside it")
+    status = max(one.exit_status for one in outcomes)
+    if status:
+        raise typer.Exit(status)
+
+
+def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
+    """Print and write outcomes in the forms that were asked for."""
+    from ..suite.outcome import text_lines
+    from ..suite.page import suite_document
+
+    scores = [one.score for one in outcomes if one.score is not None]
+    if plot is not None and scores:
         from ..report.charts.score import error_picture
 
         error_picture(scores, plot)
-    _print(scores, as_json)
-    if not all(score.agrees for score in scores):
-        raise typer.Exit(1)
+    if junit is not None:
+        from ..suite.junit import write
 
-
-def _run(words: str, scene: Scene, timeout: float, repeats: int) -> tuple[Candidate, Timing]:
-    """Run a program and return the candidate that it prints, and its run time."""
-    from ..candidates.external import arguments, timed
-    from ..candidates.read import read_stream
-
-    output, timing = timed(arguments(words, scene), timeout, repeats)
-    with output:
-        return read_stream(output, "the program"), timing
-
-
-def _approximate(word: str, scene: Scene) -> Candidate:
-    """Return the motion of an approximation at the scene's grid times."""
-    import numpy as np
-
-    from ..approximations import APPROXIMATIONS, Motion
-    from ..candidates.candidate import COLUMNS, candidate_of
-
-    motion = APPROXIMATIONS[word]
-    if not isinstance(motion, Motion):
-        raise InputError(
-            "--approximation", word, "an approximation of the motion", "This one gives a number, not a motion."
-        )
-    times = [float(t) for t in scene.exact.grid]
-    columns = dict(zip(COLUMNS, motion.trajectory(scene, times).T, strict=True))
-    return candidate_of(word, {"t": np.array(times), **columns})
-
-
-def _print(scores: list[Score], as_json: bool) -> None:
-    from ..score.document import document
-    from ..score.verdict import lines
-
+        write(outcomes, junit)
     if as_json:
-        documents = [document(score) for score in scores]
-        verdict = "agrees" if all(score.agrees for score in scores) else "disagrees"
-        rows = {"scene": scores[0].scene.id, "verdict": verdict, "rows": documents}
-        emit(documents[0] if len(documents) == 1 else rows)
+        emit(outcomes[0].document() if len(outcomes) == 1 else suite_document(outcomes))
         return
-    for score in scores:
-        for line in lines(score):
-            typer.echo(line)
+    for line in text_lines(outcomes):
+        typer.echo(line)
+    if github:
+        from ..suite.github import annotation, append_summary, summary
+
+        for one in outcomes:
+            typer.echo(annotation(one))
+        append_summary(summary(outcomes))

@@ -14,8 +14,8 @@ from compare.candidates.read import read_stream
 from reference import InputError
 
 SPELLED = {
-    "t": {"t": 1, "T": 1, "time": 1, "Time [s]": 1, "t (ms)": 1e-3, "time_ms": 1e-3, "t/s": 1, "Seconds": 1, "t in min": 60,
-          "elapsed time": 1, "time (h)": 3600, "sim_time": 1},
+    "t": {"t": 1, "T": 1, "time": 1, "Time [s]": 1, "t (ms)": 1e-3, "time_ms": 1e-3, "t/s": 1, "Seconds": 1,
+          "t in min": 60, "elapsed time": 1, "time (h)": 3600, "sim_time": 1},
     "x": {"x": 1, "X": 1, "pos_x": 1, "x_pos": 1, "x (m)": 1, "X [cm]": 1e-2, "east": 1, "west": -1, "x/mm": 1e-3,
           "position.x": 1, "x_m": 1, "West (cm)": -1e-2, "x{km}": 1e3, "rx": 1, "x(t)": 1, "x displacement": 1},
     "y": {"y": 1, "Y": 1, "pos_y": 1, "north": 1, "south": -1, "y (m)": 1, "y_cm": 1e-2, "y (north)": 1, "posY": 1,
@@ -44,8 +44,8 @@ OTHERS = [
     "temperature",
 ]
 PREAMBLES = [
-    "Foucault pendulum, version 1.2", "run of a day", "Latitude: 48.846111 degrees", "x0 = 0.3 m, y0 = 0.4 m", "length 67",
-    "all in SI units", "t and x and y are in metres and seconds",
+    "Foucault pendulum, version 1.2", "run of a day", "Latitude: 48.846111 degrees", "x0 = 0.3 m, y0 = 0.4 m",
+    "length 67", "all in SI units", "t and x and y are in metres and seconds",
 ]  # fmt: skip
 
 

@@ -1,0 +1,84 @@
+"""The outcome of judging a candidate: its score, or why it could not be judged; one does not stop the others."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from reference import FoucaultError
+from reference.errors import Stopped
+
+from ..score.document import document
+from ..score.judge import Score
+from ..score.verdict import lines
+
+REFUSED = "refused"  # the verdict on a candidate that could not be judged
+ORDER = ("agrees", "disagrees", REFUSED)  # from best to worst
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of judging a candidate.
+
+    Attributes:
+        name: of the candidate.
+        scene: id of the scene.
+        score: None if it could not be judged.
+        error: why it could not.
+    """
+
+    name: str
+    scene: str
+    score: Score | None = None
+    error: FoucaultError | None = None
+
+    @property
+    def verdict(self) -> str:
+        """'agrees', 'disagrees' or 'refused'."""
+        return REFUSED if self.score is None else self.score.verdict
+
+    @property
+    def exit_status(self) -> int:
+        """0: agrees, 1: disagrees, 2 or 3: could not be judged."""
+        return self.error.exit_status if self.error is not None else int(self.verdict != "agrees")
+
+    @property
+    def lines(self) -> list[str]:
+        """What people read, the verdict first."""
+        if self.score is not None:
+            return list(lines(self.score))
+        return [f"{self.name} was not judged by {self.scene}: {self.error}"]
+
+    def document(self) -> dict[str, Any]:
+        """Return it as a row of the JSON document."""
+        if self.score is not None:
+            return document(self.score)
+        return {"scene": self.scene, "candidate": self.name, "verdict": REFUSED, "error": str(self.error)}
+
+
+def outcome(name: str, scene: str, judged: Callable[[], Score]) -> Outcome:
+    """Judge a candidate; an error in it becomes the outcome, an interruption ends all."""
+    try:
+        score = judged()
+    except Stopped:
+        raise
+    except FoucaultError as error:
+        return Outcome(name, scene, error=error)
+    return Outcome(score.candidate.name, score.scene.id, score)
+
+
+def worst_status(outcomes: Sequence[Outcome]) -> int:
+    """Return the exit status of all together: the largest."""
+    return max((one.exit_status for one in outcomes), default=0)
+
+
+def worst_verdict(outcomes: Sequence[Outcome]) -> str:
+    """Return the verdict on all together: the worst."""
+    return max((one.verdict for one in outcomes), key=ORDER.index, default="agrees")
+
+
+def text_lines(outcomes: Sequence[Outcome]) -> Iterator[str]:
+    """Yield the lines of each outcome."""
+    for one in outcomes:
+        yield from one.lines
