@@ -25,7 +25,12 @@ class Variants:
     """
 
     _MODEL = FORMULATIONS["spin"]
-    _PARAMETERS = ("turn_1", "turn_2", "pull_1", "pull_2", *(f"centrifugal_{i}" for i in range(4)), "drag")
+    _PARAMETERS = (
+        *(f"turn_{i}" for i in range(3)),
+        *(f"pull_{i}" for i in range(3)),
+        *(f"centrifugal_{i}" for i in range(4)),
+        "drag",
+    )
 
     def __init__(self) -> None:
         from .heyoka.propagator import Propagator
@@ -51,8 +56,19 @@ class Variants:
             raise InputError("release", "a point beyond the cord", "x² + y² less than length²")
         start = Start.of(inputs, DOUBLE.prec + GUARD_BITS)
         k = (start.k if alter is None else alter(start.k)).converted(float)
-        state = [float(value) for value in start.state(self._MODEL)]
+        return self.run([float(value) for value in (*start.n, *start.v)], times, k)
+
+    def run(self, start: Sequence[float], times: Array, k: Constants) -> Array:
+        """Return the states of one run from position and velocity over l (six numbers) with any constants.
+
+        Returns:
+            x, y, z in m and vx, vy, vz in m/s, shape (times, 6).
+
+        Raises:
+            IntegrationError: as in `states`.
+        """
         entries = k.entries()
+        state = [*start[:3], *np.cross(start[:3], start[3:])]
         parameters = [entries.get(name, 0.0) for name in self._PARAMETERS]
         rows = self._propagator.from_zero(state, times, parameters, MAX_STEPS)
         n_rows, spin = rows[:, :3], rows[:, 3:]

@@ -1,0 +1,237 @@
+"""The causes that a program's deviation may have, each a change of one thing in a right `Program`.
+
+Causes that exclude each other stand in one group. The words of `id` are stable; `text` ends the sentence "Your
+program …". A cause with numbers in it (`free`) is fitted; all others are named and fixed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+from .integrators import METHODS
+from .programs import Program
+
+NAMED = 0.3  # decades by which a named cause has to lower what is left, to be believed
+RARE = 0.5  # one that is met less often
+FITTED = 0.7  # and a fitted number
+SOLAR_DAY = 86400.0
+SIDEREAL_DAYS = (86164.0, 86160.0, 86164.1, 86164.0905, 86164.09)
+MEAN_RADIUS = 6371000.0
+COMMON_GRAVITY = (9.8, 9.81, 9.80665, 9.82, 9.83, 10.0)
+ROUNDED_RATES = (7.29e-5, 7.3e-5, 7.27e-5, 7.2722e-5, 7.292e-5, 7.2921e-5, 7.29212e-5, 7.2921159e-5, 7.26e-5, 7e-5)
+FACTORS = (2.0, 10.0, 50.0, 60.0, 100.0, 200.0, 300.0, 500.0, 1000.0, 2000.0, 3600.0, 5000.0, 10000.0)
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One thing that a program does otherwise than the scene says.
+
+    Attributes:
+        id: a stable word.
+        group: causes of one group exclude each other.
+        text: the end of the sentence "Your program …"; {value} stands for a fitted number.
+        change: gives the program with it.
+        cost: decades by which it has to lower what is left.
+        free: the field of `Program` whose value is fitted, or "".
+        stage: gravity, model, input, release, frame, clock or integrator.
+    """
+
+    id: str
+    group: str
+    text: str
+    change: Callable[[Program], Program]
+    cost: float = NAMED
+    free: str = ""
+    stage: str = "input"
+
+
+def causes(right: Program, kind: str) -> Iterator[Cause]:
+    """Yield every cause that could make a difference to a scene.
+
+    Args:
+        right: what a right program computes with.
+        kind: the family that was fitted: sphere, linear or angle.
+    """
+    yield from _gravity(right)
+    if right.rate:
+        yield from _rotation(right, kind)
+        yield from _release(right)
+    yield from _latitude(right)
+    yield from _inputs(right)
+    yield from _integrators()
+
+
+def _set(**fields: object) -> Callable[[Program], Program]:
+    return lambda program: replace(program, **fields)  # type: ignore[arg-type]
+
+
+def _gravity(right: Program) -> Iterator[Cause]:
+    def reading(name: str, word: str, text: str, cost: float = NAMED) -> Cause:
+        return Cause(word, "gravity", text, _set(gravity_reading=name), cost, stage="gravity")
+
+    if right.rate:
+        if right.gravity_reading == "ellipsoid" and right.radius:
+            text = (
+                "takes g as the effective gravity, measured along the plumb line: no separate centrifugal force "
+                "(--set site.gravity_is=effective)"
+            )
+            yield reading("none", "no_centrifugal", text, 0.2)
+            text = (
+                "takes g as the effective gravity, the centrifugal force at the suspension within it "
+                "(--set site.gravity_is=effective)"
+            )
+            yield reading("effective", "effective_gravity", text, 0.2)
+            yield reading(
+                "no_tilt", "no_tilt", "leaves out the horizontal centrifugal force but keeps the vertical one"
+            )
+            yield reading("uniform", "uniform_gravity", "treats the centrifugal force as constant along the swing")
+        else:
+            yield reading("none", "no_centrifugal", "leaves out the centrifugal force", 0.2)
+            if right.gravity_reading == "effective":
+                text = "adds the centrifugal force to a g that contains it already (--set site.gravity_is=ellipsoid)"
+                yield reading("ellipsoid", "ellipsoid_gravity", text)
+    if right.radius:
+        text = "has gravity fall off with the distance from the Earth's centre and point there (1/r²)"
+        yield Cause("point_mass", "point_mass", text, _set(point_mass=1.0), stage="gravity")
+    if right.flattening and right.rate and right.gravity_reading == "ellipsoid":
+        text = "treats the Earth as a sphere of the equatorial radius"
+        yield Cause("sphere", "earth", text, _set(flattening=0.0), stage="gravity")
+        text = f"treats the Earth as a sphere of radius {MEAN_RADIUS:.0f} m"
+        yield Cause("mean_sphere", "earth", text, _set(flattening=0.0, radius=MEAN_RADIUS), stage="gravity")
+    for g in COMMON_GRAVITY:
+        if abs(g - right.g) > 1e-9:
+            yield Cause(f"gravity_{g:g}", "g", f"computes with g = {g:g} m/s²", _set(g=g))
+
+
+def _rotation(right: Program, kind: str) -> Iterator[Cause]:
+    sign = math.copysign(1.0, right.rate)
+    size = abs(right.rate)
+
+    def rate(word: str, text: str, value: float, cost: float = NAMED) -> Cause:
+        return Cause(word, "rate", text, _set(rate=value), cost)
+
+    natural = abs(size / 7.292115e-5 - 1) < 0.01
+    solar = 2 * math.pi / SOLAR_DAY
+    if natural and abs(size / solar - 1) > 1e-7:
+        text = "turns the Earth once in a solar day (86400 s) instead of a sidereal day (86164.1 s)"
+        yield rate("solar_day", text, sign * solar)
+    if natural:
+        for value in ROUNDED_RATES:
+            if 1e-9 < abs(value / size - 1):
+                yield rate("rounded_rate", f"rounds the rotation rate to {value:g} rad/s", sign * value, 0.4)
+        for day in SIDEREAL_DAYS:
+            if 1e-9 < abs(2 * math.pi / day / size - 1):
+                text = f"turns the Earth once in {day:.10g} s"
+                yield rate("sidereal_day", text, sign * 2 * math.pi / day, 0.4)
+        for hours in (24.0, 23.9345, 23.93447):
+            text = f"takes 2π/{hours:g}, which is the rotation rate in radians per hour, as radians per second"
+            yield rate("rate_per_hour", f"{text} (divide by 3600)", sign * 2 * math.pi / hours)
+        text = "takes the rotation rate in degrees per hour as radians per second"
+        yield rate("rate_in_degrees_per_hour", text, math.degrees(right.rate) * 3600)
+        yield rate("rate_in_degrees", "takes the rotation rate in degrees as radians", math.degrees(right.rate))
+    for factor in FACTORS:
+        text = f"turns the Earth {factor:g} times too fast"
+        yield rate("rate_factor", text, factor * right.rate, NAMED if factor > 2 else 0.45)
+        if natural and factor > 2:
+            yield rate("rate_factor", f"{text}, in a solar day", sign * factor * solar, 0.4)
+    yield rate("no_rotation", "leaves out the rotation of the Earth", 0.0, 0.35)
+    text = "turns {value} times as fast as the scene's Earth"
+    yield Cause("site.rotation_rate", "rate", text, lambda p: p, FITTED, "rate")
+    text = "gives the Coriolis force the wrong sign: its plane turns the wrong way"
+    factors = [("coriolis_sign", text, (1.0, 1.0, -1.0), NAMED)]
+    factors += [
+        ("coriolis_half", "omits the factor 2 in the Coriolis force", (1.0, 1.0, 0.5), NAMED),
+        ("coriolis_double", "doubles the Coriolis force", (1.0, 1.0, 2.0), NAMED),
+        ("no_coriolis", "leaves out the Coriolis force", (1.0, 1.0, 0.0), NAMED),
+    ]
+    if kind == "sphere":
+        text = "uses only the vertical part of Ω in the Coriolis force"
+        factors.append(("vertical_only", text, (0.0, 1.0, 1.0), NAMED))
+        factors.append(("horizontal_sign", "gives the horizontal part of Ω the wrong sign", (-1.0, 1.0, 1.0), RARE))
+        factors.append(("vertical_sign", "gives the vertical part of Ω the wrong sign", (1.0, -1.0, 1.0), RARE))
+    for word, text, changed, cost in factors:
+        yield Cause(word, "coriolis", text, _set(coriolis=changed), cost)
+    text = "is a pendulum that feels no rotation, whose plane is turned by hand"
+    yield Cause("turned_plane", "coriolis", text, _set(turned_plane=True), RARE, stage="model")
+    text = "is a pendulum that feels no rotation, whose plane is turned by hand the wrong way round"
+    yield Cause(
+        "turned_plane_sign", "coriolis", text, _set(turned_plane=True, coriolis=(1.0, 1.0, -1.0)), RARE, stage="model"
+    )
+    if kind == "sphere":
+        frames = (
+            ("frame_x_south", "x points south and y east", (0.0, -1.0, 1.0, 0.0)),
+            ("frame_x_north", "x points north and y west", (0.0, 1.0, -1.0, 0.0)),
+            ("frame_x_west", "x points west and y south", (-1.0, 0.0, 0.0, -1.0)),
+            ("frame_x_north_y_east", "x points north and y east", (0.0, 1.0, 1.0, 0.0)),
+        )
+        for word, text, matrix in frames:
+            sentence = f"uses axes of its own, in which {text}, and takes the release's x and y in them"
+            yield Cause(word, "frame", sentence, _set(frame=matrix), 0.4, stage="frame")
+
+
+def _latitude(right: Program) -> Iterator[Cause]:
+    latitude = right.latitude
+    if latitude:
+        yield Cause("hemisphere", "latitude", "gives the latitude the wrong sign", _set(latitude=-latitude), 0.35)
+        radians = math.degrees(latitude) % 360
+        text = "takes the latitude in degrees as if it were in radians"
+        yield Cause("radians", "latitude", text, _set(coriolis_latitude=radians))
+        yield Cause("radians", "latitude", text, lambda p: _everywhere(p, radians))
+    yield Cause(
+        "colatitude", "latitude", "uses the colatitude instead of the latitude", _set(latitude=90 - abs(latitude))
+    )
+    if abs(latitude) not in (0.0, 90.0):
+        text = "takes the vertical part of Ω to be all of Ω, without the sine of the latitude"
+        yield Cause("no_sine", "latitude", text, _set(coriolis_latitude=math.copysign(90.0, latitude)))
+        if right.flattening:
+            phi = math.radians(latitude)
+            squeeze = (1 - right.flattening) ** 2
+            geocentric = math.degrees(math.atan2(squeeze * math.sin(phi), math.cos(phi)))
+            text = "uses the geocentric latitude instead of the geodetic one"
+            yield Cause("geocentric", "latitude", text, _set(latitude=geocentric))
+            text = "uses the geocentric latitude in the Coriolis force"
+            yield Cause("geocentric", "latitude", text, _set(coriolis_latitude=geocentric), 0.4)
+        yield Cause("site.latitude", "latitude", "takes site.latitude to be {value}", lambda p: p, FITTED, "latitude")
+
+
+def _everywhere(program: Program, degrees: float) -> Program:
+    """Use a latitude of any size for all: it is folded to the domain of a latitude, its cosine's sign in the turn."""
+    return replace(program, latitude=math.degrees(math.asin(math.sin(math.radians(degrees)))), coriolis_latitude=degrees)
+
+
+def _release(right: Program) -> Iterator[Cause]:
+    text = "releases the bob at rest relative to the stars, not to the ground"
+    yield Cause("inertial_rest", "release", text, _set(released=1.0), stage="release")
+    text = "releases the bob with the velocity of rest relative to the stars, but of the wrong sign"
+    yield Cause("inertial_rest_sign", "release", text, _set(released=-1.0), 0.4, stage="release")
+    text = "releases the bob with twice the velocity of rest relative to the stars"
+    yield Cause("release_at_twice", "release", text, _set(released=2.0), 0.4, stage="release")
+    text = "releases the bob with twice the velocity of rest relative to the stars, of the wrong sign"
+    yield Cause("release_at_twice", "release", text, _set(released=-2.0), 0.4, stage="release")
+
+
+def _inputs(right: Program) -> Iterator[Cause]:
+    if right.vx or right.vy:
+        yield Cause("at_rest", "release", "releases the bob at rest", _set(vx=0.0, vy=0.0), stage="release")
+    if right.x != right.y:
+        swapped = _set(x=right.y, y=right.x, vx=right.vy, vy=right.vx)
+        yield Cause("swapped", "start", "swaps x and y of the release", swapped, stage="release")
+    if right.drag:
+        yield Cause("no_drag", "drag", "leaves out the drag", _set(drag=0.0))
+        yield Cause("drag_half", "drag", "takes half the drag", _set(drag=right.drag / 2), 0.4)
+        yield Cause("drag_double", "drag", "takes twice the drag", _set(drag=2 * right.drag), 0.4)
+    for name, word in (("g", "site.gravity"), ("length", "pendulum.length"), ("drag", "pendulum.drag")):
+        yield Cause(word, word, f"takes {word} to be {{value}}", lambda p: p, FITTED, name)
+    for name in ("x", "y", "vx", "vy"):
+        word = f"release.{name}"
+        group = "start" if name in ("x", "y") else "release"
+        yield Cause(word, f"{group}.{name}", f"takes {word} to be {{value}}", lambda p: p, FITTED, name, "release")
+
+
+def _integrators() -> Iterator[Cause]:
+    for method in METHODS:
+        text = f"integrates with {method.title} at a step of about {{value}}"
+        word = "integrator_" + method.id
+        yield Cause(word, "integrator", text, _set(method=method), 0.5, "step", "integrator")

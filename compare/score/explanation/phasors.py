@@ -1,0 +1,170 @@
+"""Two phasors: the motion of every linear two-dimensional model, fitted to a file without knowing any truth.
+
+Whatever its rotation, sign, day, release, drag, even its Euler step, such a model moves as
+
+    x + iy = A exp(iγ1 t) + B exp(iγ2 t) + C,
+
+with w'' = -(drag + 2iβ) w' - ω² (w - C), so that γ1 + γ2 = -2β + i drag and γ1 γ2 = -ω². Linear prediction gives a first
+γ1, γ2, Gauss-Newton the best ones; A, B, C are linear.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from reference.precision import Array
+
+ComplexArray = npt.NDArray[np.complex128]
+STEPS = 30  # Gauss-Newton steps at most
+SETTLED = 1e-15  # change of the phase at the last row, in radians, below which the fit is settled
+
+
+@dataclass(frozen=True)
+class Phasors:
+    """Two phasors and a centre, in the unit of the rows; γ in rad/s, with a positive imaginary part for decay."""
+
+    rates: tuple[complex, complex]
+    amplitudes: tuple[complex, complex]
+    centre: complex
+
+    @classmethod
+    def of(cls, beta: float, square: float, drag: float, centre: complex, start: complex, speed: complex) -> Phasors:
+        """Return the motion of w'' = -(drag + 2iβ) w' - ω² (w - centre) with w = start, w' = speed at t = 0."""
+        half = complex(-beta, drag / 2)
+        root = np.sqrt(half * half + square)
+        first, second = complex(half + root), complex(half - root)
+        about = start - centre
+        a = (speed / 1j - second * about) / (first - second)
+        return cls((first, second), (complex(a), complex(about - a)), centre)
+
+    def at(self, times: Array) -> ComplexArray:
+        """Return x + iy at the times."""
+        (first, second), (a, b) = self.rates, self.amplitudes
+        with np.errstate(over="ignore", invalid="ignore"):
+            motion: ComplexArray = a * np.exp(1j * first * times) + b * np.exp(1j * second * times) + self.centre
+        return motion
+
+    @property
+    def beta(self) -> float:
+        """The vertical rotation rate β in rad/s: Ω sin(latitude) of a right program."""
+        return -(self.rates[0] + self.rates[1]).real / 2
+
+    @property
+    def drag(self) -> float:
+        """The rate at which velocities decay in 1/s."""
+        return (self.rates[0] + self.rates[1]).imag
+
+    @property
+    def square(self) -> complex:
+        """ω², the restoring force per displacement in 1/s²; complex where no model with drag and rotation is behind."""
+        return -self.rates[0] * self.rates[1]
+
+    @property
+    def start(self) -> complex:
+        """Position x + iy at t = 0."""
+        return self.amplitudes[0] + self.amplitudes[1] + self.centre
+
+    @property
+    def speed(self) -> complex:
+        """Velocity at t = 0."""
+        return 1j * (self.rates[0] * self.amplitudes[0] + self.rates[1] * self.amplitudes[1])
+
+
+def fit_phasors(times: Array, rows: ComplexArray, near: float) -> tuple[Phasors, float] | None:
+    """Return the best two phasors and the root mean square of what they leave, or None if there are none.
+
+    Args:
+        times: increasing, in s, shape (rows,).
+        rows: x + iy there.
+        near: the angular frequency of the scene in rad/s, which tells aliases apart where rows are sparse.
+    """
+    if len(times) < 8:
+        return None
+    best: tuple[Phasors, float] | None = None
+    for guess in _guesses(times, rows, near):
+        found = _refined(times, rows, guess)
+        if found is not None and (best is None or _better(found, best, near * near, float(np.abs(rows).max()))):
+            best = found
+    return best
+
+
+def _better(one: tuple[Phasors, float], other: tuple[Phasors, float], square: float, size: float) -> bool:
+    """Return whether a fit is better; of two aliases that fit as well, the one nearer to the scene's ω²."""
+    (found, rest), (before, least) = one, other
+    if max(rest, least) < 1e-9 * size or 0.5 < rest / least < 2:
+        return abs(found.square - square) < 0.99 * abs(before.square - square)
+    return rest < least
+
+
+def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[complex, complex]]:
+    """Return first values of γ1, γ2: from linear prediction where rows are evenly spaced, and the scene's own."""
+    guesses = [(complex(near), complex(-near))]
+    step = (times[-1] - times[0]) / (len(times) - 1)
+    even = np.abs(np.diff(times) - step) < 1e-6 * step
+    run = _longest(even)
+    if run[1] - run[0] >= 8:
+        part, step = rows[run[0] : run[1] + 1], float(np.median(np.diff(times[run[0] : run[1] + 1])))
+        for skip in (1, max(1, int(0.7 / (near * step))) if near else 1):
+            one, two, three = part[: -2 * skip], part[skip:-skip], part[2 * skip :]
+            if len(one) < 6:
+                continue
+            matrix = np.column_stack([two, one, np.ones_like(one)])
+            p, q, _ = np.linalg.lstsq(matrix, three, rcond=None)[0]
+            roots = np.roots([1, -p, -q])
+            if (np.abs(roots) == 0).any() or not np.isfinite(roots).all():
+                continue
+            gammas = np.log(roots.astype(complex)) / (1j * step * skip)
+            turn = 2 * math.pi / (step * skip)
+            for gamma_first in (0, 1):
+                first, second = gammas[gamma_first], gammas[1 - gamma_first]
+                first += turn * round((near - first.real) / turn)
+                second += turn * round((-near - second.real) / turn)
+                guesses.insert(0, (complex(first), complex(second)))
+    return guesses
+
+
+def _longest(even: npt.NDArray[np.bool_]) -> tuple[int, int]:
+    """Return the first and last row of the longest evenly spaced part."""
+    ends = np.flatnonzero(np.concatenate([[True], ~even, [True]]))
+    i = int(np.argmax(np.diff(ends)))
+    return int(ends[i]), int(ends[i + 1] - 1)
+
+
+def _refined(times: Array, rows: ComplexArray, guess: tuple[complex, complex]) -> tuple[Phasors, float] | None:
+    """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
+    rates = np.array(guess)
+    span = times[-1] - times[0]
+    result: tuple[Phasors, float] | None = None
+    windows = sorted({max(12, int(np.searchsorted(times, times[0] + span * 4.0**-k)) + 1) for k in range(6)})
+    for count in windows:
+        t, w = times[:count], rows[:count]
+        if len(t) < 8:
+            continue
+        last = math.inf
+        for _ in range(STEPS):
+            with np.errstate(over="ignore", invalid="ignore"):
+                basis = np.column_stack([np.exp(1j * rates[0] * t), np.exp(1j * rates[1] * t), np.ones_like(t)])
+            if not np.isfinite(basis).all() or np.abs(basis).max() > 1e8:
+                return result
+            linear = np.linalg.lstsq(basis, w, rcond=None)[0]
+            left = w - basis @ linear
+            slopes = np.column_stack([1j * t * basis[:, 0] * linear[0], 1j * t * basis[:, 1] * linear[1], basis])
+            scale = np.linalg.norm(slopes, axis=0)
+            scale[scale == 0] = 1
+            change = np.linalg.lstsq(slopes / scale, left, rcond=1e-14)[0] / scale
+            size = float(np.linalg.norm(left))
+            result = (
+                Phasors((complex(rates[0]), complex(rates[1])), (linear[0], linear[1]), complex(linear[2])),
+                size / math.sqrt(len(t)),
+            )
+            if size >= last * (1 - 1e-3) and size > 0.5 * last:
+                break
+            last = size
+            rates = rates + change[:2]
+            if np.abs(change[:2]).max() * t[-1] < SETTLED:
+                break
+    return result

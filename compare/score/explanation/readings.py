@@ -1,0 +1,156 @@
+"""Read a fit: find the fewest causes whose program has the numbers that the file shows.
+
+Every combination of causes is a point in the space of `theta`; its distance from the fitted point, weighed by how the
+rows answer to each number, is the root mean square in m that it would leave. The search keeps the best combinations of
+one, two, … causes. A cause counts only if it lowers what is left by its cost, so that of two that explain as much the
+one that contains the other loses.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from reference.precision import Array
+
+from .causes import Cause
+from .pendulum import Fit
+from .programs import Program
+
+BEAM = 30  # combinations that are kept of each size
+MOST = 5  # causes at most
+NEWTON = 6  # steps that fit the free numbers of a combination
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A combination of causes: the program with them, what it would leave in m, and its score (less is better)."""
+
+    causes: tuple[Cause, ...]
+    program: Program
+    rest: float
+    score: float
+
+    def value(self, cause: Cause) -> float:
+        """Return the fitted number of a cause."""
+        return float(getattr(self.program, cause.free))
+
+
+@dataclass(frozen=True)
+class Reader:
+    """Holds combinations of causes against a fit.
+
+    Attributes:
+        right: what a right program computes with, with the family's kind.
+        fit: the free fit of that family.
+        scales: size of each number of theta that matters, for the fits of numbers.
+        floor: root mean square in m below which nothing more is asked.
+    """
+
+    right: Program
+    fit: Fit
+    floor: float
+
+    def readings(self, known: Sequence[Cause]) -> list[Reading]:
+        """Return the best combinations, the best first."""
+        nothing = self._judged((), self.right)
+        best, beam = [nothing], [nothing]
+        seen: set[frozenset[int]] = set()
+        least = nothing.score
+        for _ in range(MOST):
+            longer: list[Reading] = []
+            for reading in beam:
+                groups = {cause.group for cause in reading.causes}
+                cost = sum(cause.cost for cause in reading.causes)
+                for cause in known:
+                    key = frozenset((*map(id, reading.causes), id(cause)))
+                    if cost + cause.cost > least or cause.group in groups or key in seen:
+                        continue
+                    seen.add(key)
+                    found = None if _clash(reading.causes, cause) else self._with(reading, cause)
+                    if found is not None:
+                        longer.append(found)
+                        least = min(least, found.score)
+            longer.sort(key=lambda one: one.score)
+            beam = longer[:BEAM]
+            best += beam
+            if not beam:
+                break
+        return sorted(best, key=lambda one: one.score)
+
+    def _with(self, reading: Reading, cause: Cause) -> Reading | None:
+        program = cause.change(reading.program)
+        if not program.sensible:
+            return None
+        together = (*reading.causes, cause)
+        free = [one.free for one in together if one.free]
+        if not free:
+            return self._judged(together, program)
+        if len(free) > 3:
+            return None
+        if program.method is not None and not program.step:
+            shown, own = self.fit.theta, reading.program.theta()
+            step = program.method.first_step(-own[5], -shown[5], own[6], shown[6])
+            if not step > 0:
+                return None
+            program = program.with_input("step", step)
+        return self._fitted(together, program, free)
+
+    def _fitted(self, together: tuple[Cause, ...], program: Program, free: list[str]) -> Reading | None:
+        """Fit the free numbers by Gauss-Newton; None if they leave their domains."""
+        last = math.inf
+        for _ in range(NEWTON):
+            off = self._off(program)
+            size = float(np.linalg.norm(off))
+            if size > 0.99 * last or not math.isfinite(size):
+                break
+            last = size
+            slopes, scales = [], []
+            for name in free:
+                value = getattr(program, name)
+                nudge = 1e-6 * max(abs(value), _SCALES.get(name, 1e-3))
+                slopes.append((self._off(program.with_input(name, value + nudge)) - off) / nudge)
+                scales.append(nudge)
+            matrix = np.column_stack(slopes) * np.array(scales)
+            if not np.isfinite(matrix).all():
+                return None
+            change = np.linalg.lstsq(matrix, -off, rcond=1e-12)[0] * np.array(scales)
+            for name, shift in zip(free, change, strict=True):
+                program = program.with_input(name, float(getattr(program, name) + shift))
+            if not program.sensible:
+                return None
+        return self._judged(together, program)
+
+    def _judged(self, together: tuple[Cause, ...], program: Program) -> Reading:
+        off = float(np.linalg.norm(self._off(program)))
+        rest = math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf
+        score = math.log10(max(rest, self.floor) / self.floor) if math.isfinite(rest) else math.inf
+        return Reading(together, program, rest, score + sum(cause.cost for cause in together))
+
+    def _off(self, program: Program) -> Array:
+        """Return the vector whose length is the root mean square, in m, between a program and the fit."""
+        with np.errstate(all="ignore"):
+            change = self.fit.theta - program.theta()
+        found: Array = self.fit.slopes @ change[list(self.fit.free)]
+        return found
+
+
+_SCALES = {"g": 1.0, "length": 1.0, "latitude": 10.0, "rate": 7e-5, "drag": 1e-5, "vx": 1e-3, "vy": 1e-3, "late": 1.0}
+
+
+def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
+    """Return whether a cause would undo another: no rotation leaves nothing to be said of the Coriolis force."""
+    words = {one.id for one in together} | {cause.id}
+    if "no_rotation" in words or "no_coriolis" in words:
+        return bool({one.group for one in (*together, cause)} & {"latitude", "frame"}) or (
+            "no_rotation" in words and bool({"coriolis"} & {one.group for one in (*together, cause)})
+        )
+    return False
+
+
+def with_kind(program: Program, kind: str) -> Program:
+    """Return the program as a member of a family."""
+    return replace(program, kind=kind)
