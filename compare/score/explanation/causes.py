@@ -60,6 +60,7 @@ def causes(right: Program, kind: str) -> Iterator[Cause]:
         yield from _release(right)
     yield from _latitude(right)
     yield from _inputs(right)
+    yield Cause("late", "clock", "writes its rows {value} late", lambda p: p, FITTED, "late", "clock")
     yield from _integrators()
 
 
@@ -95,6 +96,12 @@ def _gravity(right: Program) -> Iterator[Cause]:
     if right.radius:
         text = "has gravity fall off with the distance from the Earth's centre and point there (1/r²)"
         yield Cause("point_mass", "point_mass", text, _set(point_mass=1.0), stage="gravity")
+
+        def both(program: Program) -> Program:
+            """To first order in l/R, for small swings: 2 l/R for the fall-off and l/R for the direction."""
+            return replace(program, g=program.g * (1 + 3 * program.length / program.radius))
+
+        yield Cause("point_mass", "point_mass", text, both, stage="gravity")
     if right.flattening and right.rate and right.gravity_reading == "ellipsoid":
         text = "treats the Earth as a sphere of the equatorial radius"
         yield Cause("sphere", "earth", text, _set(flattening=0.0), stage="gravity")

@@ -10,6 +10,7 @@ import itertools
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
@@ -21,7 +22,8 @@ LENGTHS = (
     (1 / 0.0254, "inches"),
 )  # fmt: skip
 TIMES = ((60.0, "minutes"), (3600.0, "hours"), (1e-3, "milliseconds"), (86400.0, "days"))
-EVERYTHING = 17  # significant digits of a double
+SHIFTS = 3  # rows by which a clock may be off
+PARTS = 4  # of a row: programs that write every second or fourth step are off by that
 
 
 @dataclass(frozen=True)
@@ -58,7 +60,7 @@ def made_right(times: Array, columns: dict[str, Array], release: Array, length: 
     Args:
         times: as in the file.
         columns: x, y and perhaps z as in the file.
-        release: x, y, z of the exact release in m.
+        release: x, y, z, vx, vy, vz of the exact release in m and m/s.
         length: of the cord in m.
         frequency: of the scene's swing in rad/s.
     """
@@ -69,7 +71,8 @@ def made_right(times: Array, columns: dict[str, Array], release: Array, length: 
     rows = _heights(rows, release, length)
     rows = _axes(rows, release, length)
     rows = _clock(rows, release)
-    return _unit_of_time(rows, frequency)
+    rows = _unit_of_time(rows, frequency)
+    return rows if rows.starts else _shifted(rows, release, frequency, length)
 
 
 def _is_release(row: Array, release: Array, noise: float) -> bool:
@@ -268,3 +271,46 @@ def _unit_of_time(rows: Rows, frequency: float) -> Rows:
             convention = Convention("unit_of_time", f"counts time in {unit}", size)
             return replace(rows, times=rows.times * scale, conventions=(*rows.conventions, convention))
     return rows
+
+
+def _shifted(rows: Rows, release: Array, frequency: float, length: float) -> Rows:
+    """Find a clock that is off, the rows in order or reversed: the fitted motion passes the release some rows away."""
+    from .phasors import as_angles, fit_phasors
+
+    if not frequency or len(rows.times) < 12:
+        return rows
+    goal = as_angles(np.array([complex(release[0], release[1])]), length)[0]
+    moving = complex(release[3], release[4])
+    span, spacing = float(rows.times[-1]), float(np.median(np.diff(rows.times)))
+    found: list[tuple[float, int, bool]] = []
+    for backwards in (False, True):
+        positions = rows.positions[::-1] if backwards else rows.positions
+        times = span - rows.times[::-1] if backwards else rows.times
+        fitted = fit_phasors(times, as_angles(positions[:, :2] @ np.array([1, 1j]), length), frequency)
+        if fitted is None or fitted[1] > 1e-2 * abs(goal):
+            continue
+        phasors = fitted[0]
+        for many in range(-SHIFTS * PARTS, SHIFTS * PARTS + 1):
+            at = phasors.later(many * spacing / PARTS)
+            off = abs(at.start - goal) + abs(at.speed - moving) / frequency
+            found.append((float(off), many, backwards))
+    found.sort(key=lambda one: one[0] + 1e-9 * abs(goal) * abs(one[1]))
+    if not found or found[0][0] > 2e-2 * abs(goal):
+        return rows
+    _, many, backwards = found[0]
+    shift = many * spacing / PARTS
+    conventions = list(rows.conventions)
+    positions, times = rows.positions, rows.times
+    if backwards:
+        positions, times = positions[::-1].copy(), span - times[::-1]
+        size = _apart(positions, rows.positions)
+        conventions.append(Convention("rows_reversed", "has its rows in reverse order: the release stands last", size))
+    if many:
+        count = "one row" if abs(many) == PARTS else f"{Fraction(abs(many), PARTS)} rows"
+        word = "late" if many < 0 else "early"
+        text = f"has its clock {'ahead of' if many > 0 else 'behind'} its rows by {count} ({abs(shift):.6g} s)"
+        size = abs(goal) * min(2.0, frequency * abs(shift))
+        conventions.append(Convention(f"rows_{word}", text, float(size)))
+    times = times - shift
+    kept = times >= 0
+    return replace(rows, times=times[kept], positions=positions[kept], conventions=tuple(conventions), starts=True)

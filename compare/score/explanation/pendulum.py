@@ -22,6 +22,7 @@ NAMES = (
     "point_mass",
 )  # fmt: skip
 STEPS = 8  # Gauss-Newton steps in one window at most
+HOPELESS = 0.05  # of the amplitude: what leaves more in a window is not followed to the next
 WINDOWS = 8.0  # each window is so many times longer than the one before
 
 
@@ -33,11 +34,13 @@ class Pendulum:
         model: runs it.
         radius: distance to the centre of a point mass, for its gradient, in m.
         square: xx, yy, yz, zz of the centrifugal force's gradient with gradient = 1, in 1/s².
+        fastest: sum of rates in 1/s beyond which nothing is run.
     """
 
     model: Variants
     radius: float
     square: tuple[float, float, float, float]
+    fastest: float = math.inf
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x, y (and z) in m, shape (times, columns); NaN where no such motion exists."""
@@ -54,7 +57,8 @@ class Pendulum:
             drag=drag,
         )
         below = length * length - x * x - y * y
-        if not below > 0 or not np.isfinite(theta).all():
+        rate = float(np.abs(turn).max()) + abs(drag) + math.sqrt(float(np.abs(pull).max()))
+        if not below > 0 or not np.isfinite(theta).all() or rate > self.fastest:
             return np.full((len(times), columns), np.nan)
         z = -math.sqrt(below)
         start = np.array([x, y, z, vx, vy, -(x * vx + y * vy) / z]) / length
@@ -136,6 +140,7 @@ def fit_pendulum(
             change = np.zeros_like(theta)
             change[list(free)] = step * scales[list(free)]
             theta = theta + change
-        assert slopes is not None
+        if slopes is None or last > HOPELESS * float(np.abs(seen[:, :2]).max()):
+            return result
         result = Fit(theta, last, free, slopes / scales[list(free)] / math.sqrt(count))
     return result

@@ -48,6 +48,11 @@ class Phasors:
             motion: ComplexArray = a * np.exp(1j * first * times) + b * np.exp(1j * second * times) + self.centre
         return motion
 
+    def later(self, time: float) -> Phasors:
+        """Return the same motion with its clock started at a time in s."""
+        turned = tuple(complex(a * np.exp(1j * g * time)) for a, g in zip(self.amplitudes, self.rates, strict=True))
+        return Phasors(self.rates, (turned[0], turned[1]), self.centre)
+
     @property
     def beta(self) -> float:
         """The vertical rotation rate β in rad/s: Ω sin(latitude) of a right program."""
@@ -98,6 +103,14 @@ def _better(one: tuple[Phasors, float], other: tuple[Phasors, float], square: fl
     if max(rest, least) < 1e-9 * size or 0.5 < rest / least < 2:
         return abs(found.square - square) < 0.99 * abs(before.square - square)
     return rest < least
+
+
+def as_angles(plane: ComplexArray, length: float) -> ComplexArray:
+    """Return x + iy with the distance from the vertical replaced by the angle of the cord times l."""
+    radius = np.abs(plane)
+    safe = np.where(radius > 0, radius, 1.0)
+    turned: ComplexArray = plane * np.where(radius > 0, length * np.arcsin(np.clip(safe / length, 0, 1)) / safe, 1.0)
+    return turned
 
 
 def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[complex, complex]]:

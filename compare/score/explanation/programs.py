@@ -34,7 +34,6 @@ class Program:
         kind: sphere; linear, whose restoring force is that of small swings; or angle, linear in the angle.
         late: time in s by which the rows are late.
         method: its integrator, with the `step` in s.
-        more_square, more_drag: what an integrator of unknown kind adds to ω² (1/s²) and to the drag (1/s).
         nominal_rate: the scene's rotation rate, of which the gradient in theta is a part.
     """
 
@@ -61,8 +60,6 @@ class Program:
     late: float = 0.0
     method: Method | None = None
     step: float = 0.0
-    more_square: float = 0.0
-    more_drag: float = 0.0
     nominal_rate: float = 0.0
 
     @classmethod
@@ -108,8 +105,8 @@ class Program:
         north, up = self.rate * math.cos(phi), self.rate * math.sin(phi)
         return self.rate**2, up * up, -north * up, north * north
 
-    def theta(self) -> Array:
-        """Return the numbers that the motion depends on, in the order of `pendulum.NAMES`."""
+    def _exact(self) -> Array:
+        """Return theta as an exact integration of the equations has it."""
         phi = math.radians(self.latitude)
         sin, cos = math.sin(phi), math.cos(phi)
         turned = phi if self.coriolis_latitude is None else math.radians(self.coriolis_latitude)
@@ -131,54 +128,49 @@ class Program:
             north = 0.0
         a, b, c, d = self.frame
         hand = a * d - b * c
-        theta = np.array(
+        return np.array(
             [
                 hand * b * north, hand * d * north, hand * up,
                 b * pull_y / self.length, d * pull_y / self.length, pull_z / self.length,
-                self.drag, self.x, self.y, vx, vy, self.length, gradient, self.point_mass,
+                self.drag, self.x, self.y, vx, vy, self.length, gradient, self.point_mass * self.g / abs(pull_z or 1.0),
             ]
         )  # fmt: skip
-        if self.method is not None or self.more_square or self.more_drag or self.late or self.turned_plane or self.kind != "sphere":
-            theta = self._as_computed(theta)
-        return theta
 
     def _as_computed(self, theta: Array) -> Array:
         """Return theta as the integrator, the clock and a linear model make of it."""
-        square = -theta[5] - (theta[2] ** 2 if self.turned_plane else 0.0) + self.more_square
+        phasors = self._computed(theta)
+        theta = theta.copy()
+        if self.kind != "sphere" or self.late or self.method is not None:
+            theta[7:11] = phasors.start.real, phasors.start.imag, phasors.speed.real, phasors.speed.imag
+        pull = phasors.centre * phasors.square.real
+        theta[2], theta[6], theta[5] = phasors.beta, phasors.drag, -phasors.square.real
+        theta[3:5] = pull.real, pull.imag
+        return theta
+
+    def _computed(self, theta: Array) -> Phasors:
+        square = -theta[5] - (theta[2] ** 2 if self.turned_plane else 0.0)
         start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
         if self.kind == "angle" and start:
             out = abs(start) / self.length
             start = start * math.asin(min(out, 1.0)) / out
         centre = complex(theta[3], theta[4]) / square if square else 0j
-        phasors = Phasors.of(theta[2], square, theta[6] + self.more_drag, centre, start, speed)
+        phasors = Phasors.of(theta[2], square, theta[6], centre, start, speed)
         if self.method is not None and self.step > 0:
             phasors = self.method.computed(phasors, self.step)
-        theta = theta.copy()
-        if self.late:
-            start, speed = _state_at(phasors, self.late)
-        elif self.method is not None:
-            start, speed = phasors.start, phasors.speed
-        theta[2], theta[6] = phasors.beta, phasors.drag
-        theta[5] = -phasors.square.real
-        theta[3:5] = (phasors.centre * phasors.square.real).real, (phasors.centre * phasors.square.real).imag
-        theta[7:11] = start.real, start.imag, speed.real, speed.imag
-        return theta
+        return phasors.later(self.late) if self.late else phasors
 
-    def phasors(self, theta: Array) -> Phasors:
-        """Return the two phasors of a theta of a linear model."""
-        square = -theta[5]
-        centre = complex(theta[3], theta[4]) / square if square else 0j
-        start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
-        return Phasors.of(theta[2], square, theta[6], centre, start, speed)
+    def phasors(self) -> Phasors:
+        """Return the motion of a linear program; of one that is linear in the angle, the cord's angle times l."""
+        return self._computed(self._exact())
+
+    def theta(self) -> Array:
+        """Return the numbers that the motion depends on, in the order of `pendulum.NAMES`."""
+        theta = self._exact()
+        if self.method is not None or self.late or self.turned_plane or self.kind != "sphere":
+            theta = self._as_computed(theta)
+        return theta
 
     def with_input(self, name: str, value: float) -> Program:
         """Return the program with one number replaced."""
         return replace(self, **{name: value})  # type: ignore[arg-type]
 
-
-def _state_at(phasors: Phasors, late: float) -> tuple[complex, complex]:
-    """Return position and velocity of two phasors at a time."""
-    turned = [a * np.exp(1j * g * late) for a, g in zip(phasors.amplitudes, phasors.rates, strict=True)]
-    position = turned[0] + turned[1] + phasors.centre
-    speed = 1j * (turned[0] * phasors.rates[0] + turned[1] * phasors.rates[1])
-    return complex(position), complex(speed)

@@ -22,6 +22,8 @@ from .programs import Program
 
 BEAM = 30  # combinations that are kept of each size
 MOST = 5  # causes at most
+SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
+PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error tells none
 NEWTON = 6  # steps that fit the free numbers of a combination
 
 
@@ -69,7 +71,8 @@ class Reader:
                     key = frozenset((*map(id, reading.causes), id(cause)))
                     if cost + cause.cost > least or cause.group in groups or key in seen:
                         continue
-                    seen.add(key)
+                    if cause.stage != "integrator":  # whose first step depends on the program before it
+                        seen.add(key)
                     found = None if _clash(reading.causes, cause) else self._with(reading, cause)
                     if found is not None:
                         longer.append(found)
@@ -79,7 +82,24 @@ class Reader:
             best += beam
             if not beam:
                 break
-        return sorted(best, key=lambda one: one.score)
+        best.sort(key=lambda one: one.score)
+        return [self._exactly_named(best[0], known), *best[1:]]
+
+    def _exactly_named(self, reading: Reading, known: Sequence[Cause]) -> Reading:
+        """Put a named cause in place of a fitted number that is as good as equal to its own: that is no accident."""
+        for cause in reading.causes:
+            if not cause.free or cause.stage == "integrator":
+                continue
+            value = reading.value(cause)
+            for other in known:
+                if other.free or other.group != cause.group:
+                    continue
+                program = other.change(reading.program)
+                exact = float(getattr(program, cause.free))
+                if exact != value and abs(exact - value) <= SAME * abs(value):
+                    together = tuple(other if one is cause else one for one in reading.causes)
+                    return self._judged(together, program)
+        return reading
 
     def _with(self, reading: Reading, cause: Cause) -> Reading | None:
         program = cause.change(reading.program)
@@ -93,10 +113,10 @@ class Reader:
             return None
         if program.method is not None and not program.step:
             shown, own = self.fit.theta, reading.program.theta()
-            step = program.method.first_step(-own[5], -shown[5], own[6], shown[6])
-            if not step > 0:
-                return None
-            program = program.with_input("step", step)
+            omega = math.sqrt(abs(own[5])) or 1.0
+            guesses = (program.method.first_step(-own[5], -shown[5], own[6], shown[6]), *(q / omega for q in PHASES))
+            tried = [self._judged(together, program.with_input("step", step)) for step in guesses if step > 0]
+            program = min(tried, key=lambda one: one.rest).program
         return self._fitted(together, program, free)
 
     def _fitted(self, together: tuple[Cause, ...], program: Program, free: list[str]) -> Reading | None:
