@@ -21,7 +21,7 @@ from reference.precision import Array
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .score.judge import Score, judge
-from .score.verdict import diagnosis_lines, percent
+from .score.verdict import explanation_lines, percent
 
 
 def assert_agrees(
@@ -103,4 +103,4 @@ def message(result: Score) -> str:
         lines.append(
             f"  largest error {transits.max_error_s:.3e} s, weighted by |ax| {transits.max_conditioned_m:.3e} m"
         )
-    return "\n".join([*lines, *(f"  {line}" for line in diagnosis_lines(result))])
+    return "\n".join([*lines, *(f"  {line}" for line in explanation_lines(result))])

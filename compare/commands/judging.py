@@ -35,7 +35,8 @@ class Judging:
         tolerance: in m; None for the default.
         covers: share of the span that is demanded.
         inputs: reading of the scene's numbers.
-        explain: whether to look for the reason of an error.
+        explain: whether to look for the reasons of an error.
+        as_model: whether agreement as a named model is enough.
     """
 
     naming: Naming
@@ -43,6 +44,7 @@ class Judging:
     covers: float
     inputs: str
     explain: bool
+    as_model: bool
 
     def files(self, scene: Scene, names: Sequence[str], transits: str | None, t_end: float | None) -> list[Outcome]:
         """Judge files, each by itself."""
@@ -122,6 +124,7 @@ class Judging:
                 inputs=self.inputs,
                 t_end=t_end,
                 covers=self.covers,
+                as_model=self.as_model,
                 explain=self.explain,
                 announce=announce,
                 report=show(f"the truth of {scene.id}", float(scene.exact.t_end)),

@@ -151,8 +151,11 @@ def command(
             help=f"Time the program of --run this often after a warm-up (default: {REPEATS}).",
         ),
     ] = None,
+    as_model: Annotated[
+        bool, typer.Option("--as-model", help="Count agreement as a named simplification of the model as agreement.")
+    ] = False,
     no_diagnosis: Annotated[
-        bool, typer.Option("--no-diagnosis", help="Do not look for the reason of an error.")
+        bool, typer.Option("--no-diagnosis", help="Do not look for the reasons of an error.")
     ] = False,
     set_: Assignments = None,
     out: Annotated[
@@ -171,13 +174,16 @@ def command(
 ) -> None:
     """Score a program's output against the truth.
 
-    Exit status 0: agrees, 1: disagrees, 2: cannot be judged; of several candidates, the largest.
+    Exit status 0: agrees, 1: disagrees, or agrees as a simpler model (0 with --as-model), 2: cannot be judged; of
+    several candidates, the largest.
 
     --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
     {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
     {azimuth_rate} {t_end} {grid_step}.
     """
     reading = None if chosen("--inputs", inputs, INPUTS) == "auto" else inputs
+    if no_diagnosis:
+        refuse({"--as-model": as_model}, "together with --no-diagnosis")
     if as_json:
         refuse({"--github": github}, "together with --json")
     if run is None:
@@ -210,7 +216,7 @@ def command(
     from .judging import Judging
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
-    judging = Judging(naming, tolerance, covers or 0.0, inputs, not no_diagnosis)
+    judging = Judging(naming, tolerance, covers or 0.0, inputs, not no_diagnosis, as_model)
     if suite is not None:
         outcomes = judging.suite(suite, out)
     else:

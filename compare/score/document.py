@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
 from typing import Any
 
+from .explanation.findings import Explanation
 from .judge import Score
 
 
@@ -42,7 +42,11 @@ def document(score: Score) -> dict[str, Any]:
         "worst_of_each": {name: worst._asdict() for name, worst in score.worst_of_each.items()},
         "transits": None,
         "reference": {"level": score.golden.manifest.level, "bound_m": errors.bound_m},
-        "conventions": [asdict(one) for one in score.candidate.conventions],
+        "grade": score.grade,
+        "conventions": [{"id": one.id, "text": one.text} for one in score.candidate.conventions],
+        "model": None,
+        "causes": [],
+        "corrected": None,
         "diagnosis": None,
         "notes": list(score.notes),
     }
@@ -60,6 +64,24 @@ def document(score: Score) -> dict[str, Any]:
         }
     if score.timing is not None:
         fields["timing"] = vars(score.timing)
-    if score.diagnosis is not None:
-        fields["diagnosis"] = vars(score.diagnosis)
+    if score.explanation is not None:
+        fields |= _explained(score.explanation, fields["conventions"])
     return fields
+
+
+def _explained(found: Explanation, known: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the keys that an explanation fills."""
+    conventions = [{"id": one.id, "text": f"your file {one.text}", "size_m": one.size_m} for one in found.conventions]
+    causes = [
+        {"id": one.id, "text": f"your program {one.text}", "size_m": one.size_m}
+        | ({} if one.value is None else {"value": one.value, "shift": one.shift, "uncertainty": one.uncertainty})
+        for one in found.causes
+    ]
+    diagnosis = found.diagnosis
+    return {
+        "conventions": [*known, *conventions],
+        "model": None if found.model is None else vars(found.model),
+        "causes": causes,
+        "corrected": {"max_error_m": found.corrected_m} if math.isfinite(found.corrected_m) else None,
+        "diagnosis": None if diagnosis is None else vars(diagnosis),
+    }

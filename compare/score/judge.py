@@ -1,4 +1,4 @@
-"""Judge a candidate against the truth: `judge()` returns a `Score` with errors, verdict and diagnosis.
+"""Judge a candidate against the truth: `judge()` returns a `Score` with errors, verdict and explanation.
 
 >>> from compare import judge
 >>> score = judge("mine.csv", "paris")                                # doctest: +SKIP
@@ -28,8 +28,9 @@ from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..observed.turn_and_delay import SwingErrors
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
-from .diagnosis import Diagnosis, diagnose
 from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
+from .explanation.explain import explain as explained
+from .explanation.findings import Explanation
 from .input_floor import input_floor
 from .transits import TransitErrors, transit_errors
 
@@ -62,10 +63,10 @@ class Score:
         drifts: of h and of |r| - l, if the candidate has the columns.
         transits: errors of its transits, or None.
         timing: run time of the program, or None.
-        diagnosis: the likely reason for the error, or None.
-        looked: whether a diagnosis was looked for.
+        explanation: the likely reasons for the error; None if they were not looked for.
         notes: remarks that a reader ought to know.
         covers: share of the scene's span that was demanded, from 0 to 1.
+        as_model: whether agreement as a named model is enough.
     """
 
     candidate: Candidate
@@ -78,10 +79,10 @@ class Score:
     drifts: dict[str, float]
     transits: TransitErrors | None = None
     timing: Timing | None = None
-    diagnosis: Diagnosis | None = None
-    looked: bool = False
+    explanation: Explanation | None = None
     notes: tuple[str, ...] = ()
     covers: float = 0.0
+    as_model: bool = False
 
     def __repr__(self) -> str:
         return f"Score({self.verdict} with {self.scene.id}: {self.errors.max_m:.2g} m)"
@@ -145,6 +146,20 @@ class Score:
         return "agrees" if self.agrees else "disagrees"
 
     @property
+    def grade(self) -> str:
+        """'agrees', 'agrees as the model …' where it is exact within a named simplification, or 'disagrees'."""
+        model = None if self.explanation is None else self.explanation.model
+        return self.verdict if self.agrees or model is None else f"agrees as the model: {model.text}"
+
+    @property
+    def passes(self) -> bool:
+        """True if it agrees, or agrees as a named model and `as_model` says that this is enough."""
+        if self.agrees:
+            return True
+        modelled = self.explanation is not None and self.explanation.model is not None
+        return self.as_model and modelled and not self.falls_short and self.transits is None
+
+    @property
     def at_bound(self) -> bool:
         """True if the largest error is at or below the reference's own bound."""
         return self.errors.max_m <= self.errors.bound_m
@@ -159,6 +174,7 @@ def judge(
     inputs: str = "auto",
     t_end: float | None = None,
     covers: float = 0.0,
+    as_model: bool = False,
     explain: bool = True,
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
@@ -173,7 +189,8 @@ def judge(
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
         t_end: end of the comparison in s; later rows and transits are ignored, and a note says so.
         covers: share of the scene's span, from 0 to 1, that the rows have to reach for it to agree.
-        explain: whether to look for the reason if a position is off.
+        as_model: whether agreement as a named model is enough for it to pass.
+        explain: whether to look for the reasons if a position is off.
         announce: called with a message before the scene is solved, which takes long.
         report: called with the simulated time reached, in s, while the scene is solved.
 
@@ -220,9 +237,10 @@ def judge(
         transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
         notes=candidate.notes + ((unjudged,) if unjudged else ()),
         covers=covers,
+        as_model=as_model,
     )
     if explain and result.off_path and candidate.positions and result.covered:
-        return replace(result, diagnosis=diagnose(candidate, errors, problem), looked=True)
+        return replace(result, explanation=explained(candidate.t, candidate.columns, problem, result.allowed_m))
     return result
 
 

@@ -14,7 +14,7 @@ NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at m
 def lines(score: Score) -> Iterator[str]:
     """Yield the verdict line by line."""
     errors = score.errors
-    yield f"{score.candidate.name} {score.verdict} with {score.scene.id} ({_span(score)})"
+    yield f"{score.candidate.name} {_verdict(score)} ({_span(score)})"
     if not score.covered:
         yield from _row("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
     elif score.falls_short:
@@ -43,19 +43,42 @@ def lines(score: Score) -> Iterator[str]:
         yield from _row("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
     yield from _row("inputs read as", score.scene.inputs, score.why_inputs)
     yield from _row("reference", f"{score.golden.manifest.level}", f"within {errors.bound_m:.2g} m at these times")
-    yield from diagnosis_lines(score)
+    yield from explanation_lines(score)
     for one in score.candidate.conventions:
         yield f"Reading: {one.text}."
     for note in score.notes:
         yield f"Note: {note}."
 
 
-def diagnosis_lines(score: Score) -> Iterator[str]:
-    """Yield what is known of the reason for the error, if it was looked for."""
-    if score.diagnosis is not None:
-        yield score.diagnosis.text
-    elif score.looked:
-        yield "No single mistake known to foucault explains 99 % of the error."
+def _verdict(score: Score) -> str:
+    if score.grade == score.verdict:
+        return f"{score.verdict} with {score.scene.id}"
+    assert score.explanation is not None and score.explanation.model is not None
+    return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}"
+
+
+def explanation_lines(score: Score) -> Iterator[str]:
+    """Yield what is known of the reasons for the error, if they were looked for."""
+    found = score.explanation
+    if found is None:
+        return
+    for convention in found.conventions:
+        yield f"Your file {convention.text}."
+    if found.model is not None:
+        yield (
+            f"As that model it is exact to {found.model.exact_to_m:.2g} m; "
+            f"against the full Lagrangian it is {found.model.costs_m:.3g} m off:"
+        )
+    elif found.causes:
+        yield "It seems that your program, most fundamental first,"
+    for cause in found.causes:
+        yield f"- {cause.text}: {cause.size_m:.3g} m"
+    if found.slip:
+        yield found.slip
+    if found.causes or found.conventions:
+        yield f"With {'this' if len(found.causes) == 1 else 'all this'} put right, {found.corrected_m:.2g} m are left."
+    elif not found.slip:
+        yield "No mistake known to foucault explains the error."
 
 
 def _row(name: str, value: str, remark: str = "") -> Iterator[str]:

@@ -35,8 +35,10 @@ class Outcome:
 
     @property
     def verdict(self) -> str:
-        """'agrees', 'disagrees' or 'refused'."""
-        return REFUSED if self.score is None else self.score.verdict
+        """'agrees' (as a model too, where that is enough), 'disagrees' or 'refused'."""
+        if self.score is None:
+            return REFUSED
+        return "agrees" if self.score.passes else self.score.verdict
 
     @property
     def exit_status(self) -> int:

@@ -126,10 +126,10 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
         yield rate("solar_day", text, sign * solar)
     if natural:
         for value in ROUNDED_RATES:
-            if 1e-9 < abs(value / size - 1):
+            if abs(value / size - 1) > 1e-9:
                 yield rate("rounded_rate", f"rounds the rotation rate to {value:g} rad/s", sign * value, 0.4)
         for day in SIDEREAL_DAYS:
-            if 1e-9 < abs(2 * math.pi / day / size - 1):
+            if abs(2 * math.pi / day / size - 1) > 1e-9:
                 text = f"turns the Earth once in {day:.10g} s"
                 yield rate("sidereal_day", text, sign * 2 * math.pi / day, 0.4)
         for hours in (24.0, 23.9345, 23.93447):
@@ -205,7 +205,9 @@ def _latitude(right: Program) -> Iterator[Cause]:
 
 def _everywhere(program: Program, degrees: float) -> Program:
     """Use a latitude of any size for all: it is folded to the domain of a latitude, its cosine's sign in the turn."""
-    return replace(program, latitude=math.degrees(math.asin(math.sin(math.radians(degrees)))), coriolis_latitude=degrees)
+    return replace(
+        program, latitude=math.degrees(math.asin(math.sin(math.radians(degrees)))), coriolis_latitude=degrees
+    )
 
 
 def _release(right: Program) -> Iterator[Cause]:
@@ -241,4 +243,4 @@ def _integrators() -> Iterator[Cause]:
     for method in METHODS:
         text = f"integrates with {method.title} at a step of about {{value}}"
         word = "integrator_" + method.id
-        yield Cause(word, "integrator", text, _set(method=method), 0.5, "step", "integrator")
+        yield Cause(word, "integrator", text, _set(method=method), FITTED, "step", "integrator")

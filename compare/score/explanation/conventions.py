@@ -54,7 +54,9 @@ class Rows:
     starts: bool = True
 
 
-def made_right(times: Array, columns: dict[str, Array], release: Array, length: float, frequency: float) -> Rows:
+def made_right(
+    times: Array, columns: dict[str, Array], release: Array, length: float, frequency: float, rename: bool = True
+) -> Rows:
     """Return the rows in the scene's conventions.
 
     Args:
@@ -63,13 +65,14 @@ def made_right(times: Array, columns: dict[str, Array], release: Array, length: 
         release: x, y, z, vx, vy, vz of the exact release in m and m/s.
         length: of the cord in m.
         frequency: of the scene's swing in rad/s.
+        rename: whether the horizontal axes may have each other's names, or point the other way.
     """
     names = [name for name in "xyz" if name in columns]
     positions = np.column_stack([columns[name] for name in names])
     noise, found = _digits(positions)
     rows = Rows(times, positions, noise, tuple(found))
     rows = _heights(rows, release, length)
-    rows = _axes(rows, release, length)
+    rows = _axes(rows, release, length, rename)
     rows = _clock(rows, release)
     rows = _unit_of_time(rows, frequency)
     return rows if rows.starts else _shifted(rows, release, frequency, length)
@@ -167,7 +170,7 @@ def _without_height(rows: Rows, flat: bool) -> Rows:
     return replace(rows, positions=np.ascontiguousarray(rows.positions[:, :2]), conventions=found)
 
 
-def _axes(rows: Rows, release: Array, length: float) -> Rows:
+def _axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     """Find the unit of length and the names of the horizontal axes that make row 0 the release."""
     row = rows.positions[0]
     if _is_release(row, release, rows.noise):
@@ -178,6 +181,8 @@ def _axes(rows: Rows, release: Array, length: float) -> Rows:
     scales += [(1 / length, "is in cord lengths (x/l)")]
     for scale, text in scales:
         for order, signs in itertools.product(((0, 1), (1, 0)), ((1, 1), (-1, 1), (1, -1), (-1, -1))):
+            if not rename and (order, signs) != ((0, 1), (1, 1)):
+                continue
             plane = rows.positions[:, order] / scale * np.array(signs)
             if not _is_release(plane[0], release, rows.noise / scale):
                 continue
@@ -203,7 +208,9 @@ def _axes(rows: Rows, release: Array, length: float) -> Rows:
                     plane = length * theta * np.where(radius > 0, np.sin(radius) / safe, 1.0)[:, None]
                 else:
                     plane = length * np.sin(theta)
-                found = [Convention("angles", f"gives x and y as angles of the cord in {unit}", float(np.abs(row).max()))]
+                found = [
+                    Convention("angles", f"gives x and y as angles of the cord in {unit}", float(np.abs(row).max()))
+                ]
                 noise = rows.noise / size * length
                 return replace(rows, positions=plane, noise=noise, conventions=(*rows.conventions, *found))
     return replace(rows, starts=False)
@@ -241,9 +248,7 @@ def _clock(rows: Rows, release: Array) -> Rows:
         found = Convention("rows_reversed", "has its rows in reverse order: the release stands last")
         right = rows.positions[::-1].copy()
         found = replace(found, size_m=_apart(right, rows.positions))
-        return replace(
-            rows, times=times, positions=right, conventions=(*rows.conventions, found), starts=True
-        )
+        return replace(rows, times=times, positions=right, conventions=(*rows.conventions, found), starts=True)
     if first and rows.times[0] > 0:
         text = f"starts its clock at {rows.times[0]:.10g} s and not at 0"
         found = Convention("clock_offset", text, float(np.hypot(*release[:2])))

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from reference import Scene
+from reference import FoucaultError, Scene
 from reference.engines.variants import Variants
 from reference.precision import Array
 
 from .causes import Cause, causes
-from .conventions import Convention, Rows, made_right
+from .conventions import Rows, made_right
+from .findings import Explanation, Model, SizedCause
 from .pendulum import NAMES, Fit, Pendulum, fit_pendulum
 from .phasors import Phasors, as_angles, fit_phasors
 from .programs import Program
-from .readings import Reader, Reading
+from .readings import SAME, Reader, Reading
 
+CONVENTION = 0.3  # decades that a convention has to explain
+HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
+RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
+TRIED = 6  # readings of a family that are run
 _FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 CLEAN = 1e-3  # of what an integrator does: a named one leaves less
@@ -30,54 +35,6 @@ MODELS = {
     "linear": ("linear_g", "is the linear two-dimensional model: its period does not grow with the amplitude"),
     "angle": ("linear_in_angle", "is linear in the angle of the cord: its period does not grow with the amplitude"),
 }
-
-
-@dataclass(frozen=True)
-class SizedCause:
-    """A cause with its size: the distance in m by which it alone moves the bob, on top of those before it."""
-
-    id: str
-    text: str
-    size_m: float
-    stage: str
-    value: float | None = None
-    uncertainty: float | None = None
-
-
-@dataclass(frozen=True)
-class Model:
-    """A named simplification that the file is exact within.
-
-    Attributes:
-        id: a stable word.
-        text: its name.
-        exact_to_m: the largest distance in m between the file and it.
-        costs_m: the largest distance in m between it and the full Lagrangian.
-    """
-
-    id: str
-    text: str
-    exact_to_m: float
-    costs_m: float
-
-
-@dataclass(frozen=True)
-class Explanation:
-    """What is known of the reasons for an error.
-
-    Attributes:
-        conventions: of the rows.
-        causes: in the order gravity, model, inputs, release, frame, clock, integrator.
-        model: the simplification that the file is exact within, if it is.
-        corrected_m: the largest error in m that is left after all of these.
-        also: other explanations as good, as text.
-    """
-
-    conventions: tuple[Convention, ...] = ()
-    causes: tuple[SizedCause, ...] = ()
-    model: Model | None = None
-    corrected_m: float = math.nan
-    also: tuple[str, ...] = field(default=())
 
 
 @dataclass(frozen=True)
@@ -98,19 +55,41 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
         scene: in the reading that the file was scored in.
         allowed_m: distance in m that counts as agreement.
     """
+    try:
+        with np.errstate(all="ignore"):
+            return _explained(times, columns, scene, allowed_m)
+    except (FoucaultError, ArithmeticError, np.linalg.LinAlgError):  # no program solves such a scene, or fits it
+        return Explanation()
+
+
+def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
     model = Variants()
     inputs = scene.exact
     start = model.states(inputs, np.zeros(1))[0]
     right = Program.of(inputs, start)
     frequency = math.sqrt(abs(right.theta()[5]))
-    rows = made_right(times, columns, start, right.length, frequency)
+    read = made_right(times, columns, start, right.length, frequency)
+    found = _of_rows(read, model, right, frequency, scene, allowed_m)
+    if any(one.id in RENAMED for one in read.conventions):
+        # the release may be at fault, and not the names of the columns
+        as_named = made_right(times, columns, start, right.length, frequency, rename=False)
+        other = _of_rows(as_named, model, right, frequency, scene, allowed_m)
+        if other.score < found.score:
+            return other
+    return found
+
+
+def _of_rows(
+    rows: Rows, model: Variants, right: Program, frequency: float, scene: Scene, allowed_m: float
+) -> Explanation:
+    inputs = scene.exact
     chosen = _sample(len(rows.times))
     rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
     truth = model.states(inputs, rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times]))
     truth = truth[-len(rows.times) :, : rows.positions.shape[1]]
     error = _rms(rows.positions - truth)
-    corrected = float(np.linalg.norm(rows.positions - truth, axis=1).max())
-    plain = Explanation(rows.conventions, corrected_m=corrected)
+    whole = _largest(rows.positions - truth)
+    plain = Explanation(rows.conventions, corrected_m=whole, score=_score_of(whole, allowed_m, rows))
     floor = max(rows.noise, allowed_m / 3)
     if error <= floor:
         return plain
@@ -127,21 +106,37 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
         reader = Reader(replace(right, kind=family.kind), family.fit, floor)
         known = list(causes(right, family.kind))
         extra = {"sphere": 0.0, "linear": MODEL, "angle": 2 * MODEL}[family.kind]
-        found += [(one.score + extra, family, one) for one in reader.readings(known)[:6]]
+        likely = reader.readings(known)[:TRIED]
+        likely += [reader.without(one, cause) for one in likely[:2] for cause in one.causes]
+        for one in likely:  # the distance from the fit is linear in theta: what counts is the program itself
+            left = _rms(rows.positions - _positions(one.program, pendulum, rows))
+            if math.isfinite(left):
+                one = reader.scored(one.causes, one.program, left)
+                found.append((one.score + extra, family, one))
+    if not found:
+        return plain
     found.sort(key=lambda one: one[0])
-    score, family, best = found[0]
+    _, family, best = found[0]
     share = FITTED_SHARE if any(cause.free for cause in best.causes) else NAMED_SHARE
     if best.rest > share * error:
         return plain
-    named = list(_sized(best, family, right, pendulum, rows, truth))
+    reader = Reader(replace(right, kind=family.kind), family.fit, floor)
+    named = list(_sized(best, reader, right, pendulum, rows, truth))
     left = rows.positions - _positions(best.program, pendulum, rows)
-    corrected = float(np.linalg.norm(left, axis=1).max())
-    named = list(_loose(named, corrected))
+    corrected = _largest(left)
+    named = [cause for cause in _loose(named, corrected) if len(named) == 1 or not _trifling(cause, allowed_m)]
     simple = {cause.stage for cause in best.causes} <= {"gravity", "model"}
     result = None
-    if simple and corrected <= allowed_m and not rows.conventions:
-        result = _model(family.kind, best, corrected, float(np.linalg.norm(rows.positions - truth, axis=1).max()))
-    return Explanation(rows.conventions, tuple(named), result, corrected)
+    if simple and corrected <= allowed_m and all(one.id in HARMLESS for one in rows.conventions):
+        result = _model(family.kind, best, corrected, whole)
+    explained = 1 - _rms(left) / error
+    score = _score_of(corrected, allowed_m, rows) + sum(cause.cost for cause in best.causes)
+    return Explanation(rows.conventions, tuple(named), result, corrected, explained=explained, score=score)
+
+
+def _score_of(left: float, allowed_m: float, rows: Rows) -> float:
+    """Return decades by which what is left exceeds the tolerance, plus what the conventions cost."""
+    return math.log10(max(left / allowed_m, 1e-2)) + CONVENTION * len(rows.conventions)
 
 
 def _sample(count: int) -> Array:
@@ -150,13 +145,15 @@ def _sample(count: int) -> Array:
     return np.unique(np.concatenate([even, crowded, np.arange(min(count, ROWS // 4))]).astype(np.int64))
 
 
+def _largest(difference: Array) -> float:
+    return float(np.linalg.norm(difference, axis=1).max())
+
+
 def _rms(difference: Array) -> float:
     return float(np.linalg.norm(difference)) / math.sqrt(len(difference))
 
 
-def _families(
-    rows: Rows, right: Program, pendulum: Pendulum, frequency: float, floor: float
-) -> Iterator[_Family]:
+def _families(rows: Rows, right: Program, pendulum: Pendulum, frequency: float, floor: float) -> Iterator[_Family]:
     """Yield the families that were fitted: linear, linear in the angle, and the sphere."""
     plane = rows.positions[:, 0] + 1j * rows.positions[:, 1]
     best, phasors_of_best = math.inf, None
@@ -196,27 +193,14 @@ def _sphere(
         if not rows.starts:
             guess[9:11] = phasors.speed.real, phasors.speed.imag
         guesses.insert(0, guess)
-        if rest < floor:
+        if rest < max(2 * rows.noise, 1e-3 * floor):
             linear = guess.copy()
             linear[5] = -phasors.square.real
             linear[9:11] = phasors.speed.real, phasors.speed.imag
             apart = pendulum.rows(linear, rows.times, 2) - rows.positions[:, :2]
             if not _rms(apart) < 30 * floor:
                 return None
-    best = None
-    for guess in guesses:
-        for free in (range(12), range(len(NAMES))):
-            fit = fit_pendulum(
-                pendulum, rows.times, rows.positions, guess, scales, tuple(free), max(rows.noise, floor / 100)
-            )
-            if fit is None or len(fit.slopes) != rows.positions.size:
-                break
-            if best is None or fit.rest < best.rest or len(fit.free) > len(best.free):
-                best = fit
-            guess = fit.theta
-        if best is not None and best.rest < floor:
-            break
-    return best
+    return fit_pendulum(pendulum, rows.times, rows.positions, guesses, scales, max(rows.noise, floor / 100))
 
 
 def _fit_of(phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
@@ -245,7 +229,7 @@ def _fit_of(phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
     # the centrifugal force's change along the swing makes ω² differ from x to y, which no two phasors do
     xx, yy, *_ = right.gradient_square
     answer = float(np.linalg.norm(slopes[:, free.index(5)]))
-    slopes = np.column_stack([slopes, slopes[:, free.index(5)] * (xx + yy) / 2])
+    slopes = np.column_stack([slopes, np.zeros(len(slopes))])
     apart = np.zeros((1, slopes.shape[1]))
     apart[0, -1] = answer * max(abs(xx - yy), abs(xx)) / 2
     return Fit(theta, rest, (*free, 12), np.vstack([slopes, apart]))
@@ -277,28 +261,29 @@ ORDER = ("gravity", "model", "input", "release", "frame", "clock", "integrator")
 
 
 def _sized(
-    best: Reading, family: _Family, right: Program, pendulum: Pendulum, rows: Rows, truth: Array
+    best: Reading, reader: Reader, right: Program, pendulum: Pendulum, rows: Rows, truth: Array
 ) -> Iterator[SizedCause]:
     """Yield the causes in their order, each with the distance by which it moves the bob."""
-    changes: list[tuple[str, str, str, object]] = [
-        (cause.stage, cause.id, cause.text, cause) for cause in best.causes
-    ]
-    if family.kind != "sphere":
-        changes.append(("model", *MODELS[family.kind], None))
+    changes: list[tuple[str, str, str, object]] = [(cause.stage, cause.id, cause.text, cause) for cause in best.causes]
+    kind = reader.right.kind
+    if kind != "sphere":
+        changes.append(("model", *MODELS[kind], None))
     changes.sort(key=lambda one: ORDER.index(one[0]))
     program, before = right, truth
     for stage, word, text, cause in changes:
-        value = None
+        value = shift = uncertainty = None
         if isinstance(cause, Cause):
             program = cause.change(program)
             if cause.free:
                 value = best.value(cause)
                 program = program.with_input(cause.free, value)
+                shift = value - float(getattr(right, cause.free))
+                uncertainty = reader.uncertainty(best, cause)
                 text = text.format(value=_number(cause, value, right))
         else:
-            program = replace(program, kind=family.kind)
+            program = replace(program, kind=kind)
         after = _positions(program, pendulum, rows)
-        yield SizedCause(word, text, float(np.nanmax(np.linalg.norm(after - before, axis=1))), stage, value)
+        yield SizedCause(word, text, _largest(after - before), stage, value, shift, uncertainty)
         before = after
 
 
@@ -316,6 +301,13 @@ def _loose(named: list[SizedCause], left: float) -> Iterator[SizedCause]:
             yield replace(cause, id="integrator_loose", text=text, value=None)
         elif not (loose and cause.value is not None and cause.size_m < size):
             yield cause
+
+
+def _trifling(cause: SizedCause, allowed_m: float) -> bool:
+    """Return whether a fitted number is the scene's own but for an error of the integrator."""
+    if cause.value is None or cause.shift is None:
+        return False
+    return abs(cause.shift) < SAME * abs(cause.value) and cause.size_m < 10 * allowed_m
 
 
 def _number(cause: Cause, value: float, right: Program) -> str:

@@ -82,9 +82,7 @@ class Method:
         rates = [cmath.log(value) / (1j * step) for value in values]
         amplitudes = [complex(vectors[0, i] * parts[i]) for i in range(2)]
         order = sorted(range(2), key=lambda i: -rates[i].real)
-        return Phasors(
-            (rates[order[0]], rates[order[1]]), (amplitudes[order[0]], amplitudes[order[1]]), phasors.centre
-        )
+        return Phasors((rates[order[0]], rates[order[1]]), (amplitudes[order[0]], amplitudes[order[1]]), phasors.centre)
 
 
 def _taylor(order: int) -> tuple[float, ...]:

@@ -22,6 +22,8 @@ NAMES = (
     "point_mass",
 )  # fmt: skip
 STEPS = 8  # Gauss-Newton steps in one window at most
+SEEN = 1e-6  # of the amplitude: how far a nudge moves the rows, for differences that are linear and not noise
+WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)  # in scales: how far a number may be off
 HOPELESS = 0.05  # of the amplitude: what leaves more in a window is not followed to the next
 WINDOWS = 8.0  # each window is so many times longer than the one before
 
@@ -70,16 +72,14 @@ class Pendulum:
         found: Array = states[int(lead) :, :columns]
         return found
 
-    def slopes(self, theta: Array, times: Array, columns: int, free: Sequence[int], scales: Array) -> Array:
-        """Return d rows / d theta times `scales`, by central differences, shape (times * columns, free)."""
+    def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:
+        """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * columns, 14)."""
+        base = self.rows(theta, times, columns)
         found = []
-        for i in free:
-            ahead, behind = theta.copy(), theta.copy()
-            nudge = 1e-5 * scales[i]
-            ahead[i] += nudge
-            behind[i] -= nudge
-            high, low = self.rows(ahead, times, columns), self.rows(behind, times, columns)
-            found.append(((high - low) / (2e-5)).ravel())
+        for i in range(len(NAMES)):
+            ahead = theta.copy()
+            ahead[i] += nudges[i] * scales[i]
+            found.append(((self.rows(ahead, times, columns) - base) / nudges[i]).ravel())
         return np.column_stack(found)
 
 
@@ -101,46 +101,73 @@ class Fit:
 
 
 def fit_pendulum(
-    pendulum: Pendulum, times: Array, rows: Array, guess: Array, scales: Array, free: tuple[int, ...], noise: float
+    pendulum: Pendulum, times: Array, rows: Array, guesses: Sequence[Array], scales: Array, noise: float
 ) -> Fit | None:
-    """Fit the free numbers by Gauss-Newton, the span growing; None if nothing fits even the first rows."""
-    theta, columns = guess.copy(), rows.shape[1]
-    ends = [len(times)]
-    span = times[-1]
+    """Fit theta by Gauss-Newton from the best of some guesses, the span growing; None if nothing fits all rows.
+
+    A number that the rows do not determine stays near its guess: it is held there as loosely as `WIDTHS` says.
+    """
+    ends, span = [len(times)], float(times[-1])
     while span > 0 and ends[-1] > 24:
         span /= WINDOWS
         ends.append(max(16, int(np.searchsorted(times, span)) + 1))
-    result = None
-    for count in sorted(set(ends)):
-        t, seen = times[:count], rows[:count]
-        last, slopes = math.inf, None
-        for _ in range(STEPS):
-            left = (seen - pendulum.rows(theta, t, columns)).ravel()
-            size = float(np.linalg.norm(left)) / math.sqrt(count)
-            if not math.isfinite(size):
-                return result
-            if size > last:  # the last step made it worse: take half of it
-                theta = theta - change / 2
-                change = change / 2
-                last *= 1.001
-                continue
-            settled = size < noise or size > 0.7 * last
-            last = size
-            if slopes is None or not settled:
-                fresh = slopes is None or size > 1e-4 * float(np.abs(seen).max())
-                if fresh:
-                    slopes = pendulum.slopes(theta, t, columns, free, scales)
-                    if not np.isfinite(slopes).all():
-                        return result
-                    norms = np.linalg.norm(slopes, axis=0)
-                    norms[norms == 0] = 1
-            if settled and _:
-                break
-            step = np.linalg.lstsq(slopes / norms, left, rcond=1e-9)[0] / norms
-            change = np.zeros_like(theta)
-            change[list(free)] = step * scales[list(free)]
-            theta = theta + change
-        if slopes is None or last > HOPELESS * float(np.abs(seen[:, :2]).max()):
-            return result
-        result = Fit(theta, last, free, slopes / scales[list(free)] / math.sqrt(count))
-    return result
+    first, *longer = sorted(set(ends))
+    small = np.full(len(NAMES), 1e-6)
+    fits = [_in_window(pendulum, times[:first], rows[:first], guess, guess, scales, noise, small) for guess in guesses]
+    found, guess = min(zip(fits, guesses, strict=True), key=lambda one: one[0].rest)
+    size = float(np.abs(rows[:, :2]).max())
+    for count in longer:
+        if not found.rest <= HOPELESS * float(np.abs(rows[:count, :2]).max()):
+            return None
+        answers = np.linalg.norm(found.slopes * scales, axis=0) * WINDOWS
+        nudges = np.clip(SEEN * size / np.maximum(answers, 1e-300), 1e-13, 1e-2)
+        found = _in_window(pendulum, times[:count], rows[:count], found.theta, guess, scales, noise, nudges)
+    return found if found.rest <= HOPELESS * float(np.abs(rows[:, :2]).max()) else None
+
+
+def _in_window(
+    pendulum: Pendulum,
+    times: Array,
+    rows: Array,
+    theta: Array,
+    guess: Array,
+    scales: Array,
+    noise: float,
+    nudges: Array,
+) -> Fit:
+    """Return the best fit of a window."""
+    columns, root = rows.shape[1], math.sqrt(len(times))
+    slopes, fresh = None, False
+    best, least = theta, math.inf
+    for _ in range(STEPS):
+        left = (rows - pendulum.rows(theta, times, columns)).ravel()
+        size = float(np.linalg.norm(left)) / root
+        before = least
+        if size < least:
+            best, least = theta, size
+        stuck = not size < 0.5 * before
+        if size < noise or (stuck and fresh):
+            break
+        if slopes is None or stuck:
+            theta = best
+            left = (rows - pendulum.rows(theta, times, columns)).ravel() if stuck and slopes is not None else left
+            slopes, fresh = pendulum.slopes(theta, times, columns, scales, nudges), True
+        else:
+            fresh = False
+        if not np.isfinite(slopes).all():
+            least = math.inf
+            break
+        theta = theta + scales * _step(slopes, left, (theta - guess) / scales, max(noise, 1e-3 * least) * root)
+    if slopes is None:
+        slopes = pendulum.slopes(best, times, columns, scales, nudges)
+    return Fit(best, least, tuple(range(len(NAMES))), slopes / scales / root)
+
+
+def _step(slopes: Array, left: Array, off: Array, noise: float) -> Array:
+    """Return the change of theta in scales that least squares ask for, each number held near its guess."""
+    holds = noise / WIDTHS
+    matrix = np.vstack([slopes, np.diag(holds)])
+    target = np.concatenate([left, -holds * off])
+    norms = np.linalg.norm(matrix, axis=0)
+    found: Array = np.linalg.lstsq(matrix / norms, target, rcond=1e-14)[0] / norms
+    return found

@@ -4,8 +4,8 @@ Whatever its rotation, sign, day, release, drag, even its Euler step, such a mod
 
     x + iy = A exp(iγ1 t) + B exp(iγ2 t) + C,
 
-with w'' = -(drag + 2iβ) w' - ω² (w - C), so that γ1 + γ2 = -2β + i drag and γ1 γ2 = -ω². Linear prediction gives a first
-γ1, γ2, Gauss-Newton the best ones; A, B, C are linear.
+with w'' = -(drag + 2iβ) w' - ω² (w - C), so that γ1 + γ2 = -2β + i drag and γ1 γ2 = -ω². Linear prediction gives first
+values of both, Gauss-Newton the best ones; A, B, C are linear.
 """
 
 from __future__ import annotations

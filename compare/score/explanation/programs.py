@@ -95,7 +95,7 @@ class Program:
         inside = self.x * self.x + self.y * self.y < self.length * self.length or self.kind == "linear"
         return (
             self.g >= 0 and self.length > 0 and self.drag >= 0 and abs(self.latitude) <= 90 and inside
-            and self.radius >= 0 and 0 <= self.step and math.isfinite(self.rate)
+            and self.radius >= 0 and self.step >= 0 and math.isfinite(self.rate)
         )  # fmt: skip
 
     @property
@@ -149,6 +149,9 @@ class Program:
 
     def _computed(self, theta: Array) -> Phasors:
         square = -theta[5] - (theta[2] ** 2 if self.turned_plane else 0.0)
+        if self.kind != "sphere" and theta[12]:  # the mean of x and y: what it does to each is no matter of phasors
+            xx, yy, *_ = self.gradient_square
+            square -= (xx + yy) / 2
         start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
         if self.kind == "angle" and start:
             out = abs(start) / self.length
@@ -173,4 +176,3 @@ class Program:
     def with_input(self, name: str, value: float) -> Program:
         """Return the program with one number replaced."""
         return replace(self, **{name: value})  # type: ignore[arg-type]
-

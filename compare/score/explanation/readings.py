@@ -20,10 +20,11 @@ from .causes import Cause
 from .pendulum import Fit
 from .programs import Program
 
-BEAM = 30  # combinations that are kept of each size
+BEAM = 20  # combinations that are kept of each size
 MOST = 5  # causes at most
 SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
 PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error tells none
+BELOW = 0.2  # what a decade counts below the floor: of two explanations the closer one
 NEWTON = 6  # steps that fit the free numbers of a combination
 
 
@@ -144,10 +145,34 @@ class Reader:
                 return None
         return self._judged(together, program)
 
+    def uncertainty(self, reading: Reading, cause: Cause) -> float:
+        """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
+        value = reading.value(cause)
+        nudge = 1e-6 * max(abs(value), _SCALES.get(cause.free, 1e-3))
+        moved = self._off(reading.program.with_input(cause.free, value + nudge)) - self._off(reading.program)
+        answer = float(np.linalg.norm(moved)) / nudge
+        return max(reading.rest, 1e-15) / answer if answer else math.inf
+
     def _judged(self, together: tuple[Cause, ...], program: Program) -> Reading:
         off = float(np.linalg.norm(self._off(program)))
-        rest = math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf
-        score = math.log10(max(rest, self.floor) / self.floor) if math.isfinite(rest) else math.inf
+        return self.scored(together, program, math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf)
+
+    def without(self, reading: Reading, cause: Cause) -> Reading:
+        """Return a reading without one of its causes, the other fitted numbers as they were."""
+        program = self.right
+        together = tuple(one for one in reading.causes if one is not cause)
+        for one in together:
+            program = one.change(program)
+            if one.free:
+                program = program.with_input(one.free, reading.value(one))
+        return self._judged(together, program)
+
+    def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> Reading:
+        """Return a combination that leaves `rest`, a root mean square in m, with its score."""
+        low = max(1.2 * self.fit.rest, 1e-3 * self.floor)
+        score = math.inf
+        if math.isfinite(rest):
+            score = math.log10(max(rest, self.floor) / self.floor) + BELOW * math.log10(max(rest, low) / low)
         return Reading(together, program, rest, score + sum(cause.cost for cause in together))
 
     def _off(self, program: Program) -> Array:
