@@ -111,8 +111,8 @@ def _of_rows(
         for one in likely:  # the distance from the fit is linear in theta: what counts is the program itself
             left = _rms(rows.positions - _positions(one.program, pendulum, rows))
             if math.isfinite(left):
-                one = reader.scored(one.causes, one.program, left)
-                found.append((one.score + extra, family, one))
+                run = reader.scored(one.causes, one.program, left)
+                found.append((run.score + extra, family, run))
     if not found:
         return plain
     found.sort(key=lambda one: one[0])
@@ -272,6 +272,7 @@ def _sized(
     program, before = right, truth
     for stage, word, text, cause in changes:
         value = shift = uncertainty = None
+        sentence = text
         if isinstance(cause, Cause):
             program = cause.change(program)
             if cause.free:
@@ -279,11 +280,11 @@ def _sized(
                 program = program.with_input(cause.free, value)
                 shift = value - float(getattr(right, cause.free))
                 uncertainty = reader.uncertainty(best, cause)
-                text = text.format(value=_number(cause, value, right))
+                sentence = text.format(value=_number(cause, value, right))
         else:
             program = replace(program, kind=kind)
         after = _positions(program, pendulum, rows)
-        yield SizedCause(word, text, _largest(after - before), stage, value, shift, uncertainty)
+        yield SizedCause(word, sentence, _largest(after - before), stage, value, shift, uncertainty)
         before = after
 
 
