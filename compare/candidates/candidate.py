@@ -16,6 +16,10 @@ LARGEST = 1e100  # a larger number means that the run has blown up; below, squar
 ADVICE = "Wanted: t, x, y and, if there, z, vx, vy, vz."
 
 
+class NotFiniteError(InputError):
+    """A candidate holds a number that is not finite: the run has blown up."""
+
+
 @dataclass(frozen=True)
 class Convention:
     """How a candidate was read, or seems to be meant, where that is not plain: a stable word, and what to tell."""
@@ -88,7 +92,7 @@ class Candidate:
             invalid = ~(np.abs(column) <= LARGEST)  # true for NaN as well
             if invalid.any():
                 row = int(np.argmax(invalid))
-                raise InputError(
+                raise NotFiniteError(
                     f"{name}: {word}",
                     f"{column[row]} in row {row + 1}",
                     f"a finite number below {LARGEST:g} in size",

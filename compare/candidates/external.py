@@ -56,6 +56,18 @@ class Timing:
     warm: bool = True
 
 
+class OutOfTimeError(InputError):
+    """A program took longer than allowed, and was ended."""
+
+
+class FailedError(InputError):
+    """A program ended with an exit status other than 0, or by a signal."""
+
+    def __init__(self, status: int, words: list[str], tail: str) -> None:
+        super().__init__("--run", f"exit status {status} of {shlex.join(words)}", "exit status 0", tail)
+        self.by_signal = status < 0
+
+
 def placeholders(scene: Scene) -> dict[str, str]:
     """Return the scene's value of each placeholder that a command may use: as written in the scene, or to 17 digits."""
     start = Start.of(scene.exact, PLACEHOLDER_BITS)
@@ -146,9 +158,10 @@ def run_program(
             tree.end(process.pid)  # processes that it left running in the background
         tail = _tail(errors)
         if limits.reason:
-            raise InputError("--run", shlex.join(words), limits.reason, tail)
+            kind = OutOfTimeError if limits.timed_out else InputError
+            raise kind("--run", shlex.join(words), limits.reason, tail)
         if process.returncode:
-            raise InputError("--run", f"exit status {process.returncode} of {shlex.join(words)}", "exit status 0", tail)
+            raise FailedError(process.returncode, words, tail)
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
@@ -160,7 +173,7 @@ class _Limits:
     def __init__(
         self, process: subprocess.Popen[bytes], output: BinaryIO, errors: BinaryIO, timeout_s: float, max_bytes: int
     ) -> None:
-        self.reason = ""
+        self.reason, self.timed_out = "", False
         self.over = threading.Event()
         self._process = process
         watched = (output, errors, timeout_s, max_bytes)
@@ -176,7 +189,7 @@ class _Limits:
         end = time.monotonic() + timeout_s
         while not self.over.wait(0.02):
             if time.monotonic() > end:
-                self.reason = f"a program that ends within {timeout_s:g} s (--timeout)"
+                self.reason, self.timed_out = f"a program that ends within {timeout_s:g} s (--timeout)", True
             elif max(os.fstat(output.fileno()).st_size, os.fstat(errors.fileno()).st_size) > max_bytes:
                 self.reason = f"at most {max_bytes} bytes of output"
             if self.reason:

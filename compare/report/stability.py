@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from statistics import median
 from typing import Any
@@ -11,24 +11,29 @@ from typing import Any
 import numpy as np
 
 from reference import load_scene
+from reference.shortened import shortened
 from reference.status import Status
 
 from ..studies.long_runs import LongRun, laws
 from ..studies.machine import machine
+from ..studies.program import NUMBER
 from ..studies.stability import WRONG, Cell
 from .charts import ErrorHistory, Field, error_growth, heat_map
 from .charts.heat_map import LETTERS
 from .folder import Report
 from .page import Column, Html, TableRow, facts, figure, findings, page, paragraph, section, table
-from .tables import advice, words
+from .tables import LONGEST_COMMAND, advice, words
 
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
 
 
-def document_of(cells: Sequence[Cell], runs: Sequence[LongRun]) -> dict[str, Any]:
+def document_of(
+    cells: Sequence[Cell], runs: Sequence[LongRun], programs: Mapping[str, str] | None = None
+) -> dict[str, Any]:
     """Return the JSON document of the command."""
     return {
+        "programs": dict(programs or {}),
         "rows": [asdict(cell) for cell in cells],
         Status.SILENTLY_WRONG.value: sum(cell.status == Status.SILENTLY_WRONG for cell in cells),
         "long_runs": [run.document() for run in runs],
@@ -42,13 +47,28 @@ def headlines(cells: Sequence[Cell]) -> list[str]:
     tried = [cell for cell in cells if cell.status not in NOT_TRIED]
     methods = Counter(cell.method for cell in wrong)
     sentences = [
+        *_programs_broken(cells),
         f"{len(wrong)} of {len(tried)} runs are silently wrong: they report success, but the error is over {WRONG} "
-        "times what was asked for."
+        "times what was asked for.",
     ]
     if methods:
         worst = ", ".join(f"{name} ({count})" for name, count in methods.most_common(6))
         sentences.append(f"Silently wrong most often: {worst}.")
     return sentences + list(_stiffness(cells))
+
+
+def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
+    """Yield for each program of the user's a sentence: on which scenes it breaks, and how."""
+    for name in dict.fromkeys(cell.method for cell in cells if cell.precision == NUMBER):
+        own = [cell for cell in cells if cell.method == name and cell.status not in NOT_TRIED]
+        broken = [cell for cell in own if cell.status != Status.OK]
+        told = (
+            f"{cell.scene} ({cell.status.words})"
+            if cell.wrong_from_s is None
+            else f"{cell.scene} (wrong from t = {cell.wrong_from_s:g} s on)"
+            for cell in broken
+        )
+        yield f"{name} breaks on {len(broken)} of {len(own)} scenes{': ' if broken else ''}{', '.join(told)}."
 
 
 def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
@@ -81,7 +101,9 @@ def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
     cells, runs = _parsed(document)
     letters = "; ".join(f"{letter}: {status.words}" for status, letter in LETTERS.items())
-    squares = [Field(cell.scene, f"{cell.method} {_short(cell.precision)}", cell.status, cell.digits) for cell in cells]
+    squares = [
+        Field(cell.scene, f"{cell.method} {_short(cell.precision)}".strip(), cell.status, cell.digits) for cell in cells
+    ]
     failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
     wrong = [cell for cell in failures if cell.status == Status.SILENTLY_WRONG]
     parts = [
@@ -107,19 +129,27 @@ def page_text(document: dict[str, Any]) -> str:
         caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
         picture = figure(error_growth(lines, max(run.bound_m for run in measured)), caption)
         parts.append(section("Long runs", picture, findings(laws(runs))))
+    programs = document.get("programs", {})
+    if programs:
+        parts.append(section("Programs", _programs(programs)))
     parts.append(section("Measured on", facts(document["machine"])))
     return page(
         "Stiff and extreme scenes: what breaks, and when",
         parts,
         lead=paragraph(
             "Each method was asked for the same number of digits on every scene, and its result was compared with the "
-            "reference solution."
+            "reference solution; a program of --run for a millionth of the amplitude, as `foucault score` asks for."
+            if programs
+            else "Each method was asked for the same number of digits on every scene, and its result was compared with "
+            "the reference solution."
         ),
     )
 
 
 def _short(precision: str) -> str:
     number, _, formulation = precision.partition(", ")
+    if number == NUMBER:
+        return ""
     return formulation if number == "double" else f"{number} {formulation}"
 
 
@@ -135,6 +165,12 @@ def _reasons(cells: Sequence[Cell]) -> Html:
         )
         for cell in cells
     ]  # fmt: skip
+    return table(columns, rows)
+
+
+def _programs(programs: Mapping[str, str]) -> Html:
+    columns = [Column("name", "wrapped"), Column("command", "wrapped")]
+    rows = [TableRow((name, shortened(command, LONGEST_COMMAND))) for name, command in programs.items()]
     return table(columns, rows)
 
 

@@ -7,8 +7,8 @@ silently wrong if it reports success with an error above a thousand times the re
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
@@ -23,6 +23,7 @@ from reference.status import Status
 from ..methods import METHODS
 from ..rhs.constants import constants_in_double
 from ..truth import golden_of
+from . import program
 from .campaign import Counted, campaign, declared
 from .character import Character, character
 from .grid import on_doubles
@@ -38,7 +39,7 @@ WRONG = 1000  # an error above this multiple of the requested one is a failure
 LOST_BITS = 20  # a method of fixed precision may lose this many bits to rounding
 TRUTH_DIGITS = 34  # six more than are asked of the finest method
 
-# method, formulation and setting as the method declares them, and the scene
+# method or program, formulation and setting as the method declares them, and the scene
 Item = tuple[str, str | None, float, str]
 Problems = dict[str, tuple[dict[str, Any], Path]]  # document and golden folder of each scene
 
@@ -55,6 +56,7 @@ class Cell(Record):
         cpu_s: CPU seconds; None without a result.
         reason: why it is not OK, in a sentence.
         steps: number of steps, None if the method does not report it.
+        wrong_from_s: time in s from which on a program's error is above what makes it wrong; None if it never is.
     """
 
     scene: str
@@ -66,6 +68,7 @@ class Cell(Record):
     cpu_s: float | None
     reason: str
     steps: int | None = None
+    wrong_from_s: float | None = None
 
 
 def default_scenes() -> list[str]:
@@ -88,6 +91,7 @@ def stability(
     scenes: Sequence[str] | None = None,
     methods: Sequence[str] | None = None,
     *,
+    programs: Mapping[str, str] | None = None,
     limit_s: float = LIMIT_S,
     journal_path: Path | None = None,
     solving: Callable[[float, int], None] | None = None,
@@ -98,6 +102,7 @@ def stability(
     Args:
         scenes: ids, or paths of TOML files; `default_scenes` if None.
         methods: ids; all that declare such runs if None.
+        programs: commands of programs of the user's own, by their names; each runs on every scene as well.
         limit_s: CPU seconds of a cell.
         journal_path: a file to which cells are appended, and whose cells are not run again.
         solving: called with the number of scenes whose truth is known, and of all scenes.
@@ -106,7 +111,8 @@ def stability(
     Raises:
         InputError: an unknown scene or method, or one that declares no such runs.
     """
-    runs = declared(methods, "stability")
+    commands = dict(programs or {})
+    runs = [*declared(methods, "stability"), *((name, None, 1 / program.STEPS) for name in commands)]
     cuts = {name: cut(load_scene(name)) for name in (default_scenes() if scenes is None else scenes)}
     problems: Problems = {}
     unsolved: dict[str, str] = {}
@@ -123,12 +129,13 @@ def stability(
     orders = {name: method.order for name, method in METHODS.items() if method.setting == "step"}
     cells = campaign(
         cells_of,
-        (problems, limit_s),
+        (problems, limit_s, commands),
         solved,
         kind=Cell,
         failed=_failed,
         patience_s=PATIENCE * limit_s,
         recipe=[limit_s, SWINGS, orders],  # orders decide the digits asked for
+        recipe_of=lambda item: commands.get(item[0]),
         journal_path=journal_path,
         report=report,
     )
@@ -149,19 +156,27 @@ def _failed(item: Item, status: Status, reason: str) -> Cell:
 
 
 def _precision(method: str, formulation: str | None) -> str:
+    if method not in METHODS:
+        return program.NUMBER
     return METHODS[method].number + (f", {formulation}" if formulation else "")
 
 
-def cells_of(emit: Emit, problems: Problems, limit_s: float, items: list[Item]) -> None:
-    """Run methods on scenes, in a child process, and send each cell."""
+def cells_of(emit: Emit, problems: Problems, limit_s: float, programs: dict[str, str], items: list[Item]) -> None:
+    """Run methods and programs on scenes, in a child process, and send each cell."""
     for item in items:
         name, formulation, setting, scene_id = item
         document, folder = problems[scene_id]
-        scene, golden, method = parse_scene(document), load(folder), METHODS[name]
+        scene, golden = parse_scene(document), load(folder)
         truth = GridTruth(golden, float(scene.exact.t_end))
         states = np.column_stack([getattr(golden, column) for column in ("x", "y", "z", "vx", "vy", "vz")])
         traits = character(scene, truth.times, states[: len(truth.times)])
-        used = setting * 2 * math.pi / traits.fastest if method.setting == "step" and traits.fastest else setting
+        step = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
+        if name in programs:
+            run = program.measured(name, programs[name], step, scene, golden, limit_s)
+            emit(_of_program(item, run, traits, float(scene.exact.length), limit_s))
+            continue
+        method = METHODS[name]
+        used = step if method.setting == "step" else setting
         row = Bench(scene, truth, limit_s, repeats=1, transits=False).row(method, formulation, used)
         emit(_judged(item, row, traits, float(scene.exact.length), limit_s))
 
@@ -180,8 +195,19 @@ def _judged(item: Item, row: Row, traits: Character, length: float, limit_s: flo
     return Cell(scene, method, precision, status, digits, requested, row.cpu_s, reason, row.steps)
 
 
+def _of_program(item: Item, run: program.Measured, traits: Character, length: float, limit_s: float) -> Cell:
+    """Return the cell of a program, whose reason says from when on it is off."""
+    cell = _judged(item, run.row, traits, length, limit_s)
+    since = run.breaks_at(WRONG * 10**-program.DIGITS * (traits.amplitude * length or length))
+    if cell.status != Status.SILENTLY_WRONG or since is None:
+        return cell
+    return replace(cell, reason=f"From t = {since:g} s on it is wrong. {cell.reason}", wrong_from_s=since)
+
+
 def digits_asked(method: str, setting: float) -> float:
     """Return the digits that a method is asked for by a setting; of a fixed step, those that its order gives."""
+    if method not in METHODS:
+        return program.DIGITS
     kind, order = METHODS[method].setting, METHODS[method].order
     if kind == "precision":
         return (setting - LOST_BITS) * math.log10(2)
