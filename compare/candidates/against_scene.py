@@ -51,7 +51,7 @@ def beyond_the_cord(candidate: Candidate, scene: Scene) -> Convention | None:
     times = f"the first row is {scale:.6g} times the release"
     if unit is None:
         return Convention(
-            "scale", f"{found}: {times}, so {scale:.6g} pixels or other units may be a metre; divide by it"
+            "scale", f"{found}: {times}; are {scale:.6g} pixels, or of another unit, a metre? Divide by it"
         )
     return Convention("scale", f"{found}: {times}, so they are {WORDS[unit]}; --units {unit} reads them so")
 

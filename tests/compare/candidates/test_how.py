@@ -1,4 +1,4 @@
-"""The three lines of each language, run where the language is here: what they write is read, to the last bit of a double."""
+"""The three lines of each language, run where the language is here: what they write is read, to the last bit."""
 
 from __future__ import annotations
 
