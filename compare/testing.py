@@ -13,6 +13,9 @@ True
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -20,6 +23,7 @@ from reference import InputError, Scene
 from reference.precision import Array
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
+from .candidates.external import placeholders
 from .score.judge import Score, judge
 from .score.verdict import explanation_lines, percent
 
@@ -69,6 +73,33 @@ def assert_agrees(
     if not result.agrees:
         raise AssertionError(message(result))
     return result
+
+
+@dataclass(frozen=True)
+class SceneCase:
+    """A scene to test a program with.
+
+    Attributes:
+        scene: the problem.
+        tolerance: largest position error allowed in m; None for a millionth of the amplitude.
+    """
+
+    scene: Scene
+    tolerance: float | None = None
+
+    @property
+    def inputs(self) -> dict[str, float]:
+        """The scene's numbers by the words that `foucault score --run` fills in, such as x0, latitude and t_end."""
+        return {name: float(word) for name, word in placeholders(self.scene).items() if name != "gravity_is"}
+
+    @property
+    def t(self) -> Array:
+        """The scene's grid times in s; any others will do."""
+        return np.array([float(time) for time in self.scene.exact.grid])
+
+    def assert_agrees(self, t: npt.ArrayLike, states: npt.ArrayLike, **more: Any) -> Score:
+        """Assert that a trajectory agrees with the truth, as `assert_agrees` does."""
+        return assert_agrees(self.scene, t, states, **{"tolerance": self.tolerance, **more})
 
 
 def _array(values: npt.ArrayLike, name: str) -> Array:

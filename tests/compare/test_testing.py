@@ -107,7 +107,7 @@ def test_long_doubles_keep_their_digits(golden, states):
         ([0.0, 1.0], [[0.3, 0.4], [0.3]], {}, "rows of different lengths"),
         ([0.0], [[0.3, 0.4]], {"transits": ["soon"]}, "transits.*real numbers"),
         ([1.0, 0.0], [[0.3, 0.4]] * 2, {}, "strictly increasing"),
-        ([1e9], [[0.3, 0.4]], {}, "run.t_end"),
+        ([1e9], [[0.3, 0.4]], {}, "from 0 to 86400 s"),
         ([0.0], [[0.3, 0.4]], {"tolerance": -1.0}, "tolerance"),
         ([0.0], [[0.3, 0.4]], {"tolerance": float("nan")}, "tolerance"),
         ([60.0], [[0.3, 0.4]], {"inputs": "floats"}, "inputs"),
@@ -165,6 +165,42 @@ def test_the_fixture_is_found_in_somebody_elses_tests(tmp_path):
     assert "1 failed, 1 passed" in done.stdout
     assert "y at t = 0.0 s (row 0)" in done.stdout
     assert "got        0.5" in done.stdout
+
+
+SCENES = """
+import numpy as np, pytest
+from reference import load_scene, trajectory
+
+@pytest.mark.foucault_scenes("conical", paris=1e-9)
+def test_right(foucault_scene):
+    scene = foucault_scene.scene.with_values(["run.t_end=60", "inputs=binary64"])
+    t = foucault_scene.t[foucault_scene.t <= 60]
+    foucault_scene.assert_agrees(t, trajectory(scene, t)[:, :2])
+
+@pytest.mark.foucault_scenes(paris=1e-9, hard=1.0)
+def test_release(foucault_scene):
+    x0, y0 = foucault_scene.inputs["x0"], foucault_scene.inputs["y0"]
+    foucault_scene.assert_agrees([0.0, 1e-4], [[x0, y0], [x0 + 1e-6, y0]])
+
+def test_without_scenes(assert_agrees):
+    pass
+"""
+
+
+def test_a_test_runs_over_several_scenes_with_a_tolerance_each(tmp_path):
+    (tmp_path / "test_theirs.py").write_text(SCENES)
+    words = [sys.executable, "-m", "pytest", "-q", "-W", "error", "--strict-markers", "-p", "no:cacheprovider"]
+    done = subprocess.run([*words, "-rA", str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "1 failed, 4 passed" in done.stdout, done.stdout
+    for name in ("right[conical]", "right[paris]", "release[hard]"):
+        assert f"PASSED test_theirs.py::test_{name}" in done.stdout
+    assert "FAILED test_theirs.py::test_release[paris]" in done.stdout
+    (tmp_path / "test_theirs.py").write_text("def test_mine(foucault_scene):\n    pass\n")
+    done = subprocess.run([*words, str(tmp_path)], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (
+        done.returncode != 0
+        and "name scenes with @pytest.mark.foucault_scenes(paris=1e-8)" in done.stdout + done.stderr
+    )
 
 
 def test_the_examples_in_the_docstrings_run():

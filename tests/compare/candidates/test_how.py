@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import shutil
 import subprocess
 import sys
@@ -15,37 +14,78 @@ from compare.candidates.read import read
 from compare.score.judge import judge
 from reference import InputError, load
 
-# a program around the lines: {once} before the loop, {each} in it; k runs over the rows, of which {rows} holds t, x, y
+# a program around the lines: its file, its text, and how a row is written in it
 PROGRAMS = {
-    "c": ('#include <stdio.h>\nint main(void) {{ double r[][3] = {{{rows}}}; {once}\nfor (int k = 0; k < {n}; k++) '
-          '{{ double t = r[k][0], x = r[k][1], y = r[k][2];\n{each}\n}} }}\n', "{{{}, {}, {}}}", "program.c",
-          ["cc program.c -o program"]),
-    "c++": ('#include <iostream>\n#include <iomanip>\nint main() {{ double r[][3] = {{{rows}}};\n{once}\n'
-            'for (auto &a : r) {{ double t = a[0], x = a[1], y = a[2];\n{each}\n}} }}\n', "{{{}, {}, {}}}", "program.cc",
-            ["c++ program.cc -o program"]),
-    "fortran": ('program p\ndouble precision :: r(3,{n}), t, x, y\ninteger :: k\nr = reshape([{rows}], [3, {n}])\n{once}\n'
-                'do k = 1, {n}\nt = r(1,k); x = r(2,k); y = r(3,k)\n{each}\nend do\nend program\n', "{}d0, {}d0, {}d0",
-                "program.f90", ["gfortran -ffree-line-length-none program.f90 -o program"]),
-    "go": ('package main\nimport "fmt"\nfunc main() {{ r := [][3]float64{{{rows}}}\n{once}\nfor _, a := range r '
-           '{{ t, x, y := a[0], a[1], a[2]\n{each}\n}} }}\n', "{{{}, {}, {}}}", "program.go", ["go build -o program program.go"]),
-    "java": ('class Program {{ public static void main(String[] a) {{ double[][] r = {{{rows}}};\n{once}\n'
-             'for (double[] b : r) {{ double t = b[0], x = b[1], y = b[2];\n{each}\n}} }} }}\n', "{{{}, {}, {}}}",
-             "Program.java", ["javac Program.java"]),
-    "javascript": ("{once}\nfor (const [t, x, y] of [{rows}]) {{\n{each}\n}}\n", "[{}, {}, {}]", "program.js", []),
-    "julia": ("{once}\nfor (t, x, y) in [{rows}]\n{each}\nend\n", "({}, {}, {})", "program.jl", []),
-    "octave": ("{once}\nfor r = [{rows}]'\nt = r(1); x = r(2); y = r(3);\n{each}\nend\n", "{}, {}, {};", "program.m", []),
-    "matlab": ("{once}\nfor r = [{rows}]'\nt = r(1); x = r(2); y = r(3);\n{each}\nend\n{shell}\n", "{}, {}, {};", "program.m", []),
-    "python": ("{once}\nfor t, x, y in [{rows}]:\n    {each}\n", "({}, {}, {})", "program.py", []),
-    "numpy": ("import numpy as np\nt, x, y = np.array([{rows}]).T\n{once}\n{each}\n", "({}, {}, {})", "program.py", []),
-    "r": ("for (k in 1) {{ {once} }}\nr <- list({rows})\nfor (a in r) {{ t <- a[1]; x <- a[2]; y <- a[3]\n{each}\n}}\n",
-          "c({}, {}, {})", "program.R", []),
-    "rust": ("fn main() {{ let r: [[f64; 3]; {n}] = [{rows}];\n{once}\nfor [t, x, y] in r {{\n{each}\n}} }}\n", "[{}, {}, {}]",
-             "program.rs", ["rustc program.rs"]),
-}  # fmt: skip
+    "c": (
+        "program.c",
+        "#include <stdio.h>\nint main(void) {{ double r[][3] = {{{rows}}}; {once}\nfor (int k = 0; k < {n}; k++) "
+        "{{ double t = r[k][0], x = r[k][1], y = r[k][2];\n{each}\n}} }}\n",
+        "{{{}, {}, {}}}",
+    ),
+    "c++": (
+        "program.cc",
+        "#include <iostream>\n#include <iomanip>\nint main() {{ double r[][3] = {{{rows}}};\n{once}\n"
+        "for (auto &a : r) {{ double t = a[0], x = a[1], y = a[2];\n{each}\n}} }}\n",
+        "{{{}, {}, {}}}",
+    ),
+    "fortran": (
+        "program.f90",
+        "program p\ndouble precision :: r(3,{n}), t, x, y\ninteger :: k\nr = reshape([{rows}], [3, {n}])\n{once}\n"
+        "do k = 1, {n}\nt = r(1,k); x = r(2,k); y = r(3,k)\n{each}\nend do\nend program\n",
+        "{}d0, {}d0, {}d0",
+    ),
+    "go": (
+        "program.go",
+        'package main\nimport "fmt"\nfunc main() {{ r := [][3]float64{{{rows}}}\n{once}\nfor _, a := range r '
+        "{{ t, x, y := a[0], a[1], a[2]\n{each}\n}} }}\n",
+        "{{{}, {}, {}}}",
+    ),
+    "java": (
+        "Program.java",
+        "class Program {{ public static void main(String[] a) {{ double[][] r = {{{rows}}};\n{once}\n"
+        "for (double[] b : r) {{ double t = b[0], x = b[1], y = b[2];\n{each}\n}} }} }}\n",
+        "{{{}, {}, {}}}",
+    ),
+    "javascript": ("program.js", "{once}\nfor (const [t, x, y] of [{rows}]) {{\n{each}\n}}\n", "[{}, {}, {}]"),
+    "julia": ("program.jl", "{once}\nfor (t, x, y) in [{rows}]\n{each}\nend\n", "({}, {}, {})"),
+    "octave": (
+        "program.m",
+        "{once}\nfor r = [{rows}]'\nt = r(1); x = r(2); y = r(3);\n{each}\nend\n",
+        "{}, {}, {};",
+    ),
+    "matlab": (
+        "program.m",
+        "{once}\nfor r = [{rows}]'\nt = r(1); x = r(2); y = r(3);\n{each}\nend\n{shell}\n",
+        "{}, {}, {};",
+    ),
+    "python": ("program.py", "{once}\nfor t, x, y in [{rows}]:\n    {each}\n", "({}, {}, {})"),
+    "numpy": ("program.py", "import numpy as np\nt, x, y = np.array([{rows}]).T\n{once}\n{each}\n", "({}, {}, {})"),
+    "r": (
+        "program.R",
+        "{once}\nfor (a in list({rows})) {{ t <- a[1]; x <- a[2]; y <- a[3]\n{each}\n}}\n",
+        "c({}, {}, {})",
+    ),
+    "rust": (
+        "program.rs",
+        "fn main() {{ let r: [[f64; 3]; {n}] = [{rows}];\n{once}\nfor [t, x, y] in r {{\n{each}\n}} }}\n",
+        "[{}, {}, {}]",
+    ),
+}
+COMPILE = {
+    "c": "cc program.c -o program",
+    "c++": "c++ program.cc -o program",
+    "fortran": "gfortran -ffree-line-length-none program.f90 -o program",
+    "go": "go build -o program program.go",
+    "java": "javac Program.java",
+    "rust": "rustc program.rs",
+}
 RUN = {
-    "matlab": "octave program.m", "octave": "octave program.m", "python": f"{sys.executable} program.py",
-    "numpy": f"{sys.executable} program.py", "java": "java -cp . Program",
-}  # fmt: skip
+    "matlab": "octave program.m",
+    "octave": "octave program.m",
+    "python": f"{sys.executable} program.py",
+    "numpy": f"{sys.executable} program.py",
+    "java": "java -cp . Program",
+}
 NEEDS = {
     "c": "cc", "c++": "c++", "fortran": "gfortran", "go": "go", "java": "javac", "javascript": "node", "julia": "julia",
     "octave": "octave", "matlab": "octave", "r": "Rscript", "rust": "rustc",
@@ -62,7 +102,7 @@ def test_the_lines_of_a_language_write_what_is_read_back(language, tmp_path, pyt
         pytest.skip("compiled under --long")
     golden = load("paris.binary64")
     rows = [(0.0, 0.3, 0.4), (60.0, float(golden.x[1]), float(golden.y[1])), (86400 - 1 / 3, 1e-5 / 3, -1e-300)]
-    frame, row, file, compiling = PROGRAMS[language]
+    file, frame, row = PROGRAMS[language]
     texts = [row.format(*map(repr, numbers)).replace("e-", "d-" if language == "fortran" else "e-") for numbers in rows]
     if language == "fortran":
         texts = [text.replace("d0", "") if "d-" in text else text for text in texts]
@@ -72,8 +112,8 @@ def test_the_lines_of_a_language_write_what_is_read_back(language, tmp_path, pyt
     )
     (tmp_path / file).write_text(program)
     monkeypatch.chdir(tmp_path)
-    for command in compiling:
-        subprocess.run(command.split(), check=True, capture_output=True)
+    if language in COMPILE:
+        subprocess.run(COMPILE[language].split(), check=True, capture_output=True)
     command, *_ = snippet.shell.partition(" > ")
     done = subprocess.run(RUN.get(language, command).split(), check=True, capture_output=True, text=True)
     path = Path("mine.csv")
@@ -97,7 +137,6 @@ def test_every_language_is_three_lines_and_can_be_run_here_or_elsewhere():
         assert max(map(len, lines.splitlines())) < 120
         assert "x east and y north" in about
     assert how("JS") == how("javascript") and how("cpp") == how("c++")
-    assert math.isfinite(len(how("fortran")))
 
 
 def test_another_language_is_answered_with_those_that_are_known(foucault):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shlex
 import sys
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 from compare.studies.program import measured
-from compare.studies.stability import cut, stability
+from compare.studies.stability import cut
 from compare.truth import golden_of
 from reference import load_scene, trajectory
 from reference.status import Status
@@ -76,37 +77,45 @@ def test_each_way_to_break_has_its_word(scene, command, what, status, said):
         assert run.breaks_at(1.0) is None
 
 
-def test_the_study_says_from_when_on_a_program_is_wrong(command, tmp_path):
-    path = tmp_path / "short.toml"
-    path.write_text(
-        'id = "short"\n[pendulum]\nlength = "1"\n[release]\nangle = "80"\nazimuth = "10"\n'
-        '[run]\nt_end = "10"\ngrid_step = "1"\n'
-    )
-    scene = cut(load_scene(path))
-    times = np.linspace(0, 10, 41)
-    np.save(tmp_path / "rows.npy", np.column_stack([times, trajectory(scene, times)[:, :2]]))
-    program = tmp_path / "p.py"
-    program.write_text(PROGRAM)
-    words = " ".join(map(shlex.quote, [sys.executable, str(program), str(tmp_path / "rows.npy")])) + " {t_end} "
-    pytest.importorskip("numba")
-    programs = {"right": f"{words} works", "drifting": f"{words} drifts"}
-    cells = {cell.method: cell for cell in stability([str(path)], ["rk4"], programs=programs)}
-    assert (cells["right"].status, cells["right"].wrong_from_s) == (Status.OK, None)
-    assert cells["right"].digits > 9
-    drifting = cells["drifting"]
-    assert (drifting.status, drifting.wrong_from_s, drifting.asked) == (Status.SILENTLY_WRONG, 5.25, 6.0)
-    assert drifting.reason.startswith("From t = 5.25 s on it is wrong.")
+SHORT = """id = "short"
+[pendulum]
+length = "1"
+[release]
+angle = "80"
+azimuth = "10"
+[run]
+t_end = "10"
+grid_step = "1"
+"""
 
 
-def test_the_page_names_a_program_once_and_stays_whole(foucault, tmp_path):
-    pytest.importorskip("numba")
+def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole(foucault, command, tmp_path):
+    pytest.importorskip("scipy")
     pytest.importorskip("matplotlib")
-    command = f"{shlex.quote(sys.executable)} -c pass {{x0}} {'x' * 3000}"
-    words = ["stability", "--scenes", "hard", "--methods", "rk4", "--run", command, "--name", "<mine>"]
-    status, out, _ = foucault(*words, "--out", tmp_path / "out")
+    path = tmp_path / "short.toml"
+    path.write_text(SHORT)
+    times = np.linspace(0, 10, 41)
+    np.save(tmp_path / "rows.npy", np.column_stack([times, trajectory(cut(load_scene(path)), times)[:, :2]]))
+    words = command.replace(command.split()[2], str(tmp_path / "rows.npy"))
+    out = tmp_path / "out"
+    programs = {"right": f"{words} works", "<drifting>": f"{words} drifts {'x' * 3000}"}
+    options = [word for name, run in programs.items() for word in ("--run", run, "--name", name)]
+    status, text, _ = foucault("stability", "--scenes", path, "--methods", "scipy_dop853", *options, "--out", out)
     assert status == 0
-    assert "<mine> breaks on 1 of 1 scenes: hard (gave up)." in out
-    page = (tmp_path / "out/index.html").read_text()
-    assert "x" * 500 not in page and "&lt;mine&gt;" in page and "<mine>" not in page
+    assert f"<drifting> breaks on 1 of 1 scenes: {path} (wrong from t = 5.25 s on)." in text
+    assert "right breaks on 0 of 1 scenes." in text
+    document = json.loads((out / "stability.json").read_text())
+    assert document["programs"] == programs
+    cells = {row["method"]: row for row in document["rows"]}
+    assert (cells["right"]["status"], cells["right"]["wrong_from_s"]) == ("ok", None)
+    assert cells["right"]["digits"] > 9
+    drifting = cells["<drifting>"]
+    assert (drifting["status"], drifting["wrong_from_s"], drifting["asked"]) == ("silently_wrong", 5.25, 6.0)
+    assert drifting["reason"].startswith("From t = 5.25 s on it is wrong.")
+    page = (out / "index.html").read_text()
+    assert "x" * 500 not in page and "&lt;drifting&gt;" in page and "<drifting>" not in page
+
+
+def test_what_cannot_be_run_is_refused_before_any_work(foucault):
     assert foucault("stability", "--name", "mine")[0] == 2
     assert foucault("stability", "--run", "./p {nonsense}")[0] == 2

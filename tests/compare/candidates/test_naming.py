@@ -1,0 +1,182 @@
+"""What a user says of a file's columns, what a header says of them, and what their scales say against the scene."""
+
+from __future__ import annotations
+
+import io
+import json
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from compare.candidates.layout import Naming
+from compare.candidates.names import meaning
+from compare.candidates.read import read, read_stream
+from compare.candidates.units import defaults, size_of
+from reference import InputError, load
+
+
+def text(*lines):
+    return io.BytesIO("\n".join([*lines, ""]).encode())
+
+
+def said(found):
+    return {one.id: one.text for one in found.conventions}
+
+
+def test_a_header_in_other_words_is_read_and_said():
+    found = read_stream(text("step;Time [ms];north;west [cm];energy", "1;500;0.4;-30;7"), "run")
+    assert (found.t[0], found.columns["x"][0], found.columns["y"][0]) == (0.5, 0.3, 0.4)
+    assert said(found) == {
+        "columns": "Time [ms] as t, west [cm] as -x, north as y; not read: step, energy",
+        "units": "t from ms, x from cm, converted to SI units",
+    }
+
+
+def test_what_is_plain_is_not_said():
+    for header in ("t,x,y", "T,X,Y", "# y t x z", "t [s];x (m);y/m", "t,x,y,energy"):
+        count = max(header.count(mark) + 1 for mark in ",; ") - header.startswith("#")
+        count = 3 if "[" in header else count
+        separator = ";" if ";" in header else ","
+        assert read_stream(text(header, separator.join(["1"] * count)), "run").conventions == ()
+
+
+@pytest.mark.parametrize(
+    ("word", "column"),
+    [("v", None), ("energy", None), ("x_error", None), ("x0", None), ("theta", None), ("dx", None), ("t_end", None),
+     ("x_px", None), ("vxy", None), ("mean", None), ("n", None), ("ẏ", "vy"), ("y'", "vy"), ("dy/dt", "vy"),
+     ("y(t)", "y")],
+)  # fmt: skip
+def test_names_that_mean_something_else_are_left_alone(word, column):
+    found = meaning(word, {})
+    assert (found and found.column) == column
+
+
+def test_the_columns_own_name_wins_over_other_words_for_it():
+    found = read_stream(text("X,x,pos_x,t,y,Y", "1,2,3,4,5,6"), "run")
+    assert (found.columns["x"][0], found.columns["y"][0]) == (2, 5)
+
+
+def test_lines_above_the_header_do_no_harm():
+    lines = ["Foucault pendulum, version 1.2", "% l = 67 m", "", "# t y x", "# all in SI units", "0 0.4 0.3"]
+    found = read_stream(text(*lines), "run")
+    assert (found.columns["x"][0], found.columns["y"][0]) == (0.3, 0.4)
+    with pytest.raises(InputError, match="a row of numbers before it"):
+        read_stream(text(*["nothing here"] * 1100), "run")
+
+
+def test_the_nearest_header_counts():
+    assert read_stream(text("# t x y", "# t y x", "0 1 2"), "run").columns["x"][0] == 2
+
+
+@pytest.mark.parametrize(("count", "names"), [(3, "t, x, y"), (4, "t, x, y, z"), (7, "t, x, y, z, vx, vy, vz")])
+@pytest.mark.parametrize("separator", [",", ";", " ", "\t"])
+def test_without_a_header_the_number_of_columns_tells(count, names, separator):
+    found = read_stream(text(separator.join(map(str, range(count)))), "run")
+    assert ["t", *found.columns] == names.split(", ")
+    assert said(found) == {"no_header": f"no header: the columns are taken as {names} (--columns names others)"}
+
+
+def test_columns_named_by_the_user(tmp_path):
+    path = tmp_path / "a.txt"
+    path.write_text("# anything\n7 0.4 30 1500\n")
+    found = read(path, columns=["-", "y", "x (cm)", "t"], units=["ms"])
+    assert (found.t[0], found.columns["x"][0], found.columns["y"][0]) == (1.5, 0.3, 0.4)
+    assert "no_header" not in said(found)
+    path.write_text("a,b,c\n0,1,2\n")
+    assert read(path, columns=["t", "x", "y"]).columns["x"][0] == 1  # a header that says nothing is overruled
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        (["t", "x"], "a name for each of the 3 columns"),
+        (["t", "x", "wind"], "got 'wind', expected names of t, x, y, z"),
+        (["t", "x", "-"], "a column y among them"),
+        (["t", "x", "x"], "a column y among them"),
+    ],
+)
+def test_what_is_wrong_with_the_users_names_is_said(tmp_path, columns, message):
+    path = tmp_path / "a.txt"
+    path.write_text("0 1 2\n")
+    with pytest.raises(InputError, match=message) as caught:
+        read(path, columns=columns)
+    assert caught.value.field == "--columns"
+
+
+def test_names_of_arrays_are_not_given_twice():
+    stream = io.BytesIO()
+    np.savez(stream, t=[0.0], x=[1.0], y=[2.0])
+    stream.seek(0)
+    with pytest.raises(InputError, match="arrays with names"):
+        read_stream(stream, "run", naming=Naming(("t", "x", "y")))
+
+
+def test_units_of_the_user_hold_where_the_header_names_none():
+    assert defaults(("ms", "cm")) == {
+        "t": "ms",
+        **dict.fromkeys("xyz", "cm"),
+        **dict.fromkeys(("vx", "vy", "vz"), "cm/s"),
+    }
+    found = read_stream(text("t,x,y,vx", "2000,30,40,5"), "run", naming=Naming((), ("milliseconds", "cm")))
+    assert (found.t[0], found.columns["x"][0], found.columns["vx"][0]) == (2.0, 0.3, 0.05)
+    with pytest.raises(InputError, match="no other unit of t than min"):
+        read_stream(text("t (min),x,y", "2,30,40"), "run", naming=Naming((), ("ms",)))
+
+
+def test_digits_beyond_a_double_survive_a_unit():
+    found = read_stream(text("t,x (cm),y", "0,30.000000000000000000000012345,0.4"), "run")
+    assert found.extended
+    assert found.columns["x"][0] == 0.3
+    exact = Fraction("0.30000000000000000000000012345") - Fraction(0.3)
+    assert found.low["x"][0] == pytest.approx(float(exact), rel=1e-12)
+
+
+def test_units_of_speed():
+    assert size_of("km/h", "vx") * 36 == 10
+    assert all(size_of(word, "vx") == 1 for word in ("m/s", "mps", "m_s", "m s^-1", "m·s⁻¹", "ms", "m per s"))
+    assert size_of("m", "vx") is None and size_of("s", "x") is None and size_of("furlong", "x") is None
+
+
+def score(foucault, tmp_path, scale, *words, times=1.0, name="mine.csv"):
+    golden = load("paris.binary64")
+    rows = np.column_stack([golden.t * times, golden.x * scale, golden.y * scale])[:31].tolist()
+    (tmp_path / name).write_text("t,x,y\n" + "".join(f"{t!r},{x!r},{y!r}\n" for t, x, y in rows))
+    return foucault("score", "paris", tmp_path / name, "--no-diagnosis", *words)
+
+
+@pytest.mark.parametrize(
+    ("scale", "words", "id_"),
+    [(1000.0, "they are millimetres; --units mm reads them so", "scale"), (150.0, "are 150 pixels, or", "scale")],
+)
+def test_positions_beyond_the_cord_are_said_to_be_in_another_unit(foucault, tmp_path, scale, words, id_):
+    status, out, _ = score(foucault, tmp_path, scale, "--json")
+    (convention,) = json.loads(out)["conventions"]
+    assert status == 1
+    assert convention["id"] == id_ and words in convention["text"]
+    if scale == 1000:
+        assert score(foucault, tmp_path, scale, "--units", "mm")[0] == 0
+
+
+def test_pixels_with_another_origin_are_not_given_a_scale(foucault, tmp_path):
+    (tmp_path / "px.csv").write_text("t,x,y\n0,320,240\n1,330,250\n")
+    status, out, _ = foucault("score", "paris", tmp_path / "px.csv", "--no-diagnosis", "--json")
+    (convention,) = json.loads(out)["conventions"]
+    assert status == 1
+    assert convention["id"] == "beyond_the_cord" and "pixels, or another unit?" in convention["text"]
+
+
+@pytest.mark.parametrize(
+    ("times", "said"),
+    [
+        (1e3, "They look like milliseconds: --units ms reads them so, and they end at 1800 s."),
+        (1e6, "They look like microseconds: --units us"),
+        (50.0, "--t-end 86400 leaves out later rows, --set run.t_end=90000 makes the scene longer."),
+    ],
+)
+def test_times_beyond_the_end_are_told_what_they_may_be(foucault, tmp_path, times, said):
+    status, out, err = score(foucault, tmp_path, 1.0, times=times)
+    assert (status, out) == (2, "")
+    assert said in err
+    if times == 1e3:
+        assert score(foucault, tmp_path, 1.0, "--units", "ms", times=times)[0] == 0

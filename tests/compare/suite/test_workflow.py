@@ -1,0 +1,34 @@
+"""The workflow that others copy: it is YAML, and the command in it is one that this version takes."""
+
+from __future__ import annotations
+
+import re
+import shlex
+
+import numpy as np
+import pytest
+from places import ROOT
+
+from reference import load, scene_ids
+
+PAGE = (ROOT / "docs/github-workflow.yml").read_text(encoding="utf-8")
+
+
+def test_it_is_a_workflow():
+    yaml = pytest.importorskip("yaml")
+    steps = yaml.safe_load(PAGE)["jobs"]["score"]["steps"]
+    assert any("foucault score --suite" in step.get("run", "") for step in steps)
+
+
+def test_its_command_runs_and_its_scenes_are_there(foucault, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (scenes,) = re.findall(r"for scene in (.+); do", PAGE)
+    assert set(scenes.split()) <= set(scene_ids())
+    (command,) = re.findall(r"run: foucault (score .+)", PAGE)
+    golden = load("paris.binary64")
+    (tmp_path / "suite").mkdir()
+    np.savez(tmp_path / "suite/paris.npz", t=golden.t, x=golden.x, y=golden.y)
+    status, out, _ = foucault(*shlex.split(command))
+    assert status == 0
+    assert "paris.npz agrees with paris (1441 rows, t = 0 to 86400 of 86400 s: 100 %)" in out
+    assert (tmp_path / "foucault.xml").is_file() and (tmp_path / "page/badge.svg").is_file()
