@@ -14,7 +14,7 @@ from .outcome import Outcome
 
 LABEL = "Foucault pendulum"
 GOOD, BAD = "#2f7d32", "#b3261e"  # white text on them has a contrast above 5 to 1
-_WIDTH = 6.6  # px of a letter of 11 px, about; textLength makes it exact
+_WIDTH = 6.2  # px of a letter of 11 px, about; textLength makes it exact
 _MARGIN = 8
 
 
@@ -24,8 +24,8 @@ def data_version() -> str:
 
 
 def fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
-    """Return the least digits of all scenes that were judged, rounded down to a tenth; None if none was."""
-    digits = [one.score.errors.digits for one in outcomes if one.score is not None]
+    """Return the least digits of the scenes that agree, rounded down to a tenth; None if none does."""
+    digits = [one.score.errors.digits for one in outcomes if one.score is not None and one.score.agrees]
     return math.floor(10 * min(digits)) / 10 if digits else None
 
 

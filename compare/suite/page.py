@@ -54,7 +54,7 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
         Column("candidate", "prose"),
     ]
     rows = [TableRow(_cells(one), "" if one.verdict == "agrees" else "failed") for one in outcomes]
-    parts = [section("Scenes", Html(f"<p>{badge(outcomes)}</p>"), table(columns, rows))]
+    parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table(columns, rows))]
     others = [one for one in outcomes if one.verdict != "agrees"]
     if others:
         parts.append(section("What was found", *(_found(one) for one in others)))

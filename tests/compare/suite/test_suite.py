@@ -1,4 +1,4 @@
-"""Several candidates at once, as other people's CI meets them: a bad one costs only itself, every form says the same."""
+"""Several candidates at once, as in other people's CI: a bad one costs only itself, and every form says the same."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_a_suite_is_one_table_one_page_one_badge(foucault, folder, tmp_path):
     badge = (tmp_path / "page/badge.svg").read_text()
     root = ElementTree.fromstring(badge)
     title = root.find("{http://www.w3.org/2000/svg}title").text
-    assert title == f"Foucault pendulum: 1 of 3 scenes · 2.3 digits · data {data_version()}"
+    assert title == f"Foucault pendulum: 1 of 3 scenes · 16.1 digits · data {data_version()}"
     page = (tmp_path / "page/index.html").read_text()
     assert all(word in page for word in ("paris", "wrong", "bad", "refused", "disagrees", "What was found", "<svg"))
     document = json.loads((tmp_path / "page/suite.json").read_text())
