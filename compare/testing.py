@@ -36,6 +36,7 @@ def assert_agrees(
     tolerance: float | None = None,
     transits: npt.ArrayLike | None = None,
     covers: float = 0.0,
+    as_model: bool = False,
     inputs: str = "auto",
 ) -> Score:
     """Assert that positions agree with the truth of a scene.
@@ -47,6 +48,7 @@ def assert_agrees(
         tolerance: largest position error allowed, in m; a millionth of the amplitude if None, as in `foucault score`.
         transits: times of xdot = 0 in s, if they are to be compared as well.
         covers: share of the scene's span, from 0 to 1, that the times have to reach; 1 is all of it.
+        as_model: whether agreement as a named simplification of the model is enough.
         inputs: decimal, binary64 or auto, as in `foucault score --inputs`.
 
     Returns:
@@ -54,7 +56,7 @@ def assert_agrees(
 
     Raises:
         AssertionError: the trajectory disagrees, or has no row after t = 0; the message gives time, component,
-            expected, got, difference, what is allowed, and the mistake that explains it, if one does.
+            expected, got, difference, what is allowed, and the causes that were found.
         InputError: an array has the wrong shape, or a number is not finite.
     """
     rows, times = _array(states, "states"), _array(t, "t")
@@ -69,8 +71,9 @@ def assert_agrees(
         tolerance=tolerance,
         inputs=inputs,
         covers=covers,
+        as_model=as_model,
     )
-    if not result.agrees:
+    if not result.passes:
         raise AssertionError(message(result))
     return result
 
@@ -124,6 +127,8 @@ def message(result: Score) -> str:
         f"  difference {worst.difference:+.3e} m",
         f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
     ]
+    each = ", ".join(f"{name} {abs(one.difference):.2g}" for name, one in result.worst_of_each.items())
+    lines.append(f"  worst of each: {each}")
     if result.falls_short:
         demanded = f"{percent(result.covers)} demanded" if result.covers else "no row after t = 0"
         lines.append(f"  covers {percent(result.covered)} of the scene's {result.scene.run.t_end} s: {demanded}")
