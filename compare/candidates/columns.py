@@ -20,7 +20,7 @@ from .decimals import low_part, low_part_of_time
 from .header import Header
 from .layout import Layout, Naming
 from .lines import chunks, is_number
-from .rows import Spelling, comment, spelling
+from .rows import MARKS, Spelling, comment, spelling
 
 MAX_ROWS = 2_000_000
 SAMPLE = 50  # rows of a chunk that are searched for numbers with more digits than a double's
@@ -100,7 +100,7 @@ class ColumnReader:
             text = line.strip().removeprefix("\ufeff")
             if not text:
                 continue
-            remark = comment(text)
+            remark = comment(text) if text[0] in MARKS else None
             if remark is not None:
                 if self.layout is None:
                     self.header.add(number, remark, True)
@@ -127,7 +127,7 @@ class ColumnReader:
 
     def _parse(self, lines: list[str], numbers: list[int]) -> None:
         separator, indices = self.spelled.separator, [*self._places.values()]
-        lines = [self.spelled.plain(line) for line in lines]
+        lines = lines if self.spelled.is_plain else [self.spelled.plain(line) for line in lines]
         try:
             uniform = {line.count(separator) if separator else len(line.split()) - 1 for line in lines}
             if uniform != {self.fields - 1}:

@@ -20,7 +20,7 @@ DIRECTIONS = {
     "westward": ("x", -1), "westwards": ("x", -1), "north": ("y", 1), "northward": ("y", 1), "northwards": ("y", 1),
     "northing": ("y", 1), "south": ("y", -1), "southward": ("y", -1), "southwards": ("y", -1), "up": ("z", 1),
     "upward": ("z", 1), "upwards": ("z", 1), "vertical": ("z", 1), "down": ("z", -1), "downward": ("z", -1),
-    "downwards": ("z", -1),
+    "downwards": ("z", -1), "ost": ("x", 1), "est": ("x", 1), "ouest": ("x", -1), "nord": ("y", 1), "sud": ("y", -1),
 }  # fmt: skip
 _AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | DIRECTIONS
 _AXIS = "|".join(sorted(_AXES, key=len, reverse=True))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from .lines import is_number
 
 COMMENTS = ("#", "%", "!", "//")  # a line that begins with one of these is a comment
+MARKS = {mark[0] for mark in COMMENTS}
 _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
 _APART = re.compile(r"\s{2,}|\t")
 _BEFORE_BRACKET = re.compile(r"\s+(?=[(\[{])")
@@ -30,6 +31,11 @@ class Spelling:
     fortran: bool = False
     quoted: bool = False
     share: float = 0.0
+
+    @property
+    def is_plain(self) -> bool:
+        """True if rows are as `plain` returns them already."""
+        return not (self.decimal_comma or self.fortran or self.quoted)
 
     def plain(self, line: str) -> str:
         """Return a row with a point, an E and no quotes."""
