@@ -350,7 +350,7 @@ def test_transits_need_the_column_t_only(tmp_path):
     ("content", "words"),
     [
         ("", "column t"),
-        ("clock\n1\n", "no t in clock, expected one column t"),
+        ("clock\n1\n", "got 'no t in clock', expected one column t"),
         ("k,t\n1\n", "line 2: got '1 fields'"),
         ("k,t\n1,2\n\n2,soon\n", "line 4: t: got 'soon'"),
         ("k,t\n1,2\n2,3,4\n", "line 3: got '3 fields', expected 2"),
