@@ -38,7 +38,7 @@ FLOORS = {
         ["registry", "trajectory", "variants", "equations"],
         [*engine_names()],
         ["engine"],
-        ["plan"],
+        ["plan", "batch"],
     ],
     "compare": [
         ["commands", "fixture"],

@@ -1,5 +1,6 @@
 """The engines, integrators of the model, each in a folder; one run of a scene with its transits, and two at a time.
 
+- `batch`: many scenes side by side in double, what goes in and what comes out.
 - `plan`: the input of an engine, `Plan`, and its output, `Run`; `engine`: the interface.
 - `registry`: the engines by name, which of them a run takes, and the run itself.
 - `side_by_side`: two runs at the same time.
