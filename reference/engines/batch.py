@@ -17,6 +17,7 @@ from ..precision import Array
 
 OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
 CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
+LEAST_BEND = 1e-6
 
 
 @dataclass(frozen=True)
@@ -90,6 +91,9 @@ class Outcomes:
         apsis_first, apsis_last: times of the first and of the last one, in s.
         turn: azimuth of the last minus that of the first about the plumb line -c, half turns left out, in rad, from east
             to north: the sum of the changes from one to the next, each taken between -π/2 and π/2.
+        least_bend: smallest -u''/(|c| (1 - u²)) at a highest point, u = -n·c/|c|: about 1 where the swing is in a plane,
+            0 for a conical orbit; where it is below `LEAST_BEND` there are no highest points to speak of, and none
+            are counted.
         largest_angle: largest angle from the plumb line at a highest point or the release, in rad.
         transit_row, transit_t, transit_direction: of every transit, ordered by row and time; empty if not wanted.
     """
@@ -106,6 +110,7 @@ class Outcomes:
     apsis_first: Array
     apsis_last: Array
     turn: Array
+    least_bend: Array
     largest_angle: Array
     transit_row: Any
     transit_t: Array
@@ -134,6 +139,7 @@ class Outcomes:
             apsis_first=unknown(),
             apsis_last=unknown(),
             turn=unknown(),
+            least_bend=unknown(),
             largest_angle=unknown(),
             transit_row=np.zeros(0, np.int64),
             transit_t=np.zeros(0),
