@@ -40,7 +40,7 @@ class Integrator:
     """
 
     def __init__(self, events: tuple[int, ...], drag: bool, tolerance: float) -> None:
-        self.zeros: list[tuple[int, int, float, int]] = []  # lane, kind, time, direction
+        self.zeros: dict[int, list[list[float]]] = {kind: [[] for _ in range(LANES)] for kind in events}
         names = _PARAMETERS if drag else _PARAMETERS[:-1]
         k = Constants.of({name: hy.par[i] for i, name in enumerate(names)})
         state = hy.make_vars(*MODEL.variables)
@@ -55,17 +55,19 @@ class Integrator:
         self._parameters = len(names)
 
     def _event(self, kind: int, function: Any) -> Any:
-        zeros = self.zeros  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
+        zeros = self.zeros[kind]  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
 
         def record(_: Any, t: float, direction: int, lane: int) -> None:
-            zeros.append((lane, kind, t, direction))
+            zeros[lane] += (t, direction)
 
         both = hy.event_direction.any if kind == TRANSIT else hy.event_direction.negative
         return hy.nt_event_batch(function, callback=record, direction=both)
 
     def _reset(self, rows: Rows) -> None:
         k = rows.k
-        self.zeros.clear()
+        for lanes in self.zeros.values():
+            for lane in lanes:
+                lane.clear()
         self._ta.set_time(0.0)
         self._ta.state[:] = [*rows.n[..., 0].T, *cross(rows.n[..., 0].T, rows.V[..., 0].T)]
         self._ta.pars[:] = [*k.turn[1:], *k.pull[1:], k.drag][: self._parameters]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,21 +28,35 @@ class Zeros:
     times: Array
 
 
-def by_lane(zeros: Iterable[tuple[int, int, float, int]], rows: Rows) -> list[Zeros]:
-    """Return the zeros of each lane from (lane, kind, time, direction), without those of the release.
+def by_lane(zeros: Mapping[int, list[list[float]]], rows: Rows) -> list[Zeros]:
+    """Return the zeros of each lane, without those of the release.
 
     heyoka reports the zeros at the release as t = 1e-17 or so. Where it has none by the exact inputs, all count.
+
+    Args:
+        zeros: of each kind and each lane time, direction, time, direction, …
+        rows: the scenes in the lanes.
     """
-    found: Any = np.array(sorted(zeros, key=lambda zero: (zero[0], zero[2])), dtype=np.float64).reshape(-1, 4)
-    lane, kind, t, direction = found.T
-    quiet = QUIET * 2 * np.pi / rows.rate
     lanes = []
-    for i in range(len(rows)):
-        own = (lane == i) & (t > 0) & (t <= rows.t_end[i, 0])
-        transit = own & (kind == TRANSIT) & ((t > quiet[i]) | (rows.zeros_at_release[i] == 0)) & (not rows.still[i])
-        turnings = t[own & (kind == TURNING) & (t > quiet[i])]
-        lanes.append(Zeros(t[transit], direction[transit], turnings, np.unique(np.concatenate([t[transit], turnings]))))
+    for lane, (end, rate) in enumerate(zip(rows.t_end[:, 0], rows.rate, strict=True)):
+        quiet = QUIET * 2 * np.pi / rate
+        none = quiet if rows.zeros_at_release[lane] else 0.0
+        t, directions = _within(zeros, TRANSIT, lane, np.inf if rows.still[lane] else none, end)
+        turnings, _ = _within(zeros, TURNING, lane, quiet, end)
+        lanes.append(Zeros(t, directions, turnings, np.unique(np.concatenate([t, turnings]))))
     return lanes
+
+
+def _within(
+    zeros: Mapping[int, list[list[float]]], kind: int, lane: int, after: float, end: float
+) -> tuple[Array, Array]:
+    """Return times, in order, and directions of the zeros of one kind in a lane that lie in a span."""
+    if kind not in zeros:
+        return np.zeros(0), np.zeros(0)
+    t, directions = np.array(zeros[kind][lane], dtype=np.float64).reshape(-1, 2).T
+    kept = np.flatnonzero((t > after) & (t <= end))
+    kept = kept[np.argsort(t[kept], kind="stable")]
+    return t[kept], directions[kept]
 
 
 def describe(
