@@ -5,13 +5,15 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..errors import InputError
 from ..packages import missing
 from ..scene import Scene
-from .audit import Audit, audit
+from .audit import Audit
+from .audit import audit as audited
 from .driver import Executor, Tally, drive, joined
 from .local import LocalExecutor, default_workers
 from .part import Part
@@ -67,28 +69,11 @@ def sweep(
     Raises:
         InputError: a wrong axis, option or folder; before any work.
     """
-    asked = _asked(scene, over, rows, out, want, level, digits, tolerance, engine, audit_rows)
-    return run(asked, Path(out) if out is not None else None, workers, cluster, report)
-
-
-def _asked(
-    scene: Scene,
-    over: Iterable[str],
-    rows: str | Path | None,
-    out: str | Path | None,
-    want: Sequence[str],
-    level: str,
-    digits: int | None,
-    tolerance: float | None,
-    engine: str,
-    audit_rows: int | None,
-) -> Request:
-    from dataclasses import replace
-
-    asked = request(
+    asked = asked_for(
         scene,
         over,
         Path(rows) if rows is not None else None,
+        Path(out) if out is not None else None,
         want=want,
         level=level,
         digits=digits,
@@ -96,12 +81,24 @@ def _asked(
         engine=engine,
         audit=audit_rows,
     )
+    return run(asked, Path(out) if out is not None else None, workers, cluster, report)
+
+
+def asked_for(
+    scene: Scene, over: Iterable[str], rows: Path | None, out: Path | None, *, audit: int | None, **options: Any
+) -> Request:
+    """Return a sweep, checked, its parts cut and its audit chosen for a folder or for memory; see `planning.request`.
+
+    Raises:
+        InputError: a wrong axis or option, or more rows than memory should hold.
+    """
+    asked = request(scene, over, rows, audit=audit, **options)
     count = asked.table.count
     if out is None:
         if count > MOST_IN_MEMORY:
             raise InputError("--out", "nothing", f"a folder, for more than {MOST_IN_MEMORY:,} rows", "Give --out DIR.")
         return replace(asked, rows_per_part=min(asked.rows_per_part, max(64, -(-count // FEWEST_PIECES))))
-    return replace(asked, audit=default_audit(count)) if audit_rows is None else asked
+    return replace(asked, audit=default_audit(count)) if audit is None else asked
 
 
 def load_sweep(folder: str | Path) -> Swept:
@@ -165,7 +162,7 @@ def run(
         compile_s = getattr(executor, "compile_s", 0.0)
     done = joined([kept[part] for part in sorted(kept)]) if store is None else Part({})
     swept = Swept(asked, tally, None, store, compile_s, 0.0, done.columns, done.transits)
-    found = audit(asked, _reader(swept)) if asked.audit else None
+    found = audited(asked, _reader(swept)) if asked.audit else None
     swept = Swept(asked, tally, found, store, compile_s, time.perf_counter() - started, done.columns, done.transits)
     if store is not None:
         store.summarize(_summary(swept))
@@ -200,11 +197,8 @@ def _reader(swept: Swept) -> Callable[[int], Mapping[str, Any]]:
 
 def _summary(swept: Swept) -> dict[str, Any]:
     """Return what became of all rows: the same whoever computed them."""
-    import numpy as np
-
-    statuses, counts = np.unique(swept["status"].astype(str), return_counts=True)
     return {
         "rows": len(swept),
-        "counts": dict(zip(statuses.tolist(), counts.tolist(), strict=True)),
+        "counts": swept.counts,
         "audit": swept.audit.document if isinstance(swept.audit, Audit) else None,
     }

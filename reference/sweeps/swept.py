@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..lazy import no_attribute
 from ..nearest import unknown
 from ..packages import missing
+from ..status import Status
 from .audit import Audit
 from .axes import Grid
 from .driver import Tally
@@ -45,6 +46,17 @@ class Swept:
 
     def __len__(self) -> int:
         return self.request.table.count
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """How many rows there are of each status."""
+        words, counts = np.unique(self["status"].astype(str), return_counts=True)
+        return dict(zip(words.tolist(), counts.tolist(), strict=True))
+
+    @property
+    def first_bad(self) -> int:
+        """The first row that is not ok; only where there is one."""
+        return int(np.argmax(self["status"] != Status.OK.value))
 
     @property
     def names(self) -> tuple[str, ...]:
