@@ -7,16 +7,20 @@ bit for bit, whatever rows stand beside it.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from collections.abc import Iterable
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from ..model.constants import Constants
 from ..packages import missing, switched_off
 from ..precision import Array
 
 OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
 CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
+LEAST_BEND = 1e-6
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,28 @@ class Rows:
 
     def __len__(self) -> int:
         return len(self.length)
+
+    @cached_property
+    def k(self) -> Constants:
+        """The constants in double, arrays of shape (n,)."""
+        (_, north, up), (_, south, down) = self.turn[..., 0].T, self.pull[..., 0].T
+        return Constants(
+            length=self.length[:, 0],
+            turn=(0, north, up),
+            pull=(0, south, down),
+            centrifugal=(north * north + up * up, up * up, -north * up, north * north),
+            drag=self.drag[:, 0],
+        )
+
+    @cached_property
+    def rate(self) -> Array:
+        """Angular frequency √|c| of a small swing, in rad/s."""
+        return np.sqrt(np.linalg.norm(self.pull[..., 0], axis=1))
+
+    @property
+    def swings(self) -> Array:
+        """Length of the span in periods 2π/√|c| of a small swing."""
+        return self.t_end[:, 0] * self.rate / (2 * np.pi)
 
     def __getitem__(self, chosen: Any) -> Self:
         """Return some of the rows: a slice, or an array of indices or truths."""
@@ -90,6 +116,9 @@ class Outcomes:
         apsis_first, apsis_last: times of the first and of the last one, in s.
         turn: azimuth of the last minus that of the first about the plumb line -c, half turns left out, in rad, from east
             to north: the sum of the changes from one to the next, each taken between -π/2 and π/2.
+        least_bend: smallest -u''/(|c| (1 - u²)) at a highest point, u = -n·c/|c|: about 1 where the swing is in a plane,
+            0 for a conical orbit; where it is below `LEAST_BEND` there are no highest points to speak of, and none
+            are counted.
         largest_angle: largest angle from the plumb line at a highest point or the release, in rad.
         transit_row, transit_t, transit_direction: of every transit, ordered by row and time; empty if not wanted.
     """
@@ -106,6 +135,7 @@ class Outcomes:
     apsis_first: Array
     apsis_last: Array
     turn: Array
+    least_bend: Array
     largest_angle: Array
     transit_row: Any
     transit_t: Array
@@ -134,10 +164,23 @@ class Outcomes:
             apsis_first=unknown(),
             apsis_last=unknown(),
             turn=unknown(),
+            least_bend=unknown(),
             largest_angle=unknown(),
             transit_row=np.zeros(0, np.int64),
             transit_t=np.zeros(0),
             transit_direction=np.zeros(0, np.int8),
+        )
+
+    def with_transits(self, found: Iterable[tuple[int, Array, Array]]) -> Self:
+        """Return the same with the transits found: of each row its number, their times and their directions."""
+        ordered = sorted(found, key=lambda one: one[0])
+        if not ordered:
+            return self
+        return replace(
+            self,
+            transit_row=np.repeat([row for row, _, _ in ordered], [len(times) for _, times, _ in ordered]),
+            transit_t=np.concatenate([times for _, times, _ in ordered]),
+            transit_direction=np.concatenate([directions for *_, directions in ordered]).astype(np.int8),
         )
 
 
