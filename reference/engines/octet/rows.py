@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from ...double_double import DoubleDouble, square_root
 from ...precision import Array
-from ..batch import CLOSE_PAIR, Outcomes, Rows
+from ..batch import CLOSE_PAIR, OK, Outcomes, Rows
+from ..batch import LEAST_BEND as LEAST
 
 # of a row's numbers: constants and state in its unit of time, unit and span in s, multiplicities of zeros at release
 TURN_P, TURN_U, PULL, X, P, U, W, V, S, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, MOVES, CLOSE_S = range(16)
 COLUMNS = 16
 # of what comes out: the state, and what was found on the way
 STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
-APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, VAGUE = range(13, 23)
+APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND = range(13, 23)
 RESULTS = 24
 _SAME = 2.0**-94  # of a row's velocities: u' that is less at the release is zero
 
@@ -65,16 +67,20 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     result.steps[:] = r[STEPS]
     result.state[:] = np.stack([*n, *(part / unit for part in velocity)], axis=1) * length[:, None]
     result.transits[:], result.close_pairs[:] = r[COUNT], r[CLOSE]
-    result.t_first[:], result.t_last[:] = r[T_FIRST], r[T_LAST]
-    result.least_ax[:] = r[LEAST_SLOPE] * length / (unit * unit)
-    clear = r[VAGUE] == 0
-    result.apsides[:] = np.where(clear, r[APSIDES], 0)
+    crossed = result.transits > 0
+    result.t_first[:], result.t_last[:] = np.where(crossed, r[T_FIRST : T_LAST + 1], np.nan)
+    result.least_ax[:] = np.where(crossed, r[LEAST_SLOPE] * length / (unit * unit), np.nan)
+    result.least_bend[:] = np.where(r[APSIDES] > 0, r[LEAST_BEND], np.nan)
+    result.apsides[:] = np.where(result.least_bend >= LEAST, r[APSIDES], 0)
     some = result.apsides > 0
     result.apsis_first[:], result.apsis_last[:] = np.where(some, r[A_FIRST : A_LAST + 1], np.nan)
     first, last = np.arctan2(r[P_FIRST], r[X_FIRST]), np.arctan2(r[P_LAST], r[X_LAST])
     result.turn[:] = np.where(some, last - first + np.pi * r[HALF_TURNS], np.nan)
     result.largest_angle[:] = 2.0 * np.arcsin(np.sqrt(np.clip(0.5 * r[HIGHEST], 0.0, 1.0)))
-    return result
+    lost = result.fate != OK
+    result.state[lost] = np.nan
+    row, t, direction = moments
+    return replace(result, transit_row=row, transit_t=t, transit_direction=direction)
 
 
 def _plumb_line(north: DoubleDouble, up: DoubleDouble, size: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:

@@ -15,7 +15,19 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..limbs.lanes import LANES, compiled, exp2_of, inlined, larger, load, log2_of, magnitude, plus_product, spread, store
+from ..limbs.lanes import (
+    LANES,
+    compiled,
+    exp2_of,
+    inlined,
+    larger,
+    load,
+    log2_of,
+    magnitude,
+    plus_product,
+    spread,
+    store,
+)
 from ..limbs.limb import Array, aligned
 
 MOST_ORDER = 24  # even, as two orders are computed at a time
@@ -111,7 +123,13 @@ def taylor_coefficients(c: Series, now: State, t: Terms, inverses: Array, order:
     _next_order(c, t, 0, inverses[0], l0 * x0, l0 * p0, l0 * u0)
     x1, p1, u1, l1 = load(c.x, LANES), load(c.p, LANES), load(c.u, LANES), load(c.tension, LANES)
     _next_order(
-        c, t, 1, inverses[1], plus_product(l0 * x1, l1, x0), plus_product(l0 * p1, l1, p0), plus_product(l0 * u1, l1, u0)
+        c,
+        t,
+        1,
+        inverses[1],
+        plus_product(l0 * x1, l1, x0),
+        plus_product(l0 * p1, l1, p0),
+        plus_product(l0 * u1, l1, u0),
     )
     for k in range(2, order, 2):
         # orders k and k + 1 together: each coefficient that is loaded serves both
@@ -124,7 +142,13 @@ def taylor_coefficients(c: Series, now: State, t: Terms, inverses: Array, order:
             bx, bp, bu = plus_product(bx, after, x), plus_product(bp, after, p), plus_product(bu, after, u)
             after = l
         at = LANES * k
-        before, l, x, p, u = load(c.tension, at - LANES), load(c.tension, at), load(c.x, at), load(c.p, at), load(c.u, at)
+        before, l, x, p, u = (
+            load(c.tension, at - LANES),
+            load(c.tension, at),
+            load(c.x, at),
+            load(c.p, at),
+            load(c.u, at),
+        )
         ax, ap, au = plus_product(ax, before, x1), plus_product(ap, before, p1), plus_product(au, before, u1)
         ax = plus_product(plus_product(ax, l, x0), l0, x)
         ap = plus_product(plus_product(ap, l, p0), l0, p)
@@ -165,8 +189,16 @@ def sum_series(now: State, c: Series, t: Terms, length: Array, order: int) -> No
     x = p = u = w = v = s = none
     for k in range(order, -1, -1):
         at = LANES * k
-        x, p, u = plus_product(load(c.x, at), x, r), plus_product(load(c.p, at), p, r), plus_product(load(c.u, at), u, r)
-        w, v, s = plus_product(load(c.w, at), w, r), plus_product(load(c.v, at), v, r), plus_product(load(c.s, at), s, r)
+        x, p, u = (
+            plus_product(load(c.x, at), x, r),
+            plus_product(load(c.p, at), p, r),
+            plus_product(load(c.u, at), u, r),
+        )
+        w, v, s = (
+            plus_product(load(c.w, at), w, r),
+            plus_product(load(c.v, at), v, r),
+            plus_product(load(c.s, at), s, r),
+        )
     half = plus_product(plus_product(x * x, p, p), u, u - spread(2.0)) * spread(-0.5)
     x, p, u = plus_product(x, half, x), plus_product(p, half, p), plus_product(u, half, u - spread(1.0))
     down = u - spread(1.0)
