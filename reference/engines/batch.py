@@ -7,7 +7,7 @@ bit for bit, whatever rows stand beside it.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import Any, ClassVar, Self
@@ -76,6 +76,11 @@ class Rows:
     def swings(self) -> Array:
         """Length of the span in periods 2π/√|c| of a small swing."""
         return self.t_end[:, 0] * self.rate / (2 * np.pi)
+
+    @classmethod
+    def joined(cls, blocks: Sequence[Self]) -> Self:
+        """Return the rows of several blocks, in order."""
+        return cls(*(np.concatenate([getattr(block, field.name) for block in blocks]) for field in fields(cls)))
 
     def __getitem__(self, chosen: Any) -> Self:
         """Return some of the rows: a slice, or an array of indices or truths."""
