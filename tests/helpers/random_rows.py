@@ -7,10 +7,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
+
 from reference.double_double import DoubleDouble
+from reference.engines.batch import Rows
 from reference.inputs import Inputs
 from reference.scene import load_scene
-from reference.sweeps.folding import ANGLES, POSITION, SITE
+from reference.sweeps.folding import ANGLES, POSITION, SITE, fold
 
 KINDS = ("small", "wide", "meridian", "planet", "over")
 SPAN = Fraction(600)
@@ -45,7 +48,7 @@ def random_inputs(kind: str, generator: random.Random, span: Fraction = SPAN) ->
     if kind == "planet":
         site["rotation_rate"] = _decimal(generator, -0.1, 0.1)
         site["equatorial_radius"] = _decimal(generator, 0, 300, 3)
-        site["gravity"] = _decimal(generator, 1, 12, 6)
+        site |= {"gravity": _decimal(generator, 1, 12, 6), "altitude": Fraction(0)}
     if kind == "small" and generator.random() < 0.3:
         site["gravity_is"] = "effective"
     angles = None
@@ -70,3 +73,13 @@ def columns_of_many(many: list[Inputs]) -> dict[str, DoubleDouble]:
     for i, name in enumerate(names):
         columns[name] = DoubleDouble.of([(inputs.position or inputs.angles)[i] for inputs in many])
     return columns
+
+
+def rows_of(many: list[Inputs]) -> Rows:
+    """Return scenes of any release form and gravity as rows, in order."""
+    groups: dict[tuple[bool, str], list[int]] = {}
+    for i, inputs in enumerate(many):
+        groups.setdefault((inputs.position is None, inputs.gravity_is), []).append(i)
+    blocks = [fold(columns_of_many([many[i] for i in own]), key[1], len(own)) for key, own in groups.items()]
+    order = [i for own in groups.values() for i in own]
+    return Rows.joined(blocks)[np.argsort(order)]

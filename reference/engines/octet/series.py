@@ -85,16 +85,17 @@ def _next_order(c: Series, t: Terms, k: int, inverse: float, lx: object, lp: obj
     op, ou, pull = load(t.turn_p, 0), load(t.turn_u, 0), load(t.pull, 0)
     x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
     w, v, s = load(c.w, at), load(c.v, at), load(c.s, at)
+    # what comes last in the chain of dependent operations is added last
     none = spread(0.0)
-    xdot = plus_product(plus_product(w, ou, p), none - op, u)
+    xdot = w + plus_product(ou * p, none - op, u)
     udot = plus_product(s, op, x)
     store(c.xdot, at, xdot)
     store(c.udot, at, udot)
     store(c.x, to, xdot * share)
     store(c.p, to, plus_product(v, none - ou, x) * share)
     store(c.u, to, udot * share)
-    store(c.tension, to, plus_product(s * spread(3.0), op, x) * (none - pull) * share)
-    store(c.w, to, plus_product(plus_product(none - lx, ou, v), none - op, s) * share)
+    store(c.tension, to, plus_product(op * x, s, spread(3.0)) * (spread(-inverse) * pull))
+    store(c.w, to, (plus_product(ou * v, none - op, s) - lx) * share)
     if k == 0:
         # λ less its value at rest, without cancellation
         excess = plus_product(plus_product(w * w, v, v), s, s)
@@ -102,7 +103,7 @@ def _next_order(c: Series, t: Terms, k: int, inverse: float, lx: object, lp: obj
         store(c.v, to, (ou * (op - w) - lp) * share)
         store(c.s, to, (plus_product(excess, op, w) - lu) * share)
     else:
-        store(c.v, to, plus_product(none - lp, none - ou, w) * share)
+        store(c.v, to, (ou * w + lp) * spread(-inverse))
         store(c.s, to, (plus_product(load(c.tension, at), op, w) - lu) * share)
 
 

@@ -114,10 +114,15 @@ def refine(z: Zeros, f: Array, length: Array, order: int, converged: float) -> N
     low, high, place, none = load(z.low, 0), load(z.high, 0), load(z.place, 0), spread(0.0)
     moved = slope = none
     for _ in range(NEWTON_STEPS):
-        value = slope = none
-        for k in range(order - 1, -1, -1):
-            slope, value = plus_product(value, slope, place), plus_product(load(f, LANES * k), value, place)
-        new = _between(place - value / slope, low, high)
+        # even and odd powers apart: half the chain of dependent operations
+        even = even_slope = odd = odd_slope = none
+        square = place * place
+        for k in range(order - 2, -1, -2):
+            even_slope, even = plus_product(even, even_slope, square), plus_product(load(f, LANES * k), even, square)
+            at = LANES * (k + 1)
+            odd_slope, odd = plus_product(odd, odd_slope, square), plus_product(load(f, at), odd, square)
+        slope = plus_product(odd, plus_product(even_slope, odd_slope, place), place + place)
+        new = _between(place - plus_product(even, odd, place) / slope, low, high)
         moved, place = magnitude(new - place), new
     hit = load(z.hit, 0)
     good = at_least(load(length, 0) * spread(converged), moved) * hit
