@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -133,7 +134,7 @@ def drive(
         open_pieces[future] = piece
         future.add_done_callback(done.put)
 
-    for piece in _first(waiting, PER_WORKER * executor.workers):
+    for piece in islice(waiting, PER_WORKER * executor.workers):
         begin(piece)
     while open_pieces:
         future = done.get()
@@ -155,7 +156,7 @@ def drive(
         if solved is not None:
             keep(piece.part, solved)
         report(len(piece.rows))
-        for following in _first(waiting, 1):
+        for following in islice(waiting, 1):
             begin(following)
     return total
 
@@ -178,10 +179,6 @@ def crashed(request: Request, rows: range, reason: str) -> Part:
 
 def _pieces(request: Request, parts: Iterable[int]) -> Iterator[Piece]:
     return (Piece(part, request.rows_of(part)) for part in parts)
-
-
-def _first(pieces: Iterator[Piece], count: int) -> Iterator[Piece]:
-    return (piece for piece, _ in zip(pieces, range(count), strict=False))
 
 
 def _whole(request: Request, number: int, halves: dict[int, list[Part]]) -> Part | None:
