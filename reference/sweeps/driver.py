@@ -20,7 +20,8 @@ from .promote import promoted
 from .request import Request
 from .row import empty
 
-BLOCK = 512  # rows that are solved in one go: what Ctrl-C waits for
+BLOCKS = 16  # of a whole part, solved one after the other: Ctrl-C waits for one
+LEAST_BLOCK = 64  # rows
 PER_WORKER = 3  # pieces that wait or are computed for each worker
 DIED_REASON = "Its process died each time, alone as well"
 
@@ -91,11 +92,11 @@ def work(
         Interrupted: the event `stop` was set meanwhile.
         OSError: it cannot be saved.
     """
-    blocks = []
-    for first in range(piece.rows.start, piece.rows.stop, BLOCK):
+    blocks, size = [], max(request.rows_per_part // BLOCKS, LEAST_BLOCK)
+    for first in range(piece.rows.start, piece.rows.stop, size):
         if stop is not None and stop.is_set():
             raise Interrupted
-        blocks.append(solve_part(request, range(first, min(first + BLOCK, piece.rows.stop)), promote))
+        blocks.append(solve_part(request, range(first, min(first + size, piece.rows.stop)), promote))
     solved = joined(blocks)
     tally = Tally.of(solved)
     if folder is None or not piece.whole:

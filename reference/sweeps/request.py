@@ -115,7 +115,7 @@ class Request:
             name = key.rpartition(".")[2]
             if name == "inverse_flattening":
                 with np.errstate(invalid="ignore"):
-                    inverse = 1 / numbers
+                    inverse = DoubleDouble(np.ones(len(rows)), np.zeros(len(rows))) / numbers
                 zero = np.isinf(numbers.high)
                 numbers = DoubleDouble(np.where(zero, 0.0, inverse.high), np.where(zero, 0.0, inverse.low))
             columns[_SEVERAL.get(name, name)] = numbers

@@ -150,13 +150,11 @@ class Store:
         """Return columns of the whole sweep as arrays, all if no names are given."""
         chosen = list(names) if names is not None else None
         tables = [pq.read_table(self.path(part, kind), columns=chosen) for part in range(self.request.parts)]
-        table = pa.concat_tables(tables).unify_dictionaries()
-        return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
+        return _arrays(pa.concat_tables(tables))
 
     def read_part(self, part: int) -> dict[str, Any]:
         """Return the columns of one part as arrays."""
-        table = pq.read_table(self.path(part))
-        return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
+        return _arrays(pq.read_table(self.path(part)))
 
     def summarize(self, document: dict[str, Any]) -> None:
         """Write what became of the sweep."""
@@ -194,6 +192,12 @@ def read_columns(path: Path) -> dict[str, list[Any]]:
         return dict(pq.read_table(path).to_pydict())
     except pa.ArrowException as error:
         raise OSError(0, str(error).splitlines()[0]) from None
+
+
+def _arrays(table: pa.Table) -> dict[str, Any]:
+    """Return columns as arrays; words as objects, None where there is none."""
+    plain = {name: table[name].cast(pa.string()) for name in table.column_names if table[name].type == _WORDS}
+    return {name: plain.get(name, table[name]).to_numpy(zero_copy_only=False) for name in table.column_names}
 
 
 def _write_json(path: Path, document: dict[str, Any]) -> None:
