@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,9 +14,11 @@ from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
 from .estimate import DEGREES_PER_HOUR, Errors, errors
-from .promote import fill, promoted
+from .promote import Promoted, fill, promoted
 from .request import Request
 from .row import STATE_COLUMNS, TIMES, empty
+
+Promote = Callable[..., Promoted]
 
 MOVED = Wanted(transits=False, apsides=False, moved=True)
 STOPPED_REASON = "The engine stopped: the step became too short, or a number not finite."
@@ -49,8 +52,14 @@ class Part:
         }
 
 
-def solve_part(request: Request, numbers: range) -> Part:
-    """Return rows solved; a row that fails says so, and the others go on."""
+def solve_part(request: Request, numbers: range, promote: Promote = promoted) -> Part:
+    """Return rows solved; a row that fails says so, and the others go on.
+
+    Args:
+        request: the sweep.
+        numbers: of the rows.
+        promote: solves a row by itself, as `promoted` does, which is not made for several threads.
+    """
     started = time.thread_time()
     table, count = request.table, len(numbers)
     part = Part({column.name: empty(column, count) for column in request.columns})
@@ -73,14 +82,15 @@ def solve_part(request: Request, numbers: range) -> Part:
     rows = request.folded(good) if len(good) else None
     part.fold_s = time.thread_time() - before
     if rows is not None:
-        _solve(request, part, good, good - numbers.start, rows)
+        _solve(request, part, good, rows, promote)
     part.cpu_s = time.thread_time() - started
     return part
 
 
-def _solve(request: Request, part: Part, numbers: Any, places: Any, rows: Rows) -> None:
+def _solve(request: Request, part: Part, numbers: Any, rows: Rows, promote: Promote) -> None:
     """Solve rows whose values are right one by one."""
     columns, sound = part.columns, _finite(rows)
+    places = numbers - int(columns["row"][0])
     more: dict[int, str] = {}  # places of rows that the solver has to solve, and why
     for at in np.flatnonzero(~sound):
         try:
@@ -99,7 +109,7 @@ def _solve(request: Request, part: Part, numbers: Any, places: Any, rows: Rows) 
         if reason == STOPPED_REASON and not request.promotes:
             _fail(columns, place, Status.GAVE_UP, reason)
             continue
-        result = promoted(request, int(columns["row"][place]), doubtful=bool(reason))
+        result = promote(request, int(columns["row"][place]), doubtful=bool(reason))
         fill(columns, place, result, reason)
         if TIMES in request.want:
             part.list_transits(int(columns["row"][place]), *result.times)

@@ -31,7 +31,9 @@ class Promoted:
     failure: str = ""
 
 
-def promoted(request: Request, row: int, *, doubtful: bool, level: Level | None = None) -> Promoted:
+def promoted(
+    request: Request, row: int, *, doubtful: bool, level: Level | None = None, digits: int | None = None
+) -> Promoted:
     """Return a row solved by itself.
 
     Args:
@@ -39,13 +41,14 @@ def promoted(request: Request, row: int, *, doubtful: bool, level: Level | None 
         row: its number.
         doubtful: whether a doubt has to be settled: then at the level `LEAST_LEVEL` at least.
         level: a level instead of the request's.
+        digits: digits instead of the request's.
     """
     from ..solver.solve import solve
 
     wished = level or request.level
     if doubtful:
         wished = max(wished, LEAST_LEVEL, key=LEVELS.index)
-    digits = request.digits or DIGITS
+    digits = digits or request.digits or DIGITS
     try:
         scene = request.scene_of(row)
         solution = solve(scene, level=wished, digits=digits, transits=request.wanted.transits)

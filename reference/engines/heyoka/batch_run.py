@@ -17,7 +17,7 @@ from ...precision import DOUBLE, Array
 from ..batch import DOUBTFUL, OK, STOPPED, Outcomes, Rows, Wanted
 from .batch import MOVED_TOLERANCE, TOLERANCE, HeyokaBatch
 from .batch_zeros import TRANSIT, TURNING, by_lane, describe
-from .machine_code import compiling
+from .machine_code import keep_on_disk
 from .shared_log import SHARED_LOG
 from .system import as_pairs, rates
 
@@ -50,7 +50,8 @@ class Integrator:
         if events:
             keywords["nt_events"] = [self._event(kind, functions[kind]) for kind in events]
         equations = as_pairs(state, rates(MODEL, k)(state, hy))
-        with compiling(DOUBLE):
+        with SHARED_LOG.alone():
+            keep_on_disk(DOUBLE)
             self._ta: Any = hy.taylor_adaptive_batch(equations, np.zeros((len(state), LANES)), **keywords)
         self._parameters = len(names)
 

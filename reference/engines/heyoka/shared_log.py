@@ -43,17 +43,23 @@ class SharedLog:
 
         Where something was written, `run` is called once more with no other thread inside `seen`.
         """
-        with self._entered(alone=False):
+        with self._entered():
             before = self._capture.size
             result = run()
             if self._capture.size == before:
                 return result, False
-        with self._entered(alone=True):
+        with self.alone():
             before = self._capture.size
             return run(), self._capture.size > before
 
     @contextmanager
-    def _entered(self, *, alone: bool) -> Iterator[None]:
+    def alone(self) -> Iterator[None]:
+        """Keep the other threads out of `seen` meanwhile: what is logged is not theirs."""
+        with self.watched(), self._entered(alone=True):
+            yield
+
+    @contextmanager
+    def _entered(self, *, alone: bool = False) -> Iterator[None]:
         with self._turn:
             self._turn.wait_for(lambda: not self._alone and not (alone and self._running))
             self._running += 1
