@@ -255,10 +255,10 @@ def _march(m: March, plan: Settings, numbers: Array, results: Array, moments: Mo
             if row >= 0:
                 clear = _note(m, plan, lane, row, numbers, results, moments)
                 results[row * RESULTS + STEPS] += 1.0
-                if not clear:
-                    m.last[lane] = 1.0 + DOUBTFUL
-                elif (m.last[lane] == 0.0 and not m.length[lane] > SHORTEST) or not abs(m.now.x[lane]) < 2.0:
+                if (m.last[lane] == 0.0 and not m.length[lane] > SHORTEST) or not abs(m.now.x[lane]) < 2.0:
                     m.last[lane] = 1.0 + STOPPED
+                elif not clear:
+                    m.last[lane] = 1.0 + DOUBTFUL
         _advance_time(m)
         store(m.transits.before, 0, load(m.transits.after, 0))
         store(m.highest.before, 0, load(m.highest.after, 0))
