@@ -69,26 +69,22 @@ class ClusterExecutor:
 
     def submit(self, piece: Piece) -> Any:
         """Begin a piece on some worker."""
-        return _Awaited(
-            self._client.submit(compute, self._document, piece, self._folder, pure=False, retries=RETRIES)
-        )
+        return _Awaited(self._client.submit(compute, self._document, piece, self._folder, pure=False, retries=RETRIES))
 
-    def _connected(self, address: str) -> distributed.Client:
-        from distributed import Client, LocalCluster
-
+    def _connected(self, address: str) -> Any:
         if address.startswith(LOCAL):
             count = address[len(LOCAL) :]
             if not count.isdigit() or not int(count):
                 raise InputError("--cluster", address, "local:N with a number of workers from 1")
-            cluster = LocalCluster(
+            cluster = distributed.LocalCluster(
                 n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
             )
             self._stack.enter_context(cluster)
-            return self._stack.enter_context(Client(cluster))
+            return self._stack.enter_context(distributed.Client(cluster))
         if not address.startswith(SCHEMES):
             raise InputError("--cluster", address, "tcp://HOST:PORT of a scheduler of dask, or local:N")
         try:
-            return self._stack.enter_context(Client(address, timeout=WAIT_S))
+            return self._stack.enter_context(distributed.Client(address, timeout=WAIT_S))
         except (OSError, ValueError):
             advice = "Start one with `dask scheduler`, and workers with `dask worker ADDRESS`."
             raise InputError("--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice) from None
@@ -140,8 +136,8 @@ class _Awaited:
             raise ClusterError("The scheduler was lost; what is done stays.")
         try:
             return self._future.result()
-        except KilledWorker as death:
-            raise WorkerDied(f"its workers died") from None
+        except KilledWorker:
+            raise WorkerDied("its workers died") from None
         except distributed.client.FutureCancelledError:
             raise ClusterError("The scheduler was lost; what is done stays.") from None
 

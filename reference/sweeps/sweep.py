@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..engines import AUTO
 from ..errors import InputError
 from ..packages import missing
 from ..scene import Scene
@@ -92,6 +93,8 @@ def asked_for(
     Raises:
         InputError: a wrong axis or option, or more rows than memory should hold.
     """
+    if out is not None and options.get("engine", AUTO) == AUTO and (out / "plan.json").exists():
+        options["engine"] = opened(out).request.engine  # a sweep goes on as it began
     asked = request(scene, over, rows, audit=audit, **options)
     count = asked.table.count
     if out is None:
@@ -111,7 +114,9 @@ def load_sweep(folder: str | Path) -> Swept:
     left = len(store.missing())
     if left:
         advice = f"Go on with `foucault sweep --out {folder}`."
-        raise InputError("sweep", str(folder), "a sweep that is done", f"{left} of {store.request.parts} parts miss. {advice}")
+        raise InputError(
+            "sweep", str(folder), "a sweep that is done", f"{left} of {store.request.parts} parts miss. {advice}"
+        )
     return Swept(store.request, store=store)
 
 
@@ -139,7 +144,11 @@ def need_pyarrow() -> None:
 
 
 def run(
-    asked: Request, out: Path | None, workers: int | None = None, cluster: str | None = None, report: Report = lambda _: None
+    asked: Request,
+    out: Path | None,
+    workers: int | None = None,
+    cluster: str | None = None,
+    report: Report = lambda _: None,
 ) -> Swept:
     """Do what of a sweep is not done yet, and audit it; arguments and errors as those of `sweep`."""
     started = time.perf_counter()

@@ -26,7 +26,10 @@ def test_steps_are_exact_decimals_with_both_ends_in():
     assert texts("pendulum.length=100:300:100") == ["100", "200", "300"]
 
 
-@pytest.mark.parametrize("word", ["site.latitude=-90:90:0.7", "release.x=0.1:0.3:0.000001", "site.gravity=9.8:9.8000000000000000000001:1e-25"])
+@pytest.mark.parametrize(
+    "word",
+    ["site.latitude=-90:90:0.7", "release.x=0.1:0.3:0.000001", "site.gravity=9.8:9.8000000000000000000001:1e-25"],
+)
 def test_numbers_are_the_nearest_sums_of_two_doubles(word):
     made = axis(word, "decimal")
     indices = np.linspace(0, min(len(made) - 1, 10**12), 50).astype(np.int64)
