@@ -21,7 +21,7 @@ from .request import Request
 from .row import empty
 
 BLOCKS = 16  # of a whole part, solved one after the other: Ctrl-C waits for one
-LEAST_BLOCK = 64  # rows
+LEAST_BLOCK = 256  # rows
 PER_WORKER = 3  # pieces that wait or are computed for each worker
 DIED_REASON = "Its process died each time, alone as well"
 

@@ -20,7 +20,7 @@ from .row import AMPLITUDE, FREQUENCY, PRECESSION, TIMES, TRANSITS, Column, colu
 
 SCHEMA = 1
 PART_S = 10.0  # CPU seconds of a part, by the cost model
-LEAST_PART, MOST_PART = 64, 65_536  # rows
+LEAST_PART, MOST_PART = 8, 65_536  # rows
 CARTESIAN, ANGULAR = ("x", "y", "vx", "vy"), ("angle", "azimuth", "angle_rate", "azimuth_rate")
 
 

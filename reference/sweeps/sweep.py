@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from .store import Store
 
 MOST_IN_MEMORY = 100_000  # rows
-FEWEST_PIECES = 16  # of a sweep in memory, where it has the rows
+PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
 
 Report = Callable[[int], None]
 
@@ -100,7 +100,7 @@ def asked_for(
     if out is None:
         if count > MOST_IN_MEMORY:
             raise InputError("--out", "nothing", f"a folder, for more than {MOST_IN_MEMORY:,} rows", "Give --out DIR.")
-        return replace(asked, rows_per_part=min(asked.rows_per_part, max(64, -(-count // FEWEST_PIECES))))
+        return replace(asked, rows_per_part=min(asked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES))))
     return replace(asked, audit=default_audit(count)) if audit is None else asked
 
 
