@@ -6,6 +6,7 @@ it is halved, until the row that does so is alone.
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -27,6 +28,7 @@ LOCAL = "local:"
 SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
 WAIT_S = 10.0  # for an answer of the scheduler
 RETRIES = 3  # of a piece that raised an error which is none of this project's
+LOST = "the scheduler was lost; what is done stays, and the same command goes on."
 _NONCE = ".seen-by-workers"
 
 
@@ -52,6 +54,7 @@ class ClusterExecutor:
         self._request, self._document = request, request.document()
         self._stack = ExitStack()
         self.compile_s = 0.0
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # a lost scheduler is told in one line
         try:
             self._client = self._connected(address)
             self.workers = self._check_workers(address)
@@ -70,6 +73,15 @@ class ClusterExecutor:
     def submit(self, piece: Piece) -> Any:
         """Begin a piece on some worker."""
         return _Awaited(self._client.submit(compute, self._document, piece, self._folder, pure=False, retries=RETRIES))
+
+    def check(self) -> None:
+        """Raise if the scheduler is lost.
+
+        Raises:
+            ClusterError: it is.
+        """
+        if self._client.status != "running":
+            raise ClusterError(LOST)
 
     def _connected(self, address: str) -> Any:
         if address.startswith(LOCAL):
@@ -133,13 +145,13 @@ class _Awaited:
             ClusterError: the scheduler was lost.
         """
         if self._future.status in ("cancelled", "lost"):
-            raise ClusterError("The scheduler was lost; what is done stays.")
+            raise ClusterError(LOST)
         try:
             return self._future.result()
         except KilledWorker:
             raise WorkerDied("its workers died") from None
         except distributed.client.FutureCancelledError:
-            raise ClusterError("The scheduler was lost; what is done stays.") from None
+            raise ClusterError(LOST) from None
 
 
 def versions(engine: str) -> str:

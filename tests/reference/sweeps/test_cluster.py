@@ -24,7 +24,7 @@ ROWS = 46
 def asked(out):
     scene = load_scene("paris", ["run.t_end=30"])
     whole = asked_for(scene, ["site.latitude=-90:90:4"], None, out, audit=0, engine="heyoka")
-    return replace(whole, rows_per_part=4)
+    return replace(whole, rows_per_part=8)
 
 
 @pytest.fixture(scope="module")
@@ -51,7 +51,7 @@ def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(clu
 
         def report(rows: int) -> None:
             done[0] += rows
-            if done[0] >= 8 and not killed:
+            if done[0] >= 16 and not killed:
                 killed.extend(executor._client.run(os.getpid).values())
                 os.kill(killed[0], signal.SIGKILL)
 
@@ -69,6 +69,7 @@ def test_a_row_that_kills_its_worker_crashes_alone(cluster, tmp_path, monkeypatc
     from reference.sweeps import cluster as module
 
     monkeypatch.setattr(module, "compute", poisoned_sweep.compute)
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
     swept = run(asked(tmp_path / "out"), tmp_path / "out", cluster=cluster.scheduler_address)
     assert swept.counts == {"crashed": 1, "ok": ROWS - 1}
     assert swept["status"][poisoned_sweep.POISON] == "crashed"
