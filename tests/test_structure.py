@@ -25,7 +25,7 @@ FLOORS = {
         ["solver"],
         ["engines", "enclosure"],
         ["model"],
-        ["scene", "table", "process", "packing", "capture", "taylor_step"],
+        ["scene", "table", "fixed_point", "process", "packing", "capture", "taylor_step"],
         ["toml_document"],
         ["double_double"],
         ["inputs", "fields", "precision", "shipped", "columns", "workspace", "machine_code"],
