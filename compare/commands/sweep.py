@@ -33,10 +33,9 @@ SHOWN = {
     "max_angle_deg": "angle (°)",
     "position_error_m": "error (m)",
 }  # columns of the table, and their heads
-_NO_GRID = {
-    name: "A sweep has no grid: give --t-end, --digits, --level or --want."
-    for name in ("run.grid_step", "run.digits", "run.level", "run.transits")
-}
+_NO_GRID = dict.fromkeys(
+    ("run.grid_step", "run.digits", "run.level", "run.transits"), "Give --t-end, --digits, --level or --want."
+)
 
 
 def command(
@@ -75,7 +74,9 @@ def command(
     level: Annotated[
         str | None,
         typer.Option(
-            "--level", metavar="L", help="Above computed, every row goes through the solver.",
+            "--level",
+            metavar="L",
+            help="Above computed, every row goes through the solver.",
             autocompletion=completion(lambda: LEVELS),
         ),
     ] = None,
@@ -87,7 +88,8 @@ def command(
         typer.Option("--tolerance", metavar="M", help="Solve rows again whose position may be off by more, in m."),
     ] = None,
     engine: Annotated[
-        str | None, typer.Option("--engine", metavar="E", help="Solve the rows with this engine (default: the fastest).")
+        str | None,
+        typer.Option("--engine", metavar="E", help="Solve the rows with this engine (default: the fastest)."),
     ] = None,
     audit: Annotated[
         int | None,
@@ -99,7 +101,9 @@ def command(
     ] = None,
     out: Annotated[
         Path | None,
-        typer.Option("--out", metavar="DIR", help="Write the rows into this folder, in Parquet; the same command goes on."),
+        typer.Option(
+            "--out", metavar="DIR", help="Write the rows into this folder, in Parquet; the same command goes on."
+        ),
     ] = None,
     workers: Annotated[
         int | None, typer.Option("--workers", metavar="N", help="Use so many cores of this machine (default: all).")
@@ -117,7 +121,7 @@ def command(
     """Solve a scene for many values of its fields: frequency, precession, transits, state, each with its error.
 
     foucault sweep paris --over site.latitude=-90:90:1 --t-end 12000
-    """  # noqa: D301
+    """
     from reference.sweeps.sweep import run
 
     request = _request(
@@ -131,7 +135,9 @@ def command(
         raise InputError("--workers", workers, "a whole number from 1")
     if plot is not None:
         _check_plot(request, plot)
-    kept = f"what is done is in {out}: `foucault sweep --out {out}` goes on" if out else "nothing was kept; give --out DIR"
+    kept = (
+        f"what is done is in {out}: `foucault sweep --out {out}` goes on" if out else "nothing was kept; give --out DIR"
+    )
     with stoppable(kept), progress() as show:
         move, done = show(f"sweep of {request.scene.id}", request.table.count, "rows"), [0]
 
@@ -186,7 +192,9 @@ def _check_plot(request: Request, path: Path) -> None:
     check_target(path)
     shape = request.table.shape
     if not isinstance(request.table, Grid) or len(shape) > 2 or not _numeric(request):
-        raise InputError("--plot", str(path), "one or two fields varied by --over, both numbers", "Or draw the columns.")
+        raise InputError(
+            "--plot", str(path), "one or two fields varied by --over, both numbers", "Or draw the columns."
+        )
     if not _drawn(request):
         raise InputError("--plot", str(path), "--want with frequency or precession")
 
@@ -273,7 +281,10 @@ def _text(swept: Swept, out: Path | None) -> str:
             texts = swept.request.table.texts(number)
             values = "".join(texts[key].rjust(width) for key, width in zip(keys, widths, strict=True))
             ok = row["status"] == Status.OK.value
-            lines.append(values + ("".join(_cell(name, row[name]) for name in names) if ok else f"    {row['status']}: {row['reason']}"))
+            lines.append(
+                values
+                + ("".join(_cell(name, row[name]) for name in names) if ok else f"    {row['status']}: {row['reason']}")
+            )
     else:
         lines.append(f"{out}: {swept.request.parts} parts in Parquet")
     if swept.audit is not None:

@@ -70,7 +70,8 @@ class Rows:
     @cached_property
     def rate(self) -> Array:
         """Angular frequency √|c| of a small swing, in rad/s."""
-        return np.sqrt(np.linalg.norm(self.pull[..., 0], axis=1))
+        rate: Array = np.sqrt(np.linalg.norm(self.pull[..., 0], axis=1))
+        return rate
 
     @property
     def swings(self) -> Array:
@@ -119,10 +120,10 @@ class Outcomes:
         least_ax: smallest |ax| at a transit, in m/s².
         apsides: number of highest points (where zdot along the plumb line goes from + to -) in 0 < t <= t_end, int32.
         apsis_first, apsis_last: times of the first and of the last one, in s.
-        turn: azimuth of the last minus that of the first about the plumb line -c, half turns left out, in rad, from east
-            to north: the sum of the changes from one to the next, each taken between -π/2 and π/2.
-        least_bend: smallest -u''/(|c| (1 - u²)) at a highest point, u = -n·c/|c|: about 1 where the swing is in a plane,
-            0 for a conical orbit; where it is below `LEAST_BEND` there are no highest points to speak of, and none
+        turn: azimuth of the last minus that of the first about the plumb line -c, half turns left out, in rad, from
+            east to north: the sum of the changes from one to the next, each taken between -π/2 and π/2.
+        least_bend: smallest -u''/(|c| (1 - u²)) at a highest point, u = -n·c/|c|: about 1 for a swing in a plane, 0
+            for a conical orbit; where it is below `LEAST_BEND` there are no highest points to speak of, and none
             are counted.
         largest_angle: largest angle from the plumb line at a highest point or the release, in rad.
         transit_row, transit_t, transit_direction: of every transit, ordered by row and time; empty if not wanted.

@@ -1,4 +1,4 @@
-"""What a sweep varies: `--over` words as exact values, and the values of any row without the others in memory."""
+"""The axes of a sweep: `--over` words as exact values, and the values of any row without the others in memory."""
 
 from __future__ import annotations
 
@@ -163,6 +163,11 @@ class Grid:
                 raise InputError("--over", key, "each field once")
         if self.count > MOST_ROWS:
             raise InputError("--over", f"{self.count} rows", f"at most {MOST_ROWS:.0e} rows")
+
+    @property
+    def listed(self) -> dict[str, tuple[str, ...]]:
+        """The values of the axes that come from a file."""
+        return {one.key: one.values for one in self.axes if isinstance(one, Values) and one.word.startswith("@")}
 
     @property
     def keys(self) -> tuple[str, ...]:

@@ -6,6 +6,7 @@ it is halved, until the row that does so is alone.
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack
@@ -27,6 +28,7 @@ LOCAL = "local:"
 SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
 WAIT_S = 10.0  # for an answer of the scheduler
 RETRIES = 3  # of a piece that raised an error which is none of this project's
+LOST = "the scheduler was lost; what is done stays, and the same command goes on."
 _NONCE = ".seen-by-workers"
 
 
@@ -52,6 +54,7 @@ class ClusterExecutor:
         self._request, self._document = request, request.document()
         self._stack = ExitStack()
         self.compile_s = 0.0
+        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # a lost scheduler is told in one line
         try:
             self._client = self._connected(address)
             self.workers = self._check_workers(address)
@@ -69,26 +72,31 @@ class ClusterExecutor:
 
     def submit(self, piece: Piece) -> Any:
         """Begin a piece on some worker."""
-        return _Awaited(
-            self._client.submit(compute, self._document, piece, self._folder, pure=False, retries=RETRIES)
-        )
+        return _Awaited(self._client.submit(compute, self._document, piece, self._folder, pure=False, retries=RETRIES))
 
-    def _connected(self, address: str) -> distributed.Client:
-        from distributed import Client, LocalCluster
+    def check(self) -> None:
+        """Raise if the scheduler is lost.
 
+        Raises:
+            ClusterError: it is.
+        """
+        if self._client.status != "running":
+            raise ClusterError(LOST)
+
+    def _connected(self, address: str) -> Any:
         if address.startswith(LOCAL):
             count = address[len(LOCAL) :]
             if not count.isdigit() or not int(count):
                 raise InputError("--cluster", address, "local:N with a number of workers from 1")
-            cluster = LocalCluster(
+            cluster = distributed.LocalCluster(
                 n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
             )
             self._stack.enter_context(cluster)
-            return self._stack.enter_context(Client(cluster))
+            return self._stack.enter_context(distributed.Client(cluster))
         if not address.startswith(SCHEMES):
             raise InputError("--cluster", address, "tcp://HOST:PORT of a scheduler of dask, or local:N")
         try:
-            return self._stack.enter_context(Client(address, timeout=WAIT_S))
+            return self._stack.enter_context(distributed.Client(address, timeout=WAIT_S))
         except (OSError, ValueError):
             advice = "Start one with `dask scheduler`, and workers with `dask worker ADDRESS`."
             raise InputError("--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice) from None
@@ -137,13 +145,13 @@ class _Awaited:
             ClusterError: the scheduler was lost.
         """
         if self._future.status in ("cancelled", "lost"):
-            raise ClusterError("The scheduler was lost; what is done stays.")
+            raise ClusterError(LOST)
         try:
             return self._future.result()
-        except KilledWorker as death:
-            raise WorkerDied(f"its workers died") from None
+        except KilledWorker:
+            raise WorkerDied("its workers died") from None
         except distributed.client.FutureCancelledError:
-            raise ClusterError("The scheduler was lost; what is done stays.") from None
+            raise ClusterError(LOST) from None
 
 
 def versions(engine: str) -> str:

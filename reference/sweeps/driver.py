@@ -20,7 +20,9 @@ from .promote import promoted
 from .request import Request
 from .row import empty
 
-BLOCK = 512  # rows that are solved in one go: what Ctrl-C waits for
+BLOCKS = 16  # of a whole part, solved one after the other: Ctrl-C waits for one
+LEAST_BLOCK = 256  # rows
+CHECK_S = 5.0  # between two looks whether anything can still come
 PER_WORKER = 3  # pieces that wait or are computed for each worker
 DIED_REASON = "Its process died each time, alone as well"
 
@@ -73,6 +75,9 @@ class Executor(Protocol):
     def submit(self, piece: Piece) -> Any:
         """Begin a piece."""
 
+    def check(self) -> None:
+        """Raise if nothing will come any more."""
+
 
 class Interrupted(Exception):
     """A piece was given up because the sweep ends."""
@@ -91,11 +96,11 @@ def work(
         Interrupted: the event `stop` was set meanwhile.
         OSError: it cannot be saved.
     """
-    blocks = []
-    for first in range(piece.rows.start, piece.rows.stop, BLOCK):
+    blocks, size = [], max(request.rows_per_part // BLOCKS, LEAST_BLOCK)
+    for first in range(piece.rows.start, piece.rows.stop, size):
         if stop is not None and stop.is_set():
             raise Interrupted
-        blocks.append(solve_part(request, range(first, min(first + BLOCK, piece.rows.stop)), promote))
+        blocks.append(solve_part(request, range(first, min(first + size, piece.rows.stop)), promote))
     solved = joined(blocks)
     tally = Tally.of(solved)
     if folder is None or not piece.whole:
@@ -128,6 +133,8 @@ def drive(
     done: queue.SimpleQueue[Any] = queue.SimpleQueue()
     open_pieces: dict[Any, Piece] = {}
     halves: dict[int, list[Part]] = {}
+    suspects: list[Piece] = []  # rows whose process died, perhaps by another piece in it
+    alone: set[int] = set()
 
     def begin(piece: Piece) -> None:
         future = executor.submit(piece)
@@ -136,9 +143,11 @@ def drive(
 
     for piece in islice(waiting, PER_WORKER * executor.workers):
         begin(piece)
-    while open_pieces:
-        future = done.get()
-        piece = open_pieces.pop(future)
+    while open_pieces or suspects:
+        if not open_pieces:
+            alone.add(suspects[-1].rows.start)
+            begin(suspects.pop())
+        piece = open_pieces.pop(future := _next(done, executor))
         try:
             tally, solved = future.result()
         except WorkerDied as death:
@@ -146,6 +155,9 @@ def drive(
                 middle = piece.rows.start + len(piece.rows) // 2
                 begin(Piece(piece.part, range(piece.rows.start, middle), whole=False))
                 begin(Piece(piece.part, range(middle, piece.rows.stop), whole=False))
+                continue
+            if piece.rows.start not in alone:
+                suspects.append(piece)
                 continue
             solved = crashed(request, piece.rows, f"{DIED_REASON}: {death}.")
             tally = Tally.of(solved)
@@ -159,6 +171,15 @@ def drive(
         for following in islice(waiting, 1):
             begin(following)
     return total
+
+
+def _next(done: queue.SimpleQueue[Any], executor: Executor) -> Any:
+    """Return the next future that is done."""
+    while True:
+        try:
+            return done.get(timeout=CHECK_S)
+        except queue.Empty:
+            executor.check()
 
 
 def crashed(request: Request, rows: range, reason: str) -> Part:

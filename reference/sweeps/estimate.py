@@ -91,4 +91,5 @@ def _undecided(rows: Rows, run: Outcomes, velocity: Array, speed: Array) -> Arra
     reach = length * np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
     jerk = fastest**3 * reach
     pair = (run.close_pairs > 0) & (run.least_ax**2 < 4 * jerk * velocity)
-    return ~rows.still & (at_end | pair)
+    undecided: Array = ~rows.still & (at_end | pair)
+    return undecided

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from decimal import Decimal
@@ -44,7 +44,7 @@ class Listed:
         """Return the values of a row by field."""
         return {key: column[row] for key, column in self.values.items()}
 
-    def wrong(self, rows: Sequence[int], reading: Reading) -> dict[int, str]:
+    def wrong(self, rows: Any, reading: Reading) -> dict[int, str]:
         """Return what is wrong with the values of rows, each by itself, of those where something is."""
         found: dict[int, str] = {}
         for key, column in self.values.items():
@@ -57,12 +57,12 @@ class Listed:
                     found.setdefault(row, known[text])
         return found
 
-    def numbers(self, rows: Sequence[int], reading: Reading) -> dict[str, DoubleDouble]:
+    def numbers(self, rows: Any, reading: Reading) -> dict[str, DoubleDouble]:
         """Return the numbers of rows by field; only where nothing is wrong with them."""
         numeric = (key for key in self.values if key not in TEXTS)
         return {key: numbers_of([self.values[key][row] for row in rows], reading) for key in numeric}
 
-    def words(self, rows: Sequence[int]) -> dict[str, list[str]]:
+    def words(self, rows: Any) -> dict[str, list[str]]:
         """Return the values of rows by field, those that are words."""
         return {key: [self.values[key][row] for row in rows] for key in self.values if key in TEXTS}
 
@@ -145,7 +145,7 @@ def _parquet(path: Path) -> dict[str, list[str]]:
         raise InputError(
             "--rows", str(path), "the package pyarrow", "Install it with pip install 'foucault-reference[sweep]'."
         )
-    from .store import read_columns
+    from .parquet import read_columns
 
     with _readable("--rows", path):
         columns: dict[str, list[Any]] = read_columns(path)

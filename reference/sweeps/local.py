@@ -14,8 +14,8 @@ from ..engines.registry import batches
 from ..errors import IntegrationError
 from ..process import Parent, Worker
 from .driver import Piece, WorkerDied, work
-from .part import MOVED
 from .isolated import Isolated
+from .part import MOVED
 from .request import Request
 
 TRIES = 2  # of a piece in a process of its own, before it is halved: the first may have been killed from outside
@@ -63,6 +63,9 @@ class LocalExecutor:
     def submit(self, piece: Piece) -> Future[Any]:
         """Begin a piece."""
         return self._pool.submit(self._isolated if self._request.promotes else self._in_thread, piece)
+
+    def check(self) -> None:
+        """Do nothing: threads do not get lost."""
 
     def _in_thread(self, piece: Piece) -> Any:
         return work(self._request, piece, self._folder, self._promote, self._stop)

@@ -14,7 +14,7 @@ from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
 from .estimate import DEGREES_PER_HOUR, Errors, errors
-from .promote import Promoted, fill, promoted
+from .promote import DOUBTFUL_REASON, Promoted, fill, promoted
 from .request import Request
 from .row import STATE_COLUMNS, TIMES, empty
 
@@ -22,7 +22,6 @@ Promote = Callable[..., Promoted]
 
 MOVED = Wanted(transits=False, apsides=False, moved=True)
 STOPPED_REASON = "The engine stopped: the step became too short, or a number not finite."
-DOUBTFUL_REASON = "The number of transits is not decided in double."
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""A row solved by itself in as many digits as asked for: where double leaves a doubt, or a level or digits are asked."""
+"""A row solved by itself in as many digits as asked for: where double leaves a doubt, or a level is asked for."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 LEAST_LEVEL: Level = "self_consistent"  # that settles a doubt
 DIGITS = 17  # that show a double
+DOUBTFUL_REASON = "The number of transits, or the error, is not decided in double."
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ def fill(columns: dict[str, Any], place: int, result: Promoted, reason: str) -> 
         reason: why the row was promoted, which stays its reason where the solver failed; empty if by request.
     """
     if result.failure:
-        status = Status.DOUBTFUL if reason else Status.UNREACHABLE
+        status = Status.DOUBTFUL if reason == DOUBTFUL_REASON else Status.UNREACHABLE
         for name, values in columns.items():
             if values.dtype.kind == "f" and "." not in name:
                 values[place] = np.nan

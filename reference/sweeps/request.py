@@ -20,9 +20,8 @@ from .row import AMPLITUDE, FREQUENCY, PRECESSION, TIMES, TRANSITS, Column, colu
 
 SCHEMA = 1
 PART_S = 10.0  # CPU seconds of a part, by the cost model
-LEAST_PART, MOST_PART = 64, 65_536  # rows
+LEAST_PART, MOST_PART = 8, 65_536  # rows
 CARTESIAN, ANGULAR = ("x", "y", "vx", "vy"), ("angle", "azimuth", "angle_rate", "azimuth_rate")
-_SEVERAL = {"inverse_flattening": "flattening"}  # names in a scene, and in its exact numbers
 
 
 @dataclass(frozen=True)
@@ -114,11 +113,9 @@ class Request:
         for key, numbers in self.table.numbers(rows, scene.inputs).items():
             name = key.rpartition(".")[2]
             if name == "inverse_flattening":
-                with np.errstate(invalid="ignore"):
-                    inverse = 1 / numbers
-                zero = np.isinf(numbers.high)
-                numbers = DoubleDouble(np.where(zero, 0.0, inverse.high), np.where(zero, 0.0, inverse.low))
-            columns[_SEVERAL.get(name, name)] = numbers
+                columns["flattening"] = _inverse(numbers)
+            else:
+                columns[name] = numbers
         with np.errstate(all="ignore"):
             return fold(columns, scene.site.gravity_is, len(rows))
 
@@ -129,9 +126,7 @@ class Request:
             "schema": SCHEMA,
             "scene": self.scene.model_dump(exclude_none=True),
             "over": {axis.key: axis.word for axis in table.axes} if isinstance(table, Grid) else None,
-            "values": {axis.key: axis.values for axis in table.axes if axis.word.startswith("@")}
-            if isinstance(table, Grid)
-            else table.values,
+            "values": table.values if isinstance(table, Listed) else table.listed,
             "rows": table.count,
             "rows_per_part": self.rows_per_part,
             "want": list(self.want),
@@ -161,3 +156,11 @@ class Request:
     def hash(self) -> str:
         """The sha256 of `document`, which every part carries."""
         return hashlib.sha256(json.dumps(self.document(), sort_keys=True).encode()).hexdigest()
+
+
+def _inverse(numbers: DoubleDouble) -> DoubleDouble:
+    """Return 1/numbers, of infinity zero."""
+    with np.errstate(invalid="ignore"):
+        inverse = DoubleDouble(np.ones(len(numbers.high)), np.zeros(len(numbers.high))) / numbers
+    zero = DoubleDouble(np.zeros(len(numbers.high)), np.zeros(len(numbers.high)))
+    return zero.where(np.isinf(numbers.high), inverse)

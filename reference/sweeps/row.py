@@ -52,7 +52,7 @@ COLUMNS = (
     *(Column(name, "float64", f"{name.split('_')[0]} at t_end", (STATE,)) for name in STATE_COLUMNS),
     Column("position_error_m", "float64", "error of the position at t_end"),
     Column("velocity_error_m_s", "float64", "error of the velocity at t_end", (STATE,)),
-    Column("max_angle_deg", "float64", "largest angle from the plumb line at the release or a highest point", (AMPLITUDE,)),
+    Column("max_angle_deg", "float64", "largest angle from the plumb line, at the release or a turn", (AMPLITUDE,)),
     Column("max_angle_error_deg", "float64", "its error", (AMPLITUDE,)),
 )  # fmt: skip
 

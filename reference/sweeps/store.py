@@ -1,4 +1,4 @@
-"""A sweep on disk: a folder with its plan and its parts in Parquet; the only door to pyarrow.
+"""A sweep on disk: a folder with its plan and its parts in Parquet.
 
 `plan.json` says all that decides a number, `rows/part-00000000.parquet` … hold the rows, `transits/part-…` their
 transits where these are wanted, `summary.json` comes last. A part appears whole or not at all, and carries the hash of
@@ -7,29 +7,24 @@ the plan: those that are there are not computed again.
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-import pyarrow.parquet as pq
-
 from ..errors import InputError
 from ..workspace import replace_file
+from .parquet import PYARROW, arrays, footer, parquet
 from .part import Part
 from .request import Request
 from .row import Column
 
 PLAN, SUMMARY, ROWS, TRANSITS = "plan.json", "summary.json", "rows", "transits"
-KEY = b"foucault.plan"
 _TRANSIT_COLUMNS = (
     Column("row", "int64", "number of the row"),
     Column("t_s", "float64", "time of the transit"),
     Column("direction", "int8", "+1 where xdot goes from - to +"),
 )
-_WORDS = pa.dictionary(pa.int32(), pa.string())
 
 
 class Store:
@@ -64,7 +59,7 @@ class Store:
         folder.mkdir(parents=True, exist_ok=True)
         store = cls(folder, request)
         store._make_folders()
-        _write_json(folder / PLAN, {"hash": request.hash, "pyarrow": pa.__version__, **request.document()})
+        _write_json(folder / PLAN, {"hash": request.hash, "pyarrow": PYARROW, **request.document()})
         return store
 
     @classmethod
@@ -88,7 +83,7 @@ class Store:
         store._made_with = str(document.get("pyarrow"))
         return store
 
-    _made_with = pa.__version__
+    _made_with = PYARROW
 
     def check_versions(self) -> None:
         """Refuse to go on with versions that would write other bytes.
@@ -99,7 +94,10 @@ class Store:
         from ..engines.registry import batches
 
         here = batches()[self.request.engine].identity
-        for got, expected in ((here, self.request.identity), (f"pyarrow {pa.__version__}", f"pyarrow {self._made_with}")):
+        for got, expected in (
+            (here, self.request.identity),
+            (f"pyarrow {PYARROW}", f"pyarrow {self._made_with}"),
+        ):
             if got != expected:
                 advice = "Install the versions that the sweep was begun with, or begin it anew in another folder."
                 raise InputError("--out", got, f"{expected}, as in {self.folder / PLAN}", advice)
@@ -119,18 +117,16 @@ class Store:
     def missing(self) -> list[int]:
         """Return the parts that are not there yet, or not whole, or of another plan."""
         self._make_folders()
-        return [part for part in range(self.request.parts) if not all(self._sound(part, kind) for kind in self._folders)]
+        return [
+            part for part in range(self.request.parts) if not all(self._sound(part, kind) for kind in self._folders)
+        ]
 
     def _sound(self, part: int, kind: str) -> bool:
         path = self.path(part, kind)
         if not path.exists():
             return False
-        try:
-            footer = pq.read_metadata(path)
-        except (OSError, pa.ArrowException):
-            return False
-        whole = kind == TRANSITS or footer.num_rows == len(self.request.rows_of(part))
-        return whole and (footer.metadata or {}).get(KEY) == self.request.hash.encode()
+        rows, plan = footer(path)
+        return plan == self.request.hash and (kind == TRANSITS or rows == len(self.request.rows_of(part)))
 
     def save(self, part: int, solved: Part) -> None:
         """Write a part, whole or not at all.
@@ -149,51 +145,15 @@ class Store:
     def read(self, names: Iterable[str] | None = None, kind: str = ROWS) -> dict[str, Any]:
         """Return columns of the whole sweep as arrays, all if no names are given."""
         chosen = list(names) if names is not None else None
-        tables = [pq.read_table(self.path(part, kind), columns=chosen) for part in range(self.request.parts)]
-        table = pa.concat_tables(tables).unify_dictionaries()
-        return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
+        return arrays([self.path(part, kind) for part in range(self.request.parts)], chosen)
 
     def read_part(self, part: int) -> dict[str, Any]:
         """Return the columns of one part as arrays."""
-        table = pq.read_table(self.path(part))
-        return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
+        return arrays([self.path(part)])
 
     def summarize(self, document: dict[str, Any]) -> None:
         """Write what became of the sweep."""
         _write_json(self.folder / SUMMARY, document)
-
-
-def parquet(columns: Iterable[Column], values: dict[str, Any], plan: str) -> bytes:
-    """Return columns as a Parquet file: zstd, numbers with their bytes split, words by dictionary."""
-    kinds = {"dictionary": _WORDS, "float64": pa.float64()}
-    fields, arrays = [], []
-    for column in columns:
-        kind = kinds.get(column.kind) or getattr(pa, column.kind)()
-        fields.append(pa.field(column.name, kind, metadata={"meaning": column.meaning}))
-        if column.kind == "dictionary":
-            arrays.append(pa.array(values[column.name], pa.string()).dictionary_encode().cast(_WORDS))
-        else:
-            arrays.append(pa.array(values[column.name], kind))
-    table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={KEY: plan.encode()}))
-    words = [field.name for field in fields if field.type == _WORDS]
-    split = [field.name for field in fields if field.type == pa.float64()]
-    stream = io.BytesIO()
-    pq.write_table(
-        table, stream, compression="zstd", use_dictionary=words, use_byte_stream_split=split, write_statistics=True
-    )
-    return stream.getvalue()
-
-
-def read_columns(path: Path) -> dict[str, list[Any]]:
-    """Return the columns of any Parquet file.
-
-    Raises:
-        OSError: it cannot be read, or is none.
-    """
-    try:
-        return dict(pq.read_table(path).to_pydict())
-    except pa.ArrowException as error:
-        raise OSError(0, str(error).splitlines()[0]) from None
 
 
 def _write_json(path: Path, document: dict[str, Any]) -> None:

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..engines import AUTO
 from ..errors import InputError
 from ..packages import missing
 from ..scene import Scene
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from .store import Store
 
 MOST_IN_MEMORY = 100_000  # rows
-FEWEST_PIECES = 16  # of a sweep in memory, where it has the rows
+PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
 
 Report = Callable[[int], None]
 
@@ -92,12 +93,14 @@ def asked_for(
     Raises:
         InputError: a wrong axis or option, or more rows than memory should hold.
     """
+    if out is not None and options.get("engine", AUTO) == AUTO and (out / "plan.json").exists():
+        options["engine"] = opened(out).request.engine  # a sweep goes on as it began
     asked = request(scene, over, rows, audit=audit, **options)
     count = asked.table.count
     if out is None:
         if count > MOST_IN_MEMORY:
             raise InputError("--out", "nothing", f"a folder, for more than {MOST_IN_MEMORY:,} rows", "Give --out DIR.")
-        return replace(asked, rows_per_part=min(asked.rows_per_part, max(64, -(-count // FEWEST_PIECES))))
+        return replace(asked, rows_per_part=min(asked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES))))
     return replace(asked, audit=default_audit(count)) if audit is None else asked
 
 
@@ -111,7 +114,9 @@ def load_sweep(folder: str | Path) -> Swept:
     left = len(store.missing())
     if left:
         advice = f"Go on with `foucault sweep --out {folder}`."
-        raise InputError("sweep", str(folder), "a sweep that is done", f"{left} of {store.request.parts} parts miss. {advice}")
+        raise InputError(
+            "sweep", str(folder), "a sweep that is done", f"{left} of {store.request.parts} parts miss. {advice}"
+        )
     return Swept(store.request, store=store)
 
 
@@ -139,7 +144,11 @@ def need_pyarrow() -> None:
 
 
 def run(
-    asked: Request, out: Path | None, workers: int | None = None, cluster: str | None = None, report: Report = lambda _: None
+    asked: Request,
+    out: Path | None,
+    workers: int | None = None,
+    cluster: str | None = None,
+    report: Report = lambda _: None,
 ) -> Swept:
     """Do what of a sweep is not done yet, and audit it; arguments and errors as those of `sweep`."""
     started = time.perf_counter()

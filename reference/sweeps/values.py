@@ -35,5 +35,5 @@ def numbers_of(texts: Sequence[str], reading: Reading) -> DoubleDouble:
     high = np.array([float(text) for text in texts])
     if reading == "binary64":
         return DoubleDouble(high, np.zeros(len(texts)))
-    low = [0.0 if text == "inf" else float(Fraction(text) - Fraction(h)) for text, h in zip(texts, high, strict=True)]
+    low = [0.0 if np.isinf(h) else float(Fraction(text) - Fraction(h)) for text, h in zip(texts, high, strict=True)]
     return DoubleDouble(high, np.array(low))

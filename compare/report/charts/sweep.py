@@ -21,14 +21,20 @@ LABELS = {
     "max_angle_deg": "largest angle in °",
     "position_error_m": "error of the position in m",
 }
-UNITS = {"latitude": "°", "angle": "°", "azimuth": "°", "length": "m", "altitude": "m", "x": "m", "y": "m", "t_end": "s",
-         "gravity": "m/s²", "drag": "1/s", "rotation_rate": "rad/s", "vx": "m/s", "vy": "m/s"}  # fmt: skip
+UNITS = {
+    "m": ("length", "altitude", "x", "y", "equatorial_radius"),
+    "m/s": ("vx", "vy"),
+    "°": ("latitude", "angle", "azimuth"),
+    "°/s": ("angle_rate", "azimuth_rate"),
+    "s": ("t_end",),
+    "1/s": ("drag",),
+    "m/s²": ("gravity",),
+    "rad/s": ("rotation_rate",),
+}  # and the fields that have them
 _MARKED = 40  # values up to which a curve's points are marked
 
 
-def sweep_picture(
-    title: str, axes: Sequence[tuple[str, Array]], quantities: Mapping[str, Array], path: Path
-) -> None:
+def sweep_picture(title: str, axes: Sequence[tuple[str, Array]], quantities: Mapping[str, Array], path: Path) -> None:
     """Draw quantities over one or two varied fields.
 
     Args:
@@ -50,7 +56,8 @@ def sweep_picture(
 
 def _label(key: str) -> str:
     name = key.rpartition(".")[2]
-    return f"{name.replace('_', ' ')} in {UNITS[name]}" if name in UNITS else name.replace("_", " ")
+    unit = next((unit for unit, names in UNITS.items() if name in names), "")
+    return name.replace("_", " ") + (f" in {unit}" if unit else "")
 
 
 def _curve(_: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str, values: Array) -> None:
@@ -69,7 +76,9 @@ def _map(figure: Any, panel: Any, axes: Sequence[tuple[str, Array]], label: str,
     signed = low < 0 < high
     most = max(-low, high)
     span = {"vmin": -most, "vmax": most} if signed else {}
-    mesh = panel.pcolormesh(np.sort(x), np.sort(y), grid, cmap="RdBu_r" if signed else "cividis", **span, rasterized=True)
+    mesh = panel.pcolormesh(
+        np.sort(x), np.sort(y), grid, cmap="RdBu_r" if signed else "cividis", **span, rasterized=True
+    )
     panel.set_ylabel(_label(key))
     bar = figure.colorbar(mesh, ax=panel, label=label)
     bar.formatter.set_useOffset(False)

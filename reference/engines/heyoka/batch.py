@@ -5,9 +5,8 @@ from __future__ import annotations
 from importlib.metadata import version
 
 from ..batch import Batch, Outcomes, Rows, Wanted
+from .batch_tolerances import MOVED_TOLERANCE, TOLERANCE
 
-TOLERANCE = 2.0**-52  # of a run: order 20
-MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
 COMPILE_S = 1.5  # CPU seconds, cold
 SWING_S = 8e-6  # of a default row over the period of a small swing
 

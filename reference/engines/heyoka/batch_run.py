@@ -14,15 +14,15 @@ from ...model.algebra import cross, dot
 from ...model.constants import Constants
 from ...model.formulations import FORMULATIONS
 from ...precision import DOUBLE, Array
-from ..batch import DOUBTFUL, OK, STOPPED, Outcomes, Rows, Wanted
-from .batch import MOVED_TOLERANCE, TOLERANCE, HeyokaBatch
+from ..batch import DOUBTFUL, OK, STOPPED, Batch, Outcomes, Rows, Wanted
+from .batch_tolerances import MOVED_TOLERANCE, TOLERANCE
 from .batch_zeros import TRANSIT, TURNING, by_lane, describe
 from .machine_code import keep_on_disk
 from .shared_log import SHARED_LOG
 from .system import as_pairs, rates
 
 MODEL = FORMULATIONS["momentum"]
-LANES = HeyokaBatch.lanes
+LANES = Batch.lanes
 STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
 LEAST_STEPS = 10_000  # that are granted to any row
 BEYOND = 1e-6  # of the span: where a lane without a zero is sampled beyond its end, while others have one
@@ -70,7 +70,8 @@ class Integrator:
             for lane in lanes:
                 lane.clear()
         self._ta.set_time(0.0)
-        self._ta.state[:] = [*rows.n[..., 0].T, *cross(rows.n[..., 0].T, rows.V[..., 0].T)]
+        n, V = (tuple(vector[..., 0].T) for vector in (rows.n, rows.V))
+        self._ta.state[:] = [*n, *cross(n, V)]
         self._ta.pars[:] = [*k.turn[1:], *k.pull[1:], k.drag][: self._parameters]
 
     def to_end(self, rows: Rows, most: int) -> tuple[Any, Any, Any]:
@@ -79,7 +80,9 @@ class Integrator:
         self._ta.propagate_until(rows.t_end[:, 0], max_steps=most)
         outcomes, steps = zip(*((one[0], one[3]) for one in self._ta.propagate_res), strict=True)
         state = self._ta.state.copy()
-        stopped = np.array([one == hy.taylor_outcome.err_nf_state for one in outcomes]) | ~np.isfinite(state).all(axis=0)
+        stopped = np.array([one == hy.taylor_outcome.err_nf_state for one in outcomes]) | ~np.isfinite(state).all(
+            axis=0
+        )
         if not stopped.any():  # else it is those alone that made all others stop
             stopped = np.array([one != hy.taylor_outcome.time_limit for one in outcomes])
         return state, np.array(steps), stopped
@@ -105,7 +108,8 @@ def _integrator(events: tuple[int, ...], drag: bool, moved: bool) -> Integrator:
     key = events, drag, moved
     if key not in made:
         made[key] = Integrator(events, drag, MOVED_TOLERANCE if moved else TOLERANCE)
-    return made[key]
+    integrator: Integrator = made[key]
+    return integrator
 
 
 def _events(wanted: Wanted) -> tuple[int, ...]:

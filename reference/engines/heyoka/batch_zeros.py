@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...model.algebra import cross
+from ...model.algebra import cross, subtract
 from ...model.constants import Constants
 from ...model.force import acceleration
 from ...precision import Array
@@ -60,7 +60,7 @@ def _within(
 
 
 def describe(
-    outcomes: Outcomes, row: int, scene: Rows, wanted: Wanted, zeros: Zeros, n: Array, v: Array
+    outcomes: Outcomes, row: int, scene: Rows, wanted: Wanted, zeros: Zeros, n: Any, v: Any
 ) -> tuple[Array, Array]:
     """Fill in what the zeros of a row say of it; return times and directions of its transits.
 
@@ -70,7 +70,8 @@ def describe(
         scene: the row by itself.
         wanted: what is wanted.
         zeros: its zeros.
-        n, v: n and n' at `zeros.times`, shape (3, times).
+        n: position over l at `zeros.times`, shape (3, times).
+        v: n' there.
     """
     k = Constants.of({name: value[0] for name, value in scene.k.entries().items()})
     if wanted.transits or wanted.times:
@@ -98,17 +99,17 @@ def _transits(outcomes: Outcomes, row: int, scene: Rows, zeros: Zeros, ax: Array
 
 def _sign_after_release(scene: Rows) -> float:
     """Return the sign of xdot just after the release: that of its first derivative which is not exactly zero."""
-    n, V, turn = (array[0, :, 0] for array in (scene.n, scene.V, scene.turn))
+    n, V, turn = (tuple(array[0, :, 0]) for array in (scene.n, scene.V, scene.turn))
     k = Constants.of({name: value[0] for name, value in scene.k.entries().items()})
-    v = V - np.array(cross(turn, n))
+    v = subtract(V, cross(turn, n))
     zeros = scene.zeros_at_release[0]
     if zeros == 0:
         return float(np.sign(v[0]))
-    a = acceleration(n, (0, *v[1:]), k)
+    a: Any = acceleration(n, (0, *v[1:]), k)
     return float(np.sign(a[0] if zeros == 1 else -2 * cross(turn, a)[0]))
 
 
-def _turnings(outcomes: Outcomes, row: int, scene: Rows, k: Constants, t: Array, n: Array, v: Array) -> None:
+def _turnings(outcomes: Outcomes, row: int, scene: Rows, k: Constants, t: Array, n: Any, v: Any) -> None:
     pull = scene.pull[0, :, 0]
     up = -pull / scene.rate[0] ** 2
     release = np.arctan2(np.linalg.norm(np.cross(scene.n[0, :, 0], up)), -scene.n[0, :, 0] @ up)

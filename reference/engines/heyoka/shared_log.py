@@ -1,4 +1,4 @@
-"""heyoka's log while several threads compute; it is one stream, so a batch that may have written to it runs again alone."""
+"""heyoka's log while several threads compute: one stream for all, so a batch that may have written runs again alone."""
 
 from __future__ import annotations
 
