@@ -28,8 +28,7 @@ from reference.model.formulations import FORMULATIONS
 from reference.scene import load_scene
 from reference.sweeps.estimate import errors
 from reference.sweeps.folding import columns_of, fold
-from reference.sweeps.part import MOVED
-from reference.sweeps.part import solve_part
+from reference.sweeps.part import MOVED, solve_part
 from reference.sweeps.planning import request
 
 SPAN = 12_000
@@ -94,7 +93,7 @@ def not_integration(count: int) -> float:
 
     def once() -> None:
         own = fold(columns, "ellipsoid", count)
-        for moved in (False, True):
+        for moved in (0, 1):
             outcomes(own, packed(own, moved), results, (results[:0, 0],) * 3)
         errors(own, several, several)
 
@@ -122,17 +121,35 @@ def main(count: int = 181, pairs: int = 5) -> None:
     for wanted in (bare, transits, whole, MOVED):
         HEYOKA.solve(rows[:8], wanted)
         OCTET.solve(rows[:8], wanted)
-    show("heyoka's scalar loop with events / octet, all transits", lambda: located.solve(rows), octet(transits), pairs, ">= 9.5")
-    show("heyoka's scalar loop with events / octet, with precession", lambda: located.solve(rows), octet(whole), pairs, ">= 6.5")
+    show(
+        "heyoka's scalar loop with events / octet, all transits",
+        lambda: located.solve(rows),
+        octet(transits),
+        pairs,
+        ">= 9.5",
+    )
+    show(
+        "heyoka's scalar loop with events / octet, with precession",
+        lambda: located.solve(rows),
+        octet(whole),
+        pairs,
+        ">= 6.5",
+    )
     show("heyoka's scalar loop / octet, no events", lambda: silent.solve(rows), octet(bare), pairs, ">= 6.5")
     show("heyoka's batch of 8 / octet, no events", heyoka(bare), octet(bare), pairs, ">= 1.7")
     show("heyoka's batch of 8 / octet, all transits", heyoka(transits), octet(transits), pairs, "")
     show("heyoka's batch of 8 / octet, with precession", heyoka(whole), octet(whole), pairs, "")
     show("octet, default row (with its error) / bare row", default(OCTET), octet(whole), pairs, "<= 1.7")
-    many = [
-        request(load_scene("paris", [f"run.t_end={SPAN}"]), [f"site.latitude=-90:90:{180 / (count - 1)}"], engine=name)
-        for name in ("heyoka", "octet")
-    ] if 180 % (count - 1) == 0 else []
+    many = (
+        [
+            request(
+                load_scene("paris", [f"run.t_end={SPAN}"]), [f"site.latitude=-90:90:{180 / (count - 1)}"], engine=name
+            )
+            for name in ("heyoka", "octet")
+        ]
+        if 180 % (count - 1) == 0
+        else []
+    )
     if many:
         sides = [lambda one=one: solve_part(one, range(count)) for one in many]
         show("sweep in one process, default rows: heyoka / octet", *sides, pairs, ">= 3")

@@ -19,13 +19,13 @@ BITS = 110
 
 @dataclass
 class Comparison:
-    """What a comparison found: rows whose transits were lost or doubled, in doubt, estimated too well, and the worst."""
+    """What a comparison found: rows in doubt, transits lost or doubled, estimates too small, the worst errors."""
 
     rows: int = 0
     doubtful: int = 0
     miscounted: list[Inputs] = field(default_factory=list)
     underestimated: list[tuple[Inputs, str, float]] = field(default_factory=list)
-    worst_time: float = 0.0  # |ax| dt² … in l: |ax| times the time's error, over l, in 1/s
+    worst_time: float = 0.0  # |ax| times the time's error, over l, in 1/s
     worst_state: float = 0.0  # over l
 
     def __str__(self) -> str:

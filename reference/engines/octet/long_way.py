@@ -73,7 +73,7 @@ def all_zeros(
         half = 0.5 * (high - low)
         kind = classify(w.f, size, low + half, half, noise)[0]
         same = (left > 0.0) == (right > 0.0)
-        if kind == FREE or kind == MONOTONE:
+        if kind in (FREE, MONOTONE):
             if kind == FREE and not same:
                 return DOUBT
             if not same:

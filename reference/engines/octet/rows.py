@@ -12,8 +12,8 @@ from ...precision import Array
 from ..batch import CLOSE_PAIR, OK, Outcomes, Rows
 from ..batch import LEAST_BEND as LEAST
 
-# of a row's numbers: constants and state in its unit of time, unit and span in s, multiplicities of zeros at release
-TURN_P, TURN_U, PULL, X, P, U, W, V, S, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, MOVES, CLOSE_S = range(16)
+# of a row's numbers: state and constants in its unit of time, unit and span in s, multiplicities of zeros at release
+X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, MOVES, CLOSE_S = range(16)
 COLUMNS = 16
 # of what comes out: the state, and what was found on the way
 STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
@@ -22,8 +22,11 @@ RESULTS = 24
 _SAME = 2.0**-94  # of a row's velocities: u' that is less at the release is zero
 
 
-def packed(rows: Rows, moved: bool) -> Array:
-    """Return the numbers of rows, shape (rows, COLUMNS); with `moved`, constants and state one ulp further from 0."""
+def packed(rows: Rows, moved: int) -> Array:
+    """Return the numbers of rows, shape (rows, COLUMNS).
+
+    Constants and state are moved by an ulp: not at all (0), away from zero (1) or towards it (-1).
+    """
     of = DoubleDouble.from_pairs
     north, up = of(rows.pull[:, 1]), of(rows.pull[:, 2])
     size = square_root(north * north + up * up)
@@ -36,11 +39,10 @@ def packed(rows: Rows, moved: bool) -> Array:
     udot = s + turn_p * x
     speed = np.abs(rows.V[:, :, 0]).sum(1) + np.abs(rows.turn[:, :, 0]).sum(1)
     numbers = np.zeros((len(rows), COLUMNS))
-    for column, value in enumerate((turn_p, turn_u, size, x, p, u, w, v, s)):
+    for column, value in enumerate((x, p, u, w, v, s, turn_p, turn_u, size)):
         high = value.high
-        numbers[:, column] = np.nextafter(high, np.copysign(np.inf, high)) if moved else high
-        if moved:
-            numbers[:, column] = np.where(high == 0, 0.0, numbers[:, column])
+        beyond = np.copysign(np.inf, high) if moved > 0 else 0.0
+        numbers[:, column] = np.where(high == 0, 0.0, np.nextafter(high, beyond)) if moved else high
     rate = np.sqrt(size.high) + speed
     unit = 2.0 ** np.floor(-np.log2(np.where(rate > 0, rate, 1.0 / rows.t_end[:, 0])))
     numbers[:, [TURN_P, TURN_U, W, V, S]] *= unit[:, None]

@@ -8,13 +8,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-numba = pytest.importorskip("numba")
+pytest.importorskip("numba")
 
+import numba
 from random_rows import KINDS, random_inputs, rows_of
 
 from reference.engines.limbs.lanes import LANES
 from reference.engines.octet.march import empty_march
-from reference.engines.octet.rows import PULL, TURN_P, TURN_U, UNIT, P, S, U, V, W, X, packed
+from reference.engines.octet.rows import UNIT, packed
 from reference.engines.octet.series import taylor_coefficients
 from reference.engines.registry import engines
 from reference.model.start import Start
@@ -31,14 +32,12 @@ def coefficients():
 
     @numba.njit(error_model="numpy")
     def fill(m, order):
-        taylor_coefficients(m.c, m.now, m.t, m.inverses, order)
+        taylor_coefficients(m.c, m.own, m.inverses, order)
 
     def of(many):
         rows, m = rows_of(many), empty_march()
-        numbers = packed(rows, moved=False).T
-        lanes = (m.now.x, m.now.p, m.now.u, m.now.w, m.now.v, m.now.s, m.t.turn_p, m.t.turn_u, m.t.pull)
-        for lane, column in zip(lanes, (X, P, U, W, V, S, TURN_P, TURN_U, PULL), strict=True):
-            lane[: len(many)] = numbers[column]
+        numbers = packed(rows, 0).T
+        m.own.reshape(-1, LANES)[:, : len(many)] = numbers
         fill(m, ORDER)
         x, p, u = (array.reshape(-1, LANES)[: ORDER + 1, : len(many)] for array in (m.c.x, m.c.p, m.c.u))
         return x, p, u, numbers[UNIT], rows

@@ -8,8 +8,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-numba = pytest.importorskip("numba")
-flint = pytest.importorskip("flint")
+pytest.importorskip("numba")
+pytest.importorskip("flint")
+
+import flint
+import numba
 
 from reference.engines.limbs.lanes import LANES
 from reference.engines.octet.long_way import all_zeros
