@@ -12,7 +12,7 @@ import structure
 from places import ROOT
 
 from reference import load_scene
-from reference.engines import batch_names, engine_names
+from reference.engines import engine_names
 
 SOURCES = structure.sources(ROOT)
 
@@ -37,7 +37,8 @@ FLOORS = {
     "reference/engines": [
         ["side_by_side"],
         ["registry", "trajectory", "variants", "equations"],
-        sorted({*engine_names(), *batch_names()}),
+        ["octet"],
+        [*engine_names()],
         ["engine"],
         ["plan", "batch"],
     ],
