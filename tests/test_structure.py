@@ -12,7 +12,7 @@ import structure
 from places import ROOT
 
 from reference import load_scene
-from reference.engines import batch_names, engine_names
+from reference.engines import engine_names
 
 SOURCES = structure.sources(ROOT)
 
@@ -25,7 +25,7 @@ FLOORS = {
         ["solver"],
         ["engines", "enclosure"],
         ["model"],
-        ["scene", "table", "process", "packing", "capture", "taylor_step"],
+        ["scene", "table", "fixed_point", "process", "packing", "capture", "taylor_step"],
         ["toml_document"],
         ["double_double"],
         ["inputs", "fields", "precision", "shipped", "columns", "workspace", "machine_code"],
@@ -37,7 +37,8 @@ FLOORS = {
     "reference/engines": [
         ["side_by_side"],
         ["registry", "trajectory", "variants", "equations"],
-        sorted({*engine_names(), *batch_names()}),
+        ["octet"],
+        [*engine_names()],
         ["engine"],
         ["plan", "batch"],
     ],

@@ -99,6 +99,10 @@ def command(
             help="Solve N rows again in 28 digits (default: with --out a thousandth, else none).",
         ),
     ] = None,
+    agree_with: Annotated[
+        str | None,
+        typer.Option("--agree-with", metavar="E", help="Have this engine solve each row as well, and compare."),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -127,7 +131,8 @@ def command(
     request = _request(
         scene_word, out,
         {"--over": over, "--rows": rows, "--set": set_, "--t-end": t_end, "--want": want, "--level": level,
-         "--digits": digits, "--tolerance": tolerance, "--engine": engine, "--audit": audit},
+         "--digits": digits, "--tolerance": tolerance, "--engine": engine, "--audit": audit,
+         "--agree-with": agree_with},
     )  # fmt: skip
     if workers is not None and cluster is not None:
         refuse({"--workers": workers}, "together with --cluster")
@@ -181,6 +186,7 @@ def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) 
         tolerance=options["--tolerance"],
         engine=options["--engine"] or "auto",
         audit=options["--audit"],
+        agree_with=options["--agree-with"],
     )
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ..columns import GRID, TRANSITS
+from ..fixed_point import Integers, integers
 from ..precision import fixed_decimal, rounded_up
 from ..scene import Scene
 from ..solver.rounding import exact_decimals, grid_decimals, transit_decimals
@@ -32,6 +33,16 @@ class Sheet:
         places = [self.header.index(name) for name in columns]
         for row in self.rows:
             yield [exact(row[i]) for i in places]
+
+    def integers(self, columns: tuple[str, ...]) -> tuple[list[Integers], int]:
+        """Return some columns of decimals as integers over a common unit, and the unit, a power of ten."""
+        places = [self.header.index(name) for name in columns]
+        parted = [[row[i].partition(".") for row in self.rows] for i in places]
+        most = max((len(part) for column in parted for _, _, part in column), default=0)
+        found = [
+            integers(int(whole + part) * 10 ** (most - len(part)) for whole, _, part in column) for column in parted
+        ]
+        return found, 10**most
 
     def csv(self) -> str:
         """Return the text of the file: one header line, commas, LF."""

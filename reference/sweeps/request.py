@@ -39,6 +39,7 @@ class Request:
         identity: what decides its digits.
         rows_per_part: rows of a part.
         audit: how many rows are solved again in many digits.
+        agree_with: an engine that solves every row as well, and has to agree.
     """
 
     scene: Scene
@@ -51,6 +52,7 @@ class Request:
     identity: str
     rows_per_part: int
     audit: int = 0
+    agree_with: str | None = None
 
     @property
     def promotes(self) -> bool:
@@ -136,6 +138,7 @@ class Request:
             "engine": self.engine,
             "identity": self.identity,
             "audit": self.audit,
+            "agree_with": self.agree_with,
         }
 
     @classmethod
@@ -149,7 +152,7 @@ class Request:
                 known = key in values
                 axes.append(Values(key, word, tuple(values[key])) if known else axis(f"{key}={word}", scene.inputs))
             table = Grid(tuple(axes))
-        names = ("level", "digits", "tolerance", "engine", "identity", "rows_per_part", "audit")
+        names = ("level", "digits", "tolerance", "engine", "identity", "rows_per_part", "audit", "agree_with")
         return cls(scene, table, tuple(document["want"]), **{name: document[name] for name in names})
 
     @cached_property

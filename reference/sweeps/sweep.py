@@ -43,6 +43,7 @@ def sweep(
     tolerance: float | None = None,
     engine: str = "auto",
     audit_rows: int | None = None,
+    agree_with: str | None = None,
     workers: int | None = None,
     cluster: str | None = None,
     report: Report = lambda _: None,
@@ -60,6 +61,7 @@ def sweep(
         tolerance: rows with a larger error of the position in m go through `solve` as well.
         engine: the engine that solves many rows at once; "auto" takes the one that is expected to be done first.
         audit_rows: how many rows are solved again in many digits; None for a thousandth with `out`, none without.
+        agree_with: another engine for many rows; where it does not agree, the row goes through `solve`.
         workers: threads, or processes where rows go through `solve`; None for one a core.
         cluster: address of a scheduler of dask.distributed, or "local:N" for one of N workers on this machine.
         report: called with the number of rows that were done since the last call.
@@ -81,6 +83,7 @@ def sweep(
         tolerance=tolerance,
         engine=engine,
         audit=audit_rows,
+        agree_with=agree_with,
     )
     return run(asked, Path(out) if out is not None else None, workers, cluster, report)
 

@@ -171,13 +171,18 @@ class _Comparison:
     def problems(self) -> list[str]:
         """Return a sentence for every printed number that is not within its bound."""
         found, word = [], "transit" if self.kind == "transits" else "t ="
-        unit, own = 1 << self.table.bits, self.sheet.header.index("bound") if self.kind == "transits" else None
+        printed, ten = self.sheet.integers(self.table.columns)
+        of_row = list(self.sheet.numbers(("bound",))) if self.kind == "transits" else []
+        unit = ten << self.table.bits
         for i, name in enumerate(self.table.columns):
-            place, ten = self.sheet.header.index(name), 10 ** self.decimals[name]
-            for row, values in zip(self.sheet.rows, self.table.values, strict=True):
-                bound = Fraction(row[own]) if own is not None and name == "t" else self.bounds[name]
-                off = abs(Fraction(int(row[place].replace(".", "")), ten) - Fraction(values[i], unit))
-                if off > bound + self.apart[name]:
-                    where = f"{self.kind}.csv: {word} {row[0]}: {name} is off by {float(off):.2g}"
+            bounds = (
+                [row[0] for row in of_row] if of_row and name == "t" else [self.bounds[name]] * len(self.sheet.rows)
+            )
+            limits = {bound: int((bound + self.apart[name]) * unit) for bound in set(bounds)}
+            rows = zip(self.sheet.rows, printed[i] << self.table.bits, self.table.values, bounds, strict=True)
+            for row, number, values, bound in rows:
+                off = abs(number - values[i] * ten)
+                if off > limits[bound]:
+                    where = f"{self.kind}.csv: {word} {row[0]}: {name} is off by {off / unit:.2g}"
                     found.append(f"{where}, its bound is {float(bound):.2g}")
         return found

@@ -5,129 +5,150 @@ How far a checked quantity may be off follows from the bounds of the columns, by
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ...columns import GRID
+from ...fixed_point import FixedPoint, Integers, integers
 from ...model.constants import Constants, constants
 from ...model.force import acceleration, invariant
-from ...precision import GUARD_BITS, Array, bits_of, context, to_fraction, to_mpf
+from ...precision import GUARD_BITS, Array, bits_of, context
+from ...table import bits_in
 from ..files import Files
 from ..invariant import INVARIANT_BITS
+from ..sheets import Sheet
+from .completion import deep, depth, vertical_velocity
 
 NUDGE = 1e-5  # of a column's size: differences over it are right to four digits, which is plenty
 SLACK = Fraction(21, 20)
-STEEP = 4  # where |z| is below l/4, z does not follow well enough from x and y
 
 Quantity = Callable[[list[Any], Constants], Any]
 
 
 def problems(files: Files) -> Iterator[str]:
     """Yield every row that breaks a law which holds at each moment."""
-    manifest, sheet = files.manifest, files.tables["grid.csv"]
-    grid = _Moments(
-        files,
-        [f"grid.csv: t = {row[0]}" for row in sheet.rows],
-        list(sheet.numbers(GRID)),
-        [manifest.bound("grid", name) for name in GRID],
-    )
+    grid = _on_grid(files)
     yield from grid.off_the_sphere()
     yield from grid.not_along_the_sphere()
     constant = files.scene.exact.drag == 0
     if constant:
         yield from grid.with_another_invariant(grid.first())
-    if manifest.counts.transits and "transits.csv" in files.tables:
-        transits, ax = _transits(files)
+    if files.manifest.counts.transits and "transits.csv" in files.tables:
+        transits = _at_transits(files)
         yield from transits.off_the_sphere()
         if constant:
             yield from transits.with_another_invariant(grid.first())
-        yield from transits.with_another_acceleration(ax, manifest.bound("transits", "ax"))
+        yield from transits.with_another_acceleration()
 
 
-def _transits(files: Files) -> tuple[_Moments, list[Fraction]]:
-    """Return the states at the transits, where the velocity is (0, vy, -y vy / z), and xddot."""
-    sheet, bound = files.tables["transits.csv"], files.manifest.bound
-    names, rows, ax = [], [], []
-    for (x, y, z, vy, second), row in zip(sheet.numbers(("x", "y", "z", "vy", "ax")), sheet.rows, strict=True):
-        names.append(f"transits.csv: transit {row[0]}")
-        rows.append([x, y, z, Fraction(0), vy, Fraction(0)])
-        ax.append(second)
-    exact = Fraction(0)  # xdot is zero by definition, and zdot follows
-    bounds = [*(bound("transits", name) for name in ("x", "y", "z")), exact, bound("transits", "vy"), exact]
-    return _Moments(files, names, rows, bounds, at_transits=True), ax
+def _on_grid(files: Files) -> _Moments:
+    sheet = files.tables["grid.csv"]
+    names = [f"grid.csv: t = {row[0]}" for row in sheet.rows]
+    return _Moments.of(files, names, *sheet.integers(GRID), [files.manifest.bound("grid", name) for name in GRID])
+
+
+def _at_transits(files: Files) -> _Moments:
+    """Return the states at the transits, where the velocity is (0, vy, -y vy / z)."""
+    sheet = files.tables["transits.csv"]
+    names = [f"transits.csv: transit {row[0]}" for row in sheet.rows]
+    (x, y, z, vy), unit = sheet.integers(("x", "y", "z", "vy"))
+    bounds = [files.manifest.bound("transits", name) for name in ("x", "y", "z", "vy")]
+    zero, exact = integers([0] * len(names)), Fraction(0)  # xdot is zero by definition, and zdot follows
+    columns, bounds = [x, y, z, zero, vy, zero], [*bounds[:3], exact, bounds[3], exact]
+    return _Moments.of(files, names, columns, unit, bounds, sheet)
 
 
 @dataclass(frozen=True)
 class _Moments:
-    """States of a dataset.
+    """States of a dataset. All integers are in m and m/s over a common unit, and exact.
 
     Attributes:
         files: the dataset.
-        names: what messages call each.
-        rows: x, y, z, vx, vy, vz of each.
+        names: what messages call each state.
+        columns: x, y, z, vx, vy, vz.
+        unit: what the integers are to be divided by.
         bounds: of the six columns.
-        at_transits: whether vz is not given, but follows from the others and vx = 0.
+        length: of the cord.
+        transits: the printed table if these are transits, where vz is not given but follows.
     """
 
     files: Files
     names: list[str]
-    rows: list[list[Fraction]]
-    bounds: list[Fraction]
-    at_transits: bool = False
+    columns: list[Integers]
+    unit: int
+    bounds: list[int]
+    length: int
+    transits: Sheet | None
+
+    @classmethod
+    def of(
+        cls,
+        files: Files,
+        names: list[str],
+        columns: list[Integers],
+        unit: int,
+        bounds: list[Fraction],
+        transits: Sheet | None = None,
+    ) -> _Moments:
+        """Return states that are given over a unit, over one that holds the bounds and the length as well."""
+        numbers = [number * unit for number in (files.scene.exact.length, *bounds)]
+        finer = math.lcm(*(number.denominator for number in numbers))
+        length, *whole = (int(number * finer) for number in numbers)
+        return cls(files, names, [column * finer for column in columns], unit * finer, whole, length, transits)
 
     def off_the_sphere(self) -> Iterator[str]:
         """Check |r| = l."""
-        length = self.files.scene.exact.length
-        for name, row in zip(self.names, self.rows, strict=True):
-            allowed = sum((2 * abs(q) * b + b * b for q, b in zip(row[:3], self.bounds[:3], strict=True)), Fraction(0))
-            if abs(sum((q * q for q in row[:3]), Fraction(0)) - length**2) > allowed:
-                yield f"{name}: the bob is not at the distance {float(length):g} m from the pivot"
+        position = list(zip(self.columns[:3], self.bounds[:3], strict=True))
+        off = abs(sum(q * q for q, _ in position) - self.length**2)
+        for i in np.flatnonzero(off > sum(2 * abs(q) * b + b * b for q, b in position)):
+            length = float(self.files.scene.exact.length)
+            yield f"{self.names[i]}: the bob is not at the distance {length:g} m from the pivot"
 
     def not_along_the_sphere(self) -> Iterator[str]:
         """Check r·v = 0."""
-        b, c = self.bounds[:3], self.bounds[3:]
-        for name, row in zip(self.names, self.rows, strict=True):
-            pairs = list(zip(row[:3], row[3:], b, c, strict=True))
-            allowed = sum((abs(q) * e + abs(v) * d + d * e for q, v, d, e in pairs), Fraction(0))
-            if abs(sum((q * v for q, v, _, _ in pairs), Fraction(0))) > allowed:
-                yield f"{name}: the velocity is not along the sphere"
+        pairs = list(zip(self.columns[:3], self.columns[3:], self.bounds[:3], self.bounds[3:], strict=True))
+        off = abs(sum(q * v for q, v, _, _ in pairs))
+        for i in np.flatnonzero(off > sum(abs(q) * e + abs(v) * d + d * e for q, v, d, e in pairs)):
+            yield f"{self.names[i]}: the velocity is not along the sphere"
 
     def first(self) -> _Moments:
         """Return the first of the states alone."""
-        return replace(self, names=self.names[:1], rows=self.rows[:1])
+        return replace(self, names=self.names[:1], columns=[column[:1] for column in self.columns])
 
     def with_another_invariant(self, release: _Moments) -> Iterator[str]:
         """Check that h is that of the release."""
-        first, allowed_first = release.values(_invariant)[0], release.allowed(_invariant)[0]
+        (first,), (allowed_first,) = release.values(_invariant), release.allowed(_invariant)
         for name, h, allowed in zip(self.names, self.values(_invariant), self.allowed(_invariant), strict=True):
             if abs(h - first) > allowed + allowed_first:
                 yield f"{name}: the invariant h differs by {float(h - first):.2g} m²/s² from that of the first row"
 
-    def with_another_acceleration(self, ax: list[Fraction], bound: Fraction) -> Iterator[str]:
+    def with_another_acceleration(self) -> Iterator[str]:
         """Check xddot."""
-        rows = zip(self.names, self.values(_xddot), self.allowed(_xddot), ax, strict=True)
-        for name, value, allowed, printed in rows:
-            if abs(value - printed) > allowed + bound:
-                yield f"{name}: ax = {float(printed):.17g}, the equations of motion give {float(value):.17g}"
+        assert self.transits is not None
+        (printed,), unit = self.transits.integers(("ax",))
+        bound = self.files.manifest.bound("transits", "ax")
+        rows = zip(self.names, self.values(_xddot), self.allowed(_xddot), printed, strict=True)
+        for name, value, allowed, ax in rows:
+            if abs(value - Fraction(ax, unit)) > allowed + bound:
+                yield f"{name}: ax = {ax / unit:.17g}, the equations of motion give {float(value):.17g}"
 
     def values(self, quantity: Quantity) -> list[Fraction]:
         """Return a quantity of each state."""
-        ctx = context(bits_of(self.files.manifest.digits) + INVARIANT_BITS)
-        k = constants(self.files.scene.exact, ctx)
-        found = []
-        for row, deep in zip(self.rows, self._deep, strict=True):
-            x, y, z, vx, vy, vz = (to_mpf(q, ctx) for q in row)
-            if deep:
-                z = ctx.sqrt(max(ctx.zero, k.length * k.length - x * x - y * y)) * (1 if z > 0 else -1)
-            if z and (self.at_transits or deep):
-                vz = -(x * vx + y * vy) / z
-            found.append(to_fraction(quantity([x, y, z, vx, vy, vz], k) + ctx.zero))
-        return found
+        bits = self._bits
+        k = constants(self.files.scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
+        columns = [FixedPoint.column(column, self.unit, bits) for column in self.columns]
+        rows, follows = self._deep, self._follows
+        side = np.where(self.columns[2][rows] > 0, 1, -1)
+        x, y = (column[rows] for column in columns[:2])
+        columns[2].values[rows] = depth(x, y, k.length, side, FixedPoint.sqrt).values
+        x, y, z, vx, vy = (column[follows] for column in columns[:5])
+        columns[5].values[follows] = vertical_velocity(x, y, z, vx, vy).values
+        return list(quantity(columns, k).fractions())
 
     @np.errstate(all="ignore")
     def allowed(self, quantity: Quantity) -> list[Fraction]:
@@ -137,19 +158,18 @@ class _Moments:
             OverflowError: no double is as large.
         """
         k = constants(self.files.scene.exact, context(GUARD_BITS)).converted(float)
-        columns = [np.array([float(row[j]) for row in self.rows]) for j in range(6)]
-        deep = np.array(self._deep)
+        columns = [(column / self.unit).astype(np.float64) for column in self.columns]
+        bounds = [Fraction(bound, self.unit) for bound in self.bounds]
 
         def of(changed: list[Array]) -> Array:
             x, y, z, vx, vy, vz = changed
-            z = np.where(deep, np.sqrt(np.maximum(k.length**2 - x * x - y * y, 0.0)) * np.sign(z), z)
-            follows = (deep | self.at_transits) & (z != 0)
-            vz = np.where(follows, -(x * vx + y * vy) / np.where(follows, z, 1.0), vz)
+            z = np.where(self._deep, depth(x, y, k.length, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0))), z)
+            vz = np.where(self._follows, vertical_velocity(x, y, np.where(z, z, 1.0), vx, vy), vz)
             return np.asarray(quantity([x, y, z, vx, vy, vz], k) + 0.0 * z)
 
-        value, total, largest = of(columns), np.zeros(len(self.rows)), max(self.bounds)
+        value, total, largest = of(columns), np.zeros(len(self.names)), max(bounds)
         fastest = max(float(np.max(np.abs(column))) for column in columns[3:])
-        for j, bound in enumerate(self.bounds):
+        for j, bound in enumerate(bounds):
             if not bound:
                 continue
             step = max(NUDGE * (k.length if j < 3 else fastest or k.length), float(bound))
@@ -160,11 +180,22 @@ class _Moments:
             total += slopes * float(bound / largest)
         return [Fraction(part) * largest * SLACK for part in total]
 
-    @cached_property
-    def _deep(self) -> list[bool]:
+    @property
+    def _bits(self) -> int:
+        """What the smallest bound needs, up to twice the digits if it is absurdly small, and room for rounding."""
+        smallest = min((bound for bound in self.bounds if bound), default=self.unit)
+        digits = bits_of(self.files.manifest.digits)
+        return min(bits_in(Fraction(self.unit, smallest)), digits) + digits + INVARIANT_BITS
+
+    @property
+    def _deep(self) -> Array:
         """Whether z follows well from x and y, for each state."""
-        length = self.files.scene.exact.length
-        return [abs(row[2]) * STEEP > length for row in self.rows]
+        return np.asarray(deep(self.columns[2], self.length), dtype=bool)
+
+    @property
+    def _follows(self) -> Array:
+        """Whether vz is taken as it follows from the others."""
+        return np.asarray(self.columns[2] != 0, dtype=bool) if self.transits is not None else self._deep
 
 
 def _invariant(columns: list[Any], k: Constants) -> Any:

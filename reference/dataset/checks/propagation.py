@@ -15,7 +15,7 @@ from ...inputs import Inputs
 from ...model.constants import Constants, constants
 from ...model.formulations import FORMULATIONS
 from ...precision import GUARD_BITS, Array, context
-from .physics import STEEP
+from .completion import deep, depth, vertical_velocity
 
 NUDGE = 1e-4  # of a unit vector
 STEP = 0.2  # times the fastest rate: an error below 1e-3 after a few swings
@@ -48,7 +48,7 @@ def spreads(inputs: Inputs, states: Array, bounds: Array, span: float) -> tuple[
         return np.array(np.broadcast_arrays(*n, *v))
 
     base = states.T / length
-    along = _derivative(start, base[:, None, :], np.moveaxis(_directions(states, length), 0, 1))
+    along = _derivative(start, base[:, None, :], _directions(base))
     state = start(base)
     steps = max(1, int(np.ceil(span * _fastest(k, base) / STEP)))
     sizes = bounds / length
@@ -72,19 +72,16 @@ def _fastest(k: Constants, base: Array) -> float:
     return float(np.sqrt(strength) + np.sqrt(np.max(squares, initial=0.0)) + abs(k.rate) + k.drag)
 
 
-def _directions(states: Array, length: float) -> Array:
-    """Return how a state changes with each of its columns, shape (6, 6, rows): z and vz follow where they can."""
-    x, y, z, vx, vy, vz = states.T
-    directions = np.repeat(np.eye(6)[:, :, None], len(states), axis=2)
-    deep = np.abs(z) * STEEP > length
-    depth = np.where(deep, z, 1.0)
-    for i, (place, speed) in enumerate(((x, vx), (y, vy))):
-        slope = -place / depth
-        directions[i, 2] = np.where(deep, slope, 0.0)
-        directions[i, 5] = np.where(deep, -(speed + vz * slope) / depth, 0.0)
-        directions[3 + i, 5] = np.where(deep, slope, 0.0)
-    directions[2, 2] = directions[5, 5] = np.where(deep, 0.0, 1.0)
-    return directions
+def _directions(base: Array) -> Array:
+    """Return how states over l change with each column, shape (6, 6, rows): z and vz follow where they can."""
+    follows = deep(base[2], 1.0)
+
+    def completed(rows: Any) -> Any:
+        x, y, z, vx, vy, vz = rows
+        z = np.where(follows, depth(x, y, 1.0, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0))), z)
+        return np.array([x, y, z, vx, vy, np.where(follows, vertical_velocity(x, y, np.where(z, z, 1.0), vx, vy), vz)])
+
+    return np.asarray(_derivative(completed, base[:, None, :], np.eye(6)[:, :, None]))
 
 
 def _derivative(function: Callable[[Any], Any], at: Any, along: Any) -> Any:

@@ -21,7 +21,7 @@ from ...model.constants import constants
 from ...model.force import acceleration
 from ...precision import GUARD_BITS, LONG_DOUBLE_BITS, Array, bits_of, context, to_fraction, to_mpf
 from ..files import Files
-from .physics import STEEP
+from .completion import deep, depth, vertical_velocity
 from .propagation import spreads
 
 LINEAR = 1e-3  # of l: errors above this do not spread in proportion
@@ -87,10 +87,10 @@ def _completed(files: Files, state: list[Fraction], ctx: Any) -> list[Fraction]:
     """Return a state with z and vz as they follow from the others, where they follow well."""
     length = files.scene.exact.length
     x, y, z, vx, vy = state[:5]
-    if abs(z) * STEEP <= length:
+    if not deep(z, length):
         return state
-    depth = to_fraction(ctx.sqrt(to_mpf(length * length - x * x - y * y, ctx))) * (1 if z > 0 else -1)
-    return [x, y, depth, vx, vy, -(x * vx + y * vy) / depth]
+    z = depth(x, y, length, 1 if z > 0 else -1, lambda square: to_fraction(ctx.sqrt(to_mpf(square, ctx))))
+    return [x, y, z, vx, vy, vertical_velocity(x, y, z, vx, vy)]
 
 
 def _zeros(run: Run) -> Iterator[tuple[Fraction, int, dict[str, Fraction]]]:
