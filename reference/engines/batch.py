@@ -96,13 +96,14 @@ class Wanted:
         transits: count the zeros of xdot in 0 < t <= t_end, all of them located, and judge them.
         apsides: the highest points of the swing, for its frequency and its precession.
         times: the time and the direction of each transit as well.
-        moved: the run that tells the error: another order, and every constant and start number one ulp further from 0.
+        moved: a run that tells the error: another order, and every constant and start number one ulp further from 0
+            (1) or nearer to it (-1); 0 for the run itself.
     """
 
     transits: bool = True
     apsides: bool = True
     times: bool = False
-    moved: bool = False
+    moved: int = 0
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from ..errors import IntegrationError
 from ..process import Parent, Worker
 from .driver import Piece, WorkerDied, work
 from .isolated import Isolated
-from .part import MOVED
+from .estimate import MOVED
 from .request import Request
 
 TRIES = 2  # of a piece in a process of its own, before it is halved: the first may have been killed from outside

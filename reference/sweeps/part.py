@@ -9,18 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch import OK, STOPPED, Batch, Outcomes, Rows, Wanted
+from ..engines.batch import OK, STOPPED, Batch, Outcomes, Rows
 from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
-from .estimate import DEGREES_PER_HOUR, Errors, errors
+from .estimate import DEGREES_PER_HOUR, Errors, judged
 from .promote import DOUBTFUL_REASON, Promoted, fill, promoted
 from .request import Request
 from .row import STATE_COLUMNS, TIMES, empty
 
 Promote = Callable[..., Promoted]
 
-MOVED = Wanted(transits=False, apsides=False, moved=True)
 STOPPED_REASON = "The engine stopped: the step became too short, or a number not finite."
 
 
@@ -121,8 +120,8 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
     damped = rows.drag[:, 0] != 0
     for engine, own in _shared(request.engine, damped):
         chosen = rows[own]
-        run, moved = engine.solve(chosen, wanted), engine.solve(chosen, MOVED)
-        found = errors(chosen, run, moved)
+        run = engine.solve(chosen, wanted)
+        found, lost = judged(engine, chosen, run)
         at = places[own]
         write(columns, at, chosen, run, found, engine.name)
         if wanted.times:
@@ -131,7 +130,7 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
             agrees, other = _agreement(request.agree_with, chosen, run, found, wanted)
             columns["agrees_with"][at[agrees]] = other
             more |= dict.fromkeys(map(int, at[~agrees]), DOUBTFUL_REASON)
-        stopped = (run.fate == STOPPED) | (moved.fate == STOPPED)
+        stopped = (run.fate == STOPPED) | lost
         unsure = (run.fate != OK) | (found.undecided if wanted.transits else False)
         if request.tolerance is not None:
             unsure = unsure | ~(found.position <= request.tolerance)

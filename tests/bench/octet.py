@@ -26,9 +26,9 @@ from reference.engines.octet.rows import RESULTS, outcomes, packed
 from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.scene import load_scene
-from reference.sweeps.estimate import errors
+from reference.sweeps.estimate import MOVED, errors, judged
 from reference.sweeps.folding import columns_of, fold
-from reference.sweeps.part import MOVED, solve_part
+from reference.sweeps.part import solve_part
 from reference.sweeps.planning import request
 
 SPAN = 12_000
@@ -116,7 +116,7 @@ def main(count: int = 181, pairs: int = 5) -> None:
         return lambda: HEYOKA.solve(rows, wanted)
 
     def default(engine: Any) -> Callable[[], object]:
-        return lambda: errors(rows, engine.solve(rows, whole), engine.solve(rows, MOVED))
+        return lambda: judged(engine, rows, engine.solve(rows, whole))
 
     for wanted in (bare, transits, whole, MOVED):
         HEYOKA.solve(rows[:8], wanted)

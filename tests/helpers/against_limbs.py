@@ -12,7 +12,7 @@ from random_rows import rows_of
 from reference.engines.batch import OK, Batch, Outcomes, Wanted
 from reference.engines.registry import engines
 from reference.inputs import Inputs
-from reference.sweeps.estimate import errors
+from reference.sweeps.estimate import judged
 
 BITS = 110
 
@@ -46,8 +46,7 @@ def compare(batch: Batch, many: list[Inputs], estimates: bool = True) -> Compari
     """Solve scenes in a batch engine and in limbs, and compare."""
     rows = rows_of(many)
     run = batch.solve(rows, Wanted(times=True))
-    moved = batch.solve(rows, Wanted(transits=False, apsides=False, moved=True)) if estimates else None
-    estimate = errors(rows, run, moved) if moved is not None else None
+    estimate = judged(batch, rows, run)[0] if estimates else None
     found = Comparison(rows=len(many))
     for i, inputs in enumerate(many):
         if run.fate[i] != OK:

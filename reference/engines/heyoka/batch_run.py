@@ -121,14 +121,14 @@ def prepare(wanted: Wanted, drag: bool) -> float:
     """Compile what such rows need in the calling thread; return the CPU seconds that it took."""
     started = time.thread_time()
     for events in {_events(wanted), ()}:
-        _integrator(events, drag, wanted.moved)
+        _integrator(events, drag, bool(wanted.moved))
     return time.thread_time() - started
 
 
 def solve(rows: Rows, wanted: Wanted) -> Outcomes:
     """Solve rows, eight at a time, those that swing about as often together; see `Batch.solve`."""
     prepare(wanted, bool(rows.drag.any()))
-    rows = _moved(rows) if wanted.moved else rows
+    rows = _moved(rows, wanted.moved) if wanted.moved else rows
     outcomes = Outcomes.empty(len(rows))
     listed: list[tuple[int, Array, Array]] = []
     order = np.argsort(rows.swings, kind="stable")
@@ -145,7 +145,7 @@ def _eight(rows: Rows, part: Any, wanted: Wanted, outcomes: Outcomes, listed: li
     count, chosen = len(part), rows[np.resize(part, LANES)]
     limits = LEAST_STEPS + STEPS_PER_SWING * chosen.swings[:count]
     drag = bool(chosen.drag.any())
-    first = _integrator(_events(wanted), drag, wanted.moved)
+    first = _integrator(_events(wanted), drag, bool(wanted.moved))
     (state, steps, stopped), logged = SHARED_LOG.seen(lambda: first.to_end(chosen, int(limits.max())))
     stopped = stopped[:count] | (steps[:count] > limits)
     if stopped.any():
@@ -162,7 +162,7 @@ def _eight(rows: Rows, part: Any, wanted: Wanted, outcomes: Outcomes, listed: li
     zeros = by_lane(first.zeros, chosen)
     times = [one.times for one in zeros]
     if any(map(len, times)):
-        states = _integrator((), drag, wanted.moved).at(chosen, times, int(2 * limits.max()))
+        states = _integrator((), drag, bool(wanted.moved)).at(chosen, times, int(2 * limits.max()))
     else:
         states = state[None]
     for lane, row in enumerate(part):
@@ -179,13 +179,13 @@ def cartesian(state: Any, rows: Rows) -> tuple[Array, Array]:
     return np.array(n), np.array(v)
 
 
-def _moved(rows: Rows) -> Rows:
-    """Return the rows with every number one ulp further from zero."""
+def _moved(rows: Rows, way: int) -> Rows:
+    """Return the rows with every number one ulp further from zero, or nearer to it where `way` is -1."""
 
     def one(numbers: Array) -> Array:
         moved = numbers.copy()
         high = numbers[..., 0]
-        moved[..., 0] = np.where(high == 0, 0.0, np.nextafter(high, np.copysign(np.inf, high)))
+        moved[..., 0] = np.where(high == 0, 0.0, np.nextafter(high, np.copysign(np.inf, high) if way > 0 else 0.0))
         return moved
 
     return replace(rows, **{name: one(getattr(rows, name)) for name in _MOVED})

@@ -44,7 +44,7 @@ class OctetBatch(Batch):
 
         if rows.drag.any():
             raise ValueError("rows with drag are not for this kernel")
-        numbers, results = packed(rows, int(wanted.moved)), np.zeros((len(rows), RESULTS))
+        numbers, results = packed(rows, wanted.moved), np.zeros((len(rows), RESULTS))
         lanes, moments = empty_march(), empty_moments(ROOM if wanted.times else 0)
         done, parts = len(rows) == 0, [(moments.row[:0], moments.time[:0], moments.direction[:0])]
         while not done:
