@@ -1,10 +1,10 @@
 """How large the error of a row is: from a second run of another order, with every constant and start moved by an ulp.
 
 Both runs round differently everywhere, the constants included, so that their difference is of the size of the error;
-the factor covers that it may be smaller by chance. Where errors have grown to many ulps, or the bob has the energy to rise
-to the pivot, next to which they may grow, they point one way, and the two may cancel: there a third run, moved the other
-way, differs where the second does not, and the factor is larger. Of 3,500 random scenes none
-had a larger error than estimated here (tests/campaigns/test_sweeps.py).
+the factor covers that it may be smaller by chance. Where errors have grown to many ulps, or where the bob has the energy
+to rise to the pivot and they may grow, they point one way, and the two may cancel. There a third run is moved the other
+way, and the factor is larger. Of 3,500 random scenes none may have a larger error than estimated here
+(tests/campaigns/test_sweeps.py).
 """
 
 from __future__ import annotations
