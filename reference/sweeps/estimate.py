@@ -1,7 +1,7 @@
 """How large the error of a row is: from a second run of another order, with every constant and start moved by an ulp.
 
 Both runs round differently everywhere, the constants included, so that their difference is of the size of the error.
-It may be smaller by chance: therefore the factor, and a least difference, which is what half an ulp in the constants does.
+It may be smaller by chance: therefore the factor, and a least difference, what half an ulp in the constants may do.
 Where errors have grown to many ulps, or where the bob has the energy to rise to the pivot and they may grow, they point
 one way, and the two may cancel. There a third run is moved the other way, and the factor is larger. Of 3,500 random
 scenes none may have a larger error than estimated here (tests/campaigns/test_sweeps.py).
