@@ -14,8 +14,8 @@ from ..engines.registry import batches
 from ..errors import IntegrationError
 from ..process import Parent, Worker
 from .driver import Piece, WorkerDied, work
-from .isolated import Isolated
 from .estimate import MOVED
+from .isolated import Isolated
 from .request import Request
 
 TRIES = 2  # of a piece in a process of its own, before it is halved: the first may have been killed from outside
