@@ -64,10 +64,10 @@ class DoubleDouble:
     __radd__ = __add__
 
     def __sub__(self, other: Any) -> Self:
-        return self + (-other)
+        return self.__add__(-other)
 
     def __rsub__(self, other: Any) -> Self:
-        return -self + other
+        return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> Self:
         top, bottom = (other.high, other.low) if isinstance(other, DoubleDouble) else (other, 0.0)

@@ -1,6 +1,7 @@
 """The constants and releases of many rows in double-double arrays, by the model's own formulas: `Rows` for an engine.
 
-Within an ulp of the exact constants, at about two microseconds a row; in mpmath a row would cost more than its integration.
+Within an ulp of the exact constants, at about two microseconds a row; in mpmath a row would cost more than its
+integration.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ _NEARLY = 1e-9
 
 
 def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
-    """Return a scene's numbers as columns of one row each, by the names of `SITE`, `POSITION` or `ANGLES`, and t_end."""
+    """Return a scene's numbers as columns of one row, by the names of `SITE`, `POSITION` or `ANGLES`, and t_end."""
     named = {name: getattr(inputs, name) for name in (*SITE, "t_end")}
     named |= dict(zip(POSITION, inputs.position, strict=True)) if inputs.position is not None else {}
     named |= dict(zip(ANGLES, inputs.angles, strict=True)) if inputs.angles is not None else {}

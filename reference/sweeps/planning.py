@@ -120,7 +120,9 @@ def _engine(name: str, swings: float, option: str = "--engine") -> Batch:
     """
     known = batches()
     if name == AUTO:
-        return min((one for one in known.values() if one.installed), key=lambda one: one.expected_s(swings))
+        return min(
+            (one for one in known.values() if one.installed), key=lambda one: one.expected_s(swings) - one.saved_s
+        )
     if name not in known:
         raise unknown(option, name, "an engine for many rows", (AUTO, *known), "")
     if not known[name].installed:

@@ -193,7 +193,7 @@ def where(_: Any, truth: Any, a: Any, b: Any) -> Any:
     return Lanes(Lanes, Lanes, Lanes), generate
 
 
-_BITS = ir.VectorType(ir.IntType(64), LANES)
+_WHOLES = ir.VectorType(ir.IntType(64), LANES)
 _SCALE, _BIAS = 2.0**52, 1023.0
 
 
@@ -202,7 +202,7 @@ def log2_of(_: Any, a: Any) -> Any:
     """Return log2 of positive numbers, off by at most 0.09: exact for powers of two, linear between them."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        whole = builder.sitofp(builder.bitcast(arguments[0], _BITS), VECTOR)
+        whole = builder.sitofp(builder.bitcast(arguments[0], _WHOLES), VECTOR)
         scaled = builder.fmul(whole, ir.Constant(VECTOR, [1.0 / _SCALE] * LANES))
         return builder.fsub(scaled, ir.Constant(VECTOR, [_BIAS] * LANES))
 
@@ -216,7 +216,7 @@ def exp2_of(_: Any, a: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         raised = builder.fadd(arguments[0], ir.Constant(VECTOR, [_BIAS] * LANES))
         scaled = builder.fmul(raised, ir.Constant(VECTOR, [_SCALE] * LANES))
-        return builder.bitcast(builder.fptosi(scaled, _BITS), VECTOR)
+        return builder.bitcast(builder.fptosi(scaled, _WHOLES), VECTOR)
 
     return Lanes(Lanes), generate
 

@@ -15,7 +15,7 @@ from . import rows
 class Moments(NamedTuple):
     """Times of transits: their number so far, and of each its row, time and direction."""
 
-    count: npt.NDArray[np.int64]
+    number: npt.NDArray[np.int64]
     row: npt.NDArray[np.int64]
     time: Array
     direction: Array
@@ -36,10 +36,10 @@ def note_transit(out: Array, at: int, row: int, moments: Moments, time: float, s
     out[at + rows.COUNT] += 1.0
     out[at + rows.T_LAST] = time
     out[at + rows.LEAST_SLOPE] = min(out[at + rows.LEAST_SLOPE], abs(slope))
-    n = moments.count[0]
+    n = moments.number[0]
     if n < len(moments.row):
         moments.row[n], moments.time[n], moments.direction[n] = row, time, 1.0 if slope > 0.0 else -1.0
-        moments.count[0] = n + 1
+        moments.number[0] = n + 1
 
 
 @compiled

@@ -75,11 +75,13 @@ class March(NamedTuple):
 
 def empty_march() -> March:
     """Return lanes without rows."""
-    own, lanes = aligned(LANES * rows.COLUMNS), [aligned(LANES) for _ in range(7)]
+    own = aligned(LANES * rows.COLUMNS)
+    time, low, length, last, x, p, u = (aligned(LANES) for _ in range(7))
     inverses = 1.0 / np.arange(1.0, MOST_ORDER + 2)
     threes = np.array([math.comb(k, 3) for k in range(MOST_ORDER + 1)], dtype=float)
     counts = np.zeros(ROW + LANES, dtype=np.int64)
-    return March(own, empty_series(), empty_zeros(), empty_zeros(), empty_long_way(), *lanes, inverses, threes, counts)
+    found, w = (empty_zeros(), empty_zeros()), empty_long_way()
+    return March(own, empty_series(), *found, w, time, low, length, last, x, p, u, inverses, threes, counts)
 
 
 @compiled
@@ -193,7 +195,7 @@ def _march(m: March, plan: Settings, numbers: Array, results: Array, moments: Mo
         for lane in range(LANES):
             _take_row(m, plan, lane, numbers, results)
     for _ in range(steps):
-        room = len(moments.row) - moments.count[0]
+        room = len(moments.row) - moments.number[0]
         if m.counts[BUSY] == 0 or (len(moments.row) > 0 and room < LANES * MOST_ZEROS):
             break
         taylor_coefficients(m.c, m.own, m.inverses, plan.order)
@@ -221,7 +223,7 @@ def _march(m: March, plan: Settings, numbers: Array, results: Array, moments: Mo
             for lane in range(LANES):
                 if m.last[lane] != 0.0 and m.counts[ROW + lane] >= 0:
                     _leave(m, plan, lane, numbers, results, int(m.last[lane]) - 1)
-    return m.counts[BUSY] == 0
+    return bool(m.counts[BUSY] == 0)
 
 
 def _entry(sources: str) -> Any:

@@ -13,7 +13,7 @@ power of two in s that stays, so that nothing is scaled anew; the length of a st
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..limbs.lanes import LANES, compiled, exp2_of, inlined, larger, load, log2_of, magnitude, spread, store
 from ..limbs.lanes import plus_product as fma
@@ -50,7 +50,7 @@ def empty_series() -> Series:
 
 
 @inlined
-def _next_order(c: Series, own: Array, k: int, inverse: float, lx: object, lp: object, lu: object) -> None:
+def _next_order(c: Series, own: Array, k: int, inverse: float, lx: Any, lp: Any, lu: Any) -> None:
     """Write the coefficients of order k + 1 from those of order k and from order k of λ x, λ p, λ u."""
     at, to, share = LANES * k, LANES * (k + 1), spread(inverse)
     op, ou, pull = load(own, LANES * TURN_P), load(own, LANES * TURN_U), load(own, LANES * PULL)
@@ -114,12 +114,12 @@ def taylor_coefficients(c: Series, own: Array, inverses: Array, order: int) -> N
 
 
 @inlined
-def _size(c: Series, k: int) -> object:
+def _size(c: Series, k: int) -> Any:
     return larger(magnitude(load(c.x, LANES * k)), magnitude(load(c.p, LANES * k)))
 
 
 @inlined
-def step_length(c: Series, tolerance: float, inverses: Array, order: int) -> object:
+def step_length(c: Series, tolerance: float, inverses: Array, order: int) -> Any:
     """Return how far the series reaches: to where its last two coefficients are `tolerance` of the motion.
 
     The height u is left out: what its tail lacks is put right when n is put back on the sphere.
@@ -152,13 +152,13 @@ def sum_series(own: Array, c: Series, length: Array, order: int) -> None:
 
 
 @inlined
-def xdot_of(own: Array) -> object:
+def xdot_of(own: Array) -> Any:
     """Return x' of a state."""
     turned = fma(load(own, LANES * W), load(own, LANES * TURN_U), load(own, LANES * P))
     return turned - load(own, LANES * TURN_P) * load(own, LANES * U)
 
 
 @inlined
-def udot_of(own: Array) -> object:
+def udot_of(own: Array) -> Any:
     """Return u' of a state."""
     return fma(load(own, LANES * S), load(own, LANES * TURN_P), load(own, LANES * X))

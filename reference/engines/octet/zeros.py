@@ -7,7 +7,7 @@ go the long way (`long_way`).
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..limbs.lanes import (
     LANES,
@@ -94,7 +94,7 @@ def seek(z: Zeros, f: Array, length: Array, threes: Array, order: int) -> None:
 
 
 @inlined
-def _known(v: object, s: object, b: object, third: object, h: object, noise: object, slack: object) -> object:
+def _known(v: Any, s: Any, b: Any, third: Any, h: Any, noise: Any, slack: Any) -> Any:
     """Return 1 where a polynomial has no zero within h of a place, or is monotone there, else 0."""
     slope, bend = magnitude(s) * h, plus_product(magnitude(b), third, spread(1.0)) * h * h
     free = at_least(magnitude(v), slope + bend + noise)
@@ -102,7 +102,7 @@ def _known(v: object, s: object, b: object, third: object, h: object, noise: obj
 
 
 @inlined
-def _between(place: object, low: object, high: object) -> object:
+def _between(place: Any, low: Any, high: Any) -> Any:
     """Return a place moved into its interval; its low end where it is not a number."""
     none = spread(0.0)
     return none - larger(none - larger(place, low), none - high)

@@ -31,11 +31,11 @@ def asked(out):
 def cluster():
     import dask
 
-    with dask.config.set({"distributed.scheduler.allowed-failures": 1}):
-        with distributed.LocalCluster(
-            n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50
-        ) as cluster:
-            yield cluster
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 1}),
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
+    ):
+        yield cluster
 
 
 def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(cluster, tmp_path):

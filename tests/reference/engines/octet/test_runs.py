@@ -99,12 +99,7 @@ def test_conical_orbits_have_no_highest_points(paris):
         latitude=Fraction(90),
         rotation_rate=Fraction(0),
         position=None,
-        angles=(
-            Fraction(30),
-            Fraction(0),
-            Fraction(0),
-            Fraction(np.degrees(np.sqrt(9.80665 / 67 / np.cos(np.pi / 6)))),
-        ),
+        angles=(Fraction(30), Fraction(0), Fraction(0), rate),
         t_end=Fraction(200),
     )
     run = BATCH.solve(rows_of([cone]), Wanted())
