@@ -103,7 +103,11 @@ class ClusterExecutor:
 
     def _check_workers(self, address: str) -> int:
         """Return how many threads the workers have together, all with the versions that are here."""
-        threads = self._client.nthreads()
+        try:
+            self._client.wait_for_workers(1, timeout=WAIT_S)
+            threads = self._client.nthreads()
+        except TimeoutError:
+            threads = {}
         if not threads:
             raise InputError("--cluster", address, "a scheduler with workers", "Start them: `dask worker ADDRESS`.")
         here = versions(self._request.engine)

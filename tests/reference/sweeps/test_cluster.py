@@ -1,4 +1,4 @@
-"""Sweeps on dask.distributed: lost workers cost nothing, a row that kills its worker is found, the bytes are the same."""
+"""Sweeps on dask.distributed: lost workers cost nothing, a row that kills its worker is found, the bytes are equal."""
 
 from __future__ import annotations
 
@@ -103,7 +103,12 @@ def test_a_wrong_address_is_named(tmp_path, monkeypatch, address, said):
         run(asked(tmp_path / "out"), tmp_path / "out", cluster=address)
 
 
-def test_a_scheduler_without_workers_is_named(tmp_path):
-    with distributed.LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as empty:
-        with pytest.raises(InputError, match="a scheduler with workers"):
-            run(asked(tmp_path / "out"), tmp_path / "out", cluster=empty.scheduler_address)
+def test_a_scheduler_without_workers_is_named(tmp_path, monkeypatch):
+    from reference.sweeps import cluster as module
+
+    monkeypatch.setattr(module, "WAIT_S", 1.0)
+    with (
+        distributed.LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as empty,
+        pytest.raises(InputError, match="a scheduler with workers"),
+    ):
+        run(asked(tmp_path / "out"), tmp_path / "out", cluster=empty.scheduler_address)
