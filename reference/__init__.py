@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from .engines.trajectory import integrate, trajectory
     from .solver.solution import Solution
     from .solver.solve import solve
+    from .sweeps.sweep import load_sweep, sweep
+    from .sweeps.swept import Swept
 
 __all__ = [
     "DatasetError",
@@ -33,13 +35,16 @@ __all__ = [
     "IntegrationError",
     "Scene",
     "Solution",
+    "Swept",
     "UnreachableError",
     "integrate",
     "load",
     "load_scene",
+    "load_sweep",
     "parse_scene",
     "scene_ids",
     "solve",
+    "sweep",
     "trajectory",
     "write",
 ]
@@ -49,9 +54,12 @@ __getattr__, __dir__ = lazy(
     {
         "Golden": "dataset.read",
         "Solution": "solver.solution",
+        "Swept": "sweeps.swept",
         "integrate": "engines.trajectory",
         "load": "dataset.read",
+        "load_sweep": "sweeps.sweep",
         "solve": "solver.solve",
+        "sweep": "sweeps.sweep",
         "trajectory": "engines.trajectory",
         "write": "dataset.write",
     },

@@ -18,9 +18,14 @@ class Capture:
         self._handle, self._seen = handle, 0
         self.data = b""
 
+    @property
+    def size(self) -> int:
+        """Bytes written so far; only while the capture lasts."""
+        return os.fstat(self._handle.fileno()).st_size
+
     def fresh(self) -> bool:
         """Return whether anything was written since the last call; only while the capture lasts."""
-        size = os.fstat(self._handle.fileno()).st_size
+        size = self.size
         changed, self._seen = size > self._seen, size
         return changed
 

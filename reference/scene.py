@@ -9,10 +9,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from .errors import InputError
 from .fields import Line, NotNegative, Number, NumberOrInf, Positive, Refused, as_read, explained, within
@@ -172,6 +173,35 @@ def field_names() -> list[str]:
         inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, _Table) else ()
         names += [f"{top}.{key}" for key in inside] or [top]
     return names
+
+
+def checked_value(name: str, value: str, reading: Reading) -> str:
+    """Return the value of one field, checked as it is in a scene whose numbers are read like this.
+
+    Args:
+        name: the field, one of `field_names`.
+        value: as text.
+        reading: how the scene reads numbers.
+
+    Raises:
+        InputError: the value is wrong, whatever the other fields are.
+    """
+    try:
+        _field(name).validate_python(value, context={"inputs": reading})
+    except ValidationError as error:
+        wrong = explained(error, ())
+        raise InputError(name, value, wrong.expected, wrong.advice) from None
+    return value
+
+
+@cache
+def _field(name: str) -> TypeAdapter[Any]:
+    """Return what checks one field."""
+    table, _, key = name.rpartition(".")
+    fields = Scene.model_fields
+    for part in (table,) if table else ():
+        fields = fields[part].annotation.model_fields  # type: ignore[union-attr]
+    return TypeAdapter(fields[key].rebuild_annotation())
 
 
 def parse_scene(document: Mapping[str, Any]) -> Scene:

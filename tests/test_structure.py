@@ -21,12 +21,13 @@ FLOORS = {
     "": [["foucault"], ["compare"], ["reference"]],
     "reference": [
         ["commands"],
-        ["dataset"],
+        ["dataset", "sweeps"],
         ["solver"],
         ["engines", "enclosure"],
         ["model"],
         ["scene", "table", "fixed_point", "process", "packing", "capture", "taylor_step"],
         ["toml_document"],
+        ["double_double"],
         ["inputs", "fields", "precision", "shipped", "columns", "workspace", "machine_code"],
         ["lazy"],
         ["nearest"],
@@ -36,9 +37,10 @@ FLOORS = {
     "reference/engines": [
         ["side_by_side"],
         ["registry", "trajectory", "variants", "equations"],
+        ["octet"],
         [*engine_names()],
         ["engine"],
-        ["plan"],
+        ["plan", "batch"],
     ],
     "compare": [
         ["commands", "fixture"],
@@ -99,7 +101,13 @@ def imported(path: Path) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    ("library", "door"), [("heyoka", "reference/engines/heyoka/"), ("flint", "reference/enclosure/")]
+    ("library", "door"),
+    [
+        ("heyoka", "reference/engines/heyoka/"),
+        ("flint", "reference/enclosure/"),
+        ("pyarrow", "reference/sweeps/parquet.py"),
+        ("distributed", "reference/sweeps/cluster.py"),
+    ],
 )
 def test_a_library_has_one_door(library, door):
     users = [path.relative_to(ROOT).as_posix() for path in SOURCES if library in imported(path)]
@@ -109,7 +117,7 @@ def test_a_library_has_one_door(library, door):
 
 # the names of reference that compare uses: what changes here, changes for others too
 PUBLIC = {
-    "reference": "DatasetError FoucaultError Golden InputError IntegrationError Scene Solution UnreachableError "
+    "reference": "DatasetError FoucaultError Golden InputError IntegrationError Scene Solution Swept UnreachableError "
     "integrate load load_scene parse_scene scene_ids solve trajectory write",
     "reference.capture": "captured",
     "reference.columns": "STATE",
@@ -117,7 +125,7 @@ PUBLIC = {
     "reference.commands.terminal": "AsJson Assignments SceneWord chosen completion emit refuse replacements stoppable",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.engines.heyoka.model": "RoundedModel",
-    "reference.engines.registry": "engines",
+    "reference.engines.registry": "batches engines",
     "reference.engines.variants": "Variants",
     "reference.errors": "BeyondDoublesError Stopped",
     "reference.inputs": "Inputs",
@@ -136,11 +144,16 @@ PUBLIC = {
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
     "reference.process": "Emit Worker terminable",
-    "reference.scene": "MAX_ROWS RunTable",
+    "reference.scene": "LEVELS MAX_ROWS RunTable",
     "reference.shortened": "shortened",
     "reference.shipped": "data_root seals",
     "reference.solver.sensitivity": "sensitivity",
     "reference.status": "Status",
+    "reference.sweeps.axes": "Grid",
+    "reference.sweeps.local": "default_workers",
+    "reference.sweeps.request": "Request",
+    "reference.sweeps.sweep": "asked_for opened run",
+    "reference.sweeps.values": "TEXTS",
     "reference.table": "Table",
     "reference.workspace": "replace_file workspace",
 }
@@ -162,7 +175,7 @@ def test_compare_uses_the_public_names_of_reference_alone():
     }
 
 
-HEAVY = ("heyoka", "flint", "scipy", "matplotlib", "numba")
+HEAVY = ("heyoka", "flint", "scipy", "matplotlib", "numba", "pyarrow", "distributed")
 
 
 @pytest.mark.parametrize(

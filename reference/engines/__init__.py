@@ -1,5 +1,6 @@
 """The engines, integrators of the model, each in a folder; one run of a scene with its transits, and two at a time.
 
+- `batch`: many scenes side by side in double, what goes in and what comes out.
 - `plan`: the input of an engine, `Plan`, and its output, `Run`; `engine`: the interface.
 - `registry`: the engines by name, which of them a run takes, and the run itself.
 - `side_by_side`: two runs at the same time.
@@ -11,11 +12,23 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pkgutil import iter_modules
 
 AUTO = "auto"  # the fastest engine that is installed
 
 
+def folders_with(file: str) -> tuple[str, ...]:
+    """Return the folders here that have a module of this name."""
+    folders = (module.name for module in iter_modules(__path__) if module.ispkg)
+    return tuple(sorted(name for name in folders if find_spec(f"{__name__}.{name}.{file}") is not None))
+
+
 def engine_names() -> tuple[str, ...]:
-    """Return the names of the engines: each is a folder here, and its `engine.py` declares it as `ENGINE`."""
-    return tuple(sorted(module.name for module in iter_modules(__path__) if module.ispkg))
+    """Return the names of the engines: the folders here whose `engine.py` declares one as `ENGINE`."""
+    return folders_with("engine")
+
+
+def batch_names() -> tuple[str, ...]:
+    """Return the names of the engines that solve many rows side by side: `batch.py` declares one as `BATCH`."""
+    return folders_with("batch")

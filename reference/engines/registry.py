@@ -9,7 +9,8 @@ from typing import Any
 
 from ..errors import InputError
 from ..packages import switched_off
-from . import AUTO, engine_names
+from . import AUTO, batch_names, engine_names
+from .batch import Batch
 from .engine import Engine
 from .plan import Plan, Report, Run
 
@@ -18,6 +19,12 @@ from .plan import Plan, Report, Run
 def engines() -> dict[str, Engine]:
     """Return every engine by its name, which is that of its folder."""
     return {name: import_module(f".{name}.engine", __package__).ENGINE for name in engine_names()}
+
+
+@cache
+def batches() -> dict[str, Batch]:
+    """Return every engine that solves many rows side by side, by its name, which is that of its folder."""
+    return {name: import_module(f".{name}.batch", __package__).BATCH for name in batch_names()}
 
 
 def checked(name: str | None) -> str:

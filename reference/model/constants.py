@@ -102,12 +102,11 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
         distance = axis_distance(radius, flattening, altitude, sin, cos, ctx.sqrt) if carried else ctx.zero
     except ZeroDivisionError:  # at the pole of an Earth as flat as a disc
         raise BeyondDoublesError from None
-    north, up = rate * cos, rate * sin
-    outward = rate * rate * distance
+    north, up, pull_north, pull_up = turn_and_pull(length, gravity, rate, distance, sin, cos)
     return Constants(
         length=length,
         turn=(0, number(north), number(up)),
-        pull=(0, number(-outward * sin / length), number((outward * cos - gravity) / length)),
+        pull=(0, number(pull_north), number(pull_up)),
         centrifugal=(number(rate * rate), number(up * up), number(-north * up), number(north * north)),
         drag=number(to_mpf(inputs.drag, ctx)),
         gravity=number(gravity / length),
@@ -116,3 +115,9 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
         sin=sin,
         cos=cos,
     )
+
+
+def turn_and_pull(length: Any, gravity: Any, rate: Any, distance: Any, sin: Any, cos: Any) -> tuple[Any, Any, Any, Any]:
+    """Return what of Ω and of c points north and up, in any number type; `distance` is R."""
+    outward = rate * rate * distance
+    return rate * cos, rate * sin, -outward * sin / length, (outward * cos - gravity) / length

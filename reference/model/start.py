@@ -80,6 +80,13 @@ def release(inputs: Inputs, ctx: Any) -> tuple[Vector, Vector]:
     angle, azimuth = (to_mpf(value / 180, ctx) for value in inputs.angles[:2])
     angle_rate, azimuth_rate = (to_mpf(value, ctx) * ctx.pi / 180 for value in inputs.angles[2:])
     sa, ca, sl, cl = ctx.sinpi(angle), ctx.cospi(angle), ctx.sinpi(azimuth), ctx.cospi(azimuth)
+    return at_angles(length, sa, ca, sl, cl, angle_rate, azimuth_rate)
+
+
+def at_angles(
+    length: Any, sa: Any, ca: Any, sl: Any, cl: Any, angle_rate: Any, azimuth_rate: Any
+) -> tuple[Vector, Vector]:
+    """Return position and velocity from sine and cosine of angle and azimuth and the rates, in any number type."""
     position = (length * sa * cl, length * sa * sl, -length * ca)
     velocity = (
         length * (angle_rate * ca * cl - azimuth_rate * sa * sl),

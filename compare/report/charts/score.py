@@ -40,6 +40,15 @@ def error_picture(scores: Sequence[Score], path: Path) -> None:
     with sheet((8, 4.5)) as figure:
         _draw(figure.subplots(), scores)
         content = picture(figure, path.suffix[1:].lower())
+    write_picture(path, content)
+
+
+def write_picture(path: Path, content: bytes) -> None:
+    """Write a picture file, whole or not at all.
+
+    Raises:
+        InputError: it cannot be written.
+    """
     try:
         replace_file(path, lambda stream: stream.write(content))
     except OSError as error:

@@ -5,6 +5,7 @@ its only sign of a lost root, are caught; outcome codes are checked; arrays of `
 handler; the disk cache never hits beyond 128 bits and is switched off for `real`.
 
 - `engine`: its declaration; `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof.
+- `batch`, `batch_run`, `batch_zeros`, `batch_tolerances`: eight scenes side by side; `shared_log`: the log of threads.
 - `numbers`: its number types, and exact conversions.
 - `system`: a formulation as its expressions.
 - `model`: a formulation with a scene's constants in a number type; its states in SI units.

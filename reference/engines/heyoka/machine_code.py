@@ -17,6 +17,11 @@ def compiling(number: NumberType) -> Iterator[None]:
 
     Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it is switched off.
     """
-    hy.llvm_state.set_diskcache_enabled(number.hardware and bool(hy.llvm_state.get_diskcache_path()))
+    keep_on_disk(number)
     with watched_log():
         yield
+
+
+def keep_on_disk(number: NumberType) -> None:
+    """Have what is compiled from now on kept on disk, where that serves for numbers of this type."""
+    hy.llvm_state.set_diskcache_enabled(number.hardware and bool(hy.llvm_state.get_diskcache_path()))

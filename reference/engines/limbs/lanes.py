@@ -46,11 +46,11 @@ def inlined(function: Function) -> Function:
     return callee
 
 
-def entry(function: Function) -> Function:
+def entry(function: Function, nogil: bool = False) -> Function:
     """Compile with numba, to be called from Python; the machine code is cached on disk."""
     compiler: Any = numba.njit
     with kept():
-        dispatcher: Function = compiler(cache=True, **_OPTIONS)(function)
+        dispatcher: Function = compiler(cache=True, nogil=nogil, **_OPTIONS)(function)
     return dispatcher
 
 
@@ -162,6 +162,66 @@ def at_least(_: Any, a: Any, b: Any) -> Any:
 
 
 @instruction
+def magnitude(_: Any, a: Any) -> Any:
+    """Return |a| in each lane."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        name, kind = f"llvm.fabs.v{LANES}f64", ir.FunctionType(VECTOR, [VECTOR])
+        return builder.call(_insert(builder.module, kind, name), arguments)
+
+    return Lanes(Lanes), generate
+
+
+@instruction
+def larger(_: Any, a: Any, b: Any) -> Any:
+    """Return the larger of a and b in each lane, b where one is not a number."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.select(builder.fcmp_ordered(">", *arguments), *arguments)
+
+    return Lanes(Lanes, Lanes), generate
+
+
+@instruction
+def where(_: Any, truth: Any, a: Any, b: Any) -> Any:
+    """Return a in each lane where `truth` is not zero, else b."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        zero = ir.Constant(VECTOR, [0.0] * LANES)
+        return builder.select(builder.fcmp_unordered("!=", arguments[0], zero), arguments[1], arguments[2])
+
+    return Lanes(Lanes, Lanes, Lanes), generate
+
+
+_WHOLES = ir.VectorType(ir.IntType(64), LANES)
+_SCALE, _BIAS = 2.0**52, 1023.0
+
+
+@instruction
+def log2_of(_: Any, a: Any) -> Any:
+    """Return log2 of positive numbers, off by at most 0.09: exact for powers of two, linear between them."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        whole = builder.sitofp(builder.bitcast(arguments[0], _WHOLES), VECTOR)
+        scaled = builder.fmul(whole, ir.Constant(VECTOR, [1.0 / _SCALE] * LANES))
+        return builder.fsub(scaled, ir.Constant(VECTOR, [_BIAS] * LANES))
+
+    return Lanes(Lanes), generate
+
+
+@instruction
+def exp2_of(_: Any, a: Any) -> Any:
+    """Return the inverse of `log2_of`, for numbers between -1022 and 1023."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        raised = builder.fadd(arguments[0], ir.Constant(VECTOR, [_BIAS] * LANES))
+        scaled = builder.fmul(raised, ir.Constant(VECTOR, [_SCALE] * LANES))
+        return builder.bitcast(builder.fptosi(scaled, _WHOLES), VECTOR)
+
+    return Lanes(Lanes), generate
+
+
+@instruction
 def within(_: Any, a: Any, bound: Any) -> Any:
     """Return true if |a| <= bound in every lane; false if any lane is not a number."""
 
@@ -211,3 +271,4 @@ def _binary(operation: Any, name: str) -> None:
 _binary(operator.add, "fadd")
 _binary(operator.sub, "fsub")
 _binary(operator.mul, "fmul")
+_binary(operator.truediv, "fdiv")

@@ -1,0 +1,175 @@
+"""Arrays of unevaluated sums of two doubles, about 106 bits: for constants of many rows at once, without FMA.
+
+Sums and products by Dekker (1971) and Knuth; relative errors of an operation are a few 2**-104 (Joldes, Muller and
+Popescu 2017), away from overflow and underflow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from typing import Any, Self
+
+import numpy as np
+
+from .precision import Array, context
+
+_SPLIT = 134217729.0  # 2**27 + 1: cuts a double into two halves of 26 bits
+_STEP = 2.5  # degrees between the angles whose sine and cosine are known
+_TURN = 144  # of them in a turn
+
+
+@dataclass(frozen=True)
+class DoubleDouble:
+    """Numbers high + low, |low| at most half an ulp of high; arrays of one shape, or of shapes that broadcast."""
+
+    high: Array
+    low: Array
+    __array_ufunc__ = None  # numpy leaves operators to this class
+
+    @classmethod
+    def of(cls, values: Iterable[Fraction]) -> Self:
+        """Return exact numbers, each rounded to the nearest sum of two doubles; inf where one has none."""
+        pairs = np.array([_pair(value) for value in values]).reshape(-1, 2)
+        return cls(pairs[:, 0].copy(), pairs[:, 1].copy())
+
+    @classmethod
+    def from_pairs(cls, pairs: Array) -> Self:
+        """Return the numbers of an array of shape (…, 2)."""
+        return cls(pairs[..., 0], pairs[..., 1])
+
+    @property
+    def pairs(self) -> Array:
+        """The numbers as a contiguous array of shape (…, 2), high and low."""
+        return np.stack((self.high, self.low), axis=-1)
+
+    @property
+    def vanishes(self) -> Any:
+        """Where a number is exactly zero."""
+        return self.high == 0
+
+    def __neg__(self) -> Self:
+        return type(self)(-self.high, -self.low)
+
+    def __add__(self, other: Any) -> Self:
+        if not isinstance(other, DoubleDouble):
+            return type(self)(*_quick(*_plus(self.high, self.low, other)))
+        total, error = _sum(self.high, other.high)
+        below, rest = _sum(self.low, other.low)
+        total, error = _quick(total, error + below)
+        return type(self)(*_quick(total, error + rest))
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Any) -> Self:
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> Self:
+        return (-self).__add__(other)
+
+    def __mul__(self, other: Any) -> Self:
+        top, bottom = (other.high, other.low) if isinstance(other, DoubleDouble) else (other, 0.0)
+        product, error = _product(self.high, top)
+        return type(self)(*_quick(product, error + (self.high * bottom + self.low * top)))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> Self:
+        divisor = other if isinstance(other, DoubleDouble) else type(self)(other, 0.0 * other)
+        first = self.high / divisor.high
+        rest = self - divisor * first
+        second = rest.high / divisor.high
+        rest = rest - divisor * second
+        return type(self)(*_quick(first, second)) + rest.high / divisor.high
+
+    def where(self, chosen: Any, other: Self) -> Self:
+        """Return these numbers where `chosen`, the others elsewhere."""
+        return type(self)(np.where(chosen, self.high, other.high), np.where(chosen, self.low, other.low))
+
+
+def square_root(a: DoubleDouble) -> DoubleDouble:
+    """Return the square root, of zero zero."""
+    first = np.sqrt(a.high)
+    rest = a - DoubleDouble(*_product(first, first))
+    return DoubleDouble(*_quick(first, np.divide(0.5 * rest.high, first, out=np.zeros_like(first), where=first != 0)))
+
+
+def sine_and_cosine(degrees: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:
+    """Return sine and cosine of angles of at most 2**40 degrees; exact zeros and ones at the quarters of a turn."""
+    table, radian = _known_angles()
+    near = np.rint(degrees.high / _STEP)
+    r = DoubleDouble(*_quick(degrees.high - near * _STEP, degrees.low)) * radian
+    square = r * r
+    s, s2 = square, square.high
+    odd = s2 * (-1 / 5040 + s2 * (1 / 362880 + s2 * (-1 / 39916800 + s2 / 6227020800)))
+    even = s2 * (1 / 40320 + s2 * (-1 / 3628800 + s2 * (1 / 479001600 - s2 / 87178291200)))
+    sine = r + r * (s * (s * (_exactly(1, 120) + odd) - _exactly(1, 6)))
+    less = s * (s * (_exactly(1, 24) + s * (even - _exactly(1, 720))) - 0.5)  # cosine less 1
+    at = table[near.astype(np.int64) % _TURN]
+    sin, cos = DoubleDouble(at[..., 0], at[..., 1]), DoubleDouble(at[..., 2], at[..., 3])
+    return sin + (sin * less + cos * sine), cos + (cos * less - sin * sine)
+
+
+def in_radians(degrees: DoubleDouble) -> DoubleDouble:
+    """Return angles in radians."""
+    return degrees * _known_angles()[1]
+
+
+@cache
+def _exactly(numerator: int, denominator: int) -> DoubleDouble:
+    return DoubleDouble.of([Fraction(numerator, denominator)])
+
+
+@cache
+def _known_angles() -> tuple[Array, DoubleDouble]:
+    """Return sine and cosine of the multiples of _STEP, shape (_TURN, 4), and the radians of a degree."""
+    ctx = context(160)
+    angles = [ctx.mpf(_STEP) * k / 180 for k in range(_TURN)]
+    parts = [(*_split(ctx.sinpi(a)), *_split(ctx.cospi(a))) for a in angles]
+    high, low = _split(ctx.pi / 180)
+    return np.array(parts), DoubleDouble(np.array([high]), np.array([low]))
+
+
+def _split(value: Any) -> tuple[float, float]:
+    """Return an mpf as a sum of two doubles."""
+    high = float(value)
+    return high, float(value - high)
+
+
+def _pair(value: Fraction) -> tuple[float, float]:
+    try:
+        high = float(value)
+    except OverflowError:
+        return (np.inf if value > 0 else -np.inf), 0.0
+    return high, float(value - Fraction(high))
+
+
+def _sum(a: Any, b: Any) -> tuple[Any, Any]:
+    total = a + b
+    other = total - a
+    return total, (a - (total - other)) + (b - other)
+
+
+def _quick(a: Any, b: Any) -> tuple[Any, Any]:
+    """Return the sum and its error where |a| >= |b|."""
+    total = a + b
+    return total, b - (total - a)
+
+
+def _plus(high: Any, low: Any, other: Any) -> tuple[Any, Any]:
+    total, error = _sum(high, other)
+    return total, error + low
+
+
+def _halves(a: Any) -> tuple[Any, Any]:
+    large = a * _SPLIT
+    high = large - (large - a)
+    return high, a - high
+
+
+def _product(a: Any, b: Any) -> tuple[Any, Any]:
+    product = a * b
+    (a_high, a_low), (b_high, b_low) = _halves(a), _halves(b)
+    return product, ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low

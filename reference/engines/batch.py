@@ -1,0 +1,237 @@
+"""Many scenes solved side by side in double: what goes in, `Rows` and `Wanted`, what comes out, `Outcomes`.
+
+An engine that can do this declares a `Batch` as `BATCH` in the file `batch.py` of its folder. A row comes out the same,
+bit for bit, whatever rows stand beside it.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from ..model.constants import Constants
+from ..packages import missing, switched_off
+from ..precision import Array
+
+OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
+CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
+LEAST_BEND = 1e-6
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The constants and the release of n scenes: axes x east, y north, z up; lengths over l, seconds.
+
+    Numbers of shape (…, 2) are high + low: the double nearest to the exact number, and the double nearest to what is
+    left of it. All arrays are contiguous.
+
+    Attributes:
+        length: cord length l in m, shape (n, 2).
+        drag: γ in 1/s, shape (n, 2).
+        t_end: end of the span in s, shape (n, 2).
+        turn: rotation vector Ω in rad/s, shape (n, 3, 2).
+        pull: c, gravity and the centrifugal force at the pivot over l, in 1/s², shape (n, 3, 2).
+        n: position over l at t = 0, a unit vector, shape (n, 3, 2).
+        V: n' + Ω × n at t = 0, in 1/s, shape (n, 3, 2).
+        zeros_at_release: multiplicity of xdot's zero at t = 0 by the exact inputs, 0, 1 or 2, shape (n,), int64.
+        still: whether xdot is zero at all times by the exact inputs, shape (n,): such a row has no transits.
+    """
+
+    length: Array
+    drag: Array
+    t_end: Array
+    turn: Array
+    pull: Array
+    n: Array
+    V: Array
+    zeros_at_release: Any
+    still: Any
+
+    def __len__(self) -> int:
+        return len(self.length)
+
+    @cached_property
+    def k(self) -> Constants:
+        """The constants in double, arrays of shape (n,)."""
+        (_, north, up), (_, south, down) = self.turn[..., 0].T, self.pull[..., 0].T
+        return Constants(
+            length=self.length[:, 0],
+            turn=(0, north, up),
+            pull=(0, south, down),
+            centrifugal=(north * north + up * up, up * up, -north * up, north * north),
+            drag=self.drag[:, 0],
+        )
+
+    @cached_property
+    def rate(self) -> Array:
+        """Angular frequency √|c| of a small swing, in rad/s."""
+        rate: Array = np.sqrt(np.linalg.norm(self.pull[..., 0], axis=1))
+        return rate
+
+    @property
+    def swings(self) -> Array:
+        """Length of the span in periods 2π/√|c| of a small swing."""
+        return self.t_end[:, 0] * self.rate / (2 * np.pi)
+
+    @classmethod
+    def joined(cls, blocks: Sequence[Self]) -> Self:
+        """Return the rows of several blocks, in order."""
+        return cls(*(np.concatenate([getattr(block, field.name) for block in blocks]) for field in fields(cls)))
+
+    def __getitem__(self, chosen: Any) -> Self:
+        """Return some of the rows: a slice, or an array of indices or truths."""
+        return type(self)(*(np.ascontiguousarray(getattr(self, field.name)[chosen]) for field in fields(self)))
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is wanted of each row beside its state at the end.
+
+    Attributes:
+        transits: count the zeros of xdot in 0 < t <= t_end, all of them located, and judge them.
+        apsides: the highest points of the swing, for its frequency and its precession.
+        times: the time and the direction of each transit as well.
+        moved: a run that tells the error: another order, and every constant and start number one ulp further from 0
+            (1) or nearer to it (-1); 0 for the run itself.
+    """
+
+    transits: bool = True
+    apsides: bool = True
+    times: bool = False
+    moved: int = 0
+
+
+@dataclass(frozen=True)
+class Outcomes:
+    """What became of n rows, in SI units. What was not wanted, or is not there, is 0 where counted and NaN elsewhere.
+
+    Attributes:
+        fate: OK, DOUBTFUL (a transit or a highest point is undecided in double) or STOPPED (the step became too short
+            or a number not finite), shape (n,), int8. A stopped row's other numbers mean nothing.
+        state: x, y, z in m and vx, vy, vz in m/s at t_end, shape (n, 6).
+        steps: steps taken, int32.
+        transits: number of transits, int32.
+        t_first, t_last: times of the first and of the last one, in s.
+        close_pairs: transits nearer to the one before than `CLOSE_PAIR` of a small swing's period, int32.
+        least_ax: smallest |ax| at a transit, in m/s².
+        apsides: number of highest points (where zdot along the plumb line goes from + to -) in 0 < t <= t_end, int32.
+        apsis_first, apsis_last: times of the first and of the last one, in s.
+        turn: azimuth of the last minus that of the first about the plumb line -c, half turns left out, in rad, from
+            east to north: the sum of the changes from one to the next, each taken between -π/2 and π/2.
+        least_bend: smallest -u''/(|c| (1 - u²)) at a highest point, u = -n·c/|c|: about 1 for a swing in a plane, 0
+            for a conical orbit; where it is below `LEAST_BEND` there are no highest points to speak of, and none
+            are counted.
+        largest_angle: largest angle from the plumb line at a highest point or the release, in rad.
+        transit_row, transit_t, transit_direction: of every transit, ordered by row and time; empty if not wanted.
+    """
+
+    fate: Any
+    state: Array
+    steps: Any
+    transits: Any
+    t_first: Array
+    t_last: Array
+    close_pairs: Any
+    least_ax: Array
+    apsides: Any
+    apsis_first: Array
+    apsis_last: Array
+    turn: Array
+    least_bend: Array
+    largest_angle: Array
+    transit_row: Any
+    transit_t: Array
+    transit_direction: Any
+
+    @classmethod
+    def empty(cls, count: int) -> Self:
+        """Return the outcomes of `count` rows, to be filled in: nothing found, nothing known."""
+
+        def unknown() -> Array:
+            return np.full(count, np.nan)
+
+        def none() -> Any:
+            return np.zeros(count, np.int32)
+
+        return cls(
+            fate=np.zeros(count, np.int8),
+            state=np.full((count, 6), np.nan),
+            steps=none(),
+            transits=none(),
+            t_first=unknown(),
+            t_last=unknown(),
+            close_pairs=none(),
+            least_ax=unknown(),
+            apsides=none(),
+            apsis_first=unknown(),
+            apsis_last=unknown(),
+            turn=unknown(),
+            least_bend=unknown(),
+            largest_angle=unknown(),
+            transit_row=np.zeros(0, np.int64),
+            transit_t=np.zeros(0),
+            transit_direction=np.zeros(0, np.int8),
+        )
+
+    def with_transits(self, found: Iterable[tuple[int, Array, Array]]) -> Self:
+        """Return the same with the transits found: of each row its number, their times and their directions."""
+        ordered = sorted(found, key=lambda one: one[0])
+        if not ordered:
+            return self
+        return replace(
+            self,
+            transit_row=np.repeat([row for row, _, _ in ordered], [len(times) for _, times, _ in ordered]),
+            transit_t=np.concatenate([times for _, times, _ in ordered]),
+            transit_direction=np.concatenate([directions for *_, directions in ordered]).astype(np.int8),
+        )
+
+
+class Batch(ABC):
+    """An engine that solves many rows side by side in double.
+
+    Attributes:
+        name: the name of its folder.
+        requires: modules that must be installed.
+        extra: the extra of `pip install 'foucault-reference[…]'` that installs them.
+        drag: whether it solves rows with drag.
+        lanes: rows that it solves at a time.
+        identity: what decides its digits beside the rows: orders, tolerance, versions of what it computes with.
+    """
+
+    name: ClassVar[str]
+    requires: ClassVar[tuple[str, ...]]
+    extra: ClassVar[str]
+    drag: ClassVar[bool]
+    lanes: ClassVar[int] = 8
+
+    @property
+    def installed(self) -> bool:
+        """Whether the modules that it requires are installed, and may compile."""
+        return not missing(self.requires) and not switched_off(self.requires)
+
+    @property
+    @abstractmethod
+    def identity(self) -> str:
+        """What decides the digits, as one line: name, orders, tolerance, versions."""
+
+    @abstractmethod
+    def prepare(self, wanted: Wanted, drag: bool) -> float:
+        """Compile what these rows need, where it is not done yet; return the CPU seconds that it took."""
+
+    @abstractmethod
+    def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
+        """Solve rows in the calling thread, others free to run meanwhile; a row that fails says so in its fate."""
+
+    @abstractmethod
+    def expected_s(self, swings: float) -> float:
+        """Return the CPU seconds of all that a default row needs over so many swings, summed over rows; when cold."""
+
+    @property
+    def saved_s(self) -> float:
+        """Of `expected_s` what compiling does not take here, as its outcome is kept on disk."""
+        return 0.0

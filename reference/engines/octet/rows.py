@@ -1,0 +1,105 @@
+"""Rows for the kernel and what it makes of them: in the axes of the plumb line, in units of time, as flat arrays."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...double_double import DoubleDouble, square_root
+from ...precision import Array
+from ..batch import CLOSE_PAIR, OK, Outcomes, Rows
+from ..batch import LEAST_BEND as LEAST
+
+# of a row's numbers: state and constants in its unit of time, unit and span in s, multiplicities of zeros at release
+X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, MOVES, CLOSE_S = range(16)
+COLUMNS = 16
+# of what comes out: the state, and what was found on the way
+STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
+APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND = range(13, 23)
+RESULTS = 24
+_SAME = 2.0**-94  # of a row's velocities: u' that is less at the release is zero
+
+
+def packed(rows: Rows, moved: int) -> Array:
+    """Return the numbers of rows, shape (rows, COLUMNS).
+
+    Constants and state are moved by an ulp: not at all (0), away from zero (1) or towards it (-1).
+    """
+    of = DoubleDouble.from_pairs
+    north, up = of(rows.pull[:, 1]), of(rows.pull[:, 2])
+    size = square_root(north * north + up * up)
+    sin, cos = _plumb_line(north, up, size)
+    turn_p, turn_u = _turned(of(rows.turn[:, 1]), of(rows.turn[:, 2]), sin, cos)
+    x, (p, down) = of(rows.n[:, 0]), _turned(of(rows.n[:, 1]), of(rows.n[:, 2]), sin, cos)
+    v, s = _turned(of(rows.V[:, 1]), of(rows.V[:, 2]), sin, cos)
+    u = ((x * x + p * p) / (1.0 - down)).where(down.high < 0, 1.0 + down)
+    w = of(rows.V[:, 0]) + turn_p
+    udot = s + turn_p * x
+    speed = np.abs(rows.V[:, :, 0]).sum(1) + np.abs(rows.turn[:, :, 0]).sum(1)
+    numbers = np.zeros((len(rows), COLUMNS))
+    for column, value in enumerate((x, p, u, w, v, s, turn_p, turn_u, size)):
+        high = value.high
+        beyond = np.copysign(np.inf, high) if moved > 0 else 0.0
+        numbers[:, column] = np.where(high == 0, 0.0, np.nextafter(high, beyond)) if moved else high
+    rate = np.sqrt(size.high) + speed
+    unit = 2.0 ** np.floor(-np.log2(np.where(rate > 0, rate, 1.0 / rows.t_end[:, 0])))
+    numbers[:, [TURN_P, TURN_U, W, V, S]] *= unit[:, None]
+    numbers[:, PULL] *= unit * unit
+    numbers[:, UNIT], numbers[:, END : END + 2] = unit, rows.t_end
+    numbers[:, ZEROS_X], numbers[:, ZEROS_U] = rows.zeros_at_release, np.abs(udot.high) <= _SAME * speed
+    numbers[:, MOVES] = ~rows.still
+    with np.errstate(divide="ignore"):
+        numbers[:, CLOSE_S] = CLOSE_PAIR * 2.0 * np.pi / np.sqrt(size.high)
+    return numbers
+
+
+def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, Array, Array]) -> Outcomes:
+    """Return what became of rows in SI units; `moments` are row, time and direction of transits."""
+    r, length, unit = results.T, rows.length[:, 0], numbers[:, UNIT]
+    turn_p, turn_u = numbers[:, TURN_P], numbers[:, TURN_U]
+    x, p, u, w, v, s = r[:6]
+    north, up = rows.pull[:, 1, 0], rows.pull[:, 2, 0]
+    sin, cos = _plumb_line_doubles(north, up)
+    n = (x, *_turned(p, u - 1.0, -sin, cos))
+    velocity = (w - turn_p * u + turn_u * p, *_turned(v - turn_u * x, s + turn_p * x, -sin, cos))
+    result = Outcomes.empty(len(rows))
+    result.fate[:] = r[FATE]
+    result.steps[:] = r[STEPS]
+    result.state[:] = np.stack([*n, *(part / unit for part in velocity)], axis=1) * length[:, None]
+    result.transits[:], result.close_pairs[:] = r[COUNT], r[CLOSE]
+    crossed = result.transits > 0
+    result.t_first[:], result.t_last[:] = np.where(crossed, r[T_FIRST : T_LAST + 1], np.nan)
+    result.least_ax[:] = np.where(crossed, r[LEAST_SLOPE] * length / (unit * unit), np.nan)
+    result.least_bend[:] = np.where(r[APSIDES] > 0, r[LEAST_BEND], np.nan)
+    result.apsides[:] = np.where(result.least_bend >= LEAST, r[APSIDES], 0)
+    some = result.apsides > 0
+    result.apsis_first[:], result.apsis_last[:] = np.where(some, r[A_FIRST : A_LAST + 1], np.nan)
+    first, last = np.arctan2(r[P_FIRST], r[X_FIRST]), np.arctan2(r[P_LAST], r[X_LAST])
+    result.turn[:] = np.where(some, last - first + np.pi * r[HALF_TURNS], np.nan)
+    result.largest_angle[:] = 2.0 * np.arcsin(np.sqrt(np.clip(0.5 * r[HIGHEST], 0.0, 1.0)))
+    lost = result.fate != OK
+    result.state[lost] = np.nan
+    row, t, direction = moments
+    return replace(result, transit_row=row, transit_t=t, transit_direction=direction)
+
+
+def _plumb_line(north: DoubleDouble, up: DoubleDouble, size: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:
+    """Return the unit vector up along -c; the vertical where there is no force."""
+    none = size.vanishes
+    safe = DoubleDouble(np.where(none, 1.0, size.high), size.low)
+    one = DoubleDouble(np.ones_like(size.high), np.zeros_like(size.high))
+    return -north / safe, one.where(none, -up / safe)
+
+
+def _plumb_line_doubles(north: Array, up: Array) -> tuple[Array, Array]:
+    size = np.hypot(north, up)
+    none = size == 0
+    safe = np.where(none, 1.0, size)
+    return -north / safe, np.where(none, 1.0, -up / safe)
+
+
+def _turned(north: Any, up: Any, sin: Any, cos: Any) -> tuple[Any, Any]:
+    """Return a vector's parts in the meridian and along the plumb line, which leans by (sin, cos) from the vertical."""
+    return cos * north - sin * up, sin * north + cos * up

@@ -1,0 +1,164 @@
+"""The Taylor coefficients of a step, eight rows side by side, and the state at the step's end.
+
+The formulation is `inertial`, V = n' + Ω × n, in the axes of the plumb line at the pivot: x east, p in the meridian,
+up along -c; n = (x, p, u - 1) and V = (w - Ω_p, v, s), so that a small swing is small in every number. With C = |c|,
+
+    x' = w - Ω_p u + Ω_u p,         w' = Ω_u v - Ω_p s - λ x,
+    p' = v - Ω_u x,                 v' = Ω_u (Ω_p - w) - λ p,
+    u' = s + Ω_p x,                 s' = λ - C - Ω_p² + Ω_p w - λ u,       λ' = -C (3 s + Ω_p x),
+
+where λ = V·V + n·c is the tension of the cord: only three products of series an order. Time is in the row's unit, a
+power of two in s that stays, so that nothing is scaled anew; the length of a step is a place in its own series.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..limbs.lanes import LANES, compiled, exp2_of, inlined, larger, load, log2_of, magnitude, spread, store
+from ..limbs.lanes import plus_product as fma
+from ..limbs.limb import Array, aligned
+from .rows import PULL, TURN_P, TURN_U, P, S, U, V, W, X
+
+MOST_ORDER = 24  # even, as two orders are computed at a time
+LONGEST = 3.0  # log2 of the longest step in units of time, where nothing changes
+
+
+class Series(NamedTuple):
+    """Coefficients of eight rows: rows of eight doubles, order by order.
+
+    Attributes:
+        x, p, u, tension: n in the axes of the plumb line, and λ.
+        xdot, udot: of x' and u'.
+        w, v, s: V.
+    """
+
+    x: Array
+    p: Array
+    u: Array
+    tension: Array
+    xdot: Array
+    udot: Array
+    w: Array
+    v: Array
+    s: Array
+
+
+def empty_series() -> Series:
+    """Return empty arrays for a series."""
+    return Series(*(aligned((MOST_ORDER + 2) * LANES) for _ in Series._fields))
+
+
+@inlined
+def _next_order(c: Series, own: Array, k: int, inverse: float, lx: Any, lp: Any, lu: Any) -> None:
+    """Write the coefficients of order k + 1 from those of order k and from order k of λ x, λ p, λ u."""
+    at, to, share = LANES * k, LANES * (k + 1), spread(inverse)
+    op, ou, pull = load(own, LANES * TURN_P), load(own, LANES * TURN_U), load(own, LANES * PULL)
+    x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
+    w, v, s = load(c.w, at), load(c.v, at), load(c.s, at)
+    # what comes last in the chain of dependent operations is added last
+    none = spread(0.0)
+    xdot = w + fma(ou * p, none - op, u)
+    udot = fma(s, op, x)
+    store(c.xdot, at, xdot)
+    store(c.udot, at, udot)
+    store(c.x, to, xdot * share)
+    store(c.p, to, fma(v, none - ou, x) * share)
+    store(c.u, to, udot * share)
+    store(c.tension, to, fma(op * x, s, spread(3.0)) * (spread(-inverse) * pull))
+    store(c.w, to, (fma(ou * v, none - op, s) - lx) * share)
+    if k == 0:
+        # λ less its value at rest, without cancellation
+        excess = fma(fma(w * w, v, v), s, s)
+        excess = fma(fma(excess, (none - op) - op, w), none - pull, u)
+        store(c.v, to, (ou * (op - w) - lp) * share)
+        store(c.s, to, (fma(excess, op, w) - lu) * share)
+    else:
+        store(c.v, to, (ou * w + lp) * spread(-inverse))
+        store(c.s, to, (fma(load(c.tension, at), op, w) - lu) * share)
+
+
+@compiled
+def taylor_coefficients(c: Series, own: Array, inverses: Array, order: int) -> None:
+    """Fill the coefficients from the state in `own`, a row of eight for each of `rows`' columns."""
+    for array, column in ((c.x, X), (c.p, P), (c.u, U), (c.w, W), (c.v, V), (c.s, S)):
+        store(array, 0, load(own, LANES * column))
+    x0, p0, u0, op = load(c.x, 0), load(c.p, 0), load(c.u, 0), load(own, LANES * TURN_P)
+    w, v, s = load(c.w, 0) - op, load(c.v, 0), load(c.s, 0)
+    l0 = fma(fma(fma(w * w, v, v), s, s), load(own, LANES * PULL), spread(1.0) - u0)
+    store(c.tension, 0, l0)
+    _next_order(c, own, 0, inverses[0], l0 * x0, l0 * p0, l0 * u0)
+    x1, p1, u1, l1 = load(c.x, LANES), load(c.p, LANES), load(c.u, LANES), load(c.tension, LANES)
+    _next_order(c, own, 1, inverses[1], fma(l0 * x1, l1, x0), fma(l0 * p1, l1, p0), fma(l0 * u1, l1, u0))
+    for k in range(2, order, 2):
+        # orders k and k + 1 together: each coefficient that is loaded serves both
+        ax = ap = au = bx = bp = bu = spread(0.0)
+        after = load(c.tension, LANES * (k - 1))
+        for j in range(2, k):
+            at = LANES * j
+            pull, x, p, u = load(c.tension, LANES * (k - j)), load(c.x, at), load(c.p, at), load(c.u, at)
+            ax, ap, au = fma(ax, pull, x), fma(ap, pull, p), fma(au, pull, u)
+            bx, bp, bu = fma(bx, after, x), fma(bp, after, p), fma(bu, after, u)
+            after = pull
+        at = LANES * k
+        before, pull = load(c.tension, at - LANES), load(c.tension, at)
+        x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
+        ax, ap, au = fma(ax, before, x1), fma(ap, before, p1), fma(au, before, u1)
+        ax, ap, au = fma(fma(ax, pull, x0), l0, x), fma(fma(ap, pull, p0), l0, p), fma(fma(au, pull, u0), l0, u)
+        _next_order(c, own, k, inverses[k], ax, ap, au)
+        bx, bp, bu = fma(fma(bx, pull, x1), l1, x), fma(fma(bp, pull, p1), l1, p), fma(fma(bu, pull, u1), l1, u)
+        at += LANES
+        pull, x, p, u = load(c.tension, at), load(c.x, at), load(c.p, at), load(c.u, at)
+        bx, bp, bu = fma(fma(bx, pull, x0), l0, x), fma(fma(bp, pull, p0), l0, p), fma(fma(bu, pull, u0), l0, u)
+        _next_order(c, own, k + 1, inverses[k + 1], bx, bp, bu)
+
+
+@inlined
+def _size(c: Series, k: int) -> Any:
+    return larger(magnitude(load(c.x, LANES * k)), magnitude(load(c.p, LANES * k)))
+
+
+@inlined
+def step_length(c: Series, tolerance: float, inverses: Array, order: int) -> Any:
+    """Return how far the series reaches: to where its last two coefficients are `tolerance` of the motion.
+
+    The height u is left out: what its tail lacks is put right when n is put back on the sphere.
+    """
+    scale, none = larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(tolerance), spread(0.0)
+    last = log2_of(_size(c, order) / scale) * spread(inverses[order - 1])
+    other = log2_of(_size(c, order - 1) / scale) * spread(inverses[order - 2])
+    return exp2_of(none - larger(larger(last, other), spread(-LONGEST)))
+
+
+@compiled
+def sum_series(own: Array, c: Series, length: Array, order: int) -> None:
+    """Write the state at the end of the step, put back on the sphere."""
+    r, none = load(length, 0), spread(0.0)
+    x = p = u = w = v = s = none
+    for k in range(order, -1, -1):
+        at = LANES * k
+        x, p, u = fma(load(c.x, at), x, r), fma(load(c.p, at), p, r), fma(load(c.u, at), u, r)
+        w, v, s = fma(load(c.w, at), w, r), fma(load(c.v, at), v, r), fma(load(c.s, at), s, r)
+    half = fma(fma(x * x, p, p), u, u - spread(2.0)) * spread(-0.5)
+    x, p, u = fma(x, half, x), fma(p, half, p), fma(u, half, u - spread(1.0))
+    down = u - spread(1.0)
+    outward = none - fma(fma((w - load(own, LANES * TURN_P)) * x, v, p), s, down)
+    store(own, LANES * X, x)
+    store(own, LANES * P, p)
+    store(own, LANES * U, u)
+    store(own, LANES * W, fma(w, outward, x))
+    store(own, LANES * V, fma(v, outward, p))
+    store(own, LANES * S, fma(s, outward, down))
+
+
+@inlined
+def xdot_of(own: Array) -> Any:
+    """Return x' of a state."""
+    turned = fma(load(own, LANES * W), load(own, LANES * TURN_U), load(own, LANES * P))
+    return turned - load(own, LANES * TURN_P) * load(own, LANES * U)
+
+
+@inlined
+def udot_of(own: Array) -> Any:
+    """Return u' of a state."""
+    return fma(load(own, LANES * S), load(own, LANES * TURN_P), load(own, LANES * X))

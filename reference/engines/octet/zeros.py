@@ -1,0 +1,132 @@
+"""Zeros of a rate on a step, on all lanes at once: how many in each half of it is proven, then Newton's method.
+
+A half is free of zeros if the rate's value in its middle outweighs slope, bend and the third derivative's bound; it is
+monotone, with one zero if the signs at its ends differ, if the slope does. Lanes that are neither, or have two zeros,
+go the long way (`long_way`).
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..limbs.lanes import (
+    LANES,
+    at_least,
+    compiled,
+    inlined,
+    larger,
+    load,
+    magnitude,
+    plus_product,
+    spread,
+    store,
+    where,
+)
+from ..limbs.limb import Array, aligned
+
+NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding
+NEWTON_STEPS = 3
+CONVERGED = 2.0**-27  # of a step: a larger last correction leaves digits to be gained
+
+
+class Zeros(NamedTuple):
+    """What is known of a rate's zeros, lane by lane.
+
+    Attributes:
+        before, after: the rate at the step's start and end; the former's sign alone counts.
+        fresh: 1 in a row's first step.
+        sought: 1 where zeros are looked for.
+        hit: 1 where there is exactly one zero.
+        doubt: 1 where the lanes cannot tell.
+        low, high: the interval that holds the zero.
+        place, slope: the zero, and the rate's derivative there.
+    """
+
+    before: Array
+    after: Array
+    fresh: Array
+    sought: Array
+    hit: Array
+    doubt: Array
+    low: Array
+    high: Array
+    place: Array
+    slope: Array
+
+
+def empty_zeros() -> Zeros:
+    """Return lanes in which nothing is known."""
+    return Zeros(*(aligned(LANES) for _ in Zeros._fields))
+
+
+@compiled
+def seek(z: Zeros, f: Array, length: Array, threes: Array, order: int) -> None:
+    """Find which lanes have one zero of the polynomial f on the step, and where about; `threes` are k over 3."""
+    r, none = load(length, 0), spread(0.0)
+    h, middle = r * spread(0.25), r * spread(0.5)
+    high = middle + h
+    v = s = b = v3 = s3 = b3 = vm = total = third = none
+    for k in range(order - 1, -1, -1):
+        a = load(f, LANES * k)
+        b, s, v = plus_product(s, b, h), plus_product(v, s, h), plus_product(a, v, h)
+        b3, s3, v3 = plus_product(s3, b3, high), plus_product(v3, s3, high), plus_product(a, v3, high)
+        vm, size = plus_product(a, vm, middle), magnitude(a)
+        total = plus_product(size, total, r)
+        if k >= 3:
+            third = plus_product(size * spread(threes[k]), third, r)
+    noise, third = total * spread(NOISE), third * h
+    slack = noise * spread(float(order))
+    known = _known(v, s, b, third, h, noise, slack) * _known(v3, s3, b3, third, h, noise, slack)
+    before, after = load(z.before, 0), load(z.after, 0)
+    known = known * at_least(magnitude(vm), noise) * at_least(magnitude(after), noise)
+    early, late = at_least(none, before * vm), at_least(none, vm * after)
+    known = known * (spread(1.0) - early * late) * (spread(1.0) - load(z.fresh, 0))
+    sought = load(z.sought, 0)
+    store(z.doubt, 0, (spread(1.0) - known) * sought)
+    store(z.hit, 0, (early + late) * known * sought)
+    low, top = where(late, middle, none), where(late, r, middle)
+    store(z.low, 0, low)
+    store(z.high, 0, top)
+    s = where(late, s3, s)
+    step = where(late, v3, v) / s
+    place = where(late, high, h) - plus_product(step, where(late, b3, b) / s * step, step)
+    store(z.place, 0, _between(place, low, top))
+
+
+@inlined
+def _known(v: Any, s: Any, b: Any, third: Any, h: Any, noise: Any, slack: Any) -> Any:
+    """Return 1 where a polynomial has no zero within h of a place, or is monotone there, else 0."""
+    slope, bend = magnitude(s) * h, plus_product(magnitude(b), third, spread(1.0)) * h * h
+    free = at_least(magnitude(v), slope + bend + noise)
+    return larger(free, at_least(slope, plus_product(bend + bend, third * h, h) + slack))
+
+
+@inlined
+def _between(place: Any, low: Any, high: Any) -> Any:
+    """Return a place moved into its interval; its low end where it is not a number."""
+    none = spread(0.0)
+    return none - larger(none - larger(place, low), none - high)
+
+
+@compiled
+def refine(z: Zeros, f: Array, length: Array, order: int, converged: float) -> None:
+    """Refine the zeros that were found; those whose last correction is large are in doubt."""
+    low, high, place, none = load(z.low, 0), load(z.high, 0), load(z.place, 0), spread(0.0)
+    moved = slope = none
+    for _ in range(NEWTON_STEPS):
+        # even and odd powers apart: half the chain of dependent operations
+        even = even_slope = odd = odd_slope = none
+        square = place * place
+        for k in range(order - 2, -1, -2):
+            even_slope, even = plus_product(even, even_slope, square), plus_product(load(f, LANES * k), even, square)
+            at = LANES * (k + 1)
+            odd_slope, odd = plus_product(odd, odd_slope, square), plus_product(load(f, at), odd, square)
+        slope = plus_product(odd, plus_product(even_slope, odd_slope, place), place + place)
+        new = _between(place - plus_product(even, odd, place) / slope, low, high)
+        moved, place = magnitude(new - place), new
+    hit = load(z.hit, 0)
+    good = at_least(load(length, 0) * spread(converged), moved) * hit
+    store(z.doubt, 0, larger(load(z.doubt, 0), hit - good))
+    store(z.hit, 0, good)
+    store(z.place, 0, place)
+    store(z.slope, 0, slope)

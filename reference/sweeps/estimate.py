@@ -1,0 +1,134 @@
+"""How large the error of a row is: from a second run of another order, with every constant and start moved by an ulp.
+
+Both runs round differently everywhere, the constants included, so that their difference is of the size of the error.
+It may be smaller by chance: therefore the factor, and a least difference, what half an ulp in the constants may do.
+Where errors have grown to many ulps, or where the bob has the energy to rise to the pivot and they may grow, they point
+one way, and the two may cancel. There a third run is moved the other way, and the factor is larger. Of 3,500 random
+scenes none may have a larger error than estimated here (tests/campaigns/test_sweeps.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..engines.batch import STOPPED, Batch, Outcomes, Rows, Wanted
+from ..precision import Array
+
+FACTOR = 16.0
+WILD_FACTOR = 64.0  # where there are three runs
+LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
+HALF_ULP = 2.0**-53  # of a number just above 1, relative
+GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
+DEGREES_PER_HOUR = np.degrees(1.0) * 3600
+MOVED, MOVED_BACK = (Wanted(transits=False, apsides=False, moved=way) for way in (1, -1))
+
+
+@dataclass(frozen=True)
+class Errors:
+    """Estimated errors, shape (n,); NaN where there is no such number.
+
+    Attributes:
+        position: of the position at t_end, in m.
+        velocity: of the velocity at t_end and at the transits, in m/s.
+        transit: of the worst transit's time, in s.
+        frequency, swing: of both frequencies, in Hz.
+        precession: in degrees an hour.
+        angle: of the largest angle, in degrees.
+        undecided: where the number of transits hangs on these errors.
+    """
+
+    position: Array
+    velocity: Array
+    transit: Array
+    frequency: Array
+    swing: Array
+    precession: Array
+    angle: Array
+    undecided: Array
+
+
+def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
+    """Return the errors of a run, and which rows stop where they are moved: at least one more run, by its engine."""
+    moved = engine.solve(rows, MOVED)
+    found, stopped = errors(rows, run, moved), moved.fate == STOPPED
+    wild = ~(found.position <= GROWN * rows.length[:, 0]) | _reaches_the_pivot(rows)
+    grown = np.flatnonzero(~stopped & wild)
+    if not len(grown):
+        return found, stopped
+    back = engine.solve(rows[grown], MOVED_BACK)
+    rate, state = rows.rate[grown, None], moved.state.copy()
+    gaps = [np.abs(other - run.state[grown]) for other in (state[grown], back.state)]
+    near, far = (np.linalg.norm(rate * gap[:, :3], axis=1) + np.linalg.norm(gap[:, 3:], axis=1) for gap in gaps)
+    state[grown[far > near]] = back.state[far > near]
+    stopped[grown] |= back.fate == STOPPED
+    return errors(rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR)), stopped
+
+
+def _reaches_the_pivot(rows: Rows) -> Any:
+    """Return which rows have the energy to rise as high as the pivot."""
+    n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
+    return (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
+
+
+def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> Errors:
+    """Return the errors of a run, from the run that was moved, and what their difference is multiplied by."""
+    length, rate = rows.length[:, 0], rows.rate
+    gap = run.state - moved.state
+    position, velocity = np.linalg.norm(gap[:, :3], axis=1), np.linalg.norm(gap[:, 3:], axis=1)
+    ulp = LEAST_ULPS * np.spacing(length) + _of_constants(rows)
+    speed = np.linalg.norm(run.state[:, 3:], axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # where a swing is late its position tells at the lowest point, its velocity at the highest
+        position = factor * np.fmax(position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp))
+        velocity = factor * np.fmax(velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed)))
+        transit = velocity / run.least_ax + np.spacing(run.t_last)
+        frequency = (run.transits - 1) * transit / (run.t_last - run.t_first) ** 2
+        swing, precession = _of_swing(rows, run, position, velocity)
+    return Errors(
+        position=position,
+        velocity=velocity,
+        transit=transit,
+        frequency=np.where(run.transits > 1, frequency, np.nan),
+        swing=swing,
+        precession=precession,
+        angle=np.degrees(position / length),
+        undecided=_undecided(rows, run, velocity, speed),
+    )
+
+
+def _of_constants(rows: Rows) -> Array:
+    """Return how far constants that are off by half an ulp may turn a swing in the whole span, in m."""
+    n, V, pull, rate = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0], rows.rate
+    below = np.fmax(1 - (n * pull).sum(axis=1) / rate**2, 0.0)  # cosine of the angle at the release, from 1
+    reach = np.fmin(np.sqrt(2 * below) + np.linalg.norm(V, axis=1) / rate, 1.0)
+    turned: Array = rows.length[:, 0] * reach * rate * rows.t_end[:, 0] * HALF_ULP
+    return np.where(rate > 0, turned, 0.0)
+
+
+def _of_swing(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> tuple[Array, Array]:
+    """Return the errors of the swing's frequency and of the precession."""
+    length, rate = rows.length[:, 0], rows.rate
+    shrunk = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)  # amplitude at the end, over the largest
+    reach = length * np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk
+    span = run.apsis_last - run.apsis_first
+    late = velocity / (rate**2 * reach * run.least_bend) + np.spacing(run.apsis_last)
+    turned = position / reach * (1 + 1 / run.least_bend)
+    several = run.apsides > 1
+    swing = np.where(several, (run.apsides - 1) * late / span**2, np.nan)
+    drift = 2 * turned / span + np.abs(run.turn) * 2 * late / span**2
+    return swing, np.where(several, drift * DEGREES_PER_HOUR, np.nan)
+
+
+def _undecided(rows: Rows, run: Outcomes, velocity: Array, speed: Array) -> Array:
+    """Return where a transit may lie on either side of the end, or a close pair be none at all."""
+    at_end = np.abs(run.state[:, 3]) <= velocity
+    length = rows.length[:, 0]
+    fastest = rows.rate + np.fmax(speed / length, np.linalg.norm(rows.V[..., 0], axis=1))
+    reach = length * np.where(run.largest_angle < np.pi / 2, np.sin(run.largest_angle), 1.0)
+    jerk = fastest**3 * reach
+    pair = (run.close_pairs > 0) & (run.least_ax**2 < 4 * jerk * velocity)
+    undecided: Array = ~rows.still & (at_end | pair)
+    return undecided

@@ -1,0 +1,116 @@
+"""A row solved by itself in as many digits as asked for: where double leaves a doubt, or a level is asked for."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..columns import POSITION, STATE, VELOCITY
+from ..errors import FoucaultError
+from ..scene import LEVELS, Level
+from ..status import Status
+from .row import STATE_COLUMNS
+
+if TYPE_CHECKING:
+    from ..solver.solution import Solution
+    from .request import Request
+
+LEAST_LEVEL: Level = "self_consistent"  # that settles a doubt
+DIGITS = 17  # that show a double
+DOUBTFUL_REASON = "The number of transits, or the error, is not decided in double."
+
+
+@dataclass(frozen=True)
+class Promoted:
+    """A row as the solver gives it: its columns by name and its transits, or the reason why it could not."""
+
+    values: dict[str, Any]
+    times: tuple[list[float], list[int]]
+    failure: str = ""
+
+
+def promoted(
+    request: Request, row: int, *, doubtful: bool, level: Level | None = None, digits: int | None = None
+) -> Promoted:
+    """Return a row solved by itself.
+
+    Args:
+        request: the sweep.
+        row: its number.
+        doubtful: whether a doubt has to be settled: then at the level `LEAST_LEVEL` at least.
+        level: a level instead of the request's.
+        digits: digits instead of the request's.
+    """
+    from ..solver.solve import solve
+
+    wished = level or request.level
+    if doubtful:
+        wished = max(wished, LEAST_LEVEL, key=LEVELS.index)
+    digits = digits or request.digits or DIGITS
+    try:
+        scene = request.scene_of(row)
+        solution = solve(scene, level=wished, digits=digits, transits=request.wanted.transits)
+    except FoucaultError as error:
+        return Promoted({}, ([], []), str(error))
+    return Promoted(_values(solution), _times(solution))
+
+
+def fill(columns: dict[str, Any], place: int, result: Promoted, reason: str) -> None:
+    """Put a solved row into its place; what the solver does not give stays as computed.
+
+    Args:
+        columns: of a part.
+        place: of the row in it.
+        result: of the row.
+        reason: why the row was promoted, which stays its reason where the solver failed; empty if by request.
+    """
+    if result.failure:
+        status = Status.DOUBTFUL if reason == DOUBTFUL_REASON else Status.UNREACHABLE
+        for name, values in columns.items():
+            if values.dtype.kind == "f" and "." not in name:
+                values[place] = np.nan
+        columns["status"][place] = status.value
+        columns["reason"][place] = f"{reason} {result.failure}".strip()
+        return
+    for name, value in {**result.values, "status": Status.OK.value, "reason": None}.items():
+        if name in columns:
+            columns[name][place] = value
+
+
+def _values(solution: Solution) -> dict[str, Any]:
+    """Return the columns that a solution gives."""
+    grid, transits = solution.grid, solution.transits
+    bounds = {name: grid.bound(name)[-1] for name in STATE}
+    values: dict[str, Any] = {
+        "level": solution.level,
+        "engine": solution.run.engine,
+        "digits": solution.scene.run.digits,
+        "steps": solution.run.steps,
+        **{name: grid[column][-1] for name, column in zip(STATE_COLUMNS, STATE, strict=True)},
+        "position_error_m": _norm([bounds[name] for name in POSITION]),
+        "velocity_error_m_s": _norm([bounds[name] for name in VELOCITY]),
+        "transits": len(solution.directions),
+    }
+    missing = ("t_first_s", "t_last_s", "frequency_hz", "frequency_error_hz", "transit_error_s")
+    values |= dict.fromkeys(missing, np.nan)
+    if transits is not None and solution.directions:
+        times, bound = transits.exact("t"), max(transits.bound("t"))
+        values |= {"t_first_s": float(times[0]), "t_last_s": float(times[-1]), "transit_error_s": float(bound)}
+        if len(times) > 1:
+            span, gaps = times[-1] - times[0], len(times) - 1
+            values["frequency_hz"] = float(Fraction(gaps) / (2 * span))
+            values["frequency_error_hz"] = float(gaps * bound / span**2)
+    return values
+
+
+def _norm(bounds: list[Any]) -> float:
+    return float(np.sqrt(sum(float(bound) ** 2 for bound in bounds)))
+
+
+def _times(solution: Solution) -> tuple[list[float], list[int]]:
+    if solution.transits is None:
+        return [], []
+    return [float(t) for t in solution.transits.exact("t")], list(solution.directions)

@@ -1,0 +1,55 @@
+"""Campaigns of sweeps: random rows in both engines against limbs at 110 bits; kills in the middle of the work."""
+
+from __future__ import annotations
+
+import os
+import random
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from against_limbs import compare
+from places import ROOT
+from random_rows import KINDS, random_kinds
+
+from reference.engines.registry import batches
+
+COMMAND = [sys.executable, "foucault.py", "sweep", "paris", "--t-end", "60", "--audit", "0", "--workers", "1"]
+
+
+@pytest.mark.parametrize("engine", ["heyoka", "octet"])
+def test_no_transit_is_lost_and_no_error_is_larger_than_estimated(size, tally, engine):
+    found = compare(batches()[engine], list(random_kinds(20261122, size(20, 3500), kinds=KINDS)))
+    tally(f"sweeps, {engine}: {found}")
+    assert not found.miscounted
+    assert not found.underestimated
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in (folder / "rows").glob("part-*.parquet")}
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills processes")
+def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally):
+    step, kills, longest = size(1, 20), size(2, 20), size(4, 7)
+    over = ["--over", f"site.latitude=-90:90:{18 / 100 if step == 20 else 10}", "--over", "release.x=0.1:0.5995:0.0005"]
+    engine = ["--engine", "octet" if step == 20 else "heyoka"]
+    whole, killed = tmp_path / "whole", tmp_path / "killed"
+    subprocess.run([*COMMAND, *over, *engine, "--out", whole], check=True, cwd=ROOT, capture_output=True)
+    generator, done = random.Random(5), 0
+    while True:
+        process = subprocess.Popen(
+            [*COMMAND, *over, *engine, "--out", killed], cwd=ROOT, stdout=subprocess.DEVNULL, start_new_session=True
+        )
+        try:
+            process.wait(generator.uniform(1.0, longest) if done < kills else None)
+            break
+        except subprocess.TimeoutExpired:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+            done += 1
+    tally(f"sweeps: {done} kills, {len(contents(whole))} parts")
+    assert process.returncode == 0
+    assert contents(killed) == contents(whole)

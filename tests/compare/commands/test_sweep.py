@@ -1,0 +1,95 @@
+"""`foucault sweep`: table, JSON, folder, pictures, exit statuses."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+pytest.importorskip("pyarrow")
+SMALL = ["paris", "--t-end", "60", "--engine", "heyoka"]
+
+
+def test_a_small_sweep_prints_a_table(foucault):
+    status, out, err = foucault("sweep", *SMALL, "--over", "site.latitude=0:20:10")
+    assert status == 0, err
+    lines = out.splitlines()
+    assert lines[0].split()[0] == "site.latitude"
+    assert [line.split()[0] for line in lines[1:4]] == ["0", "10", "20"]
+    assert lines[4] == "3 rows: 3 ok"
+
+
+def test_json_holds_every_row_and_the_costs(foucault):
+    status, out, _ = foucault("sweep", *SMALL, "--over", "site.latitude=0,90", "--json", "--workers", "1")
+    document = json.loads(out)
+    assert status == 0
+    assert document["over"] == {"site.latitude": "0,90"}
+    assert (document["lanes"], document["workers"], document["rows_total"]) == (8, 1, 2)
+    assert document["counts"] == {"ok": 2}
+    rows = document["rows"]
+    assert [row["value"] for row in rows] == ["0", "90"]
+    assert rows[0]["values"] == {"site.latitude": "0"}
+    assert rows[0]["precession_ratio"] is None
+    assert len(rows[0]["state"]) == 6
+    assert rows[1]["frequency_hz"] == pytest.approx(0.0608894, abs=1e-6)
+    assert {"cpu_s", "compile_s", "fold_s", "wall_s", "rows_per_core_s", "audit"} <= set(document)
+
+
+def test_a_row_that_fails_is_named_and_the_others_stand(foucault):
+    status, out, err = foucault("sweep", *SMALL, "--over", "pendulum.length=0.4,67")
+    assert status == 1
+    assert "foucault: 1 of 2 rows failed: 1 invalid (first: row 0, pendulum.length=0.4)" in err
+    assert "invalid: release: got" in out
+    status, _, _ = foucault("sweep", *SMALL, "--over", "pendulum.length=67,1e390")
+    assert status == 3
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["paris", "--over", "site.latitude=0:91:1"], "site.latitude: got '91', expected a number at least -90"),
+        (["paris"], "--over: got 'nothing'"),
+        (["paris", "--over", "site.latitude=1", "--rows", "x.csv"], "Give one of the two"),
+        (["paris", "--rows", "/no/such.csv"], "--rows: got '/no/such.csv', expected a readable file"),
+        ([], "SCENE: got 'nothing'"),
+        (["--over", "site.latitude=1"], "no such option without SCENE"),
+        (["paris", "--over", "site.latitude=1", "--workers", "0"], "--workers"),
+        (["paris", "--over", "site.latitude=1", "--workers", "2", "--cluster", "local:2"], "together with --cluster"),
+        (["paris", "--over", "site.latitude=1", "--set", "run.digits=3"], "a field that makes a difference here"),
+        (["paris", "--over", "site.latitude=1", "--plot", "a.gif"], "a path that ends in"),
+        (["paris", "--over", "inputs=decimal", "--plot", "a.png"], "both numbers"),
+        (["paris", "--over", "site.latitude=1", "--want", "state", "--plot", "a.png"], "frequency or precession"),
+        (["--out", "/no/such"], "a folder of a sweep"),
+    ],
+)
+def test_mistakes_end_with_2_before_any_work(foucault, words, said):
+    status, out, err = foucault("sweep", *words)
+    assert (status, out) == (2, "")
+    assert said in err
+
+
+def test_a_folder_is_gone_on_with_by_the_same_command_or_by_itself(foucault, tmp_path):
+    folder = tmp_path / "lat"
+    words = ["sweep", *SMALL, "--over", "site.latitude=0:20:10", "--audit", "0", "--out", folder]
+    assert foucault(*words)[0] == 0
+    part = folder / "rows/part-00000000.parquet"
+    before = part.read_bytes()
+    part.unlink()
+    status, out, _ = foucault("sweep", "--out", folder)
+    assert (status, out.splitlines()[1]) == (0, "3 rows: 3 ok")
+    assert part.read_bytes() == before
+    status, out, _ = foucault(*words, "--json")
+    assert json.loads(out)["rows_done"] == 0
+    assert len(json.loads(out)["rows"]) == 3
+
+
+@pytest.mark.parametrize("over", [["site.latitude=-90:90:45"], ["release.x=0.1,0.2", "site.latitude=-90:90:45"]])
+def test_one_or_two_fields_make_a_picture(foucault, tmp_path, over):
+    pytest.importorskip("matplotlib")
+    words = [word for axis in over for word in ("--over", axis)]
+    for name in ("a.svg", "b.svg"):
+        assert foucault("sweep", *SMALL, *words, "--plot", tmp_path / name)[0] == 0
+    text = (tmp_path / "a.svg").read_text()
+    assert "latitude in °" in text
+    assert "precession in °/h" in text
+    assert text == (tmp_path / "b.svg").read_text()

@@ -1,0 +1,127 @@
+"""What a sweep varies: exact values, and errors before any work."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from reference import InputError
+from reference.sweeps.axes import Grid, axis
+from reference.sweeps.lists import listed
+from reference.sweeps.values import varied_names
+
+
+def texts(word: str) -> list[str]:
+    made = axis(word, "decimal")
+    return [made.text(i) for i in range(len(made))]
+
+
+def test_steps_are_exact_decimals_with_both_ends_in():
+    assert len(texts("site.latitude=-90:90:1")) == 181
+    assert texts("site.latitude=0:1:0.3") == ["0", "0.3", "0.6", "0.9"]
+    assert texts("site.latitude=1:0:-0.25") == ["1", "0.75", "0.5", "0.25", "0"]
+    assert texts("site.latitude=-0.1:0.1:1e-1") == ["-0.1", "0", "0.1"]
+    assert texts("pendulum.length=100:300:100") == ["100", "200", "300"]
+
+
+@pytest.mark.parametrize(
+    "word",
+    ["site.latitude=-90:90:0.7", "release.x=0.1:0.3:0.000001", "site.gravity=9.8:9.8000000000000000000001:1e-25"],
+)
+def test_numbers_are_the_nearest_sums_of_two_doubles(word):
+    made = axis(word, "decimal")
+    indices = np.linspace(0, min(len(made) - 1, 10**12), 50).astype(np.int64)
+    numbers = made.numbers(indices, "decimal")
+    for i, high, low in zip(indices, numbers.high, numbers.low, strict=True):
+        exact = Fraction(made.text(int(i)))
+        assert high == float(exact)
+        assert abs(exact - Fraction(high) - Fraction(low)) <= abs(exact) * Fraction(1, 1 << 104)
+    assert (made.numbers(indices, "binary64").low == 0).all()
+
+
+def test_a_grid_gives_any_row_without_the_others():
+    grid = Grid((axis("site.latitude=-90:90:0.0001", "decimal"), axis("release.x=0.1,0.2,0.3", "decimal")))
+    assert grid.count == 1_800_001 * 3
+    assert grid.texts(0) == {"site.latitude": "-90", "release.x": "0.1"}
+    assert grid.texts(grid.count - 1) == {"site.latitude": "90", "release.x": "0.3"}
+    assert grid.texts(4) == {"site.latitude": "-89.9999", "release.x": "0.2"}
+    numbers = grid.numbers([2, 3], "decimal")
+    assert numbers["release.x"].high.tolist() == [0.3, 0.1]
+
+
+@pytest.mark.parametrize(
+    ("word", "field", "got"),
+    [
+        ("site.latitude=0:91:1", "site.latitude", "91"),
+        ("site.latitude=-91:0:1", "site.latitude", "-91"),
+        ("site.lattitude=0:1:1", "--over", "site.lattitude"),
+        ("site.latitude", "--over", "site.latitude"),
+        ("site.latitude=", "--over", "site.latitude="),
+        ("site.latitude=0:1", "--over", "site.latitude=0:1"),
+        ("site.latitude=0:1:0", "--over", "site.latitude=0:1:0"),
+        ("site.latitude=0:1:-1", "--over", "site.latitude=0:1:-1"),
+        ("site.latitude=0:one:1", "--over", "site.latitude=one"),
+        ("site.latitude=1,2,1", "--over", "site.latitude=1,2,1"),
+        ("site.latitude=1,,2", "site.latitude", ""),
+        ("site.latitude=nan,2", "site.latitude", "nan"),
+        ("site.gravity_is=effective,none", "site.gravity_is", "none"),
+        ("pendulum.length=0:5:1", "pendulum.length", "0"),
+        ("run.digits=1,2", "--over", "run.digits"),
+        ("site.altitude=0:1:1e-13", "--over", "site.altitude=0:1:1e-13"),
+        ("site.latitude=@/no/such/file.csv", "--over", "/no/such/file.csv"),
+    ],
+)
+def test_a_wrong_axis_is_named(word, field, got):
+    with pytest.raises(InputError) as error:
+        axis(word, "decimal")
+    assert (error.value.field, error.value.got) == (field, got)
+
+
+def test_a_field_is_varied_once():
+    one = axis("site.latitude=1,2", "decimal")
+    with pytest.raises(InputError, match="each field once"):
+        Grid((one, one))
+
+
+def test_values_come_from_a_file(tmp_path):
+    (tmp_path / "a.csv").write_text("site.latitude,other\n1,5\n2.5,6\n")
+    assert texts(f"site.latitude=@{tmp_path / 'a.csv'}") == ["1", "2.5"]
+    (tmp_path / "b.csv").write_text("3\n4\n")
+    assert texts(f"site.latitude=@{tmp_path / 'b.csv'}") == ["3", "4"]
+    with pytest.raises(InputError, match=r"a column release\.x"):
+        axis(f"release.x=@{tmp_path / 'a.csv'}", "decimal")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "a line at least"),
+        ("site.latitude\n", "rows below it"),
+        ("latitude\n1\n", "a field that a sweep can vary"),
+        ("site.latitude,site.latitude\n1,2\n", "each field once"),
+        ("site.latitude,release.x\n1\n", "2 values as in the first"),
+    ],
+)
+def test_a_wrong_file_of_rows_is_named(tmp_path, text, said):
+    (tmp_path / "rows.csv").write_text(text)
+    with pytest.raises(InputError, match=said):
+        listed(tmp_path / "rows.csv")
+
+
+def test_rows_of_parquet_are_exactly_the_doubles_that_they_hold(tmp_path):
+    pa = pytest.importorskip("pyarrow")
+    import pyarrow.parquet as pq
+
+    pq.write_table(pa.table({"release.x": [0.1, 0.25], "release.y": ["0.1", "0.3"]}), tmp_path / "rows.parquet")
+    table = listed(tmp_path / "rows.parquet")
+    assert Fraction(table.texts(0)["release.x"]) == Fraction(0.1)
+    assert table.texts(1) == {"release.x": "0.25", "release.y": "0.3"}
+    (tmp_path / "bad.parquet").write_text("nothing")
+    with pytest.raises(InputError, match="a readable file"):
+        listed(tmp_path / "bad.parquet")
+
+
+def test_every_number_of_a_scene_can_be_varied():
+    assert {"pendulum.length", "site.inverse_flattening", "release.azimuth_rate", "run.t_end"} <= set(varied_names())

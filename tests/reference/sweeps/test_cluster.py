@@ -1,0 +1,116 @@
+"""Sweeps on dask.distributed: lost workers cost nothing, a row that kills its worker is found, the bytes are equal."""
+
+from __future__ import annotations
+
+import os
+import signal
+from dataclasses import replace
+
+import poisoned_sweep
+import pytest
+
+from reference import InputError, load_scene, load_sweep
+from reference.sweeps.sweep import asked_for, run
+
+distributed = pytest.importorskip("distributed")
+pytest.importorskip("pyarrow")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore"),
+    pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills processes"),
+]
+ROWS = 46
+
+
+def asked(out):
+    scene = load_scene("paris", ["run.t_end=30"])
+    whole = asked_for(scene, ["site.latitude=-90:90:4"], None, out, audit=0, engine="heyoka")
+    return replace(whole, rows_per_part=8)
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    import dask
+
+    with (
+        dask.config.set({"distributed.scheduler.allowed-failures": 1}),
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
+    ):
+        yield cluster
+
+
+def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(cluster, tmp_path):
+    from reference.sweeps.cluster import ClusterExecutor
+    from reference.sweeps.driver import drive
+    from reference.sweeps.store import Store
+
+    here, there, killed, done = tmp_path / "here", tmp_path / "there", [], [0]
+    run(asked(here), here, workers=1)
+    request = asked(there)
+    store = Store.begun(there, request)
+    with ClusterExecutor(request, there, cluster.scheduler_address) as executor:
+
+        def report(rows: int) -> None:
+            done[0] += rows
+            if done[0] >= 16 and not killed:
+                killed.extend(executor._client.run(os.getpid).values())
+                os.kill(killed[0], signal.SIGKILL)
+
+        tally = drive(request, store.missing(), executor, store.save, report)
+    assert killed
+    assert tally.counts == {"ok": ROWS}
+    assert done == [ROWS]
+    parts = sorted(path.name for path in (here / "rows").iterdir())
+    assert [path.name for path in sorted((there / "rows").glob("part-*"))] == parts
+    assert all((here / "rows" / name).read_bytes() == (there / "rows" / name).read_bytes() for name in parts)
+    assert load_sweep(there).counts == {"ok": ROWS}
+
+
+def test_a_row_that_kills_its_worker_crashes_alone(cluster, tmp_path, monkeypatch, size):
+    if not size(0, 1):
+        pytest.skip("thirty seconds of workers that start; test_store.py has the halving in every run")
+    from reference.sweeps import cluster as module
+
+    monkeypatch.setattr(module, "compute", poisoned_sweep.compute)
+    monkeypatch.setattr(cluster.scheduler, "allowed_failures", 0)
+    swept = run(asked(tmp_path / "out"), tmp_path / "out", cluster=cluster.scheduler_address)
+    assert swept.counts == {"crashed": 1, "ok": ROWS - 1}
+    assert swept["status"][poisoned_sweep.POISON] == "crashed"
+    assert "alone as well" in swept["reason"][poisoned_sweep.POISON]
+
+
+def test_other_versions_are_refused_before_any_work(cluster, tmp_path, monkeypatch):
+    from reference.sweeps import cluster as module
+
+    monkeypatch.setattr(module, "versions", lambda engine: "heyoka 1.0")
+    with pytest.raises(InputError, match=r"heyoka 1\.0, as here"):
+        run(asked(tmp_path / "out"), tmp_path / "out", cluster=cluster.scheduler_address)
+    assert list((tmp_path / "out/rows").iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("address", "said"),
+    [
+        ("here", r"tcp://HOST:PORT"),
+        ("http://127.0.0.1:1", r"tcp://HOST:PORT"),
+        ("local:none", r"local:N"),
+        ("local:0", r"local:N"),
+        ("tcp://127.0.0.1:1", "a scheduler that answers"),
+    ],
+)
+def test_a_wrong_address_is_named(tmp_path, monkeypatch, address, said):
+    from reference.sweeps import cluster as module
+
+    monkeypatch.setattr(module, "WAIT_S", 0.5)
+    with pytest.raises(InputError, match=said):
+        run(asked(tmp_path / "out"), tmp_path / "out", cluster=address)
+
+
+def test_a_scheduler_without_workers_is_named(tmp_path, monkeypatch):
+    from reference.sweeps import cluster as module
+
+    monkeypatch.setattr(module, "WAIT_S", 1.0)
+    with (
+        distributed.LocalCluster(n_workers=0, dashboard_address=None, silence_logs=50) as empty,
+        pytest.raises(InputError, match="a scheduler with workers"),
+    ):
+        run(asked(tmp_path / "out"), tmp_path / "out", cluster=empty.scheduler_address)

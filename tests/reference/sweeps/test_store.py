@@ -1,0 +1,175 @@
+"""Sweeps in a folder: resumed, the same bytes whoever computed them, readable by others, nothing half written."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import poisoned_sweep
+import pytest
+
+from reference import InputError, load_scene, load_sweep, sweep
+from reference.sweeps import local
+from reference.sweeps.driver import Piece, WorkerDied, work
+from reference.sweeps.sweep import asked_for, run
+
+pytest.importorskip("pyarrow")
+OVER = ["site.latitude=-90:90:2"]
+ROWS = 91
+
+
+def asked(out, **options):
+    scene = load_scene("paris", ["run.t_end=30"])
+    whole = asked_for(scene, OVER, None, out, audit=0, **{"engine": "heyoka", **options})
+    return replace(whole, rows_per_part=16)
+
+
+def contents(folder):
+    return {path.relative_to(folder): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("sweeps") / "whole"
+    run(asked(folder), folder, workers=1)
+    return folder
+
+
+def test_the_folder_holds_what_memory_would(whole):
+    there, here = load_sweep(whole), sweep(load_scene("paris", ["run.t_end=30"]), OVER, engine="heyoka")
+    for name, values in here.columns().items():
+        assert np.array_equal(values, there[name], equal_nan=values.dtype.kind == "f"), name
+    assert json.loads((whole / "summary.json").read_text()) == {"rows": ROWS, "counts": {"ok": ROWS}, "audit": None}
+
+
+def test_any_number_of_workers_and_any_interruption_give_the_same_bytes(whole, tmp_path):
+    folder = tmp_path / "resumed"
+    shutil.copytree(whole, folder)
+    (folder / "summary.json").unlink()
+    (folder / "rows/part-00000001.parquet").unlink()
+    cut = folder / "rows/part-00000003.parquet"
+    cut.write_bytes(cut.read_bytes()[:-20])
+    foreign = folder / "rows/part-00000004.parquet"
+    shutil.copy(folder / "rows/part-00000005.parquet", foreign)
+    (folder / "rows/.part-00000002.parquet.partial-abc").mkdir()
+    with pytest.raises(InputError, match="parts miss"):
+        load_sweep(folder)
+    done = []
+    run(asked(folder), folder, workers=2, report=done.append)
+    assert sum(done) == ROWS
+    (folder / "rows/.part-00000002.parquet.partial-abc").rmdir()
+    assert contents(folder) == contents(whole)
+
+
+def test_others_read_it_as_it_is(whole):
+    frequency = load_sweep(whole)["frequency_hz"]
+    pandas = pytest.importorskip("pandas")
+    table = pandas.read_parquet(whole / "rows")
+    assert table["frequency_hz"].tolist() == frequency.tolist()
+    assert set(table["status"]) == {"ok"}
+    polars = pytest.importorskip("polars")
+    assert polars.scan_parquet(whole / "rows/*.parquet").collect()["frequency_hz"].to_list() == frequency.tolist()
+    duckdb = pytest.importorskip("duckdb")
+    query = f"select frequency_hz from '{whole}/rows/*.parquet' order by row"
+    assert [row[0] for row in duckdb.sql(query).fetchall()] == frequency.tolist()
+
+
+def test_each_column_says_what_it_means(whole):
+    import pyarrow.parquet as pq
+
+    schema = pq.read_schema(whole / "rows/part-00000000.parquet")
+    assert all(field.metadata[b"meaning"] for field in schema)
+
+
+def test_another_sweep_or_other_files_are_left_alone(whole, tmp_path):
+    before = contents(whole)
+    with pytest.raises(InputError, match=r"differs in scene\b"):
+        run(replace(asked(whole), scene=load_scene("paris", ["run.t_end=31", "run.grid_step=31"])), whole)
+    assert contents(whole) == before
+    (tmp_path / "mine.txt").write_text("mine")
+    with pytest.raises(InputError, match="a new or empty folder"):
+        run(asked(tmp_path), tmp_path)
+    with pytest.raises(InputError, match=r"with plan\.json"):
+        load_sweep(tmp_path)
+
+
+def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
+    folder = tmp_path / "changed"
+    shutil.copytree(whole, folder)
+    plan = json.loads((folder / "plan.json").read_text())
+    (folder / "plan.json").write_text(json.dumps(plan | {"rows_per_part": 32}))
+    with pytest.raises(InputError, match="as it was written"):
+        load_sweep(folder)
+    (folder / "plan.json").write_text(json.dumps(plan | {"pyarrow": "1.0"}))
+    with pytest.raises(InputError, match=r"pyarrow 1\.0"):
+        run(asked(folder), folder)
+
+
+def test_the_times_of_transits_are_a_dataset_of_their_own(tmp_path):
+    folder = tmp_path / "times"
+    run(asked(folder, want=("transits", "transit-times")), folder, workers=1)
+    swept = load_sweep(folder)
+    listed = swept.transits()
+    assert np.bincount(listed["row"], minlength=ROWS).tolist() == swept["transits"].tolist()
+    assert "precession_deg_per_h" not in swept.names
+
+
+class Dying:
+    """An executor whose pieces with the poisonous row die."""
+
+    workers = 1
+
+    def __init__(self, asked, folder):
+        self._asked, self._folder = asked, folder
+
+    def submit(self, piece: Piece):
+        from concurrent.futures import Future
+
+        future: Future = Future()
+        if poisoned_sweep.POISON in piece.rows:
+            future.set_exception(WorkerDied("killed by signal 9"))
+        else:
+            future.set_result(work(self._asked, piece, self._folder))
+        return future
+
+    def check(self):
+        pass
+
+
+def test_a_part_that_kills_its_worker_is_halved_down_to_the_row(whole, tmp_path):
+    from reference.sweeps.driver import drive
+    from reference.sweeps.store import Store
+
+    folder = tmp_path / "poisoned"
+    request = asked(folder)
+    store, done = Store.begun(folder, request), []
+    tally = drive(request, store.missing(), Dying(request, folder), store.save, done.append)
+    assert tally.counts == {"ok": ROWS - 1, "crashed": 1}
+    assert tally.first_bad == poisoned_sweep.POISON
+    assert sum(done) == ROWS
+    swept, healthy = load_sweep(folder), load_sweep(whole)
+    assert swept["reason"][poisoned_sweep.POISON].endswith("killed by signal 9.")
+    others = np.arange(ROWS) != poisoned_sweep.POISON
+    assert (swept["x_m"][others] == healthy["x_m"][others]).all()
+
+
+def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr(local, "serve", poisoned_sweep.serve)
+    folder = tmp_path / "isolated"
+    scene = load_scene("paris", ["run.t_end=2"])
+    request = asked_for(scene, ["site.latitude=0:38:1"], None, folder, audit=0, digits=16, want=("state",))
+    request = replace(request, rows_per_part=3)
+    from reference.sweeps.store import Store
+
+    Store.begun(folder, request)
+    for part in (12,):  # of rows 36, 37, 38
+        from reference.sweeps.driver import drive
+        from reference.sweeps.local import LocalExecutor
+
+        kept = {}
+        with LocalExecutor(request, folder, 1) as executor:
+            tally = drive(request, [part], executor, kept.__setitem__, lambda _: None)
+    assert tally.counts == {"ok": 2, "crashed": 1}
+    assert kept[12].columns["status"].tolist() == ["ok", "crashed", "ok"]

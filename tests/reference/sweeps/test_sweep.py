@@ -1,0 +1,222 @@
+"""Sweeps in memory: numbers against the solver, errors above the truth, rows that fail by themselves."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from reference import InputError, load_scene, solve, sweep
+from reference.sweeps.planning import request
+from reference.sweeps.promote import Promoted
+from reference.sweeps.sweep import asked_for
+
+LATITUDES = "site.latitude=-90,-30,0,48.846111,90"
+
+
+@pytest.fixture(scope="module", params=["heyoka", "octet"])
+def engine(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def swept(engine):
+    return sweep(load_scene("paris", ["run.t_end=300"]), [LATITUDES], engine=engine, want=("all", "transit-times"))
+
+
+def test_every_row_is_what_the_solver_gives_within_its_errors(swept):
+    for number, row in enumerate(swept.rows()):
+        scene = swept.request.scene_of(number)
+        truth = solve(scene, level="computed", digits=20)
+        assert row["status"] == "ok"
+        position = np.array([row[f"{name}_m"] - truth.grid[name][-1] for name in "xyz"])
+        velocity = np.array([row[f"{name}_m_s"] - truth.grid[name][-1] for name in ("vx", "vy", "vz")])
+        assert np.linalg.norm(position) <= row["position_error_m"] < 1e-11
+        assert np.linalg.norm(velocity) <= row["velocity_error_m_s"] < 1e-11
+        t = truth.transits["t"].astype(float)
+        assert row["transits"] == len(t)
+        assert abs(row["t_last_s"] - t[-1]) <= row["transit_error_s"]
+        assert abs(row["frequency_hz"] - (len(t) - 1) / (2 * (t[-1] - t[0]))) <= row["frequency_error_hz"] < 1e-12
+        listed = swept.transits()
+        own = listed["row"] == number
+        assert np.allclose(listed["t_s"][own], t, rtol=0, atol=row["transit_error_s"])
+        assert listed["direction"][own].tolist() == list(truth.directions)
+
+
+def test_the_plane_turns_as_foucault_says_and_the_angle_is_that_of_the_release(swept):
+    ratio = swept["precession_ratio"]
+    # the plumb line lies up to 0.1° off the normal, 3e-3 of the sine of 30°
+    assert np.abs(ratio[[0, 1, 3, 4]] - 1).max() < 3e-3
+    assert np.isnan(ratio[2])
+    assert abs(swept["precession_deg_per_h"][2]) < 1e-4
+    # at a pole the plumb line is the normal, and 0.5 m of 67 the largest angle
+    assert swept["max_angle_deg"][[0, 4]] == pytest.approx(np.degrees(np.arcsin(0.5 / 67)), abs=1e-9)
+    assert swept["swing_hz"] == pytest.approx(swept["frequency_hz"], abs=1e-6)
+
+
+def test_a_row_is_the_same_alone_and_in_company(swept, engine):
+    alone = sweep(load_scene("paris", ["run.t_end=300"]), ["site.latitude=0"], engine=engine)
+    row, same = next(alone.rows()), list(swept.rows())[2]
+    assert {name: value for name, value in row.items() if name != "row"} == {
+        name: value for name, value in same.items() if name != "row"
+    }
+
+
+def test_both_engines_give_the_same_within_their_errors():
+    scene = load_scene("paris", ["run.t_end=300"])
+    one, other = (sweep(scene, [LATITUDES], engine=name) for name in ("heyoka", "octet"))
+    for name, error in (
+        ("swing_hz", "swing_error_hz"),
+        ("precession_deg_per_h", "precession_error_deg_per_h"),
+        ("max_angle_deg", "max_angle_error_deg"),
+        ("t_last_s", "transit_error_s"),
+    ):
+        assert (np.abs(one[name] - other[name]) <= one[error] + other[error]).all(), name
+    assert (one["transits"] == other["transits"]).all()
+
+
+def test_a_wrong_combination_fails_alone_with_its_reason(paris):
+    swept = sweep(paris.with_values(["run.t_end=60"]), ["pendulum.length=0.5,67", "release.x=0.1,0.3"], engine="heyoka")
+    assert swept["status"].tolist() == ["ok", "invalid", "ok", "ok"]
+    assert "x² + y² less than length²" in swept["reason"][1]
+    assert np.isnan(swept["frequency_hz"][1])
+    assert swept.counts == {"invalid": 1, "ok": 3}
+    assert swept.first_bad == 1
+
+
+def test_what_no_double_holds_is_unreachable_by_itself(paris):
+    swept = sweep(paris.with_values(["run.t_end=60"]), ["pendulum.length=67,1e390"], engine="heyoka")
+    assert swept["status"].tolist() == ["ok", "unreachable"]
+    assert "beyond the range of binary64" in swept["reason"][1]
+
+
+def test_words_are_varied_too(paris):
+    swept = sweep(
+        paris.with_values(["run.t_end=60"]),
+        ["site.gravity_is=ellipsoid,effective", "inputs=decimal,binary64"],
+        engine="heyoka",
+    )
+    assert swept["site.gravity_is"].tolist() == ["ellipsoid"] * 2 + ["effective"] * 2
+    assert len(set(swept["x_m"].tolist())) == 4 or np.abs(np.diff(swept["x_m"])).max() > 1e-9
+    alone = sweep(
+        paris.with_values(["run.t_end=60", "site.gravity_is=effective"]), ["site.latitude=48.846111"], engine="heyoka"
+    )
+    assert alone["x_m"][0] == swept["x_m"][2]
+
+
+def test_rows_of_a_file_fail_by_themselves(paris, tmp_path):
+    (tmp_path / "rows.csv").write_text("site.latitude,site.inverse_flattening\n10,inf\n91,300\n20,x\n30,300\n")
+    swept = sweep(paris.with_values(["run.t_end=60"]), rows=tmp_path / "rows.csv", engine="heyoka")
+    assert swept["status"].tolist() == ["ok", "invalid", "invalid", "ok"]
+    assert "at least -90" in swept["reason"][1]
+    assert "decimal number" in swept["reason"][2]
+    assert swept["site.latitude"].tolist() == [10, 91, 20, 30]
+
+
+def test_spans_and_drag_differ_by_row(paris, engine):
+    swept = sweep(paris.with_values(["run.t_end=60"]), ["run.t_end=20,100", "pendulum.drag=0,0.01"], engine=engine)
+    assert swept["status"].tolist() == ["ok"] * 4
+    assert swept["engine"].tolist() == [engine, "heyoka"] * 2
+    assert swept["transits"].tolist() == [2, 2, 12, 12]
+    truth = solve(swept.request.scene_of(3), level="computed", digits=15)
+    assert abs(truth.grid["x"][-1] - swept["x_m"][3]) <= swept["position_error_m"][3]
+
+
+def test_more_digits_go_through_the_solver(paris):
+    swept = sweep(
+        paris.with_values(["run.t_end=20"]), ["site.latitude=0,10"], digits=18, level="self_consistent", workers=2
+    )
+    assert swept["level"].tolist() == ["self_consistent"] * 2
+    assert swept["digits"].tolist() == [18] * 2
+    assert (swept["position_error_m"] < 1e-15).all()
+    assert np.isfinite(swept["precession_deg_per_h"]).all()
+
+
+def test_a_tolerance_promotes_the_rows_above_it(paris):
+    swept = sweep(paris.with_values(["run.t_end=20"]), ["site.latitude=0"], tolerance=1e-16, engine="heyoka")
+    assert swept["level"][0] == "self_consistent"
+    assert swept["position_error_m"][0] < 1e-16
+
+
+def test_a_transit_at_the_end_is_left_to_more_digits(paris):
+    t = solve(paris, t_end="20", level="computed", digits=20).transits.exact("t")[0]
+    swept = sweep(paris.with_values([f"run.t_end={float(t)!r}"]), ["site.latitude=48.846111"], engine="heyoka")
+    assert swept["level"][0] == "self_consistent"
+    assert swept["status"][0] == "ok"
+
+
+def test_an_audit_finds_what_is_wrong(paris, monkeypatch):
+    scene = paris.with_values(["run.t_end=60"])
+    good = sweep(scene, ["site.latitude=0,10,20"], engine="heyoka", audit_rows=2)
+    assert (good.audit.rows, good.audit.wrong) == (2, ())
+    assert 0 < good.audit.worst_ratio < 1
+    from reference.sweeps import audit
+
+    def other(*arguments, **options):
+        result = promoted(*arguments, **options)
+        return Promoted(result.values | {"x_m": result.values["x_m"] + 1e-9}, result.times)
+
+    promoted = audit.promoted
+    monkeypatch.setattr(audit, "promoted", other)
+    assert len(sweep(scene, ["site.latitude=0,10,20"], engine="heyoka", audit_rows=2).audit.wrong) == 2
+
+
+@pytest.mark.parametrize(
+    ("over", "options", "field"),
+    [
+        ([], {}, "--over"),
+        (["site.latitude=1"], {"want": ("speed",)}, "--want"),
+        (["site.latitude=1"], {"level": "good"}, "--level"),
+        (["site.latitude=1"], {"engine": "euler"}, "--engine"),
+        (["release.angle=1"], {}, "--over"),
+        (["site.altitude=0:1e6:1"], {}, "--out"),
+    ],
+)
+def test_wrong_options_are_refused_before_any_work(paris, over, options, field):
+    with pytest.raises(InputError) as error:
+        sweep(paris, over, **options)
+    assert error.value.field == field
+
+
+def test_the_other_engine_agrees_or_the_row_is_promoted(paris, monkeypatch):
+    scene = paris.with_values(["run.t_end=20"])
+    swept = sweep(scene, ["site.latitude=0,10"], engine="octet", agree_with="heyoka")
+    assert swept["agrees_with"].tolist() == ["heyoka"] * 2
+    assert swept["level"].tolist() == ["computed"] * 2
+    with pytest.raises(InputError, match="another engine than octet"):
+        sweep(scene, ["site.latitude=0"], engine="octet", agree_with="octet")
+    from reference.sweeps import part
+
+    solve_rows = part.batches()["heyoka"].solve
+
+    def moved(rows, wanted):
+        run = solve_rows(rows, wanted)
+        run.state[0, 0] += 1e-9
+        return run
+
+    monkeypatch.setattr(part.batches()["heyoka"], "solve", moved)
+    swept = sweep(scene, ["site.latitude=0,10"], engine="octet", agree_with="heyoka", workers=1)
+    assert swept["agrees_with"].tolist() == [None, "heyoka"]
+    assert swept["level"].tolist() == ["self_consistent", "computed"]
+
+
+def test_parts_depend_on_the_scene_and_not_on_a_clock(paris):
+    short, long = (
+        request(paris.with_values([f"run.t_end={t}"]), ["site.altitude=0:1e6:1"], engine="heyoka") for t in (60, 86400)
+    )
+    assert short.rows_per_part > 8 * long.rows_per_part
+    assert long.rows_per_part & (long.rows_per_part - 1) == 0
+
+
+def test_a_grid_has_the_shape_of_its_axes(paris):
+    swept = sweep(paris.with_values(["run.t_end=30"]), ["site.latitude=0:20:10", "release.x=0.1,0.2"], engine="heyoka")
+    grid = swept.grid("x_m")
+    assert grid.shape == (3, 2)
+    assert np.asarray(grid).ravel().tolist() == swept["x_m"].tolist()
+    with pytest.raises(InputError, match="a column of this sweep"):
+        swept["speed"]
+    with pytest.raises(InputError, match="transit-times"):
+        swept.transits()
+
+
+def test_more_than_memory_should_hold_needs_a_folder(paris, tmp_path):
+    assert asked_for(paris, ["site.altitude=0:1e6:1"], None, tmp_path, audit=None).audit == 1000
