@@ -17,12 +17,12 @@ golden: .venv/solving
 # Each worker takes whole files: what a file prepares is prepared once.
 test: lint
 	@echo "Running the tests: some twenty minutes on two cores"
-	$(BIN)/python -m pytest -q -n 2 --dist loadgroup --no-loadscope-reorder \
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder \
 	  --cov --cov-report=term-missing:skip-covered --cov-fail-under=95
 
 # Tests by the thousand (damaged files, forgeries, fuzzed inputs, kills): `make test` runs a short form of each.
 campaign: .venv/testing
-	$(BIN)/python -m pytest -q -n 2 --dist loadgroup --long -m campaign
+	$(BIN)/python -m pytest -q -n 2 --dist loadfile --long -m campaign
 
 # Do the tests notice a wrong source? Other draws: tests/mutants.py --seed 2, --module precision
 mutants: .venv/testing

@@ -6,7 +6,6 @@ import io
 import signal
 import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -28,15 +27,11 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--long", action="store_true", help="run the campaigns at full size, as `make campaign` does")
 
 
-@pytest.hookimpl(tryfirst=True)  # before xdist reads the groups
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark campaigns, and keep tests that share costly fixtures in one worker: those of a file, those of `built`."""
+    """Mark campaigns."""
     for item in items:
-        fixtures: list[str] = getattr(item, "fixturenames", [])
-        if "size" in fixtures or "campaigns" in item.path.parts:
+        if "size" in getattr(item, "fixturenames", []) or "campaigns" in item.path.parts:
             item.add_marker("campaign")
-        group = "built" if "built" in fixtures else str(item.path.relative_to(Path(__file__).parent))
-        item.add_marker(pytest.mark.xdist_group(group))
 
 
 @pytest.fixture

@@ -20,15 +20,13 @@ _SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatoria
 _CENTRIFUGAL = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4), (), 1e-2)
 
 
-def _harmonic(scene: Scene) -> Any:
-    """sqrt(g/l)/2π."""
-    case = Case.of_scene(scene)
+def harmonic(case: Case) -> Any:
+    """Return sqrt(g/l)/2π."""
     return case.ctx.sqrt(case.gravity / case.length) / (2 * case.ctx.pi)
 
 
-def _planar(scene: Scene) -> Any:
-    """1/(4 sqrt(l/g) K(sin(φ0/2))), with φ0 counted from the vertical."""
-    case = Case.of_scene(scene)
+def planar(case: Case) -> Any:
+    """Return 1/(4 sqrt(l/g) K(sin(φ0/2))), with φ0 counted from the vertical."""
     quarter = case.ctx.ellipk((1 + case.position[2] / case.length) / 2)
     return case.ctx.sqrt(case.gravity / case.length) / (4 * quarter)
 
@@ -60,7 +58,7 @@ APPROXIMATIONS = (
         where="Mathar section VII, frequency 1",
         drops="the amplitude, Ω, the centrifugal force",
         orders=(_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
-        formula=_harmonic,
+        formula=lambda scene: harmonic(Case.of_scene(scene)),
     ),
     _frequency(
         id="frequency_planar",
@@ -69,7 +67,7 @@ APPROXIMATIONS = (
         drops="Ω and the centrifugal force",
         orders=(_EXACT, _CENTRIFUGAL),
         refuses=released_at_rest,
-        formula=_planar,
+        formula=lambda scene: planar(Case.of_scene(scene)),
     ),
     _frequency(
         id="frequency_turntable",

@@ -6,7 +6,7 @@ Z = x + i y, Z'' = -ω0² Z - 2 i Ω_z Z' has the solution Z = C1 exp(-i (ω + �
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,8 @@ from reference import Scene, UnreachableError
 from .approximation import CUBE_IN_AMPLITUDE, Array, Motion, Order, Printed
 from .case import Case, PlumbAxes, hung, released_at_rest, swinging
 from .gastebois_general import hanging
+
+Pair = Sequence[Any]
 
 
 def turntable_frequency(case: Case, gravity: Any, turn: Any) -> Any:
@@ -30,7 +32,14 @@ def turntable_frequency(case: Case, gravity: Any, turn: Any) -> Any:
     return omega
 
 
-def oscillation(place: tuple[Any, Any], speed: tuple[Any, Any], omega: Any, turn: Any, times: Array) -> Any:
+def constants_of(place: Pair, speed: Pair, omega: Any, turn: Any) -> tuple[Any, Any, Any, Any]:
+    """Return c1, c1', c2, c2' of 6.1; arguments as in `oscillation`."""
+    (x, y), (vx, vy) = place, speed
+    slow, fast = omega - turn, omega + turn
+    return tuple(part / (2 * omega) for part in (slow * x - vy, slow * y + vx, fast * x + vy, fast * y - vx))
+
+
+def oscillation(place: Pair, speed: Pair, omega: Any, turn: Any, times: Array) -> Any:
     """Return Z in m and Z' in m/s at the times, two complex arrays.
 
     Args:
@@ -40,9 +49,8 @@ def oscillation(place: tuple[Any, Any], speed: tuple[Any, Any], omega: Any, turn
         turn: Ω_z in rad/s, mpf.
         times: in s.
     """
-    (x, y), (vx, vy) = place, speed
-    first = complex(((omega - turn) * x - vy) / (2 * omega), ((omega - turn) * y + vx) / (2 * omega))
-    second = complex(((omega + turn) * x + vy) / (2 * omega), ((omega + turn) * y - vx) / (2 * omega))
+    c1, c1_prime, c2, c2_prime = constants_of(place, speed, omega, turn)
+    first, second = complex(c1, c1_prime), complex(c2, c2_prime)
     fast, slow = float(omega + turn), float(omega - turn)
     one, two = first * np.exp(-1j * fast * times), second * np.exp(1j * slow * times)
     return one + two, 1j * (slow * two - fast * one)
@@ -72,34 +80,55 @@ def _general_as_printed(scene: Scene, times: Array) -> Array:
     """Return rows of 6.1 with the sine that is printed at the end of v_x."""
     case = Case.of_scene(scene)
     plumb, omega, turn = small_angles(case)
-    (x, y, _), (vx, vy, _) = plumb.inward(case.position), plumb.inward(case.velocity)
-    z, rate = oscillation((x, y), (vx, vy), omega, turn, times)
-    second, slow = float(((omega + turn) * y - vx) / (2 * omega)), float(omega - turn)  # c'2
+    place, speed = plumb.inward(case.position)[:2], plumb.inward(case.velocity)[:2]
+    z, rate = oscillation(place, speed, omega, turn, times)
+    second, slow = float(constants_of(place, speed, omega, turn)[3]), float(omega - turn)
     return _rows(case, plumb, z, rate + second * slow * (np.cos(slow * times) - np.sin(slow * times)))
 
 
-def _in_turning_axes(scene: Scene, times: Array, across: Callable[[Any, Any], Any]) -> Array:
-    """Return rows of X = r0 cos ωt, Y = r0 `across`(ω, Ω_z) sin ωt in axes that turn at -Ω_z, X along the release."""
+def in_turning_axes(minor: Any, omega: Any, turn: Any, t: Any, functions: Any) -> tuple[Any, Any, Any, Any]:
+    """Return x, y, v_x, v_y over r0 of X = r0 cos ωt, Y = r0 `minor` sin ωt in axes that turn at -Ω_z.
+
+    These are the lines of 6.2 with `minor` = 0, of 6.3 with Ω_z/ω.
+
+    Args:
+        minor: the small half axis of the ellipse over r0.
+        omega: ω in rad/s.
+        turn: Ω_z in rad/s.
+        t: time or times in s.
+        functions: mpmath or NumPy, with `cos` and `sin`.
+    """
+    cw, sw, cu, su = (
+        functions.cos(omega * t),
+        functions.sin(omega * t),
+        functions.cos(turn * t),
+        functions.sin(turn * t),
+    )
+    x, y = cu * cw + minor * su * sw, -su * cw + minor * cu * sw
+    along, across = -omega * sw, minor * omega * cw
+    return x, y, cu * along + su * across + turn * y, -su * along + cu * across - turn * x
+
+
+def _ellipse(scene: Scene, times: Array, across: Callable[[Any, Any], Any]) -> Array:
+    """Return rows of that motion, X along the release, with `minor` = `across`(ω, Ω_z)."""
     case = Case.of_scene(scene)
     plumb, omega, turn = small_angles(case)
-    x, y, _ = plumb.inward(case.position)
-    minor, w, u = float(across(omega, turn)), float(omega), float(turn)
-    cos, sin = np.cos(w * times), np.sin(w * times)
-    place, speed = cos + 1j * minor * sin, w * (1j * minor * cos - sin)
-    turned = complex(x, y) * np.exp(-1j * u * times)
-    return _rows(case, plumb, turned * place, turned * (speed - 1j * u * place))
+    east, north, _ = plumb.inward(case.position)
+    x, y, vx, vy = in_turning_axes(float(across(omega, turn)), float(omega), float(turn), times, np)
+    release = complex(east, north)
+    return _rows(case, plumb, release * (x + 1j * y), release * (vx + 1j * vy))
 
 
 def _launched_in_the_plane(scene: Scene, times: Array) -> Array:
-    return _in_turning_axes(scene, times, lambda omega, turn: 0)
+    return _ellipse(scene, times, lambda omega, turn: 0)
 
 
 def _released(scene: Scene, times: Array) -> Array:
-    return _in_turning_axes(scene, times, lambda omega, turn: turn / omega)
+    return _ellipse(scene, times, lambda omega, turn: turn / omega)
 
 
 def _released_clockwise(scene: Scene, times: Array) -> Array:
-    return _in_turning_axes(scene, times, lambda omega, turn: -turn / omega)
+    return _ellipse(scene, times, lambda omega, turn: -turn / omega)
 
 
 _SQUARE_IN_RATE = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4, 4e-4), (), 1e-3)

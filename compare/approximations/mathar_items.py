@@ -121,7 +121,7 @@ APPROXIMATIONS = (
         1,
         id="mathar_item_1",
         title="Mathar's equations without the terms in Ω²",
-        drops="β of (35), (41): centrifugal force, tilt of the plumb line; RΩ² is 3e-3 of g, not Ω² = 5e-9 as printed",
+        drops="β of (35), (41): centrifugal force, tilted plumb line; RΩ² is 2.3e-3 of g, not Ω² = 5e-9 as printed",
         domain="any amplitude below the suspension; slow rotation",
         orders=(SQUARE_IN_RATE,),
     ),

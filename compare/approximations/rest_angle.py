@@ -9,6 +9,7 @@ from functools import partial
 from typing import Any
 
 from reference import Scene
+from reference.model.constants import Vector
 
 from .approximation import Order, Printed, Quantity
 from .case import Case, under_gravity
@@ -38,25 +39,23 @@ def _equation(scene: Scene) -> Any:
     return ctx.findroot(balance, case.tilt)
 
 
-def _series(scene: Scene, terms: int) -> Any:
-    """Return the series (47) up to Ω^(2 terms)."""
-    case = Case.of_scene(scene)
+def series(case: Case) -> Vector:
+    """Return the coefficients of Ω², Ω⁴ and Ω⁶ in (47), for the lower sign: positive to the south."""
     ctx, cord, g = case.ctx, case.length, case.gravity
     latitude = ctx.atan2(case.sin, case.cos)
     n = case.axis_distance / case.cos  # N + h
     two, four = ctx.cos(2 * latitude), ctx.cos(4 * latitude)
-    coefficients = (
-        1 / (2 * g),
-        (n * (1 + two) / 2 - cord * two) / (2 * g**2),
-        (
-            n**2 * (four + 3 * two + 2)
-            - n * cord * (ctx.mpf(37) / 8 * four + ctx.mpf(11) / 8 + 6 * two)
-            + cord**2 * (ctx.mpf(35) / 8 * four + ctx.mpf(13) / 8)
-        )
-        / (12 * g**3),
-    )
-    total = sum(c * case.rate ** (2 * i + 2) for i, c in enumerate(coefficients[:terms]))
-    return ctx.sin(2 * latitude) * (n - cord) * total
+    bracket = n**2 * (four + 3 * two + 2)
+    bracket -= n * cord * (ctx.mpf(37) / 8 * four + ctx.mpf(11) / 8 + 6 * two)
+    bracket += cord**2 * (ctx.mpf(35) / 8 * four + ctx.mpf(13) / 8)
+    terms = (1 / (2 * g), (n * (1 + two) / 2 - cord * two) / (2 * g**2), bracket / (12 * g**3))
+    return tuple(ctx.sin(2 * latitude) * (n - cord) * term for term in terms)
+
+
+def _series(scene: Scene, terms: int) -> Any:
+    """Return the series (47) up to Ω^(2 terms)."""
+    case = Case.of_scene(scene)
+    return sum(c * case.rate ** (2 * i + 2) for i, c in enumerate(series(case)[:terms]))
 
 
 def _triangle(scene: Scene) -> Any:

@@ -61,21 +61,15 @@ def _one_error_corrected(scene: Scene, times: Array) -> Array:
     return _coriolis_theorem(scene, times, lambda case: case.gravity / case.length - (case.rate * case.sin) ** 2)
 
 
-def _complex_variable(scene: Scene, times: Array, sign: int = 1) -> Array:
+def _complex_variable(scene: Scene, times: Array) -> Array:
     """Method 3: z = w exp(-i ω_P t), w = A sin ω̃t + B cos ω̃t, ω_P = ω sin α."""
-    case, w, turn = _numbers(scene)
-    p = sign * turn
+    case, w, p = _numbers(scene)
     b = complex(case.position[0], case.position[1])
     a = (complex(case.velocity[0], case.velocity[1]) + 1j * p * b) / w
     wave, rate = a * np.sin(w * times) + b * np.cos(w * times), w * (a * np.cos(w * times) - b * np.sin(w * times))
     back = np.exp(-1j * p * times)
     z, speed = back * wave, back * (rate - 1j * p * wave)
     return hung(z.real, z.imag, speed.real, speed.imag, case.length)
-
-
-def _complex_variable_as_concluded(scene: Scene, times: Array) -> Array:
-    """Method 3 with the sign of ω_P that its conclusion prints."""
-    return _complex_variable(scene, times, -1)
 
 
 _motion = partial(
@@ -109,11 +103,6 @@ APPROXIMATIONS = (
         id="method_3",
         title="harmonic pendulum by a complex variable",
         where="third source paper, method 3",
-        printed=Printed(
-            "the conclusion says ω_P = -ω sin α",
-            "z = w exp(-i ω_P t) needs ω_P = +ω sin α, as the method says; -ω sin α is the frame's angular velocity",
-            _complex_variable_as_concluded,
-        ),
         path=_complex_variable,
     ),
 )

@@ -10,7 +10,7 @@ import typer
 
 from ..foucpend.options import SWITCHES, Switch
 
-ALSO = {"O": "-0"}  # the letter may be read as a zero where it is printed
+ALSO = {"O": "-0", "l": "-1"}  # the letters may be read as digits where they are printed
 
 
 def command(*, exact: bool = False, **typed: str | None) -> None:

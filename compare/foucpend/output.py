@@ -8,6 +8,7 @@ import numpy as np
 
 from reference import InputError, Scene, solve
 from reference.model.constants import constants
+from reference.model.start import Start
 from reference.precision import Array, context
 from reference.scene import MAX_ROWS
 
@@ -84,6 +85,8 @@ def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
         level="confirmed",
     )
     states = np.array([getattr(solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]).T
+    start = Start.of(options.scene.exact, PREC)
+    states[0] = [float(part) for part in (*start.position, *start.velocity)]  # as given: the solver's has rounding
     zeros = [] if solution.transits is None else solution.transits.array("t").tolist()
     yield solution.t[: rows + 1], states[: rows + 1], zeros
 

@@ -1,16 +1,16 @@
 """The three source papers, one folder each: every formula and printed number recomputed, judged, and shown on a page.
 
 The papers are Mathar's (`mathar/`), Gastebois's (`gastebois/`) and a third one, which solves the linear pendulum by
-three methods (`three_methods/`). Each section of a paper is one module; its function `checks` declares one row for
+three methods (`three_methods/`). A module holds a few sections; its function `checks` declares one row for
 every printed formula, number or sentence, with the computation to compare it with. Verdicts are computed from these.
 
 - `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a misprint);
-- `catalogue.py`: the list of all sections, in the order of print;
+- `section.py`: what the rows of a section share, and the list of all sections, in the order of print;
 - `points.py`: random points at which formulas are evaluated, and the numbers of the Paris pendulum;
 - `first_principles.py`: the yardstick of formulas, from the Lagrangian; `linear.py`: the same for the linear pendulum;
 - `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
-- `runs.py`: runs of the reference that numbers and sentences rest on; `figure_runs.py`: runs for the figures only;
-- `figures.py` and `captions.py`: the first paper's figures, drawn again, and their captions;
+- `runs.py`: runs of the reference that numbers and sentences rest on;
+- `figures.py`: the first paper's figures, drawn again, and their captions;
 - `page.py`: the rows and the figures as a page, and the rows as CSV and JSON.
 
 >>> from compare.papers import rows
@@ -37,7 +37,7 @@ Report = Callable[[str, int, int], None]
 
 def rows(report: Report | None = None) -> list[JudgedRow]:
     """Judge every row; `report` is called with a row's place, the number of rows judged so far, and of all rows."""
-    from .catalogue import rows as judged
+    from .section import rows as judged
 
     return judged(report)
 
@@ -50,8 +50,7 @@ def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
     """
     from ..report.charts.drawing import check_matplotlib
     from ..report.folder import PAGE, check_folder, write_files
-    from .figure_runs import check_methods
-    from .figures import FIGURES, svg
+    from .figures import FIGURES, check_methods, svg
     from .page import files_of
 
     check_matplotlib("--out")  # so that a missing package is reported before the work

@@ -65,19 +65,20 @@ class Check(Protocol):
 
     @property
     def id(self) -> str:
-        """Paper and place in one word."""
+        """Paper and place in one word; in a declaration its end."""
+
+    @property
+    def place(self) -> str:
+        """Paper, section, equation; in a declaration its end."""
 
     def row(self) -> JudgedRow:
         """Judge the printed line."""
 
 
-def largest_gap(one: Callable[[Point], Value], other: Callable[[Point], Value], sample: Sequence[Point]) -> Any:
-    """Return the largest relative difference of two formulas over a sample of points."""
-    gaps = []
-    for p in sample:
-        a, b = one(p), other(p)
-        gaps.append(distance(a, b) / max(size(a), size(b), MP.mpf("1e-3")))
-    return max(gaps)
+def largest_gap(values: Sequence[Value], others: Sequence[Value]) -> Any:
+    """Return the largest relative difference of two formulas' values at the same points."""
+    pairs = zip(values, others, strict=True)
+    return max(distance(a, b) / max(size(a), size(b), MP.mpf("1e-3")) for a, b in pairs)
 
 
 def component(function: Callable[[Point], Value], i: int) -> Callable[[Point], Any]:
@@ -101,17 +102,18 @@ class Identity:
     def row(self) -> JudgedRow:
         """Judge the identity: exact, or a misprint whose correction is exact."""
         sample = points()
-        gap = largest_gap(self.formula, self.truth, sample)
-        recomputed, tolerance = shown(self.truth(sample[0])), MP.mpf(10) ** -AGREE_DIGITS
+        printed, truth = [self.formula(p) for p in sample], [self.truth(p) for p in sample]
+        gap, tolerance = largest_gap(printed, truth), MP.mpf(10) ** -AGREE_DIGITS
+        recomputed = shown(truth[0])
         if gap < tolerance:
             if self.corrected is not None:
                 raise UnexplainedError(self.id, "the print is right, yet a correction is declared")
             return JudgedRow(self.id, self.place, self.printed, recomputed, "exact", remark=self.remark)
-        if self.corrected is None or largest_gap(self.corrected, self.truth, sample) >= tolerance:
+        if self.corrected is None or largest_gap([self.corrected(p) for p in sample], truth) >= tolerance:
             raise UnexplainedError(
                 self.id, f"the print has a relative error of {shown(gap, 3)}, and no declared correction holds"
             )
-        note = f"as printed {shown(self.formula(sample[0]), 6)}"
+        note = f"as printed {shown(printed[0], 6)}"
         remark = f"{self.remark} ({note})" if self.remark else note
         return JudgedRow(
             self.id, self.place, self.printed, recomputed, "misprint", correction=self.correction, remark=remark

@@ -69,12 +69,8 @@ def derivative(function: Callable[[Any], Any], at: Any = 0, order: int = 1) -> A
 
 
 def vector_derivative(function: Callable[[Any], Vector], at: Any = 0, order: int = 1) -> Vector:
-    """Return the derivative of a vector."""
-
-    def component(i: int) -> Callable[[Any], Any]:
-        return lambda s: function(s)[i]
-
-    return tuple(derivative(component(i), at, order) for i in range(len(function(MP.mpf(at)))))
+    """Return the derivative of a vector, whose components are computed together."""
+    return tuple(derivative(lambda s: MP.matrix(function(s)), at, order))
 
 
 def dot(a: Vector, b: Vector) -> Any:

@@ -1,200 +1,219 @@
-"""Figures 1 and 3 to 9 of Mathar's paper, drawn again from runs of the reference (matplotlib, extra `plot`)."""
+"""Figures 1 to 9 of Mathar's paper from runs of the reference: the lines of their panels, and their captions."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 
-from reference import load_scene
+from reference import InputError, load_scene
 from reference.precision import Array
 
 from ..approximations import APPROXIMATIONS, Motion
+from ..methods import METHODS, available
 from ..observed.swing_plane import rest_in_metres
 from ..position_error import difference, distance
-from ..report.charts.drawing import COLOURS, FAINT, picture, sheet
+from ..report.charts.drawing import COLOURS, FAINT, GUIDE
+from ..report.charts.labels import Line
+from ..report.charts.panels import Panel, dots, drawn, line
+from ..rhs.problem import Problem
 from .digits import degrees, mpf
-from .figure_runs import estimate_at, frequencies, orders_at, window
 from .first_principles import rest_angle
+from .mathar.paris import estimate
 from .points import paris
-from .runs import paris_path, paris_swing_plane
+from .runs import frequency, paris_path, paris_swing_plane, solved, window
 
 BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WINDOWS = (0, 7000, 12000)  # s
-WIDE, HIGH = 7.6, 4.0  # inches
+FIXED_STEP = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
+LATITUDES = tuple(range(-90, 91, 10))
+SPAN = "600"  # s of a run that measures a frequency
+DAY: dict[str, Any] = {"x": "t in h", "xlim": (0, 24), "xticks": range(0, 25, 6)}
+EAST_WEST: dict[str, Any] = {"x": "geodetic latitude in °", "xticks": range(-90, 91, 45)}
 
 
-def figure_1(figure: Any) -> None:
-    """Draw the rest position's angle against latitude, l = 1, 10, 100 m."""
-    axes = figure.subplots()
-    latitudes = np.linspace(-90, 90, 73)
+@dataclass(frozen=True)
+class Figure:
+    """A figure: the panels drawn here, the caption that the paper prints, and a remark on the drawing."""
+
+    panels: Callable[[], list[Panel]]
+    printed: str
+    remark: str
+
+
+def _rest_by_latitude() -> list[Panel]:
+    latitudes = np.linspace(-90, 90, 37)
+    lines = []
     for length, colour, dashes in zip((1, 10, 100), (BLUE, RED, GREEN), DASHES, strict=False):
         p = paris().but(length=mpf(length))
-        angles = [abs(float(degrees(rest_angle(p.but(latitude=mpf(float(d))))))) for d in latitudes]
-        axes.plot(latitudes, angles, color=colour, linestyle=dashes, label=f"l = {length} m")
-    axes.set(xlabel="geodetic latitude in °", ylabel="deviation from the vertical in °", xlim=(-90, 90), ylim=(0, None))
-    axes.set_xticks(range(-90, 91, 30))
-    axes.legend(loc="upper center")
+        angles = [abs(degrees(rest_angle(p.but(latitude=mpf(float(d)))))) for d in latitudes]
+        lines.append(line(f"l = {length} m", latitudes, angles, colour, dashes))
+    return [
+        Panel(lines, y="deviation from the vertical in °", named=True, xlim=(-90, 90), ylim=(0, 0.105), **EAST_WEST)
+    ]
 
 
-def figure_3(figure: Any) -> None:
-    """Draw x and y over 20 s, three times."""
-    panels = figure.subplots(1, 3, sharey=True)
-    for begin, axes in zip(WINDOWS, panels, strict=True):
+def _triangle() -> list[Panel]:
+    phi, share = float(paris().phi), 0.4  # of gravity: on the Earth RΩ² is 0.23 % of it, which nobody would see
+    pivot, foot = np.zeros(2), np.array([0.0, -1.0])  # north and up
+    end = foot + share * np.array([-np.sin(phi), np.cos(phi)])
+    sides = (
+        ("gravity g", pivot, foot, BLACK, "-"),
+        ("centrifugal RΩ²", end, foot, RED, "-"),
+        ("g'", pivot, end, GREEN, "-"),
+        ("rod", pivot, -0.45 * end, BLUE, DASHES[1]),
+    )
+    lines, names = [], []  # each name stands beside the middle of its side
+    for name, begin, stop, colour, dashes in sides:
+        x, y = np.linspace(begin, stop, 9).T
+        lines.append(line("", x, y, colour, dashes, 1.8))
+        names.append(dots(name, x[4:5], y[4:5], colour, size=0))
+    angles = [dots("φ", [-0.03], [-0.25], FAINT, size=0), dots("ϕ", [-0.04], [-0.84], FAINT, size=0)]
+    return [Panel([*lines, *names, *angles], bare=True, level=True, xlim=(-0.8, 0.8), ylim=(-1.05, 0.4))]
+
+
+def _three_windows() -> list[Panel]:
+    panels = []
+    for begin in WINDOWS:
         times, states = window(begin, 20)
-        axes.plot(times, states[:, 0], color=BLUE, linestyle=DASHES[0], label="x, east")
-        axes.plot(times, states[:, 1], color=RED, linestyle=DASHES[1], label="y, north")
-        axes.axhline(0, color=FAINT, linewidth=0.5)
-        axes.set(xlabel="t in s", xlim=(begin, begin + 20))
-        axes.set_xticks([begin + 5, begin + 15])
-    panels[0].set_ylabel("position in m")
-    _legend_above(figure, panels[0])
+        lines = [
+            line("x, east", times - begin, states[:, 0], BLUE),
+            line("y, north", times - begin, states[:, 1], RED, DASHES[1]),
+            _zero(0, 20),
+        ]
+        last = begin == WINDOWS[-1]
+        panels.append(
+            Panel(
+                lines, "t in s, counted from there" if last else "", "m", f"from {begin} s", not begin, 1.5, (0, 20),
+                (-0.75, 0.65), range(0, 21, 5), (-0.5, 0, 0.5),
+            )
+        )  # fmt: skip
+    return panels
 
 
-def figure_4(figure: Any) -> None:
-    """Draw three swings in space and from above."""
-    space, above = figure.add_subplot(1, 2, 1, projection="3d"), figure.add_subplot(1, 2, 2)
+def _from_above_and_south() -> list[Panel]:
     rest = rest_in_metres(load_scene("paris"))
+    above, south = [], []
     for begin, colour, dashes in zip(WINDOWS, (BLUE, RED, GREEN), DASHES, strict=False):
         _, states = window(begin, 17)
-        space.plot(states[:, 0], states[:, 1], 1000 * (states[:, 2] + 67), color=colour, linestyle=dashes)
-        above.plot(states[:, 0], states[:, 1], color=colour, linestyle=dashes, label=f"from {begin} s")
-    above.plot(rest[0], rest[1], "+", color=BLACK, markersize=10)
-    above.set(xlabel="x (east) in m", ylabel="y (north) in m", aspect="equal", xlim=(-0.62, 0.62), ylim=(-0.8, 0.62))
-    above.legend(loc="upper left")
-    space.set(xlabel="x in m", ylabel="y in m")
-    space.text2D(0.98, 0.93, "z + 67 m, in mm", transform=space.transAxes, ha="right")
-    space.tick_params(labelsize=8, pad=1)
-    space.locator_params(nbins=5)
-    space.view_init(elev=22, azim=-65)
+        above.append(line(f"from {begin} s", states[:, 0], states[:, 1], colour, dashes))
+        south.append(line("", states[:, 0], 1000 * (states[:, 2] + 67), colour, dashes))
+    above.append(dots("rest", rest[:1], rest[1:2], BLACK, "P", 6))
+    ends = (-0.6, 0.6)
+    return [
+        Panel(above, "", "y (north) in m", "From above", True, 3.4, ends, (-0.72, 0.48), level=True),
+        Panel(south, "x (east) in m", "z + 67 m, in mm", "From the south, heights stretched", xlim=ends, height=2.0),
+    ]
 
 
-def _snapshots() -> tuple[Array, Array]:
-    """Return hours and states every 30 s."""
+def _heights() -> list[Panel]:
     times, states = paris_path()
-    return times[::120] / 3600, states[::120]
+    release = line("release", (0, 24), states[[0, 0], 2], RED, DASHES[1], 1)
+    return [Panel([dots("", times / 3600, states[:, 2], BLUE), release], y="z in m", named=True, **DAY)]
 
 
-def _day(axes: Any) -> None:
-    axes.set(xlabel="t in h", xlim=(0, 24))
-    axes.set_xticks(range(0, 25, 3))
-
-
-def figure_5(figure: Any) -> None:
-    """Draw z over a day."""
-    axes = figure.subplots()
-    hours, states = _snapshots()
-    axes.plot(hours, states[:, 2], ".", color=BLUE, markersize=2)
-    axes.axhline(states[0, 2], color=RED, linewidth=1, linestyle=DASHES[1])
-    axes.annotate(
-        f"release, z = {states[0, 2]:.4f} m",
-        (13.5, states[0, 2]),
-        (13.5, -66.9972),
-        color=RED,
-        arrowprops={"arrowstyle": "-", "color": RED, "linewidth": 0.6},
-        backgroundcolor="white",
-    )
-    axes.set(ylabel="z in m")
-    axes.ticklabel_format(axis="y", useOffset=False)
-    _day(axes)
-
-
-def figure_6(figure: Any) -> None:
-    """Draw the azimuth over a day."""
-    axes = figure.subplots()
-    hours, states = _snapshots()
-    axes.plot(hours, np.degrees(np.arctan2(states[:, 1], states[:, 0])), ".", color=BLUE, markersize=2)
-    plane = paris_swing_plane()[::120]
+def _azimuths() -> list[Panel]:
+    times, states = paris_path()
+    hours, turned = times / 3600, np.degrees(paris_swing_plane())
+    lines = [dots("λ", hours, np.degrees(np.arctan2(states[:, 1], states[:, 0])), BLUE)]
     for turn in (-1, 0, 1, 2):
-        line = np.degrees(plane) + 180 * turn
-        axes.plot(hours, np.where(np.abs(line) <= 180, line, np.nan), color=RED, linewidth=1)
-    axes.set(ylabel="azimuth λ in ° (east to north)", ylim=(-180, 180))
-    axes.set_yticks(range(-180, 181, 60))
-    _day(axes)
+        inside = np.abs(turned + 180 * turn) <= 180
+        if inside.any():
+            name = "plane" if turn == 1 else ""
+            lines.append(line(name, hours[inside], (turned + 180 * turn)[inside], RED, width=1))
+    ends: dict[str, Any] = {"ylim": (-180, 180), "yticks": range(-180, 181, 60)}
+    return [Panel(lines, y="azimuth in ° (east to north)", named=True, **DAY, **ends)]
 
 
-def figure_7(figure: Any) -> None:
-    """Draw x and y after 12000 s: full, without rotation, without the off-diagonal elements, without Ω²."""
-    figure.set_figheight(1.35 * HIGH)
-    panels = figure.subplots(2, 1, sharex=True)
+def _simplified() -> list[Panel]:
     times, full = window(12000, 20)
-    no_rotation = load_scene("paris", ["site.rotation_rate=0"])
     output_times = np.concatenate(([0.0], times))
-    others = (
-        ("Ω = 0", GREEN, DASHES[3], window(12000, 20, no_rotation)[1]),
-        ("without -yx (item 2)", BLUE, DASHES[1], _path("mathar_item_2", output_times)),
-        ("without Ω² (item 1)", RED, DASHES[2], _path("mathar_item_1", output_times)),
+
+    def item(name: str) -> Array:
+        motion = APPROXIMATIONS[name]
+        assert isinstance(motion, Motion)
+        return motion.trajectory(load_scene("paris"), output_times)[1:]
+
+    curves = (
+        ("full", full, PINK, "-", 2.2),
+        ("Ω = 0", window(12000, 20, load_scene("paris", ["site.rotation_rate=0"]))[1], GREEN, DASHES[3]),
+        ("item 2", item("mathar_item_2"), BLUE, DASHES[1]),
+        ("item 1", item("mathar_item_1"), RED, DASHES[2]),
     )
-    for i, axes in enumerate(panels):
-        axes.plot(times, full[:, i], color=PINK, linewidth=2.2, label="full theory")
-        for label, colour, dashes, states in others:
-            axes.plot(times, states[:, i], color=colour, linestyle=dashes, label=label)
-        axes.axhline(0, color=FAINT, linewidth=0.5)
-        axes.set(ylabel=f"{'xy'[i]} in m", xlim=(12000, 12020))
-    panels[1].set_xlabel("t in s")
-    panels[1].set_xticks(range(12000, 12021, 5))
-    _legend_above(figure, panels[0])
+    return [
+        Panel(
+            [
+                *(line(name, times, states[:, i], *style) for name, states, *style in curves),
+                _zero(12000, 12020),
+            ],
+            "t in s" if i else "", f"{'xy'[i]} in m", "", not i, 2.0, (12000, 12020), xticks=range(12000, 12021, 10),
+        )
+        for i in (0, 1)
+    ]  # fmt: skip
 
 
-def _path(name: str, times: Array) -> Array:
-    motion = APPROXIMATIONS[name]
-    assert isinstance(motion, Motion)
-    return motion.trajectory(load_scene("paris"), times)[1:]
+def _frequency_by_latitude() -> list[Panel]:
+    latitudes, measured = np.linspace(-90, 90, 61), frequencies()
+    lines = [
+        line("estimate", latitudes, [estimate_at(float(d)) for d in latitudes], RED, width=1),
+        dots("runs", list(measured), list(measured.values()), BLUE, "o", 4),
+    ]
+    return [Panel(lines, y="frequency in Hz", named=True, xlim=(-93, 93), **EAST_WEST)]
 
 
-def figure_8(figure: Any) -> None:
-    """Draw the frequency against latitude."""
-    axes = figure.subplots()
-    latitudes = np.linspace(-90, 90, 91)
-    axes.plot(latitudes, [estimate_at(float(d)) for d in latitudes], color=RED, linewidth=1)
-    measured = frequencies()
-    axes.plot(list(measured), list(measured.values()), "o", color=BLUE, markersize=4, fillstyle="none")
-    axes.annotate(
-        "Paris, 0.0608436 Hz",
-        (48.846111, estimate_at(48.846111)),
-        (12, 0.060868),
-        arrowprops={"arrowstyle": "-", "color": FAINT, "linewidth": 0.7},
-    )
-    axes.set(xlabel="geodetic latitude in °", ylabel="frequency in Hz", xlim=(-93, 93))
-    axes.set_xticks(range(-90, 91, 30))
-    axes.ticklabel_format(axis="y", useOffset=False)
-
-
-def figure_9(figure: Any) -> None:
-    """Draw three fixed-step methods at steps of 0.5 s after 12000 s."""
-    figure.set_figheight(1.35 * HIGH)
-    panels = figure.subplots(2, 1, sharex=True)
-    times, truth = window(12000, 20, step=0.5)
-    smooth, path = window(12000, 20)
-    panels[0].plot(smooth, path[:, 0], color=FAINT, linewidth=1, label="reference")
-    labels = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
-    for (name, states), colour, mark in zip(orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osx", strict=True):
-        panels[0].plot(times, states[:, 0], mark, color=colour, fillstyle="none", markersize=5, label=labels[name])
+def _three_orders() -> list[Panel]:
+    (times, truth), (smooth, path) = window(12000, 20, step=0.5), window(12000, 20)
+    above, below = [line("", smooth, path[:, 0], FAINT, width=1)], []
+    for (name, states), colour, mark in zip(orders_at(12000, 20, 0.5).items(), (RED, BLUE, GREEN), "osX", strict=True):
+        above.append(dots("", times, states[:, 0], colour, mark, 5))
         gap = distance(map(difference, states.T[:3], truth.T[:3]))
-        panels[1].plot(times, gap, color=colour, marker=mark, fillstyle="none", markersize=5, linewidth=0.7)
-    panels[0].set(ylabel="x in m", xlim=(12000, 12020))
-    panels[1].set(ylabel="error in m", xlabel="t in s", yscale="log")
-    panels[1].set_xticks(range(12000, 12021, 5))
-    _legend_above(figure, panels[0])
+        below.append(dots(FIXED_STEP[name], times, gap, colour, mark, 5, "-"))
+    ends: dict[str, Any] = {"xlim": (12000, 12020), "xticks": range(12000, 12021, 10)}
+    return [
+        Panel(above, y="x in m", height=1.9, **ends),
+        Panel(below, "t in s", "error in m", named=True, log=True, height=2.2, **ends),
+    ]
 
 
-def _legend_above(figure: Any, axes: Any) -> None:
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=len(labels))
+def _zero(begin: float, end: float) -> Line:
+    return Line("", [begin, end], [0, 0], GUIDE)
 
 
-FIGURES: dict[int, Callable[[Any], None]] = {
-    1: figure_1,
-    3: figure_3,
-    4: figure_4,
-    5: figure_5,
-    6: figure_6,
-    7: figure_7,
-    8: figure_8,
-    9: figure_9,
-}
+@cache
+def frequencies() -> dict[float, float]:
+    """Return the frequency in Hz by latitude in degrees, from runs of the reference."""
+    latitudes = [*map(str, LATITUDES), "48.846111"]
+    return {float(text): float(frequency(solved([f"site.latitude={text}"], SPAN, 12))) for text in latitudes}
+
+
+def estimate_at(latitude: float) -> float:
+    """Return the paper's last but one estimate of the frequency in Hz: (51)-(52) with g' of (48), slowed by 2K/π."""
+    return float(estimate(paris().but(latitude=mpf(latitude))))
+
+
+def orders_at(begin: float, span: float, step: float) -> dict[str, Array]:
+    """Return the states of the three fixed-step methods of the paper's program at every step of an interval.
+
+    Raises:
+        InputError: one of them is not installed.
+    """
+    check_methods()
+    times = np.arange(round((begin + span) / step) + 1) * step
+    problem = Problem.of(load_scene("paris", ["inputs=binary64"]), "plane", times)
+    first = round(begin / step)
+    return {name: METHODS[name].prepare(problem, step)().states[first:] for name in FIXED_STEP}
+
+
+def check_methods() -> None:
+    """Raise InputError if the methods of figure 9 cannot run here."""
+    for name in FIXED_STEP:
+        missing = available(METHODS[name])
+        if missing is not None:
+            raise InputError("--out", f"no {name}", "the methods of figure 9 (extra `methods`)", f"It is {missing}.")
 
 
 def svg(number: int) -> str:
@@ -203,6 +222,67 @@ def svg(number: int) -> str:
     Raises:
         InputError: matplotlib is not installed.
     """
-    with sheet((WIDE, HIGH)) as figure:
-        FIGURES[number](figure)
-        return picture(figure).decode()
+    return drawn(FIGURES[number].panels())
+
+
+FIGURES = {
+    1: Figure(
+        _rest_by_latitude,
+        "Angular deviation φ of the rest position from the local geodetic vertical for pendulums at geodetic latitudes "
+        "ϕ on Earth. These are three curves for l = 1, 10 and 100 m which are indistinguishable on this scale.",
+        "Rest positions of the reference. The three curves differ by at most 1.6e-6°.",
+    ),
+    2: Figure(
+        _triangle,
+        "Triangle of forces in a cross section through the Earth with the pendulum at geographic latitude ϕ : "
+        "gravitational acceleration g, centrifugal acceleration RΩ² parallel to the equatorial plane, their vector sum "
+        "g', and the direction (blue) of the rod parallel to g'. φ is the mismatch between the local geodetic down "
+        "direction and the kinematically balanced direction of a plumb line.",
+        "North is to the right. RΩ² is drawn 170 times too long: φ is 0.0985°, which one would not see.",
+    ),
+    3: Figure(
+        _three_windows,
+        "Initial 20 seconds of the trajectory in x and y for the Paris pendulum released at x = 0.3 m and y = 0.4 m, "
+        "another interval of 20 seconds after 7000 seconds have passed, and another 20 seconds when 12000 seconds have "
+        "passed.",
+        "The swing plane turns clockwise: the swing along y shrinks and that along x grows.",
+    ),
+    4: Figure(
+        _from_above_and_south,
+        "Three trajectories each of 17 seconds of duration equivalent to snapshots of Figure 3 in a 3D view and in the "
+        "projection on the x-y-plane, demonstrating the slow rotation of the main plane of the pendulum motion around "
+        "the point equivalent to the rest position.",
+        "The cross is the rest position, 11.5 cm south of the point below the pivot. The other projection stands for "
+        "the 3D view.",
+    ),
+    5: Figure(
+        _heights,
+        "Snapshots of the z-coordinate of the Paris pendulum.",
+        "One snapshot every 30 s for 24 h. The text's -66.98 m for the release is a misprint: it is -66.998 m.",
+    ),
+    6: Figure(
+        _azimuths,
+        "Snapshots of the λ-angle of the Paris pendulum.",
+        "One snapshot every 30 s. λ is measured about the point below the suspension, while the swing passes through "
+        "the rest position: so the dots crowd beside the line, which is the direction of the swing plane. That "
+        "direction stays within 0.005° of a uniform rotation for a day.",
+    ),
+    7: Figure(
+        _simplified,
+        "The difference in positions between the full theory and different approximations introduced in Section VI.",
+        "Without rotation the pendulum is half a swing late; item 1 drops Ω², item 2 the off-diagonal elements.",
+    ),
+    8: Figure(
+        _frequency_by_latitude,
+        "The frequency of the pendulum as a function of the geodetic latitude ϕ, measured by time differences between "
+        "transits xdot = 0.",
+        "Points: runs of the reference over 10 min, half swings counted. Line: harmonic in the apparent gravity g', "
+        "with the slow-down 2K/π.",
+    ),
+    9: Figure(
+        _three_orders,
+        "Illustration of the effect of the 3 different Runge-Kutta-Nyström order parameters through the -R option of "
+        "the program on the Paris pendulum positions at a step size of 0.5 seconds after 12000 seconds have passed.",
+        "Above: positions, the reference in grey. Below: distance from the reference.",
+    ),
+}  # as printed, and a remark on the figure drawn here

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.force import acceleration, rest_position
+from reference.model.force import acceleration, rest_position, tension
 
 from .digits import MP, Vector, add, cos, cross, derivative, dot, scale, sin, sqrt, tan, vector_derivative
 from .points import Point
@@ -114,3 +114,14 @@ def rest_angle(p: Point) -> Any:
     """Return the angle of the rest position from straight down, to the south, in radians."""
     _, y, z = rest(p)
     return MP.atan2(-y, -z)
+
+
+def pull_at_rest(p: Point) -> Any:
+    """Return the tension of the cord per mass in the rest position."""
+    n = scale(1 / p.length, rest(p))
+    return p.length * tension(n, (0, 0, 0), p.k)
+
+
+def moving(p: Point, s: Any) -> Vector:
+    """Return the bob in local axes, its angles changing at their rates."""
+    return by_angles(p, p.cord + p.cord_rate * s, p.azimuth + p.azimuth_rate * s)

@@ -7,8 +7,8 @@ from dataclasses import asdict, fields
 
 from ..report.folder import PAGE, csv_text, json_text
 from ..report.page import Column, Html, TableRow, choices, faint, page, paragraph, plate, section, strong, table
-from .captions import CAPTIONS
 from .checks import VERDICTS, JudgedRow
+from .figures import FIGURES
 
 MEANING = {
     "exact": "both sides agree to 45 digits or more at every random point, or the number is exactly as printed",
@@ -16,6 +16,16 @@ MEANING = {
     "approximation": "an approximation; its error is measured, and the power with which it shrinks",
     "misprint": "does not hold as printed; the correction was put to the same test and holds",
 }
+NOT_JUDGED = (
+    ("Mathar II, after (19)", "the substitution that leads from [6, (22)] to (17)-(19)", "needs the text of [6]"),
+    ("Mathar V, after (50)", "compatible with footnote 5 in [17]", "needs the text of [17]; (47) and (50) are judged"),
+    ("Mathar, Fig. 9", "the main results were obtained with steps of 0.01 s", "what was done, not what is so"),
+    (
+        "Mathar, appendix A",
+        "what the switches mean, their other defaults, the columns of the output",
+        "they define the program; `foucault pend` follows them",
+    ),
+)
 
 
 def document(row: JudgedRow) -> dict[str, str]:
@@ -42,12 +52,13 @@ def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, st
 def page_text(rows: Sequence[JudgedRow], figures: dict[int, str]) -> str:
     """Return the page as HTML."""
     counts: dict[str, int] = {verdict: sum(row.verdict == verdict for row in rows) for verdict in VERDICTS}
-    plates = [plate(figures[caption.number], caption.number, caption.printed, caption.remark) for caption in CAPTIONS]
+    plates = [plate(figures[n], n, FIGURES[n].printed, FIGURES[n].remark) for n in FIGURES]
     return page(
         "The papers' formulas, numbers and figures, recomputed",
         [
             section("Verdicts", _counted(counts)),
             section("Figures of the first paper, drawn again", *plates),
+            section("Not judged", _not_judged()),
             section("Every line", choices({word: f"{word} ({count})" for word, count in counts.items()}), _lines(rows)),
         ],
         lead=_lead(len(rows)),
@@ -71,6 +82,11 @@ def _lead(count: int) -> Html:
 def _counted(counts: dict[str, int]) -> Html:
     columns = [Column("verdict"), Column("lines", "number"), Column("meaning", "prose")]
     return table(columns, [TableRow([strong(word), str(count), MEANING[word]], word) for word, count in counts.items()])
+
+
+def _not_judged() -> Html:
+    columns = [Column("place"), Column("printed", "prose"), Column("why there is no verdict", "prose")]
+    return table(columns, [TableRow(cells) for cells in NOT_JUDGED])
 
 
 def _lines(rows: Sequence[JudgedRow]) -> Html:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import random
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 from reference.inputs import Inputs
@@ -143,12 +143,14 @@ _RANGES = {
 }  # fmt: skip
 
 
-def points(count: int = COUNT) -> list[Point]:
+@cache
+def points() -> tuple[Point, ...]:
     """Return random points, the same in every run."""
     draw = random.Random(SEED)
-    return [Point(**{name: MP.mpf(draw.uniform(*ends)) for name, ends in _RANGES.items()}) for _ in range(count)]
+    return tuple(Point(**{name: MP.mpf(draw.uniform(*ends)) for name, ends in _RANGES.items()}) for _ in range(COUNT))
 
 
+@cache
 def paris() -> Point:
     """Return the Paris pendulum at its release, Mathar VII: decimals as printed."""
     texts = {"radius": "6378137", "altitude": "0", "latitude": "48.846111", "length": "67", "gravity": "9.80665",

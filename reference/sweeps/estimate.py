@@ -1,9 +1,10 @@
 """How large the error of a row is: from a second run of another order, with every constant and start moved by an ulp.
 
-Both runs round differently everywhere, the constants included, so that their difference is of the size of the error;
-the factor covers that it may be smaller by chance. Where errors have grown to many ulps they point one way, and the
-two may cancel: there a third run, moved the other way, differs where the second does not. Of 3,500 random scenes none
-had a larger error than estimated here (tests/campaigns/test_sweeps.py).
+Both runs round differently everywhere, the constants included, so that their difference is of the size of the error.
+It may be smaller by chance: therefore the factor, and a least difference, what half an ulp in the constants may do.
+Where errors have grown to many ulps, or where the bob has the energy to rise to the pivot and they may grow, they point
+one way, and the two may cancel. There a third run is moved the other way, and the factor is larger. Of 3,500 random
+scenes none may have a larger error than estimated here (tests/campaigns/test_sweeps.py).
 """
 
 from __future__ import annotations
@@ -17,7 +18,9 @@ from ..engines.batch import STOPPED, Batch, Outcomes, Rows, Wanted
 from ..precision import Array
 
 FACTOR = 16.0
+WILD_FACTOR = 64.0  # where there are three runs
 LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
+HALF_ULP = 2.0**-53  # of a number just above 1, relative
 GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
 MOVED, MOVED_BACK = (Wanted(transits=False, apsides=False, moved=way) for way in (1, -1))
@@ -51,7 +54,8 @@ def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     """Return the errors of a run, and which rows stop where they are moved: at least one more run, by its engine."""
     moved = engine.solve(rows, MOVED)
     found, stopped = errors(rows, run, moved), moved.fate == STOPPED
-    grown = np.flatnonzero(~stopped & ~(found.position <= GROWN * rows.length[:, 0]))
+    wild = ~(found.position <= GROWN * rows.length[:, 0]) | _reaches_the_pivot(rows)
+    grown = np.flatnonzero(~stopped & wild)
     if not len(grown):
         return found, stopped
     back = engine.solve(rows[grown], MOVED_BACK)
@@ -60,20 +64,26 @@ def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     near, far = (np.linalg.norm(rate * gap[:, :3], axis=1) + np.linalg.norm(gap[:, 3:], axis=1) for gap in gaps)
     state[grown[far > near]] = back.state[far > near]
     stopped[grown] |= back.fate == STOPPED
-    return errors(rows, run, replace(moved, state=state)), stopped
+    return errors(rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR)), stopped
 
 
-def errors(rows: Rows, run: Outcomes, moved: Outcomes) -> Errors:
-    """Return the errors of a run, from the run that was moved."""
+def _reaches_the_pivot(rows: Rows) -> Any:
+    """Return which rows have the energy to rise as high as the pivot."""
+    n, V, pull = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0]
+    return (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
+
+
+def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> Errors:
+    """Return the errors of a run, from the run that was moved, and what their difference is multiplied by."""
     length, rate = rows.length[:, 0], rows.rate
     gap = run.state - moved.state
     position, velocity = np.linalg.norm(gap[:, :3], axis=1), np.linalg.norm(gap[:, 3:], axis=1)
-    ulp = LEAST_ULPS * np.spacing(length)
+    ulp = LEAST_ULPS * np.spacing(length) + _of_constants(rows)
     speed = np.linalg.norm(run.state[:, 3:], axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         # where a swing is late its position tells at the lowest point, its velocity at the highest
-        position = FACTOR * np.fmax(position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp))
-        velocity = FACTOR * np.fmax(velocity, np.fmax(rate * position / FACTOR, LEAST_ULPS * np.spacing(speed)))
+        position = factor * np.fmax(position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp))
+        velocity = factor * np.fmax(velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed)))
         transit = velocity / run.least_ax + np.spacing(run.t_last)
         frequency = (run.transits - 1) * transit / (run.t_last - run.t_first) ** 2
         swing, precession = _of_swing(rows, run, position, velocity)
@@ -87,6 +97,15 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes) -> Errors:
         angle=np.degrees(position / length),
         undecided=_undecided(rows, run, velocity, speed),
     )
+
+
+def _of_constants(rows: Rows) -> Array:
+    """Return how far constants that are off by half an ulp may turn a swing in the whole span, in m."""
+    n, V, pull, rate = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0], rows.rate
+    below = np.fmax(1 - (n * pull).sum(axis=1) / rate**2, 0.0)  # cosine of the angle at the release, from 1
+    reach = np.fmin(np.sqrt(2 * below) + np.linalg.norm(V, axis=1) / rate, 1.0)
+    turned: Array = rows.length[:, 0] * reach * rate * rows.t_end[:, 0] * HALF_ULP
+    return np.where(rate > 0, turned, 0.0)
 
 
 def _of_swing(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> tuple[Array, Array]:

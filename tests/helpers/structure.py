@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import sys
 from collections import Counter
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 PACKAGES = ("reference", "compare")
@@ -23,26 +23,34 @@ def sources(root: Path) -> list[Path]:
     return sorted([root / "foucault.py", *(path for name in PACKAGES for path in (root / name).rglob("*.py"))])
 
 
-def imported(path: Path, root: Path) -> Iterator[Path]:
+@cache
+def imported(path: Path, root: Path) -> set[Path]:
     """The files and packages of the project that a file imports anywhere, as paths without a suffix."""
-    inside = list(path.relative_to(root).parts[:-1])
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    inside, found = list(path.relative_to(root).parts[:-1]), set()
+    for node in ast.walk(tree(path)):
         if isinstance(node, ast.Import):
-            yield from (target for alias in node.names for target in _existing(root, alias.name.split(".")))
+            found |= {target for alias in node.names for target in _existing(root, *alias.name.split("."))}
         elif isinstance(node, ast.ImportFrom):
             base = inside[: len(inside) + 1 - node.level] if node.level else []
             words = [*base, *(node.module.split(".") if node.module else [])]
-            for alias in node.names:
-                yield from _existing(root, [*words, alias.name])
+            found |= {target for alias in node.names for target in _existing(root, *words, alias.name)}
+    return found
 
 
-def _existing(root: Path, words: list[str]) -> Iterator[Path]:
+@cache
+def tree(path: Path) -> ast.Module:
+    """A source file as Python reads it."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@cache
+def _existing(root: Path, *words: str) -> tuple[Path, ...]:
     """The longest part of a dotted name that is a module or a package here."""
     for count in range(len(words), 0, -1):
         target = root.joinpath(*words[:count])
         if target.with_suffix(".py").is_file() or (target / "__init__.py").is_file():
-            yield target
-            return
+            return (target,)
+    return ()
 
 
 def arrows(root: Path, place: str = "") -> tuple[set[str], Arrows]:
@@ -109,7 +117,7 @@ def class_names(root: Path) -> dict[str, list[str]]:
     """The files of every class name that is used more than once."""
     places: dict[str, list[str]] = {}
     for path in sources(root):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(tree(path)):
             if isinstance(node, ast.ClassDef):
                 places.setdefault(node.name, []).append(path.relative_to(root).as_posix())
     return {name: files for name, files in sorted(places.items()) if len(files) > 1}

@@ -6,12 +6,12 @@ from typing import Any
 
 from ..checks import Approximate, Check, Identity
 from ..digits import Vector, cos, sin, vector_derivative
-from ..linear import rate_up
-from ..mathar.slow import linearised
+from ..linear import coupled, coupled_at, linearised, rate_up
 from ..points import Point, points
-from .general import angle_accelerations
-from .lagrangian import angle_functions
-from .numbers import G
+from ..section import Section
+from .lagrangian import angle_accelerations, angle_functions
+
+G = Section("gastebois_", "Gastebois")
 
 
 def small_accelerations(p: Point) -> Vector:
@@ -72,80 +72,29 @@ def _flat_end(p: Point) -> Vector:
     return -p.gravity * cl * theta + 2 * up * across, -p.gravity * sl * theta - 2 * up * along
 
 
-def _harmonic(p: Point) -> Vector:
-    """Return -ω0² x + 2 y'Ω sinλ_a and its partner at the small-angle x, y."""
-    x, y = _flat(p)
-    vx, vy = vector_derivative(lambda s: _flat(p, s))
-    square, up = p.gravity / p.length, rate_up(p)
-    return -square * x + 2 * vy * up, -square * y - 2 * vx * up
-
-
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return [
-        Approximate(
-            "gastebois_7_3_theta",
-            f"{G} 7.3",
-            "θ'' = -g_a/L0 θ + θ φ'² + 2 θ sinλ_a Ω φ'",
-            lambda s: (small_accelerations(_narrow(s))[0], angle_accelerations(_narrow(s))[0]),
-            1,
-            "θ",
-            remark="at a random point",
+        *G.rows(
+            Approximate("7_3_theta", "7.3", "θ'' = -g_a/L0 θ + θ φ'² + 2 θ sinλ_a Ω φ'",
+                lambda s: (small_accelerations(_narrow(s))[0], angle_accelerations(_narrow(s))[0]), 1, "θ",
+                remark="at a random point"),
+            Approximate("7_3_phi", "7.3", "φ'' = (-2 θ'φ' - 2 sinλ_a Ω θ') / θ",
+                lambda s: (small_accelerations(_narrow(s))[1], angle_accelerations(_narrow(s))[1]), 1, "θ",
+                remark="at a random point"),
+            Identity("7_3_first", "7.3",
+                "x'' = L0 θ'' cosφ - …, y'' = L0 θ'' sinφ + … (of x = L0 θ cosφ, y = L0 θ sinφ)",
+                _flat_printed, lambda p: vector_derivative(lambda s: _flat(p, s), 0, 2)),
+            Identity("7_3_x", "7.3", "x'' = L0 cosφ (…) - … - L0 sinφ (-2θ'φ' - 2Ωθ' sinλ_a)",
+                lambda p: _flat_middle(p, 1)[0], lambda p: _flat_solved(p)[0]),
+            Identity("7_3_y", "7.3", "y'' = L0 sinφ (…) + … - L0 cosφ (-2θ'φ' - 2Ωθ' sinλ_a)",
+                lambda p: _flat_middle(p, -1)[1], lambda p: _flat_solved(p)[1], "the last group has +",
+                lambda p: _flat_middle(p, 1)[1]),
+            Identity("7_3_end", "7.3", "x'' = -g_a cosφ θ + 2Ω sinλ_a (…), y'' = -g_a sinφ θ - 2Ω sinλ_a (…)",
+                _flat_end, _flat_solved),
+            Identity("7_3_5", "7.3", "the equations of section 5 again",
+                lambda p: coupled(p, _flat(p), vector_derivative(lambda s: _flat(p, s))), _flat_solved),
+            Identity("7_3_5b", "7.3", "x'' = -g_a x/L0 + 2y'Ω sinλ_a, y'' = -g_a y/L0 - 2x'Ω sinλ_a",
+                coupled_at, linearised),
         ),
-        Approximate(
-            "gastebois_7_3_phi",
-            f"{G} 7.3",
-            "φ'' = (-2 θ'φ' - 2 sinλ_a Ω θ') / θ",
-            lambda s: (small_accelerations(_narrow(s))[1], angle_accelerations(_narrow(s))[1]),
-            1,
-            "θ",
-            remark="at a random point",
-        ),
-        Identity(
-            "gastebois_7_3_first",
-            f"{G} 7.3",
-            "x'' = L0 θ'' cosφ - …, y'' = L0 θ'' sinφ + … (of x = L0 θ cosφ, y = L0 θ sinφ)",
-            _flat_printed,
-            lambda p: vector_derivative(lambda s: _flat(p, s), 0, 2),
-        ),
-        Identity(
-            "gastebois_7_3_x",
-            f"{G} 7.3",
-            "x'' = L0 cosφ (…) - … - L0 sinφ (-2θ'φ' - 2Ωθ' sinλ_a)",
-            lambda p: _flat_middle(p, 1)[0],
-            lambda p: _flat_solved(p)[0],
-        ),
-        Identity(
-            "gastebois_7_3_y",
-            f"{G} 7.3",
-            "y'' = L0 sinφ (…) + … - L0 cosφ (-2θ'φ' - 2Ωθ' sinλ_a)",
-            lambda p: _flat_middle(p, -1)[1],
-            lambda p: _flat_solved(p)[1],
-            "the last group has +",
-            lambda p: _flat_middle(p, 1)[1],
-        ),
-        Identity(
-            "gastebois_7_3_end",
-            f"{G} 7.3",
-            "x'' = -g_a cosφ θ + 2Ω sinλ_a (…), y'' = -g_a sinφ θ - 2Ω sinλ_a (…)",
-            _flat_end,
-            _flat_solved,
-        ),
-        Identity(
-            "gastebois_7_3_5",
-            f"{G} 7.3",
-            "the equations of section 5 again",
-            _harmonic,
-            _flat_solved,
-        ),
-        Identity(
-            "gastebois_7_3_5b",
-            f"{G} 7.3",
-            "x'' = -g_a x/L0 + 2y'Ω sinλ_a, y'' = -g_a y/L0 - 2x'Ω sinλ_a",
-            lambda p: (
-                -p.gravity * p.x / p.length + 2 * p.vy * rate_up(p),
-                -p.gravity * p.y / p.length - 2 * p.vx * rate_up(p),
-            ),
-            linearised,
-        ),
-    ]
+    ]  # fmt: skip

@@ -1,17 +1,126 @@
-"""Gastebois, sections 1, 2 and 4.1: the rotation of the swing plane."""
+"""Gastebois, sections 1 to 4: turning axes, the rotation of the swing plane, apparent gravity."""
 
 from __future__ import annotations
 
+from typing import Any
+
 from reference import load_scene
+from reference.model.earth import axis_distance
 
 from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement
-from ..digits import MP, atan2, cross, dot, mpf, norm, pi, radians, shown, sin
-from ..points import paris
+from ..digits import (
+    MP,
+    Vector,
+    add,
+    atan2,
+    cos,
+    cross,
+    degrees,
+    dot,
+    mpf,
+    norm,
+    pi,
+    radians,
+    scale,
+    shown,
+    sin,
+    sqrt,
+    vector_derivative,
+)
+from ..first_principles import AXIS, moving, rotated
+from ..linear import linearised, rate_up, turning, turning_rates
+from ..points import Point, paris, points
 from ..runs import rotation, solved
-from .frames import turning
-from .gravity import apparent, pantheon_on_sphere
-from .numbers import MEAN_RADIUS, SIDEREAL_DAY, G
-from .turning_swing import narrow_swing, wide_swing
+from ..section import Section
+
+G = Section("gastebois_", "Gastebois")
+SIDEREAL_DAY = 2 * pi / mpf("7.292115e-5") / 3600  # h, by the rotation rate of WGS84
+EARTH_RADIUS = mpf("6370e3")  # m, as in the paper
+GRAVITY = mpf("9.8")  # m/s², as in the paper's 4.1
+PANTHEON_LATITUDE = mpf("48.87")
+PANTHEON_RELEASE = mpf("6.5")
+PANTHEON_LENGTH = mpf("67")
+MEAN_RADIUS = mpf("6371008.7714")  # m, NIMA TR8350.2: mean radius of semi-axes
+RATE = 2 * pi / (SIDEREAL_DAY * 3600)  # rad/s
+
+
+def swing_period(length: Any, r0: Any, gravity: Any, rate: Any) -> tuple[Any, Any]:
+    """Return period in s, and turn in rad a period, of a spherical pendulum let go at rest on ground that turns.
+
+    Closed form, in axes that do not turn: l² z'² = 2g (z - z1)(z - z2)(z - z3), z = z1 + (z2 - z1) sn², and the azimuth
+    is the elliptic integral of the third kind; z2 is the height of the release.
+    """
+    high = -sqrt(length**2 - r0**2)
+    speed = r0 * rate
+    energy, momentum = speed**2 / 2 + gravity * high, r0 * speed
+    half = (energy / gravity - high) / 2  # z1 and z3 are the roots of z² - 2 half z + product
+    product = (momentum**2 / 2 - energy * length**2) / gravity / high
+    spread = sqrt(half**2 - product)
+    low, outer = half - spread, half + spread
+    w = sqrt(gravity * (outer - low) / 2) / length
+    span, m = high - low, (high - low) / (outer - low)
+    pieces = MP.ellippi(span / (length - low), m) / (length - low) + MP.ellippi(-span / (length + low), m) / (
+        length + low
+    )
+    return 4 * MP.ellipk(m) / w, 2 * (momentum / (length * w) * pieces - pi)
+
+
+def plane_period(length: Any, r0: Any, gravity: Any, rate: Any) -> Any:
+    """Return T_f of a release at rest, as seen from the ground, in s."""
+    period, turn = swing_period(length, r0, gravity, rate)
+    return 2 * pi / (rate - turn / period)
+
+
+def wide_swing(s: Any) -> tuple[Any, Any]:
+    """Return T_f / T_p (1 + 3/8 r0²/L0²) and the closed form, at s times the Pantheon's amplitude."""
+    r0, rate = PANTHEON_RELEASE * s, mpf("7.292115e-5")
+    true = plane_period(PANTHEON_LENGTH, r0, GRAVITY, rate) * rate / (2 * pi)
+    return 1 + mpf("0.375") * (r0 / PANTHEON_LENGTH) ** 2, true
+
+
+def narrow_swing(s: Any) -> tuple[Any, Any]:
+    """Return T_f / T_p = 1 and the closed form."""
+    return MP.one, wide_swing(s)[1]
+
+
+def precession_ratio(angle: Any) -> Any:
+    """Return the rotation of the plane over the precession of the ellipse, for a release at rest at the pole."""
+    period, turn = swing_period(PANTHEON_LENGTH, PANTHEON_LENGTH * sin(angle), GRAVITY, RATE)
+    return RATE * period / turn
+
+
+def turning_acceleration(p: Point) -> Vector:
+    """Return the acceleration of a point with x'', y'' in axes that turn about z, from its place in axes at rest."""
+
+    def at_rest(s: Any) -> Vector:
+        place = (p.x + p.vx * s + p.ax * s * s / 2, p.y + p.vy * s + p.ay * s * s / 2, p.t + p.cord * s)
+        return rotated(place, AXIS, p.rate * s)
+
+    return vector_derivative(at_rest, 0, 2)
+
+
+def turning_velocity(p: Point) -> Vector:
+    """Return the velocity of the same point."""
+    return vector_derivative(lambda s: rotated((p.x + p.vx * s, p.y + p.vy * s, p.t), AXIS, p.rate * s))
+
+
+def _tilted_frame(p: Point) -> Vector:
+    """Return the acceleration of a point that moves uniformly in axes turning about an inclined axis."""
+    axis = scale(1 / p.rate, turning(p))
+    return vector_derivative(lambda s: rotated(add(p.position, scale(s, p.velocity)), axis, p.rate * s), 0, 2)
+
+
+def _bending(p: Point) -> Any:
+    """Return how fast the horizontal velocity turns, clockwise, where the Coriolis force acts alone."""
+    ax, ay = linearised(p.but(gravity=MP.zero))
+    return (p.vy * ax - p.vx * ay) / (p.vx**2 + p.vy**2)
+
+
+def _shorter_than_the_arc() -> Finding:
+    p = points()[0].but(azimuth_rate=MP.zero)
+    velocity = vector_derivative(lambda s: moving(p, s))
+    share = norm(velocity[:2]) / norm(velocity)
+    return Finding(share < 1, f"dx / (v dt) = {shown(share)} at θ = {shown(p.cord, 6)}")
 
 
 def _slower_when_wide() -> Finding:
@@ -46,120 +155,125 @@ def _south() -> Finding:
     return Finding(turn > 0, f"{turn:+.15f}° an hour, east to north (anticlockwise from above)")
 
 
-def _number_rows() -> list[Check]:
-    return [
-        PrintedNumber(
-            "gastebois_1",
-            f"{G} 1",
-            "in one hour the pendulum had turned by 11,3°",
-            "11.3",
-            lambda: 360 / SIDEREAL_DAY * sin(radians("48.846111")),
-        ),
-        PrintedNumber(
-            "gastebois_2_radius",
-            f"{G} 2",
-            "R_p = 6370 km",
-            "6370e3",
-            lambda: MEAN_RADIUS,
-            about=lambda: MEAN_RADIUS,
-            remark="m; mean radius of the ellipsoid",
-        ),
-        PrintedNumber(
-            "gastebois_2_day", f"{G} 2", "T_p = 23,92 h", "23.92", lambda: SIDEREAL_DAY, remark="2π/Ω of WGS84"
-        ),
-        PrintedNumber(
-            "gastebois_2_rate",
-            f"{G} 2",
-            "Ω = 2π/T_p = 7,297 · 10⁻⁵ rd/s",
-            "7.297e-5",
-            lambda: 2 * pi / (SIDEREAL_DAY * 3600),
-            from_inputs=lambda: 2 * pi / (mpf("23.92") * 3600),
-            inputs="T_p = 23,92 h",
-        ),
-        PrintedNumber(
-            "gastebois_4_1_bound",
-            f"{G} 4.1",
-            "a_e < 0,034 m/s²",
-            "0.034",
-            lambda: paris().rate ** 2 * paris().radius,
-            remark="at the equator",
-        ),
-        PrintedNumber(
-            "gastebois_4_1_paris",
-            f"{G} 4.1",
-            "24 / sin 49° = 31 h 48 min",
-            "1908",
-            lambda: 24 * 60 / sin(radians(49)),
-            remark="minutes",
-        ),
-        PrintedNumber(
-            "gastebois_4_1_hour", f"{G} 4.1", "(11,3° in 1 hour)", "11.3", lambda: 360 * sin(radians(49)) / 24
-        ),
-    ]
+def _sphere(p: Point) -> tuple[Vector, Vector]:
+    """Return g towards the centre and Ω² R away from the axis, on east, north, up of a sphere of radius R_p."""
+    out = p.rate**2 * p.radius * cos(p.phi)
+    return (MP.zero, MP.zero, -p.gravity), (MP.zero, -out * sin(p.phi), out * cos(p.phi))
 
 
-def _plane_rows() -> list[Check]:
-    return [
-        Approximate(
-            "gastebois_4_1_ga",
-            f"{G} 4.1",
-            "g_a = g",
-            lambda s: (pantheon_on_sphere(s).gravity, norm(apparent(pantheon_on_sphere(s)))),
-            1,
-            "Ω²",
-            "m/s²",
-            "at 48.87°",
-        ),
-        Identity(
-            "gastebois_4_1_omega",
-            f"{G} 4.1",
-            "Ω = Ω cosλ j + Ω sinλ k",
-            turning,
-            lambda p: p.k.turn,
-            remark="truth: reference.model.constants",
-        ),
-        Identity(
-            "gastebois_4_1_cross",
-            f"{G} 4.1",
-            "v_r × Ω = v_y Ω sinλ i for v_r = v_y j",
-            lambda p: (p.vy * p.rate * sin(p.phi), MP.zero, MP.zero),
-            lambda p: cross((MP.zero, p.vy, MP.zero), turning(p)),
-        ),
-        Identity(
-            "gastebois_4_1_tf",
-            f"{G} 4.1",
-            "T_f = 2π/ω_f = T_p / sinλ",
-            lambda p: 2 * pi / p.rate / sin(p.phi),
-            lambda p: 2 * pi / dot(turning(p), (MP.zero, MP.zero, MP.one)),
-        ),
-        Approximate(
-            "gastebois_4_1_small",
-            f"{G} 4.1",
-            "ω_f = Ω sinλ for small angles",
-            narrow_swing,
-            2,
-            "r0/L0",
-            remark="T_f/T_p at the pole, r0 = 6.5 m; truth: elliptic integrals",
-        ),
-        Statement("gastebois_4_1_pole", f"{G} 4.1", "at the poles T_f = T_p", _pole, by_run=True),
-        Statement("gastebois_4_1_equator", f"{G} 4.1", "at the equator the plane does not turn", _equator, by_run=True),
-        Statement(
-            "gastebois_4_1_wide",
-            f"{G} 4.1, remark",
-            "T_f grows slightly with the amplitude",
-            _slower_when_wide,
-            by_run=True,
-        ),
-        Statement(
-            "gastebois_4_1_south",
-            f"{G} 4.1, remark",
-            "in the south it turns anticlockwise seen from above",
-            _south,
-            by_run=True,
-        ),
-    ]
+def apparent(p: Point) -> Vector:
+    """Return g_a = g + a_e."""
+    return add(*_sphere(p))
+
+
+def outward(p: Point) -> Any:
+    """Return a_e = Ω² R_p cosλ."""
+    return p.rate**2 * p.radius * cos(p.phi)
+
+
+def tilt(p: Point) -> Any:
+    """Return α from the vectors."""
+    _, north, up = apparent(p)
+    return atan2(-north, -up)
+
+
+def _vertical_rate(p: Point) -> Any:
+    """Return the part of Ω along -g_a, over Ω."""
+    pull = apparent(p)
+    return -dot(turning(p), pull) / norm(pull) / p.rate
+
+
+def pantheon_on_sphere(s: Any) -> Point:
+    """Return the Pantheon on a sphere, Ω² s times the Earth's."""
+    base = paris()
+    return base.but(radius=EARTH_RADIUS, latitude=PANTHEON_LATITUDE, gravity=GRAVITY, rate=base.rate * sqrt(s))
 
 
 def checks() -> list[Check]:
-    """Return the rows of sections 1, 2 and 4.1."""
-    return [*_number_rows(), *_plane_rows()]
+    """Return the rows, in the order of print."""
+    return [
+        *G.rows(
+            Identity("3_1_v", "3.1", "dOM/dt = x' i + x Ω j + y' j - y Ω i + z' k",
+                lambda p: (p.vx - p.y * p.rate, p.x * p.rate + p.vy, MP.zero), turning_velocity),
+            Identity("3_1_a", "3.1", "d²OM/dt² = x'' i + x'Ω j + x'Ω j - xΩ² i + y'' j - y'Ω i - y'Ω i - yΩ² j + z'' k",
+                lambda p: (p.ax - p.x * p.rate**2 - 2 * p.vy * p.rate, p.vx * p.rate + p.vx * p.rate + p.ay - p.y *
+                    p.rate**2, MP.zero), turning_acceleration),
+            Identity("3_1_vector", "3.1", "a = a_r - Ω² R - 2 v_r × Ω",
+                lambda p: add((p.ax, p.ay, MP.zero), scale(-(p.rate**2), (p.x, p.y, MP.zero)), scale(-2, cross((p.vx,
+                    p.vy, p.cord), (MP.zero, MP.zero, p.rate)))), turning_acceleration),
+            Identity("3_1_any", "3.1", "true for any orientation of Ω",
+                lambda p: add(scale(-1, cross(turning(p), cross(p.position, turning(p)))), scale(-2, cross(p.velocity,
+                    turning(p)))), _tilted_frame),
+            Identity("3_2", "3.2", "m a_r = ΣF + m Ω² R + 2 m v_r × Ω",
+                lambda p: add(scale(p.mass, turning_acceleration(p)), scale(p.mass * p.rate**2, (p.x, p.y, MP.zero)),
+                    scale(2 * p.mass, cross((p.vx, p.vy, p.cord), (MP.zero, MP.zero, p.rate)))),
+                lambda p: scale(p.mass, (p.ax, p.ay, MP.zero))),
+            Identity("annex_i", ", annex", "i' = (-sinθ, cosθ) dθ/dt = Ω j",
+                lambda p: scale(p.rate, (-sin(p.rate * p.t), cos(p.rate * p.t))),
+                lambda p: vector_derivative(lambda t: (cos(p.rate * t), sin(p.rate * t)), p.t)),
+            Identity("annex_j", ", annex", "j' = (-cosθ, -sinθ) dθ/dt = -Ω i",
+                lambda p: scale(-p.rate, (cos(p.rate * p.t), sin(p.rate * p.t))),
+                lambda p: vector_derivative(lambda t: (-sin(p.rate * t), cos(p.rate * t)), p.t)),
+            PrintedNumber("1", "1", "in one hour the pendulum had turned by 11,3°",
+                "11.3", lambda: 360 / SIDEREAL_DAY * sin(radians("48.846111"))),
+            PrintedNumber("2_radius", "2", "R_p = 6370 km",
+                "6370e3", lambda: MEAN_RADIUS, about=lambda: MEAN_RADIUS, remark="m; mean radius of the ellipsoid"),
+            Identity("2_distance", "2", "R = R_p cosλ",
+                lambda p: p.radius * cos(p.phi),
+                lambda p: axis_distance(p.radius, 0, 0, sin(p.phi), cos(p.phi), MP.sqrt),
+                remark="truth: reference.model.earth"),
+            PrintedNumber("2_day", "2", "T_p = 23,92 h", "23.92", lambda: SIDEREAL_DAY, remark="2π/Ω of WGS84"),
+            PrintedNumber("2_rate", "2", "Ω = 2π/T_p = 7,297 · 10⁻⁵ rd/s",
+                "7.297e-5", lambda: 2 * pi / (SIDEREAL_DAY * 3600), from_inputs=lambda: 2 * pi / (mpf("23.92") * 3600),
+                inputs="T_p = 23,92 h"),
+            PrintedNumber("4_1_bound", "4.1", "a_e < 0,034 m/s²",
+                "0.034", lambda: paris().rate ** 2 * paris().radius, remark="at the equator"),
+            PrintedNumber("4_1_paris", "4.1", "24 / sin 49° = 31 h 48 min",
+                "1908", lambda: 24 * 60 / sin(radians(49)), remark="minutes"),
+            PrintedNumber("4_1_hour", "4.1", "(11,3° in 1 hour)", "11.3", lambda: 360 * sin(radians(49)) / 24),
+            Approximate("4_1_ga", "4.1", "g_a = g",
+                lambda s: (pantheon_on_sphere(s).gravity, norm(apparent(pantheon_on_sphere(s)))), 1, "Ω²", "m/s²",
+                "at 48.87°"),
+            Identity("4_1_omega", "4.1", "Ω = Ω cosλ j + Ω sinλ k",
+                turning, lambda p: p.k.turn, remark="truth: reference.model.constants"),
+            Identity("4_1_cross", "4.1", "v_r × Ω = v_y Ω sinλ i for v_r = v_y j",
+                lambda p: (p.vy * p.rate * sin(p.phi), MP.zero, MP.zero),
+                lambda p: cross((MP.zero, p.vy, MP.zero), turning(p))),
+            Identity("4_1_curve", "4.1", "v_r²/r = 2 v_r Ω sinλ, so v_r/r = 2 Ω sinλ",
+                lambda p: 2 * rate_up(p), _bending,
+                remark="truth: how fast the velocity turns clockwise without gravity"),
+            Identity("4_1_half", "4.1", "r dφ = dx/2, so v_r/r = 2 dφ/dt",
+                lambda p: -sum(turning_rates(p)), _bending,
+                remark="the plane turns at half the difference of the two eigenvalues' sizes"),
+            Identity("4_1_tf", "4.1", "T_f = 2π/ω_f = T_p / sinλ",
+                lambda p: 2 * pi / p.rate / sin(p.phi), lambda p: 2 * pi / dot(turning(p), (MP.zero, MP.zero, MP.one))),
+            Approximate("4_1_small", "4.1", "ω_f = Ω sinλ for small angles",
+                narrow_swing, 2, "r0/L0", remark="T_f/T_p at the pole, r0 = 6.5 m; truth: elliptic integrals"),
+            Statement("4_1_pole", "4.1", "at the poles T_f = T_p", _pole, by_run=True),
+            Statement("4_1_equator", "4.1", "at the equator the plane does not turn", _equator, by_run=True),
+            Statement("4_1_dx", "4.1, remark", "if the amplitude grows, dx < v dt", _shorter_than_the_arc),
+            Statement("4_1_wide", "4.1, remark", "T_f grows slightly with the amplitude",
+                _slower_when_wide, by_run=True),
+            Statement("4_1_south", "4.1, remark", "in the south it turns anticlockwise seen from above",
+                _south, by_run=True),
+            Identity("4_2_cosines", "4.2", "g_a² = g² + a_e² - 2 g a_e cosλ",
+                lambda p: p.gravity**2 + outward(p) ** 2 - 2 * p.gravity * outward(p) * cos(p.phi),
+                lambda p: dot(apparent(p), apparent(p))),
+            Identity("4_2_ga", "4.2", "g_a² = g² + Ω² R_p cosλ - 2 g Ω² R_p cos²λ",
+                lambda p: p.gravity**2 + outward(p) - 2 * p.gravity * p.rate**2 * p.radius * cos(p.phi) ** 2,
+                lambda p: dot(apparent(p), apparent(p)), "g_a² = g² + Ω⁴ R_p² cos²λ - 2 g Ω² R_p cos²λ",
+                lambda p: (p.gravity**2 + p.rate**4 * p.radius**2 * cos(p.phi) ** 2 - 2 * p.gravity * p.rate**2 *
+                    p.radius * cos(p.phi) ** 2)),
+            Identity("4_2_alpha", "4.2", "tanα = a_e sinλ / (g - a_e cosλ) = Ω² R_p cosλ sinλ / (g - Ω² R_p cos²λ)",
+                lambda p: (outward(p) * sin(p.phi) / (p.gravity - outward(p) * cos(p.phi)), p.rate**2 * p.radius *
+                    cos(p.phi) * sin(p.phi) / (p.gravity - p.rate**2 * p.radius * cos(p.phi) ** 2)),
+                lambda p: (MP.tan(tilt(p)), MP.tan(tilt(p)))),
+            Identity("4_2_lambda", "4.2", "λ_a = λ + α",
+                lambda p: sin(p.phi + tilt(p)), _vertical_rate,
+                remark="sine of the angle between the axis of the Earth and the plumb line's horizon"),
+            Identity("4_2_tf", "4.2", "T_f = T_p / sinλ_a",
+                lambda p: 2 * pi / p.rate / sin(p.phi + tilt(p)), lambda p: 2 * pi / (p.rate * _vertical_rate(p))),
+            PrintedNumber("6_3_lambda", "6.3", "λ_a = 48,97°",
+                "48.97", lambda: PANTHEON_LATITUDE + degrees(tilt(pantheon_on_sphere(MP.one)))),
+        ),
+    ]  # fmt: skip

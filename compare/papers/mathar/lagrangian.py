@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from ..checks import Check, Finding, Identity, Statement
 from ..digits import MP, Vector, cos, derivative, shown, sin, sqrt
 from ..first_principles import (
@@ -16,9 +18,11 @@ from ..first_principles import (
     square_speed,
 )
 from ..points import Point, points
-from .velocity import alpha_0, alpha_1, alpha_2
+from ..runs import paris_passage
+from ..section import Section
+from .kinematics import alpha_0, alpha_1, alpha_2
 
-III = "Mathar III"
+III = Section("mathar_", "Mathar III")
 
 
 def angle_state(p: Point) -> tuple[Vector, Vector, Vector]:
@@ -126,85 +130,51 @@ def _spherical(p: Point) -> Vector:
     return first, second / sin(p.cord)
 
 
+def _equation(i: int) -> Any:
+    return lambda p: euler_lagrange(p, by_angles, *angle_state(p), i) / p.length**2
+
+
+def _azimuth_is_fast() -> Finding:
+    """Compare λ' at the passage next to the vertical with the angular frequency of the swing."""
+    near, miss = paris_passage()
+    fast, slow = float((np.hypot(near[:, 3], near[:, 4]) / miss).max()), np.sqrt(9.80665 / 67)
+    return Finding(fast > 100 * slow, f"λ' up to {fast:.12f} rad/s in Paris, sqrt(g/l) = {slow:.12f} rad/s")
+
+
 def checks() -> list[Check]:
-    """Return the rows of section III."""
-
-    def equation(i: int) -> Any:
-        return lambda p: euler_lagrange(p, by_angles, *angle_state(p), i) / p.length**2
-
+    """Return the rows, in the order of print."""
     return [
-        Identity(
-            "mathar_20",
-            f"{III} (20)",
-            "K = m (α0 + α1 Ω + α2 Ω²) / 2",
-            lambda p: p.mass / 2 * (alpha_0(p) + alpha_1(p) * p.rate + alpha_2(p) * p.rate**2),
-            lambda p: p.mass * square_speed(p, by_angles, (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate)) / 2,
+        *III.rows(
+            Identity("20", "(20)", "K = m (α0 + α1 Ω + α2 Ω²) / 2",
+                lambda p: p.mass / 2 * (alpha_0(p) + alpha_1(p) * p.rate + alpha_2(p) * p.rate**2),
+                lambda p: p.mass * square_speed(p, by_angles, (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate)) / 2),
+            Identity("21", "(21)", "V = m g z = -m g l cosφ",
+                lambda p: -p.mass * p.gravity * p.length * cos(p.cord),
+                lambda p: p.mass * p.gravity * by_angles(p, p.cord, p.azimuth)[2]),
+            Identity("21_text", ", after (21)", "Ω → 0: the two equations are those of the spherical pendulum",
+                lambda p: (cord_equation(p.but(rate=MP.zero)), azimuth_equation(p.but(rate=MP.zero))), _spherical),
+            Identity("22", "(22)", "∂L/∂λ = (m/2) ([…] Ω + […] Ω²)",
+                _slope_in_azimuth,
+                lambda p: derivative(lambda s: lagrangian(p, by_angles, (p.cord, p.azimuth + s), (p.cord_rate,
+                    p.azimuth_rate)))),
+            Identity("24", "(23), (24)", "φ'' + R̂Ω² (sinϕ cosφ sinλ - cosϕ sinφ) + … + (g/l) sinφ = 0",
+                cord_equation, _equation(0)),
+            Identity("26", "(25), (26)", "sinφ λ'' + 2 cosφ φ' λ' + R̂Ω² sinϕ cosλ + … = 0",
+                azimuth_equation, lambda p: _equation(1)(p) / sin(p.cord)),
+            Identity("27", "(27)", "R̂ = (N+h) cosϕ / l",
+                lambda p: (p.N + p.altitude) * cos(p.phi) / p.length, lambda p: p.k.axis_distance,
+                remark="truth: reference.model.constants"),
+            Statement("27_l", ", after (27)", "the Lagrangian does not explicitly depend on time",
+                _no_time_in_the_lagrangian),
+            Statement("27_e", ", after (27)", "E = K + V in the inertial frame is not conserved",
+                _energy_in_the_inertial_frame_changes,
+                remark="conserved is v²/2 + g z - Ω²/2 (x² + q²), q the distance from the axis"),
+            Identity("28", "(28)", "α0 = [2xyx'y' + (l²-y²)x'² + (l²-x²)y'²] / (l²-x²-y²)",
+                plane_alpha_0, _plane_alpha(0)),
+            Identity("29", "(29)", "α1 = [12 terms] / (l²-x²-y²)", plane_alpha_1, _plane_alpha(1)),
+            Identity("30", "(30)", "α2 = [19 terms] / (l²-x²-y²)", plane_alpha_2, _plane_alpha(2)),
+            Statement("30_fast", ", after (30)",
+                "the sine in (26) induces quick changes of λ if the pendulum approaches small φ",
+                _azimuth_is_fast, by_run=True),
         ),
-        Identity(
-            "mathar_21",
-            f"{III} (21)",
-            "V = m g z = -m g l cosφ",
-            lambda p: -p.mass * p.gravity * p.length * cos(p.cord),
-            lambda p: p.mass * p.gravity * by_angles(p, p.cord, p.azimuth)[2],
-        ),
-        Identity(
-            "mathar_21_text",
-            f"{III}, after (21)",
-            "Ω → 0: the two equations are those of the spherical pendulum",
-            lambda p: (cord_equation(p.but(rate=MP.zero)), azimuth_equation(p.but(rate=MP.zero))),
-            _spherical,
-        ),
-        Identity(
-            "mathar_22",
-            f"{III} (22)",
-            "∂L/∂λ = (m/2) ([…] Ω + […] Ω²)",
-            _slope_in_azimuth,
-            lambda p: derivative(
-                lambda s: lagrangian(p, by_angles, (p.cord, p.azimuth + s), (p.cord_rate, p.azimuth_rate))
-            ),
-        ),
-        Identity(
-            "mathar_24",
-            f"{III} (23), (24)",
-            "φ'' + R̂Ω² (sinϕ cosφ sinλ - cosϕ sinφ) + … + (g/l) sinφ = 0",
-            cord_equation,
-            equation(0),
-        ),
-        Identity(
-            "mathar_26",
-            f"{III} (25), (26)",
-            "sinφ λ'' + 2 cosφ φ' λ' + R̂Ω² sinϕ cosλ + … = 0",
-            azimuth_equation,
-            lambda p: equation(1)(p) / sin(p.cord),
-        ),
-        Identity(
-            "mathar_27",
-            f"{III} (27)",
-            "R̂ = (N+h) cosϕ / l",
-            lambda p: (p.N + p.altitude) * cos(p.phi) / p.length,
-            lambda p: p.k.axis_distance,
-            remark="truth: reference.model.constants",
-        ),
-        Statement(
-            "mathar_27_l",
-            f"{III}, after (27)",
-            "the Lagrangian does not explicitly depend on time",
-            _no_time_in_the_lagrangian,
-        ),
-        Statement(
-            "mathar_27_e",
-            f"{III}, after (27)",
-            "E = K + V in the inertial frame is not conserved",
-            _energy_in_the_inertial_frame_changes,
-            remark="conserved is v²/2 + g z - Ω²/2 (x² + q²), q the distance from the axis",
-        ),
-        Identity(
-            "mathar_28",
-            f"{III} (28)",
-            "α0 = [2xyx'y' + (l²-y²)x'² + (l²-x²)y'²] / (l²-x²-y²)",
-            plane_alpha_0,
-            _plane_alpha(0),
-        ),
-        Identity("mathar_29", f"{III} (29)", "α1 = [12 terms] / (l²-x²-y²)", plane_alpha_1, _plane_alpha(1)),
-        Identity("mathar_30", f"{III} (30)", "α2 = [19 terms] / (l²-x²-y²)", plane_alpha_2, _plane_alpha(2)),
-    ]
+    ]  # fmt: skip

@@ -16,9 +16,11 @@ from ..checks import Check, Finding, PrintedNumber, Statement
 from ..digits import MP, mpf, pi, shown
 from ..points import paris
 from ..runs import path_in, transit_times
-from .frequency import swings_surplus
+from ..section import Section
+from .paris import swings_surplus
 
-A = "Mathar, appendix A"
+VIII = Section("mathar_", "Mathar VIII")
+A = Section("mathar_", "Mathar, appendix A")
 WGS84_INVERSE_FLATTENING = "298.257223563"  # NIMA TR8350.2, table 3.1: defining parameter
 WGS84_RATE = "7.292115e-5"  # rad/s, NIMA TR8350.2, table 3.1: defining parameter
 WGS84_RADIUS = "6378137.0"  # m, NIMA TR8350.2, table 3.1: defining parameter
@@ -34,55 +36,6 @@ def _prolate() -> Finding:
     return Finding(gap > 0, f"polar radius - equatorial radius = {shown(gap)} m")
 
 
-def checks() -> list[Check]:
-    """Return the rows of the appendix."""
-    return [
-        PrintedNumber(
-            "mathar_a_day",
-            f"{A}, -T",
-            "24 × 3600 s is approximately 4 minutes longer than a sidereal day",
-            "4",
-            lambda: (86400 - 2 * pi / paris().rate) / 60,
-            remark="minutes",
-        ),
-        PrintedNumber("mathar_a_g", f"{A}, -g", "9.80665 m/s²", "9.80665", lambda: mpf(STANDARD_GRAVITY)),
-        PrintedNumber("mathar_a_omega", f"{A}, -O", "7.292115 × 10⁻⁵ rad/s", "7.292115e-5", lambda: mpf(WGS84_RATE)),
-        Statement(
-            "mathar_a_prolate",
-            f"{A}, -f",
-            "the prolate elliptical coordinates",
-            _prolate,
-            "oblate: the polar axis is the shorter one",
-            lambda: _polar_radius() < paris().radius,
-        ),
-        PrintedNumber(
-            "mathar_a_flattening",
-            f"{A}, -f",
-            "inverse flattening 298.257223564",
-            "298.257223564",
-            lambda: mpf(WGS84_INVERSE_FLATTENING),
-            remark="against WGS84, the paper's reference [3]; the paper's scene keeps …564 "
-            f"(R changes by {shown(_effect_of_the_digit(), 2)} m)",
-        ),
-        PrintedNumber("mathar_a_radius", f"{A}, -r", "6.378137 × 10⁶ m", "6.378137e6", lambda: mpf(WGS84_RADIUS)),
-        *_schemes(),
-        Statement(
-            "mathar_a_parabola",
-            f"{A}, output",
-            "transits by quadratic interpolation of three points",
-            _by_parabola,
-            by_run=True,
-            remark="first transit of Paris at the paper's step of 0.01 s",
-        ),
-        Statement(
-            "mathar_a_two",
-            f"{A}, output",
-            "two transits occur per period",
-            _two_transits,
-        ),
-    ]
-
-
 def order_of(tableau: Tableau | NystromTableau) -> int:
     """Return the highest order whose conditions a table of coefficients meets."""
     claim = tableau.order
@@ -94,33 +47,23 @@ def order_of(tableau: Tableau | NystromTableau) -> int:
         claim += 1
 
 
-def _schemes() -> list[Check]:
-    """Return the rows about the schemes of -R."""
-    tables = (("4", rk4.TABLEAU, "4", "4"), ("5", rkng56.TABLEAU, "6", "8"), ("6", rkng67.TABLEAU, "7", "10"))
-    rows: list[Check] = []
-    for value, table, order, stages in tables:
-        rows.append(_stages(value, stages, len(table.a if isinstance(table, Tableau) else table.c)))
-        if value != "4":
-            rows.append(_order(value, order, table))
-    return rows
-
-
-def _stages(value: str, stages: str, count: int) -> Check:
-    return PrintedNumber(
-        f"mathar_a_stages_{value}", f"{A}, -R", f"-R {value}: {stages} stages", stages, lambda: MP.mpf(count)
+def _order(tableau: NystromTableau, printed: str) -> dict[str, Any]:
+    """Return value and remark of a row about a scheme's order."""
+    remark = (
+        f"by the order conditions of the {tableau.name} table; those of order {printed} fail by so little that at "
+        f"ordinary steps the error does shrink like h^{printed}"
     )
+    return {"value": lambda: MP.mpf(order_of(tableau)), "remark": remark}
 
 
-def _order(value: str, order: str, table: Tableau | NystromTableau) -> Check:
-    return PrintedNumber(
-        f"mathar_a_order_{value}",
-        f"{A}, -R",
-        f"-R {value}: order {order}",
-        order,
-        lambda: MP.mpf(order_of(table)),
-        remark=f"by the order conditions of the {table.name} table; those of order {order} fail by so little that at "
-        f"ordinary steps the error does shrink like h^{order}",
-    )
+def _step_control() -> Finding:
+    """Look for a second formula of order 3 in the stages of the classical scheme, whose error it would estimate."""
+    table = [[mpf(part) for part in row] for row in rk4.TABLEAU.a]
+    nodes = [sum(row, MP.zero) for row in table]
+    inner = [sum((part * node for part, node in zip(row, nodes, strict=False)), MP.zero) for row in table]
+    conditions = MP.matrix([[MP.one] * len(nodes), nodes, [node**2 for node in nodes], inner])
+    size = MP.det(conditions)
+    return Finding(size == 0, f"determinant of the conditions of order 3: {shown(size)}; one formula meets them")
 
 
 def _by_parabola() -> Finding:
@@ -146,3 +89,36 @@ def _two_transits() -> Finding:
 def _effect_of_the_digit() -> Any:
     p = paris()
     return abs(p.R - p.but(flattening=1 / MP.mpf(WGS84_INVERSE_FLATTENING)).R)
+
+
+def checks() -> list[Check]:
+    """Return the rows, in the order of print."""
+    return [
+        *VIII.rows(
+            Statement("viii_steps", "", "a program with variable Runge-Kutta-Nyström orders of the step control",
+                _step_control, "of the scheme: “Step size control is not implemented” (appendix A)",
+                lambda: not _step_control().holds,
+                remark="the classical scheme of -R 4 has no second formula that could control its step"),
+        ),
+        *A.rows(
+            PrintedNumber("a_day", ", -T", "24 × 3600 s is approximately 4 minutes longer than a sidereal day",
+                "4", lambda: (86400 - 2 * pi / paris().rate) / 60, remark="minutes"),
+            PrintedNumber("a_g", ", -g", "9.80665 m/s²", "9.80665", lambda: mpf(STANDARD_GRAVITY)),
+            PrintedNumber("a_omega", ", -O", "7.292115 × 10⁻⁵ rad/s", "7.292115e-5", lambda: mpf(WGS84_RATE)),
+            Statement("a_prolate", ", -f", "the prolate elliptical coordinates",
+                _prolate, "oblate: the polar axis is the shorter one", lambda: _polar_radius() < paris().radius),
+            PrintedNumber("a_flattening", ", -f", "inverse flattening 298.257223564",
+                "298.257223564", lambda: mpf(WGS84_INVERSE_FLATTENING),
+                remark="against WGS84, the paper's reference [3]; the paper's scene keeps …564 "
+                    f"(R changes by {shown(_effect_of_the_digit(), 2)} m)"),
+            PrintedNumber("a_radius", ", -r", "6.378137 × 10⁶ m", "6.378137e6", lambda: mpf(WGS84_RADIUS)),
+            PrintedNumber("a_stages_4", ", -R", "-R 4: 4 stages", "4", lambda: MP.mpf(len(rk4.TABLEAU.a))),
+            PrintedNumber("a_stages_5", ", -R", "-R 5: 8 stages", "8", lambda: MP.mpf(len(rkng56.TABLEAU.c))),
+            PrintedNumber("a_order_5", ", -R", "-R 5: order 6", "6", **_order(rkng56.TABLEAU, "6")),
+            PrintedNumber("a_stages_6", ", -R", "-R 6: 10 stages", "10", lambda: MP.mpf(len(rkng67.TABLEAU.c))),
+            PrintedNumber("a_order_6", ", -R", "-R 6: order 7", "7", **_order(rkng67.TABLEAU, "7")),
+            Statement("a_parabola", ", output", "transits by quadratic interpolation of three points",
+                _by_parabola, by_run=True, remark="first transit of Paris at the paper's step of 0.01 s"),
+            Statement("a_two", ", output", "two transits occur per period", _two_transits),
+        ),
+    ]  # fmt: skip

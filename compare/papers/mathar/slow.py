@@ -5,17 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.force import acceleration
-
 from ...approximations.mathar_items import derivatives, truncated
 from ..checks import Approximate, Check, Identity, PrintedNumber
-from ..digits import MP, Vector, cos, scale, shown, sin, sqrt, vector_derivative
-from ..first_principles import in_rate
+from ..digits import MP, Vector, cos, scale, shown, sin, sqrt
+from ..first_principles import in_rate, pull_at_rest
+from ..linear import coupled_at, linearised, uniform_acceleration
 from ..points import Point, paris
+from ..section import Section
 from .cartesian import solved
-from .rest import pull_at_rest
 
-VI = "Mathar VI"
+VI = Section("mathar_", "Mathar VI")
 
 
 def _swinging(s: Any, rate: Any = None) -> Point:
@@ -42,28 +41,6 @@ def _depth_is_length(p: Point) -> Vector:
     """Return x'', y'' of item 5, in the term with g: z replaced by l."""
     g = p.gravity / p.length
     return (-g * p.x, -g * p.y)
-
-
-def harmonic(p: Point) -> Vector:
-    """Return x'', y'' by (51), (52), with hats and dots where they belong."""
-    pull, turn = p.gravity / p.length, 2 * p.rate * sin(p.phi)
-    return (-pull * p.x + turn * p.vy, -pull * p.y - turn * p.vx)
-
-
-def linearised(p: Point) -> Vector:
-    """Return x'', y'' of the reference's model without centrifugal force, linear about straight down."""
-
-    def scaled(s: Any) -> Vector:
-        moved = p.but(x=p.x * s, y=p.y * s, vx=p.vx * s, vy=p.vy * s)
-        return uniform_acceleration(moved)
-
-    return vector_derivative(scaled)
-
-
-def uniform_acceleration(p: Point) -> Vector:
-    """Return x'', y'' of the reference's model with gravity alone."""
-    n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
-    return tuple(p.length * part for part in acceleration(n, v, p.uniform)[:2])
 
 
 def _dropped(simplified: Callable[[Point], Vector], turning: bool = False) -> Callable[[Any], tuple[Vector, Vector]]:
@@ -111,112 +88,7 @@ def _cosine(s: Any) -> tuple[Vector, Vector]:
 
 def _whole(s: Any) -> tuple[Vector, Vector]:
     p = _swinging(s, paris().rate)
-    return harmonic(p), uniform_acceleration(p)
-
-
-def checks() -> list[Check]:
-    """Return the rows of section VI."""
-    place = "s × the amplitude of Paris, half way through a swing"
-    steps: list[Check] = [
-        PrintedNumber(
-            "mathar_vi_1_size", f"{VI} item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2
-        ),
-        Approximate(
-            "mathar_vi_1",
-            f"{VI} item 1",
-            "the terms with Ω² are neglected, being of the order of 5 × 10⁻⁹",
-            _no_centrifugal_force,
-            1,
-            "Ω²",
-            "m/s²",
-            f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(_share(), 3)} of g, not Ω²",
-        ),
-        Approximate(
-            "mathar_vi_1_order",
-            f"{VI} item 1",
-            "β_x2 = β_y2 = 0",
-            _sizes_at_rate,
-            2,
-            "Ω",
-            "m/s²",
-            "accelerations half way through a swing; bit 2 of the program's -a",
-        ),
-        Approximate(
-            "mathar_vi_1_variant",
-            f"{VI} item 1, variant",
-            "g - RΩ² cosϕ is the first order Taylor expansion of (48)",
-            _printed_gravity,
-            2,
-            "RΩ²",
-            "m/s²",
-        ),
-        Approximate(
-            "mathar_vi_2",
-            f"{VI} item 2",
-            "-yx in (43) set to zero",
-            _dropped(without(2)),
-            2,
-            "amplitude",
-            remark=f"{place}; bit 1 of the program's -a",
-        ),
-        Approximate(
-            "mathar_vi_3",
-            f"{VI} item 3",
-            "only the terms with g in (33), (39)",
-            _dropped(without(3)),
-            2,
-            "amplitude",
-            remark=place,
-        ),
-        Approximate(
-            "mathar_vi_4",
-            f"{VI} item 4",
-            "only the terms with sinϕ in (34), (40)",
-            _cosine,
-            1,
-            "amplitude",
-            remark=f"of the Coriolis acceleration; {place}",
-        ),
-        Approximate(
-            "mathar_vi_5",
-            f"{VI} item 5",
-            "z replaced by l",
-            lambda s: (_depth_is_length(_swinging(s)), _pulled(_swinging(s))),
-            2,
-            "amplitude",
-            remark=place,
-        ),
-    ]
-    equations: list[Check] = [
-        Identity(
-            "mathar_51",
-            f"{VI} (51)",
-            "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
-            lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
-            lambda p: linearised(p)[0],
-            "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
-            lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy / p.length),
-            "truth: reference.model.force without centrifugal force, linear",
-        ),
-        Identity(
-            "mathar_52",
-            f"{VI} (52)",
-            "ŷ'' = -ŷ ĝ - 2Ω sinϕ x̂'",
-            lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
-            lambda p: linearised(p)[1] / p.length,
-            remark="the text at hand has every hat and dot of this line",
-        ),
-        Approximate(
-            "mathar_51_52",
-            f"{VI} (51), (52)",
-            "an approximation of (43)",
-            _whole,
-            1,
-            "amplitude",
-            remark=f"against gravity alone, all of items 2-5; {place}",
-        ),
-    ]
-    return [*steps, *equations]
+    return coupled_at(p), uniform_acceleration(p)
 
 
 def _pulled(p: Point) -> Vector:
@@ -224,3 +96,38 @@ def _pulled(p: Point) -> Vector:
     pull = p.gravity * abs(p.z) ** 3
     b = (-p.x * pull, -p.y * pull)
     return tuple(part * p.z**2 / (p.z**4 * p.length**2) for part in b)
+
+
+def checks() -> list[Check]:
+    """Return the rows, in the order of print."""
+    place = "s × the amplitude of Paris, half way through a swing"
+    return [
+        *VI.rows(
+            PrintedNumber("vi_1_size", "item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2),
+            Approximate("vi_1", "item 1", "the terms with Ω² are neglected, being of the order of 5 × 10⁻⁹",
+                _no_centrifugal_force, 1, "Ω²", "m/s²",
+                f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(_share(), 3)} of g, not Ω²"),
+            Approximate("vi_1_order", "item 1", "β_x2 = β_y2 = 0",
+                _sizes_at_rate, 2, "Ω", "m/s²", "accelerations half way through a swing; bit 2 of the program's -a"),
+            Approximate("vi_1_variant", "item 1, variant", "g - RΩ² cosϕ is the first order Taylor expansion of (48)",
+                _printed_gravity, 2, "RΩ²", "m/s²"),
+            Approximate("vi_2", "item 2", "-yx in (43) set to zero",
+                _dropped(without(2)), 2, "amplitude", remark=f"{place}; bit 1 of the program's -a"),
+            Approximate("vi_3", "item 3", "only the terms with g in (33), (39)",
+                _dropped(without(3)), 2, "amplitude", remark=place),
+            Approximate("vi_4", "item 4", "only the terms with sinϕ in (34), (40)",
+                _cosine, 1, "amplitude", remark=f"of the Coriolis acceleration; {place}"),
+            Approximate("vi_5", "item 5", "z replaced by l",
+                lambda s: (_depth_is_length(_swinging(s)), _pulled(_swinging(s))), 2, "amplitude", remark=place),
+            Identity("51", "(51)", "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
+                lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
+                lambda p: linearised(p)[0], "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
+                lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy /
+                    p.length), "truth: reference.model.force without centrifugal force, linear"),
+            Identity("52", "(52)", "ŷ'' = -ŷ ĝ - 2Ω sinϕ x̂'",
+                lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
+                lambda p: linearised(p)[1] / p.length, remark="the text at hand has every hat and dot of this line"),
+            Approximate("51_52", "(51), (52)", "an approximation of (43)",
+                _whole, 1, "amplitude", remark=f"against gravity alone, all of items 2-5; {place}"),
+        ),
+    ]  # fmt: skip

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -99,17 +101,23 @@ class Integrator:
         return self._ta.propagate_grid(grid, max_steps=most)[1]
 
 
-_own = threading.local()
+_turn = threading.Lock()
+_free: dict[tuple[tuple[int, ...], bool, bool], list[Integrator]] = {}
 
 
-def _integrator(events: tuple[int, ...], drag: bool, moved: bool) -> Integrator:
-    """Return this thread's integrator of a kind."""
-    made = _own.__dict__.setdefault("made", {})
-    key = events, drag, moved
-    if key not in made:
-        made[key] = Integrator(events, drag, MOVED_TOLERANCE if moved else TOLERANCE)
-    integrator: Integrator = made[key]
-    return integrator
+@contextmanager
+def _integrator(events: tuple[int, ...], drag: bool, moved: bool) -> Iterator[Integrator]:
+    """Lend an integrator of a kind to the calling thread."""
+    with _turn:
+        free = _free.setdefault((events, drag, moved), [])
+        integrator = free.pop() if free else None
+    if integrator is None:
+        integrator = Integrator(events, drag, MOVED_TOLERANCE if moved else TOLERANCE)
+    try:
+        yield integrator
+    finally:
+        with _turn:
+            free.append(integrator)
 
 
 def _events(wanted: Wanted) -> tuple[int, ...]:
@@ -121,7 +129,8 @@ def prepare(wanted: Wanted, drag: bool) -> float:
     """Compile what such rows need in the calling thread; return the CPU seconds that it took."""
     started = time.thread_time()
     for events in {_events(wanted), ()}:
-        _integrator(events, drag, bool(wanted.moved))
+        with _integrator(events, drag, bool(wanted.moved)):
+            pass
     return time.thread_time() - started
 
 
@@ -145,8 +154,9 @@ def _eight(rows: Rows, part: Any, wanted: Wanted, outcomes: Outcomes, listed: li
     count, chosen = len(part), rows[np.resize(part, LANES)]
     limits = LEAST_STEPS + STEPS_PER_SWING * chosen.swings[:count]
     drag = bool(chosen.drag.any())
-    first = _integrator(_events(wanted), drag, bool(wanted.moved))
-    (state, steps, stopped), logged = SHARED_LOG.seen(lambda: first.to_end(chosen, int(limits.max())))
+    with _integrator(_events(wanted), drag, bool(wanted.moved)) as first:
+        (state, steps, stopped), logged = SHARED_LOG.seen(lambda: first.to_end(chosen, int(limits.max())))
+        zeros = by_lane(first.zeros, chosen)
     stopped = stopped[:count] | (steps[:count] > limits)
     if stopped.any():
         outcomes.fate[part[stopped]] = STOPPED
@@ -159,10 +169,10 @@ def _eight(rows: Rows, part: Any, wanted: Wanted, outcomes: Outcomes, listed: li
     outcomes.fate[part] = DOUBTFUL if logged else OK
     if not _events(wanted):
         return
-    zeros = by_lane(first.zeros, chosen)
     times = [one.times for one in zeros]
     if any(map(len, times)):
-        states = _integrator((), drag, bool(wanted.moved)).at(chosen, times, int(2 * limits.max()))
+        with _integrator((), drag, bool(wanted.moved)) as second:
+            states = second.at(chosen, times, int(2 * limits.max()))
     else:
         states = state[None]
     for lane, row in enumerate(part):

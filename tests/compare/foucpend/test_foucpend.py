@@ -201,6 +201,8 @@ def test_exact_is_the_golden_dataset_to_the_last_digit_or_so() -> None:
     printed = output(exact=True, **PARIS, T="600", t="0.1", s="600")
     table = snapshots(printed)
     assert table[:, 0].tolist() == golden.t[:11].tolist()
+    assert table[0, 1:3].tolist() == [0.3, 0.4]  # the release, and at rest, as typed
+    assert table[0, 9] == 0
     # the doubles of this run's inputs differ from the golden ones' decimals by 1e-17 m and a relative 1e-16
     for i, name in enumerate("xyz"):
         assert table[:, i + 1] == pytest.approx(getattr(golden, name)[:11], abs=3e-13)
@@ -281,11 +283,12 @@ def test_the_command_prints_what_lines_gives(app: typer.Typer) -> None:
     assert outcome.stdout.splitlines() == output(**PARIS, T="10", t="0.5", R="5")
 
 
-@pytest.mark.parametrize("switch", ["-O", "-0"])
-def test_the_rotation_switch_is_an_o_or_the_zero_that_is_printed(app: typer.Typer, switch: str) -> None:
-    outcome = CliRunner().invoke(app, ["pend", "-y", "-0.4", switch, "-1e-3", "-T", "5", "-s", "50"])
+@pytest.mark.parametrize(("rotation", "length"), [("-O", "-l"), ("-0", "-1")])
+def test_two_switches_are_letters_or_the_digits_that_are_printed(app: typer.Typer, rotation: str, length: str) -> None:
+    typed = ["pend", "-y", "-0.4", rotation, "-1e-3", length, "66", "-T", "5", "-s", "50"]
+    outcome = CliRunner().invoke(app, typed)
     assert outcome.exit_code == 0
-    assert outcome.stdout.splitlines() == output(y="-0.4", O="-1e-3", T="5", s="50")
+    assert outcome.stdout.splitlines() == output(y="-0.4", O="-1e-3", l="66", T="5", s="50")
 
 
 def test_its_output_scores_as_the_paris_pendulum(tmp_path: Path) -> None:

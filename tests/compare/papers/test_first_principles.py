@@ -14,7 +14,7 @@ from compare.papers.first_principles import (
     rotated,
     suspension,
 )
-from compare.papers.gastebois.turning_swing import plane_period, swing_period
+from compare.papers.gastebois.rotation import plane_period, swing_period
 from compare.papers.linear import motion
 from compare.papers.points import paris, points
 

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from compare.papers import figures, page
-from compare.papers.captions import CAPTIONS
 from compare.papers.checks import VERDICTS, JudgedRow
+from compare.papers.figures import FIGURES
 from reference import InputError
 
 Built = tuple[Path, list[JudgedRow]]
@@ -22,8 +22,8 @@ ROW = JudgedRow("a_b", "Mathar II (1)", "x < y & z", "1.5", "misprint", correcti
 
 
 def test_the_folder_holds_the_page_the_figures_and_the_rows(built: Built) -> None:
-    numbers = [1, 3, 4, 5, 6, 7, 8, 9]
-    assert [caption.number for caption in CAPTIONS] == numbers
+    numbers = list(FIGURES)
+    assert numbers == [1, 2, 3, 4, 5, 6, 7, 8, 9]
     expected = {"index.html", "rows.csv", "rows.json", *(f"figure_{n}.svg" for n in numbers)}
     assert {path.name for path in built[0].iterdir()} == expected
 
@@ -43,10 +43,10 @@ def test_the_page_needs_nothing_from_outside_and_shows_each_figure_beside_its_ca
     text = (built[0] / "index.html").read_text(encoding="utf-8")
     assert not re.search(r"""(src|href)=["'](?!data:|#)""", text)
     assert "http" not in re.sub(r'base64,[^"]*', "", text)
-    for caption in CAPTIONS:
-        drawn = re.search(rf'id="figure-{caption.number}" class="plate">\n<img [^>]*base64,([^"]*)"', text)
+    for number in FIGURES:
+        drawn = re.search(rf'id="figure-{number}" class="plate">\n<img [^>]*base64,([^"]*)"', text)
         assert drawn is not None
-        assert base64.b64decode(drawn[1]).decode() == (built[0] / f"figure_{caption.number}.svg").read_text("utf-8")
+        assert base64.b64decode(drawn[1]).decode() == (built[0] / f"figure_{number}.svg").read_text("utf-8")
     for row in built[1]:
         assert f'id="{row.id}"' in text
 
@@ -61,13 +61,22 @@ def test_a_box_hides_the_lines_of_its_verdict(built: Built) -> None:
 
 
 def test_every_figure_is_well_formed_svg_with_text_and_lines_and_no_date(built: Built) -> None:
-    for caption in CAPTIONS:
-        text = (built[0] / f"figure_{caption.number}.svg").read_text(encoding="utf-8")
+    for number in FIGURES:
+        text = (built[0] / f"figure_{number}.svg").read_text(encoding="utf-8")
         root = ET.fromstring(text)
         words = [node.text for node in root.iter("{http://www.w3.org/2000/svg}text")]
-        assert len(words) > 5, caption.number
-        assert len(list(root.iter("{http://www.w3.org/2000/svg}path"))) > 5
+        assert len(words) > 5, number
+        assert len(list(root.iter("{http://www.w3.org/2000/svg}path"))) >= 4  # a triangle and a rod
         assert "<dc:date>" not in text
+
+
+def test_letters_are_as_large_as_a_telephone_needs_them(built: Built) -> None:
+    for number in FIGURES:
+        text = (built[0] / f"figure_{number}.svg").read_text(encoding="utf-8")
+        width = float(re.search(r'<svg [^>]*?width="([\d.]+)pt"', text)[1])  # type: ignore[index]
+        sizes = [float(size) for size in re.findall(r"font(?:-size)?: ([\d.]+)px", text)]
+        assert sizes
+        assert min(sizes) * 350 / width > 8, number  # the page leaves 350 of 390 pixels to a figure
 
 
 def test_the_same_figure_has_the_same_bytes(built: Built) -> None:

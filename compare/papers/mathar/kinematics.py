@@ -1,0 +1,225 @@
+"""Mathar, section II: the suspension and the axes at the _site, the bob and its velocity, (1)-(19)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from reference.model.earth import axis_distance
+
+from ..checks import Check, Finding, Identity, Statement
+from ..digits import MP, Vector, add, cos, cross, dot, norm, scale, shown, sin, sqrt, unit, vector_derivative
+from ..first_principles import by_angles, in_rate, moving, place, square_speed, suspension, turned_to_site
+from ..points import Point, points
+from ..section import Section
+
+II = Section("mathar_", "Mathar II")
+AXES = ((MP.one, MP.zero, MP.zero), (MP.zero, MP.one, MP.zero), (MP.zero, MP.zero, MP.one))  # east, north, up
+
+
+def printed_suspension(p: Point, t: Any) -> Vector:
+    """Return the place of the suspension by (1)."""
+    turn, flat = p.rate * t, (p.N + p.altitude) * cos(p.phi)
+    return (flat * cos(turn), flat * sin(turn), (p.N * (1 - p.e2) + p.altitude) * sin(p.phi))
+
+
+def east(p: Point, t: Any) -> Vector:
+    """Return the unit vector e_E by (4)."""
+    return (-sin(p.rate * t), cos(p.rate * t), MP.zero)
+
+
+def up(p: Point, t: Any) -> Vector:
+    """Return the unit vector e_U by (5)."""
+    return (cos(p.phi) * cos(p.rate * t), cos(p.phi) * sin(p.rate * t), sin(p.phi))
+
+
+def north(p: Point, t: Any) -> Vector:
+    """Return the unit vector e_N by (6)."""
+    return (-sin(p.phi) * cos(p.rate * t), -sin(p.phi) * sin(p.rate * t), cos(p.phi))
+
+
+def _along_meridian(p: Point) -> Vector:
+    """Return dX_s/dϕ from the ellipsoid's geometry."""
+    return vector_derivative(lambda phi: suspension(p, p.rate * p.t, phi=phi), p.phi)
+
+
+def _meridian_radius(p: Point) -> Any:
+    return p.radius * (1 - p.e2) / (1 - p.e2 * sin(p.phi) ** 2) ** MP.mpf("1.5")
+
+
+def _not_the_north_direction() -> Finding:
+    p = points()[0]
+    gap = norm(cross(unit(_along_meridian(p)), north(p, p.t)))
+    return Finding(gap > MP.mpf("1e-45"), f"sine of the angle between them: {shown(gap)}")
+
+
+def _is_the_north_direction() -> bool:
+    return all(
+        norm(add(_along_meridian(p), scale(-(_meridian_radius(p) + p.altitude), north(p, p.t)))) < MP.mpf("1e-45")
+        for p in points()
+    )
+
+
+def _distance_of_suspension(p: Point) -> Any:
+    x, y, _ = suspension(p, MP.one)
+    return sqrt(x * x + y * y)
+
+
+def _east_from_latitude() -> Finding:
+    p = points()[0]
+    return Finding(
+        norm(cross(unit(_along_meridian(p)), east(p, p.t))) < MP.mpf("1e-45"),
+        f"cosine of the angle between dX_s/dϕ and e_E: {shown(dot(unit(_along_meridian(p)), east(p, p.t)))}",
+    )
+
+
+def _east_from_longitude() -> bool:
+    def gap(p: Point) -> Any:
+        along = vector_derivative(lambda turn: suspension(p, turn), p.rate * p.t)
+        return norm(cross(along, east(p, p.t)))
+
+    return all(gap(p) < MP.mpf("1e-45") for p in points())
+
+
+def _site(i: int) -> Any:
+    return lambda p: turned_to_site(p, AXES[i], p.rate * p.t)
+
+
+def printed_position(p: Point, cord: Any, azimuth: Any) -> Vector:
+    """Return x, y, z by (7)."""
+    return (
+        p.length * sin(cord) * cos(azimuth),
+        p.length * sin(cord) * sin(azimuth),
+        -p.length * cos(cord),
+    )
+
+
+def printed_velocity(p: Point) -> Vector:
+    """Return the velocity by (10)."""
+    sp, cp, sl, cl = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth)
+    return (
+        p.length * (p.cord_rate * cl * cp - p.azimuth_rate * sp * sl),
+        p.length * (p.cord_rate * sl * cp + p.azimuth_rate * sp * cl),
+        p.length * p.cord_rate * sp,
+    )
+
+
+def _in_matrix(p: Point) -> Vector:
+    st, ct, s, c = sin(p.rate * p.t), cos(p.rate * p.t), sin(p.phi), cos(p.phi)
+    x, y, z = p.position
+    turned = (-st * x - s * ct * y + c * ct * z, ct * x - s * st * y + c * st * z, c * y + s * z)
+    return add(printed_suspension(p, p.t), turned)
+
+
+def _in_vectors(p: Point) -> Vector:
+    return add(printed_suspension(p, p.t), scale(p.x, east(p, p.t)), scale(p.y, north(p, p.t)), scale(p.z, up(p, p.t)))
+
+
+def _by_chain_rule(p: Point) -> Vector:
+    terms = [vector_derivative(lambda t: printed_suspension(p, t), p.t)]
+    for axis, length, speed in zip((east, north, up), p.position, p.velocity, strict=True):
+        terms += [scale(length, _rates_of(axis)(p)), scale(speed, axis(p, p.t))]
+    return add(*terms)
+
+
+def _velocity_of_place(p: Point) -> Vector:
+    return vector_derivative(lambda s: place(p, add(p.position, scale(s, p.velocity)), p.t + s))
+
+
+def _angles_alpha(power: int) -> Any:
+    def truth(p: Point) -> Any:
+        q, v = (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate)
+        return in_rate(lambda rate: square_speed(p, by_angles, q, v, rate), power)
+
+    return truth
+
+
+def alpha_0(p: Point) -> Any:
+    """Return α0 by (17)."""
+    return p.length**2 * (p.cord_rate**2 + sin(p.cord) ** 2 * p.azimuth_rate**2)
+
+
+def alpha_1(p: Point) -> Any:
+    """Return α1 by (18)."""
+    sp, cp, sl, cl, s, c = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth), sin(p.phi), cos(p.phi)
+    first = 2 * (p.N + p.altitude) * c * p.length * (p.cord_rate * cp * cl - p.azimuth_rate * sp * sl)
+    return first + 2 * p.length**2 * (sp * p.azimuth_rate * (s * sp + c * cp * sl) - c * p.cord_rate * cl)
+
+
+def alpha_2(p: Point) -> Any:
+    """Return α2 by (19)."""
+    sp, cp, sl, cl, s, c = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth), sin(p.phi), cos(p.phi)
+    arm = (p.N + p.altitude) * c - p.length * (c * cp + s * sp * sl)
+    return arm**2 + p.length**2 * sp**2 * cl**2
+
+
+def _rates_of(axis: Callable[[Point, Any], Vector]) -> Callable[[Point], Vector]:
+    return lambda p: vector_derivative(lambda t: axis(p, t), p.t)
+
+
+def checks() -> list[Check]:
+    """Return the rows, in the order of print."""
+    return [
+        *II.rows(
+            Identity("1", "(1)", "X_s = ((N+h) cosϕ cosΩt, (N+h) cosϕ sinΩt, [N(1-e²)+h] sinϕ)",
+                lambda p: printed_suspension(p, p.t), lambda p: suspension(p, p.rate * p.t),
+                remark="truth: h along the normal of the ellipsoid"),
+            Identity("2", "(2)", "N = ρ_e / sqrt(1 - e² sin²ϕ)",
+                lambda p: p.radius / sqrt(1 - p.e2 * sin(p.phi) ** 2),
+                lambda p: _distance_of_suspension(p.but(altitude=MP.zero)) / cos(p.phi),
+                remark="truth: length of the normal from the ellipsoid to the axis"),
+            Identity("3", "(3)", "R = (N+h) cosϕ",
+                lambda p: (p.N + p.altitude) * cos(p.phi),
+                lambda p: axis_distance(p.radius, p.flattening, p.altitude, sin(p.phi), cos(p.phi), MP.sqrt),
+                remark="truth: reference.model.earth"),
+            Statement("4_text", ", before (4)", "east: differentiate (1) with respect to the geodetic latitude Ωt",
+                _east_from_latitude, "Ωt is the longitude: e_E is the direction of dX_s/d(Ωt)", _east_from_longitude),
+            Identity("4", "(4)", "e_E = (-sinΩt, cosΩt, 0), e_E² = 1", lambda p: east(p, p.t), _site(0)),
+            Identity("5", "(5)", "e_U = (cosϕ cosΩt, cosϕ sinΩt, sinϕ)", lambda p: up(p, p.t), _site(2)),
+            Identity("5_h", ", before (5)", "e_U by differentiating (1) with respect to h",
+                lambda p: up(p, p.t),
+                lambda p: vector_derivative(lambda h: suspension(p, p.rate * p.t, h), p.altitude)),
+            Identity("6", "(6)", "e_N = e_U × e_E", lambda p: cross(up(p, p.t), east(p, p.t)), _site(1)),
+            Identity("6_b", "(6)", "e_N = (-sinϕ cosΩt, -sinϕ sinΩt, cosϕ)",
+                lambda p: north(p, p.t), lambda p: unit(cross(up(p, p.t), east(p, p.t)))),
+            Statement("6_text", ", remark after (6)",
+                "e_N is not exactly the normalized derivative of (1) with respect to ϕ",
+                _not_the_north_direction, "it is exactly: dX_s/dϕ = (M+h) e_N, M = a(1-e²)/(1-e² sin²ϕ)^(3/2)",
+                _is_the_north_direction),
+            Identity("7", "(7)", "x = l (sinφ cosλ, sinφ sinλ, -cosφ)",
+                lambda p: printed_position(p, p.cord, p.azimuth), lambda p: by_angles(p, p.cord, p.azimuth),
+                remark="truth: straight down, turned by φ towards λ"),
+            Identity("8", "(8)", "X = X_s + e_E x + e_N y + e_U z", _in_vectors, lambda p: place(p, p.position, p.t)),
+            Identity("9", "(9)", "X = X_s + matrix with the columns e_E, e_N, e_U · x",
+                _in_matrix, lambda p: place(p, p.position, p.t)),
+            Identity("10", "(10)", "xdot = l (φ' cosλ cosφ - λ' sinφ sinλ; φ' sinλ cosφ + λ' sinφ cosλ; φ' sinφ)",
+                printed_velocity, lambda p: vector_derivative(lambda s: moving(p, s))),
+            Identity("11", "(11)", "xdot² = l² (λ'² sin²φ + φ'²)",
+                lambda p: p.length**2 * (p.azimuth_rate**2 * sin(p.cord) ** 2 + p.cord_rate**2),
+                lambda p: dot(vector_derivative(lambda s: moving(p, s)), vector_derivative(lambda s: moving(p, s)))),
+            Identity("12", "(12)", "x · xdot = 0",
+                lambda p: MP.zero, lambda p: dot(moving(p, 0), vector_derivative(lambda s: moving(p, s)))),
+            Identity("13", "(13)", "Xdot_s = (N+h) Ω (-cosϕ sinΩt, cosϕ cosΩt, 0)",
+                lambda p: scale((p.N + p.altitude) * p.rate, (-cos(p.phi) * sin(p.rate * p.t), cos(p.phi) * cos(p.rate *
+                    p.t), MP.zero)), lambda p: vector_derivative(lambda t: suspension(p, p.rate * t), p.t)),
+            Identity("14", "(14)", "Xdot = Xdot_s + e_E' x + e_E x' + e_N' y + e_N y' + e_U' z + e_U z'",
+                _by_chain_rule, _velocity_of_place),
+            Identity("15_e", "(15)", "e_E' = Ω (-cosΩt, -sinΩt, 0)",
+                lambda p: scale(p.rate, (-cos(p.rate * p.t), -sin(p.rate * p.t), MP.zero)),
+                _rates_of(lambda p, t: turned_to_site(p, AXES[0], p.rate * t))),
+            Identity("15_n", "(15)", "e_N' = Ω (sinϕ sinΩt, -sinϕ cosΩt, 0)",
+                lambda p: scale(p.rate * sin(p.phi), (sin(p.rate * p.t), -cos(p.rate * p.t), MP.zero)),
+                _rates_of(lambda p, t: turned_to_site(p, AXES[1], p.rate * t))),
+            Identity("15_u", "(15)", "e_U' = Ω (-cosϕ sinΩt, cosϕ cosΩt, 0)",
+                lambda p: scale(p.rate * cos(p.phi), (-sin(p.rate * p.t), cos(p.rate * p.t), MP.zero)),
+                _rates_of(lambda p, t: turned_to_site(p, AXES[2], p.rate * t))),
+            Identity("16", "(16)", "Xdot² + Ydot² + Zdot² = α0 + α1 Ω + α2 Ω²",
+                lambda p: alpha_0(p) + alpha_1(p) * p.rate + alpha_2(p) * p.rate**2,
+                lambda p: square_speed(p, by_angles, (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate))),
+            Identity("17", "(17)", "α0 = l² (φ'² + sin²φ λ'²)", alpha_0, _angles_alpha(0)),
+            Identity("18", "(18)", "α1 = 2(N+h) cosϕ l (φ' cosφ cosλ - λ' sinφ sinλ) + 2l² […]",
+                alpha_1, _angles_alpha(1)),
+            Identity("19", "(19)", "α2 = [(N+h) cosϕ - l (cosϕ cosφ + sinϕ sinφ sinλ)]² + l² sin²φ cos²λ",
+                alpha_2, _angles_alpha(2)),
+        ),
+    ]  # fmt: skip

@@ -1,0 +1,260 @@
+"""Mathar, section VII: the Paris pendulum's motion, its figures 5 to 7, and its frequencies."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from reference import load_scene
+
+from ...approximations import APPROXIMATIONS, Motion
+from ...approximations.frequency import harmonic, planar
+from ...approximations.gastebois_small import turntable_frequency
+from ...approximations.mathar_linear import slow_down
+from ..checks import Check, Finding, PrintedNumber, Statement
+from ..digits import MP, Vector, acos, add, asin, degrees, dot, mpf, norm, pi, shown, sin, sqrt
+from ..first_principles import rest
+from ..points import Point, paris
+from ..runs import (
+    frequency,
+    lead,
+    paris_day,
+    paris_passage,
+    paris_path,
+    paris_swing_plane,
+    path_in,
+    solved,
+    transit_times,
+    window,
+)
+from ..section import Section
+
+VII = Section("mathar_", "Mathar VII")
+STILL = ["site.rotation_rate=0"]
+
+
+@cache
+def _transit(column: str) -> list[Any]:
+    return [mpf(text) for text in paris_day().transits.decimals(column)]
+
+
+def _frame_5() -> Any:
+    """Return the range of z over the day, which Fig. 5 shows, in m."""
+    z = paris_path()[1][:, 2]
+    return mpf(float(z.max() - z.min()))
+
+
+def _higher_after_half_a_swing() -> Finding:
+    rise = _transit("z")[0] - released()[2]
+    return Finding(bool(MP.mpf("1e-3") < rise < MP.mpf("1e-2")), f"{shown(1000 * rise)} mm higher")
+
+
+def _work_of_the_centrifugal_force() -> Finding:
+    """Compare g Δz + Δv²/2 with Ω² Δ(x² + q²)/2 over the first half swing."""
+    p = paris()
+    x, y, z, vy = (_transit(name)[0] for name in ("x", "y", "z", "vy"))
+    vz = -y * vy / z
+
+    def square(place: Vector) -> Any:
+        q = p.R - MP.sin(p.phi) * place[1] + MP.cos(p.phi) * place[2]
+        return place[0] ** 2 + q**2
+
+    gained = p.gravity * (z - p.z) + (vy**2 + vz**2) / 2
+    work = p.rate**2 * (square((x, y, z)) - square(released())) / 2
+    return Finding(abs(gained - work) < MP.mpf("1e-25"), f"gained {shown(gained)} J/kg, work done {shown(work)} J/kg")
+
+
+def _middle_of_the_first_swing() -> Finding:
+    middle = tuple((_transit(name)[0] + start) / 2 for name, start in zip("xy", released(), strict=False))
+    x, y, _ = rest(paris())
+    gap = norm(add(middle, (-x, -y)))
+    return Finding(gap < MP.mpf("1e-3"), f"middle {shown(middle)} m, rest position y = {shown(y)} m")
+
+
+def _never_vertical() -> Finding:
+    """Find how near the path, straight between samples 0.25 s apart, comes to the vertical below the pivot."""
+    miss = paris_passage()[1].min()
+    return Finding(bool(miss > 1e-6), f"nearest approach in 24 h {miss:.15e} m")
+
+
+def _about_the_rest_position() -> Finding:
+    """Compare the mean place over a swing, early and late, with the rest position."""
+    period, x_y = float(1 / day_frequency()), np.array([float(part) for part in rest(paris())[:2]])
+    gaps = []
+    for begin in (0.0, 7000.0, 12000.0):
+        middle = window(begin, 63 / 64 * period, step=period / 64)[1][:, :2].mean(axis=0)
+        gaps.append(np.hypot(*(middle - x_y)))
+    return Finding(max(gaps) < 1e-3, f"the mean of a swing is {max(gaps):.4e} m from the rest position, or less")
+
+
+def _clouds_move() -> Finding:
+    z = [float(value) for value in _transit("z")]
+    at_release, opposite = z[1:2000:2], z[0:2000:2]
+    rising = at_release[-1] > at_release[0] and opposite[-1] < opposite[0]
+    change = f"near the release {z[1]:.15f} to {z[1999]:.15f} m, opposite {z[0]:.15f} to {z[1998]:.15f} m in 4.6 h"
+    return Finding(rising, change)
+
+
+def mean_rotation() -> tuple[float, float]:
+    """Return the swing plane's degrees an hour, by a line fitted to the day, and the largest distance from the line."""
+    hours, turned = paris_path()[0] / 3600, np.degrees(paris_swing_plane())
+    slope, start = np.polyfit(hours, turned, 1)
+    return float(slope), float(np.abs(turned - slope * hours - start).max())
+
+
+def _linear() -> Finding:
+    slope, off = mean_rotation()
+    return Finding(off < 0.01, f"{slope:.15f}° an hour, within {off:.2e}° of a straight line for 24 h")
+
+
+def _north_east_to_east() -> Finding:
+    _, y, _ = rest(paris())
+    start = degrees(MP.atan2(mpf("0.4") - y, mpf("0.3")))
+    slope, _ = mean_rotation()
+    hours = -start / slope
+    return Finding(bool(0 < start < 90 and slope < 0), f"from {shown(start)}° to 0° (east-west) in {shown(hours, 6)} h")
+
+
+def _coupling_is_ahead() -> Finding:
+    scene, at = load_scene("paris"), np.array([0.0, 12000.0])
+    simpler = APPROXIMATIONS["mathar_item_2"]
+    assert isinstance(simpler, Motion)
+    ahead = lead(simpler.trajectory(scene, at)[-1], path_in(scene, at)[-1])
+    return Finding(0 < ahead < 1, f"{ahead:.9f} s ahead at 12000 s (double run)")
+
+
+def released() -> Vector:
+    """Return the place of release in m."""
+    p = paris()
+    return (p.x, p.y, p.z)
+
+
+def planar_amplitude() -> Any:
+    """Return φ(0) of a swing of sqrt(0.3² + 0.4²) m, in rad."""
+    return asin(sqrt(mpf("0.3") ** 2 + mpf("0.4") ** 2) / paris().length)
+
+
+def planar_period() -> Any:
+    """Return 4 sqrt(l/g) K(sin(φ0/2)) in s."""
+    return 1 / planar(paris().case)
+
+
+def harmonic_frequency(p: Point, gravity: Any) -> Any:
+    """Return the frequency of (51)-(52): sqrt(g/l + (Ω sinϕ)²) / 2π, in Hz."""
+    return turntable_frequency(p.case, gravity, p.rate * sin(p.phi)) / (2 * pi)
+
+
+def amplitude() -> Any:
+    """Return the angle between the release and the rest position, seen from the suspension, in rad."""
+    return acos(dot(released(), rest(paris())) / paris().length ** 2)
+
+
+def estimate(p: Point) -> Any:
+    """Return the frequency of (51)-(52) with g' of (48), slowed down, in Hz."""
+    return harmonic_frequency(p, p.case.apparent_gravity) / slow_down(p.case)
+
+
+def first_period_frequency() -> Any:
+    """Return the frequency from the release to the second transit, in Hz."""
+    return 1 / transit_times()[1]
+
+
+def day_frequency() -> Any:
+    """Return the frequency over the day in Hz, from swings, not transits: the day has one transit too many."""
+    times = transit_times()
+    return (len(times) - swings_surplus()) / (2 * times[-1])
+
+
+def swings_surplus() -> int:
+    """Return the number of transits of the day beyond two a swing."""
+    times = transit_times()
+    return len(times) - round(float(times[-1] / (times[1] / 2)))
+
+
+def transit_frequency() -> Any:
+    """Return N/(2 t_n) at the end of the day, as the paper's program prints it, in Hz."""
+    times = transit_times()
+    return len(times) / (2 * times[-1])
+
+
+def _planar_run() -> Finding:
+    run = solved(STILL, "20", 30)
+    assert run.transits is not None
+    period = mpf(run.transits.exact("t")[1])
+    return Finding(abs(period - planar_period()) < MP.mpf("1e-27"), f"run without rotation: {shown(period, 25)} s")
+
+
+def _slowed(by: Any) -> Finding:
+    """Compare the factor, `by` times 2K/π, with the two frequencies between which the paper puts it."""
+    hertz = estimate(paris()) / by
+    factor = by * slow_down(paris().case)
+    return Finding(
+        abs(hertz - mpf("0.060843634")) < mpf("5e-10"), f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz"
+    )
+
+
+def checks() -> list[Check]:
+    """Return the rows, in the order of print."""
+    p = paris()
+    return [
+        *VII.rows(
+            PrintedNumber("vii_l", "", "l = 67 m", "67", lambda: mpf(load_scene("paris").exact.length)),
+            PrintedNumber("vii_lat", "", "ϕ = 48.846111°",
+                "48.846111", lambda: mpf(load_scene("paris").exact.latitude)),
+            PrintedNumber("vii_above", "", "roughly 2 mm above the lowest point",
+                "0.002", lambda: paris().length + released()[2], remark="m"),
+            Statement("vii_higher", "", "the first swing ends a few millimetres higher than the release",
+                _higher_after_half_a_swing, by_run=True),
+            Statement("vii_energy", "", "the centrifugal force injects the energy",
+                _work_of_the_centrifugal_force, by_run=True,
+                remark="g Δz + Δv²/2 = Ω² Δ(x² + q²)/2 over the first half swing"),
+            Statement("vii_middle", "", "the centre of the motion is the point of rest, further south",
+                _middle_of_the_first_swing, by_run=True),
+            Statement("vii_vertical", "", "never moves through the vertical x = y = 0 if started at rest",
+                _never_vertical, by_run=True),
+            Statement("fig4", ", Fig. 4", "the plane of the motion turns around the rest position",
+                _about_the_rest_position, by_run=True, remark="swings from 0, 7000 and 12000 s"),
+            PrintedNumber("fig5_start", ", Fig. 5", "point of release near -66.98",
+                "-66.98", lambda: released()[2], about=_frame_5, decimals=3,
+                remark="m; judged against the height of the figure, 4 mm"),
+            PrintedNumber("fig5_opposite", ", Fig. 5", "opposite points near -66.9965",
+                "-66.9965", lambda: _transit("z")[0], about=_frame_5, remark="m"),
+            Statement("fig5_clouds", ", Fig. 5", "one cloud goes up in time, the other down",
+                _clouds_move, by_run=True),
+            Statement("fig5_plane", ", Fig. 5", "from NE-SW to more E-W", _north_east_to_east, by_run=True),
+            Statement("fig6", ", Fig. 6", "the rotation of the mean azimuth is very linear", _linear, by_run=True),
+            Statement("fig7_ahead", ", Fig. 7", "without the outer-diagonal terms: a little bit ahead in time",
+                _coupling_is_ahead, by_run=True),
+            PrintedNumber("fig7_foucault", ", Fig. 7", "≈ 0.06084 Hz", "0.06084", day_frequency),
+            PrintedNumber("fig7_planar", ", Fig. 7", "≈ 0.06089 Hz",
+                "0.06089", lambda: frequency(solved(STILL, "600"))),
+            PrintedNumber("fig7_half", ", Fig. 7", "after 12 thousand seconds detuned by approximately half a cycle",
+                "0.5", lambda: 12000 * (1 / planar_period() - day_frequency()), about=lambda: MP.one),
+            PrintedNumber("vii_harmonic", ", item 1", "sqrt(g/l)/2π = 0.0608895 Hz",
+                "0.0608895", lambda: harmonic(p.case)),
+            PrintedNumber("vii_phi0", ", item 2", "φ(0) ≈ 0.00746276 rad", "0.00746276", planar_amplitude),
+            PrintedNumber("vii_period", ", item 2", "4 sqrt(l/g) K(sin(φ0/2)) ≈ 16.423225 s",
+                "16.423225", planar_period),
+            Statement("vii_formula", ", item 2", "period = 4 sqrt(l/g) K(sin(φ0/2))", _planar_run),
+            PrintedNumber("vii_planar", ", item 2", "0.06088938 Hz", "0.06088938", lambda: 1 / planar_period()),
+            PrintedNumber("vii_51", ", item 3", "sqrt(ĝ + (Ω sinϕ)²) ≈ 0.06088959 Hz",
+                "0.06088959", lambda: harmonic_frequency(p, p.gravity)),
+            PrintedNumber("vii_g", ", item 4", "g' = 9.79195 m/s²", "9.79195", lambda: p.case.apparent_gravity),
+            PrintedNumber("vii_g_hz", ", item 4", "≈ 0.060843935 Hz",
+                "0.060843935", lambda: harmonic_frequency(p, p.case.apparent_gravity)),
+            Statement("vii_slow", ", item 5", "a slow-down with the factor 4K(sin(φ0/2))",
+                lambda: _slowed(2 * pi), "the factor is 4K/2π = 2K/π", lambda: _slowed(MP.one).holds),
+            PrintedNumber("vii_z", ", item 5", "release at z = -66.9981 m", "-66.9981", lambda: released()[2]),
+            PrintedNumber("vii_rest_y", ", item 5", "equilibrium y = -0.115202 m",
+                "-0.115202", lambda: rest(p)[1], remark="the rest position of (46) with the paper's own inputs"),
+            PrintedNumber("vii_rest_z", ", item 5", "equilibrium z = -66.999 m", "-66.999", lambda: rest(p)[2]),
+            PrintedNumber("vii_amplitude", ", item 5", "φ(0) = 0.008898355 rad", "0.008898355", amplitude),
+            PrintedNumber("vii_estimate", ", item 5", "0.060843634 Hz", "0.060843634", lambda: estimate(p)),
+            PrintedNumber("vii_frequency", ", item 6", "the actual Foucault pendulum: 0.060843633 Hz",
+                "0.060843633", first_period_frequency,
+                remark=f"first period; swings of the day {shown(day_frequency(), 12)} Hz, which is the paper's digits "
+                    f"cut off; n/(2 t_n) over the day {shown(transit_frequency(), 12)} Hz"),
+        ),
+    ]  # fmt: skip

@@ -1,0 +1,229 @@
+"""The third source paper, its three methods: turning axes, the Coriolis theorem used twice, complex variables."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ..checks import Approximate, Check, Finding, Identity, Statement
+from ..digits import MP, Vector, add, cos, cross, derivative, j, mpf, norm, scale, shown, sin, sqrt, vector_derivative
+from ..linear import coupled, linearised, motion, rate_up
+from ..points import Point, paris, points
+from ..section import Section
+from .setting import (
+    axes_rate,
+    generic_path,
+    measured_rate,
+    primed,
+    printed_rate,
+    stiffness,
+    unprimed_equation,
+)
+
+D = Section("methods_", "Three methods")
+
+
+def _own_rate(p: Point) -> Any:
+    """Return some ω_p, not the special one."""
+    return p.cord_rate
+
+
+def _first(p: Point) -> Vector:
+    """Return x', y' dot as printed, second form."""
+    w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
+    along, across = p.vx - p.y * w, p.x * w + p.vy
+    return along * c - across * s, along * s + across * c
+
+
+def _second(p: Point) -> Vector:
+    """Return x', y' double dot as printed, second form."""
+    w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
+    along, across = p.ax - 2 * p.vy * w - p.x * w**2, p.ay + 2 * p.vx * w - p.y * w**2
+    return along * c - across * s, along * s + across * c
+
+
+def _second_long(p: Point) -> Vector:
+    """Return x', y' double dot as printed, first form."""
+    w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
+    return (
+        (p.ax - p.vy * w) * c - (p.vx - p.y * w) * w * s - (p.vx * w + p.ay) * s - (p.x * w + p.vy) * w * c,
+        (p.ax - p.vy * w) * s + (p.vx - p.y * w) * w * c + (p.vx * w + p.ay) * c - (p.x * w + p.vy) * w * s,
+    )
+
+
+def _derived(order: int) -> Callable[[Point], Vector]:
+    return lambda p: vector_derivative(primed(generic_path(p), _own_rate(p)), p.t, order)
+
+
+def _printed_unprimed(p: Point, rate: Any) -> Vector:
+    """Return x'', y'' from the pair printed before "which decouples"."""
+    up = rate_up(p)
+    k = p.gravity / p.length - 2 * up * rate - rate**2
+    return -k * p.x + 2 * (up + rate) * p.vy, -k * p.y - 2 * (up + rate) * p.vx
+
+
+def _substituted_pair(p: Point) -> Vector:
+    """Return the two lines before the pair, with all terms on one side."""
+    rate = _own_rate(p)
+    x, y = add((p.ax, p.ay), scale(-1, _printed_unprimed(p, rate)))
+    c, s = cos(rate * p.t), sin(rate * p.t)
+    return x * c - y * s, x * s + y * c
+
+
+def _excess(p: Point) -> Vector:
+    """Return what x', y' along a path leave over in the equations of motion."""
+    turned = primed(generic_path(p), _own_rate(p))
+    place, speed, second = turned(p.t), vector_derivative(turned, p.t), vector_derivative(turned, p.t, 2)
+    return add(second, scale(-1, coupled(p, place, speed)))
+
+
+def _widest(s: Any) -> Any:
+    return points()[0].cord * s
+
+
+def _two_ways(p: Point) -> Vector:
+    pull, rate = p.gravity / p.length, axes_rate(p)
+    first = sqrt(pull - 2 * p.rate * rate * sin(p.phi) - rate**2)
+    return first, sqrt(pull + 2 * rate / sin(p.phi) * rate * sin(p.phi) - rate**2)
+
+
+def _far_below_gravity() -> Finding:
+    p = paris()
+    ratio = p.rate * norm((p.x, p.y)) * sqrt(p.gravity / p.length) / p.gravity
+    return Finding(ratio < mpf("1e-4"), f"ω xdot / g = {shown(ratio)} in Paris")
+
+
+def _turned(s: Any) -> Point:
+    base = paris()
+    return base.but(rate=base.rate * s)
+
+
+def _centrifugal(p: Point) -> Vector:
+    """Return -m ω_p × (ω_p × x')."""
+    axis = (MP.zero, MP.zero, axes_rate(p))
+    return scale(-p.mass, cross(axis, cross(axis, (p.x, p.y, MP.zero))))[:2]
+
+
+def _turned_drive(p: Point) -> Vector:
+    """Return F_eff/m of the lines before, with the velocity in axes at rest, x' + ω_p × x'."""
+    speed = add((p.vx, p.vy), scale(axes_rate(p), (-p.y, p.x)))
+    return coupled(p, (p.x, p.y), speed)
+
+
+def _moved_acceleration(p: Point) -> Vector:
+    """Return the acceleration of the linear motion, seen from axes that turn at ω_p and coincide at t = 0."""
+    rate = axes_rate(p)
+    start = (p.x, p.y, p.vx - rate * p.y, p.vy + rate * p.x)
+
+    def in_turning_axes(t: Any) -> Vector:
+        x, y = motion(p, start, t)[:2]
+        c, s = cos(rate * t), sin(rate * t)
+        return x * c + y * s, y * c - x * s
+
+    return vector_derivative(in_turning_axes, MP.zero, 2)
+
+
+def _in_turning_frame(p: Point, rate: Any, drive: Callable[[Vector, Vector], Vector]) -> Vector:
+    """Return the acceleration in axes that turn at `rate`; in axes at rest it is `drive(place, velocity)`.
+
+    The point's x, y, vx, vy are those in the turning axes, which coincide with the axes at rest at this moment.
+    """
+    place, speed = (p.x, p.y), (p.vx, p.vy)
+    at_rest = add(speed, scale(rate, (-p.y, p.x)))
+    force = drive(place, at_rest)
+    return add(force, scale(2 * rate, (p.vy, -p.vx)), scale(rate**2, place))
+
+
+def _simple_in_frame() -> Finding:
+    def excess(p: Point) -> Any:
+        turned = _in_turning_frame(p, axes_rate(p), lambda place, speed: coupled(p, place, speed))
+        return norm(add(turned, scale(stiffness(p), (p.x, p.y))))
+
+    gap = max(map(excess, points()))
+    return Finding(gap < mpf("1e-45"), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
+
+
+def _equation(p: Point) -> Any:
+    z, v = MP.mpc(p.x, p.y), MP.mpc(p.vx, p.vy)
+    return -2 * j * rate_up(p) * v - p.gravity / p.length * z
+
+
+def _spun(p: Point) -> tuple[Any, Any, Any]:
+    """Return w, w', w'' of z = w exp(-iω_P t) at t = 0, for the linear motion from the point."""
+
+    def w(t: Any) -> Any:
+        x, y = motion(p, (p.x, p.y, p.vx, p.vy), t)[:2]
+        return MP.mpc(x, y) * MP.expj(rate_up(p) * t)
+
+    return w(MP.zero), derivative(w), derivative(w, 0, 2)
+
+
+def _substituted(p: Point) -> Any:
+    w, first, second = _spun(p)
+    up = rate_up(p)
+    return (second - 2 * j * up * first - up**2 * w) + 2 * j * up * (first - j * up * w) + p.gravity / p.length * w
+
+
+def checks() -> list[Check]:
+    """Return the rows, in the order of print."""
+    return [
+        *D.rows(
+            Identity("1_first", ", method 1", "xdot' = (xdot - yω_p) cosω_p t - (xω_p + ydot) sinω_p t, ydot' = …",
+                _first, _derived(1)),
+            Identity("1_second_a", ", method 1", "xddot' and yddot', first form", _second_long, _derived(2)),
+            Identity("1_second", ", method 1",
+                "xddot' = (xddot - 2ydot ω_p - xω_p²) cosω_p t - (yddot + 2xdot ω_p - yω_p²) sinω_p t, …",
+                _second, _derived(2)),
+            Identity("1_substituted", ", method 1",
+                "(xddot + (…) x - 2(…) ydot) cosω_p t = (yddot + (…) y + 2(…) xdot) sinω_p t, …",
+                _substituted_pair, _excess,
+                remark="the scan is garbled here; the brackets are those of the pair that follows"),
+            Identity("1_pair", ", method 1",
+                "xddot + (g/L - 2ω sinα ω_p - ω_p²) x - 2(ω sinα + ω_p) ydot = 0, yddot + …",
+                lambda p: _printed_unprimed(p, _own_rate(p)), lambda p: unprimed_equation(p, _own_rate(p))),
+            Identity("1_rate", ", method 1", "decouples for ω_p = -ω sinα",
+                lambda p: unprimed_equation(p.but(x=MP.zero, y=MP.zero), axes_rate(p)), lambda p: (MP.zero, MP.zero),
+                remark="x'', y'' that velocities alone give"),
+            Identity("1_simple", ", method 1", "xddot + ω̃² x = 0, yddot + ω̃² y = 0",
+                lambda p: scale(-stiffness(p), (p.x, p.y)), lambda p: unprimed_equation(p, axes_rate(p))),
+            Identity("1_omega", ", method 1",
+                "ω̃ = sqrt(g/L - 2ωω_p sinα - ω_p²) = sqrt(g/L + 2(ω_P/sinα) ω_p sinα - ω_p²)",
+                _two_ways, lambda p: (measured_rate(p), measured_rate(p)),
+                remark="truth: eigenvalues of the decoupled pair"),
+            Identity("1_omega2", ", method 1", "ω̃ = sqrt(g/L + ω_p²)", printed_rate, measured_rate),
+            Approximate("1_omega3", ", method 1", "ω̃ ≈ sqrt(g/L)",
+                lambda s: (sqrt(_turned(s).gravity / _turned(s).length), printed_rate(_turned(s))), 2, "ω",
+                remark="in Paris"),
+            Approximate("1_amplitude", ", method 1", "A ω̃ = L θ_max ω̃",
+                lambda s: (_widest(s), sin(_widest(s))), 2, "θ_max", remark="A over L, at a random θ"),
+            Statement("1_small", ", method 1", "ω xdot << g", _far_below_gravity),
+            Identity("2_vector", ", method 2", "m xddot = -(mg/L) x - 2m (ω sinα k) × xdot",
+                lambda p: add(scale(-p.gravity / p.length, (p.x, p.y)), scale(-2, cross((MP.zero, MP.zero, rate_up(p)),
+                    (p.vx, p.vy, MP.zero)))[:2]), linearised),
+            Identity("2_coriolis", ", method 2", "m xddot' = F_eff - 2m ω_p × xdot' - m ω_p × (ω_p × x')",
+                lambda p: add(_turned_drive(p), scale(-2, cross((MP.zero, MP.zero, axes_rate(p)), (p.vx, p.vy,
+                    MP.zero)))[:2], scale(1 / p.mass, _centrifugal(p))), _moved_acceleration,
+                remark="F_eff with the velocity in axes at rest; truth: the linear motion, seen from the turning axes"),
+            Identity("2_centrifugal", ", method 2", "-m ω_p × (ω_p × x') = -m ω_p² x'",
+                lambda p: scale(-p.mass * axes_rate(p) ** 2, (p.x, p.y)), _centrifugal, "+m ω_p² x'",
+                lambda p: scale(p.mass * axes_rate(p) ** 2, (p.x, p.y))),
+            Identity("2_force", ", method 2", "F_eff = -(mg/L) x' - 2m (ω sinα k) × xdot'",
+                lambda p: coupled(p, (p.x, p.y), (p.vx, p.vy)), _turned_drive,
+                "xdot = xdot' + ω_p × x' belongs in it; the two errors cancel",
+                lambda p: coupled(p, (p.x, p.y), (p.vx - axes_rate(p) * p.y, p.vy + axes_rate(p) * p.x))),
+            Identity("2_end", ", method 2", "xddot' = -(g/L) x' - ω_p² x'",
+                lambda p: scale(-stiffness(p), (p.x, p.y)), _moved_acceleration),
+            Identity("2_omega", ", method 2", "ω = sqrt(g/L + ω_p²)", printed_rate, measured_rate),
+            Identity("3_z", ", method 3", "zddot + 2iω_P zdot + (g/L) z = 0, ω_P = ω sinα",
+                _equation, lambda p: MP.mpc(*linearised(p)),
+                remark="ω_P with the other sign than in method 1 and in the conclusion, where it is the axes' -ω sinα"),
+            Identity("3_w", ", method 3", "(wddot - 2iω_p wdot - ω_P² w) + 2iω_P (wdot - iω_P w) + (g/L) w = 0",
+                _substituted, lambda p: MP.zero),
+            Identity("3_simple", ", method 3", "wddot + (g/L + ω_P²) w = 0",
+                lambda p: -stiffness(p) * _spun(p)[0], lambda p: _spun(p)[2]),
+            Identity("3_omega", ", method 3", "ω = sqrt(g/L + ω_P²)", printed_rate, measured_rate),
+            Statement("end_frame", ", conclusion",
+                "in axes that turn at -ω sinα: simple harmonic, frequency sqrt(g/L + ω_P²)",
+                _simple_in_frame),
+        ),
+    ]  # fmt: skip

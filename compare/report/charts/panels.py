@@ -1,0 +1,98 @@
+"""Panels above one another in one style, for figures after a paper: one of them names its lines in the margin."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from .drawing import limits, logarithmic, picture, sheet
+from .labels import Line, draw, place
+
+WIDE = 4.8  # inches: as wide as a telephone's screen, where the letters then are as large as the text beside them
+EDGE = 0.5  # inches of a figure's height that no panel has
+
+
+@dataclass(frozen=True)
+class Panel:
+    """One panel.
+
+    Attributes:
+        lines: its lines, in data coordinates.
+        x: name of the x axis, or "".
+        y: name of the y axis, or "".
+        title: its title, or "".
+        named: the names of the lines stand in the margin; in a figure one panel at most.
+        height: in inches.
+        xlim, ylim: ends of the axes; None for those of the lines.
+        xticks, yticks: ticks; None for matplotlib's choice.
+        log: the y axis is logarithmic.
+        level: both axes have one scale.
+        bare: no axes; the lines are named beside themselves.
+    """
+
+    lines: Sequence[Line]
+    x: str = ""
+    y: str = ""
+    title: str = ""
+    named: bool = False
+    height: float = 2.6
+    xlim: tuple[float, float] | None = None
+    ylim: tuple[float, float] | None = None
+    xticks: Sequence[float] | None = None
+    yticks: Sequence[float] | None = None
+    log: bool = False
+    level: bool = False
+    bare: bool = False
+
+
+def line(name: str, x: Any, y: Any, colour: str, dashes: Any = "-", width: float = 1.3) -> Line:
+    """Return a line without markers."""
+    return Line(name, list(map(float, x)), list(map(float, y)), _style(colour, dashes, width))
+
+
+def dots(name: str, x: Any, y: Any, colour: str, mark: str = ".", size: float = 2.0, dashes: Any = "none") -> Line:
+    """Return points, joined if `dashes` says how; dots are faint, other marks hollow."""
+    style = {**_style(colour, dashes, 0.7), "marker": mark, "markersize": size}
+    if mark != ".":
+        style["markerfacecolor"] = "none"
+    return Line(name, list(map(float, x)), list(map(float, y)), style, [mark == "."] * len(x))
+
+
+def drawn(panels: Sequence[Panel]) -> str:
+    """Return the panels, the first on top, as SVG.
+
+    Raises:
+        InputError: matplotlib is not installed.
+    """
+    with sheet((WIDE, EDGE + sum(panel.height for panel in panels))) as figure:
+        rows = figure.subplots(len(panels), 1, squeeze=False, height_ratios=[panel.height for panel in panels])[:, 0]
+        for axes, panel in zip(rows, panels, strict=True):
+            _draw(axes, panel)
+        for axes, panel in zip(rows, panels, strict=True):
+            if panel.named or panel.bare:
+                place(axes, [one for one in panel.lines if one.name], panel.lines, size=9, margin=panel.named)
+        return picture(figure).decode()
+
+
+def _style(colour: str, dashes: Any, width: float) -> dict[str, Any]:
+    return {"color": colour, "linestyle": dashes, "linewidth": width}
+
+
+def _draw(axes: Any, panel: Panel) -> None:
+    draw(axes, panel.lines)
+    axes.set(xlabel=panel.x, ylabel=panel.y, title=panel.title)
+    if panel.log:
+        logarithmic(axes, "y", *limits([y for one in panel.lines for y in one.y]), 8)
+    else:
+        axes.ticklabel_format(axis="y", useOffset=False)
+    for which in "xy":
+        ends, ticks = getattr(panel, f"{which}lim"), getattr(panel, f"{which}ticks")
+        if ends is not None:
+            getattr(axes, f"set_{which}lim")(*ends)
+        if ticks is not None:
+            getattr(axes, f"set_{which}ticks")(ticks)
+    if panel.level:
+        axes.set_aspect("equal")
+    if panel.bare:
+        axes.set_axis_off()
