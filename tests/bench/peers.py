@@ -55,8 +55,8 @@ def boost(rows: Rows, headers: str, tolerance: float, folder: str) -> tuple[floa
     n, inertial = rows.n[..., 0], rows.V[..., 0]
     numbers = np.hstack([n, np.cross(n, inertial), rows.turn[:, 1:, 0], rows.pull[:, 1:, 0]])
     text = "\n".join([f"{tolerance} {SPAN}", *(" ".join(map(repr, row)) for row in numbers.tolist())])
-    keywords: dict[str, Any] = {"input": text, "capture_output": True, "text": True, "check": True}
-    lines = [subprocess.run([program], **keywords).stdout.splitlines() for _ in range(REPEATS)]
+    keywords: dict[str, Any] = {"input": text, "capture_output": True, "text": True}
+    lines = [subprocess.run([program], check=True, **keywords).stdout.splitlines() for _ in range(REPEATS)]
     return min(float(one[0]) for one in lines), np.array([line.split() for line in lines[0][1:]], dtype=float)
 
 
