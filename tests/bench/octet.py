@@ -46,16 +46,16 @@ class ScalarLoop:
         _, v = MOMENTUM.cartesian(state, k, hy)
         found = [hy.nt_event(v[0], lambda _, t, direction: self.times.append(t))] if events else []
         equations = list(zip(state, MOMENTUM.derivatives(state, k, hy), strict=True))
-        self._ta: Any = hy.taylor_adaptive(equations, [0.0] * 6, pars=[0.0] * 4, nt_events=found)
+        self.integrator: Any = hy.taylor_adaptive(equations, [0.0] * 6, pars=[0.0] * 4, nt_events=found)
 
     def solve(self, rows: Rows) -> None:
         """Solve rows."""
         for n, inertial, turn, pull in zip(*(a[..., 0] for a in (rows.n, rows.V, rows.turn, rows.pull)), strict=True):
             self.times.clear()
-            self._ta.time = 0.0
-            self._ta.state[:] = [*n, *np.cross(n, inertial)]
-            self._ta.pars[:] = [*turn[1:], *pull[1:]]
-            self._ta.propagate_until(float(SPAN))
+            self.integrator.time = 0.0
+            self.integrator.state[:] = [*n, *np.cross(n, inertial)]
+            self.integrator.pars[:] = [*turn[1:], *pull[1:]]
+            self.integrator.propagate_until(float(SPAN))
 
 
 def many_rows(count: int) -> Rows:
