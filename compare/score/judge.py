@@ -27,6 +27,7 @@ from ..candidates.external import Timing
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..observed.turn_and_delay import SwingErrors
+from ..rhs.constants import constants_in_double
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
 from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
 from .explanation.explain import explain as explained
