@@ -70,10 +70,11 @@ def explanation_lines(score: Score) -> Iterator[str]:
             f"As that model it is exact to {found.model.exact_to_m:.2g} m; "
             f"against the full Lagrangian it is {found.model.costs_m:.3g} m off:"
         )
-    elif found.causes:
+    elif len(found.causes) > 1:
         yield "It seems that your program, most fundamental first,"
+    begin = "- " if found.model is not None or len(found.causes) > 1 else "It seems that your program "
     for cause in found.causes:
-        yield f"- {cause.text}: {cause.size_m:.3g} m"
+        yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
     if found.slip:
         yield found.slip
     if found.causes or any(one.id not in MERE for one in found.conventions):

@@ -59,8 +59,7 @@ mine.csv disagrees with paris (3 rows, t = 0 to 3600 of 86400 s: 4.16 %)
   took                1.5 CPU s, 2.5 s  (median of 3 after a warm-up)
   inputs read as      binary64  (as asked)
   reference           confirmed  (within 3e-30 m at these times)
-It seems that your program, most fundamental first,
-- leaves out the wind: 0.25 m
+It seems that your program leaves out the wind: 0.25 m
 With this put right, 1e-09 m are left.
 Reading: t is in ms.
 Note: late."""
