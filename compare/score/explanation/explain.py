@@ -12,7 +12,8 @@ from reference import FoucaultError, Scene
 from reference.engines.variants import Variants
 from reference.precision import Array
 
-from .causes import Cause, causes
+from .approximated import approximated
+from .causes import NAMED, Cause, causes
 from .conventions import Rows, made_right
 from .findings import Explanation, Model, SizedCause
 from .pendulum import NAMES, Fit, Pendulum, fit_pendulum
@@ -28,6 +29,7 @@ _FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
 STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
+PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
 CLEAN = 1e-3  # of what an integrator does: a named one leaves less
 MODEL = 0.3  # decades by which a simpler family has to be better than the sphere
 NAMED_SHARE = 0.03  # of the error that may be left if causes are to be named
@@ -94,10 +96,33 @@ def _of_rows(
     floor = max(rows.noise, allowed_m / 3)
     if error <= floor:
         return plain
+    named = _of_families(rows, model, right, frequency, truth, allowed_m, floor)
+    if named is not None and named.corrected_m <= max(allowed_m, 1.5 * rows.noise):
+        return named
+    as_printed = approximated(scene, rows, truth)
+    if as_printed is None or (named is not None and as_printed.model.exact_to_m > PLAINLY * named.corrected_m):
+        return named or plain
+    corrected = as_printed.model.exact_to_m
+    exact = corrected <= max(allowed_m, 1.5 * rows.noise) and all(one.id in HARMLESS for one in rows.conventions)
+    return Explanation(
+        rows.conventions,
+        (as_printed.cause,),
+        as_printed.model if exact else None,
+        corrected,
+        explained=1 - _rms(as_printed.left) / error,
+        score=_score_of(corrected, allowed_m, rows) + NAMED,
+    )
+
+
+def _of_families(
+    rows: Rows, model: Variants, right: Program, frequency: float, truth: Array, allowed_m: float, floor: float
+) -> Explanation | None:
+    """Return what the fit of a family of models tells; None if nothing."""
+    error, whole = _rms(rows.positions - truth), _largest(rows.positions - truth)
     pendulum = Pendulum(model, right.radius, right.gradient_square, _FAST * (frequency + abs(right.rate)))
     families = list(_families(rows, right, pendulum, frequency, floor))
     if not families:
-        return plain
+        return None
     least = min(family.fit.rest for family in families)
     floor = max(floor, 1.2 * least)
     found: list[tuple[float, _Family, Reading]] = []
@@ -115,12 +140,12 @@ def _of_rows(
                 run = reader.scored(one.causes, one.program, leaves)
                 found.append((run.score + extra, family, run))
     if not found:
-        return plain
+        return None
     found.sort(key=lambda one: one[0])
     _, family, best = found[0]
     share = FITTED_SHARE if any(cause.free for cause in best.causes) else NAMED_SHARE
     if best.rest > max(share * error, 1.5 * rows.noise):
-        return plain
+        return None
     reader = Reader(replace(right, kind=family.kind), family.fit, floor)
     named = list(_sized(best, reader, right, pendulum, rows, truth))
     left = rows.positions - _positions(best.program, pendulum, rows)

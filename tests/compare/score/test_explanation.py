@@ -18,11 +18,12 @@ from places import MISTAKEN_C, PENDULUM_C
 from small_scenes import make_scene
 from typer.testing import CliRunner
 
+from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
 from compare.score.explanation.explain import explain
 from compare.score.judge import Score, judge
 from foucault import commands
-from reference import Scene
+from reference import Scene, load_scene
 from reference.engines.variants import Variants
 from reference.solver.sensitivity import sensitivity, with_value
 
@@ -247,3 +248,14 @@ for (let i = 0; i <= 300; i++) {
   console.log(`${t},${x * re - y * im},${x * im + y * re}`)
 }
 """
+
+
+@pytest.mark.parametrize(
+    "word", ["gastebois_6_2", "linear_3d", "mathar_item_5", "mathar_items_1_2", "linear_recentred"]
+)
+def test_an_approximation_of_the_papers_is_named(word: str) -> None:
+    scene, times = load_scene("paris", ["run.t_end=3600"]), np.linspace(0, 3600, 61)
+    positions = APPROXIMATIONS[word].trajectory(scene, times)  # type: ignore[attr-defined]
+    found = explain(times, {"x": positions[:, 0], "y": positions[:, 1]}, scene, 5e-7)
+    assert [cause.id for cause in found.causes] == [word]
+    assert found.model is not None and found.model.id == word and found.corrected_m < 1e-9
