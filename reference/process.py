@@ -98,20 +98,28 @@ class Worker:
 
         Closing may block as well: a thread that waits for a result holds the pipe until the process ends.
         """
-        alarm = threading.Timer(GRACE_S, self.kill)
-        alarm.start()
-        try:
+        with alarm(GRACE_S, self.kill):
             for pipe in (self._process.stdin, self._process.stdout):
                 if pipe is not None:
                     with contextlib.suppress(OSError):
                         pipe.close()
             self._process.wait()
-        finally:
-            alarm.cancel()
 
     def kill(self) -> None:
         """Kill the process (SIGKILL)."""
         self._process.kill()
+
+
+@contextlib.contextmanager
+def alarm(delay_s: float, act: Callable[..., object], *arguments: Any) -> Iterator[None]:
+    """Call a function if the body takes longer than `delay_s` seconds."""
+    timer = threading.Timer(delay_s, act, arguments)
+    timer.daemon = True  # an interruption between the lines here must not have the program wait for it as it ends
+    try:
+        timer.start()
+        yield
+    finally:
+        timer.cancel()
 
 
 @contextlib.contextmanager

@@ -143,7 +143,7 @@ PUBLIC = {
     "reference.plain_text": "plain plain_lines",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
-    "reference.process": "Emit Worker terminable",
+    "reference.process": "Emit Worker alarm terminable",
     "reference.scene": "LEVELS MAX_ROWS RunTable",
     "reference.shortened": "shortened",
     "reference.shipped": "data_root seals",

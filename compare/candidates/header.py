@@ -12,7 +12,7 @@ from .names import meaning
 from .rows import Spelling, words
 
 MOST = 1000  # lines above the first row that are looked at
-FEW = 2  # names of columns in a comment from which on it is meant as the header
+FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header
 
 
 @dataclass
@@ -98,7 +98,7 @@ class Header:
         for way, named in ways:  # of another number of columns
             if set(self.needed) <= named and (not is_comment or len(named) == len(way)):
                 return way
-        few = min(FEW, len(self.needed)) if is_comment else 0
+        few = max(min(FEW, len(self.needed)), count // 2) if is_comment else 0
         return next((way for way, named in fitting if len(named) >= few), None)
 
     @staticmethod

@@ -47,6 +47,7 @@ def document(score: Score) -> dict[str, Any]:
         "model": None,
         "causes": [],
         "corrected": None,
+        "slip": None,
         "diagnosis": None,
         "notes": list(score.notes),
     }
@@ -87,5 +88,6 @@ def _explained(found: Explanation, known: list[dict[str, Any]]) -> dict[str, Any
         "model": None if found.model is None else vars(found.model),
         "causes": causes,
         "corrected": {"max_error_m": found.corrected_m} if math.isfinite(found.corrected_m) else None,
+        "slip": found.slip or None,
         "diagnosis": None if diagnosis is None else vars(diagnosis),
     }

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from reference import InputError, IntegrationError
-from reference.process import Worker
+from reference.process import Worker, alarm
 from reference.status import Status
 
 from .. import cache
@@ -164,12 +164,8 @@ def _isolated(
         starting_s = STARTING_S
         try:
             while remaining:
-                alarm = threading.Timer(patience_s + starting_s, _end, (worker, timed_out))
-                alarm.start()
-                try:
+                with alarm(patience_s + starting_s, _end, worker, timed_out):
                     result = next(answers)
-                finally:
-                    alarm.cancel()
                 starting_s = 0.0
                 yield result
                 remaining.pop(0)

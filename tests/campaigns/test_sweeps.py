@@ -16,7 +16,8 @@ from random_rows import KINDS, random_kinds
 
 from reference.engines.registry import batches
 
-COMMAND = [sys.executable, "foucault.py", "sweep", "paris", "--t-end", "60", "--audit", "0", "--workers", "1"]
+WORDS = ["sweep", "paris", "--t-end", "60", "--audit", "0", "--workers", "1"]
+SMALL_PARTS = "import reference.sweeps.planning as planning; planning.PART_S = 0.0; from foucault import main; main()"
 
 
 @pytest.mark.parametrize("engine", ["heyoka", "octet"])
@@ -33,15 +34,17 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills processes")
 def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally):
-    step, kills, longest = size(1, 20), size(2, 20), size(4, 7)
-    over = ["--over", f"site.latitude=-90:90:{18 / 100 if step == 20 else 10}", "--over", "release.x=0.1:0.5995:0.0005"]
-    engine = ["--engine", "octet" if step == 20 else "heyoka"]
+    long, kills, longest = size(0, 1), size(2, 20), size(4, 7)
+    grid = ("-90:90:0.18", "0.1:0.5995:0.0005") if long else ("-90:90:10", "0.1:0.58:0.02")
+    over = ["--over", f"site.latitude={grid[0]}", "--over", f"release.x={grid[1]}"]
+    program = ["foucault.py"] if long else ["-c", SMALL_PARTS]
+    command = [sys.executable, *program, *WORDS, *over, "--engine", "octet" if long else "heyoka"]
     whole, killed = tmp_path / "whole", tmp_path / "killed"
-    subprocess.run([*COMMAND, *over, *engine, "--out", whole], check=True, cwd=ROOT, capture_output=True)
+    subprocess.run([*command, "--out", whole], check=True, cwd=ROOT, capture_output=True)
     generator, done = random.Random(5), 0
     while True:
         process = subprocess.Popen(
-            [*COMMAND, *over, *engine, "--out", killed], cwd=ROOT, stdout=subprocess.DEVNULL, start_new_session=True
+            [*command, "--out", killed], cwd=ROOT, stdout=subprocess.DEVNULL, start_new_session=True
         )
         try:
             process.wait(generator.uniform(1.0, longest) if done < kills else None)
@@ -51,5 +54,6 @@ def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally
             process.wait()
             done += 1
     tally(f"sweeps: {done} kills, {len(contents(whole))} parts")
+    assert len(contents(whole)) > 9
     assert process.returncode == 0
     assert contents(killed) == contents(whole)

@@ -20,6 +20,7 @@ from .pendulum import NAMES, Fit, Pendulum, fit_pendulum
 from .phasors import Phasors, as_angles, fit_phasors
 from .programs import Program
 from .readings import SAME, Reader, Reading
+from .slips import slip
 
 CONVENTION = 0.3  # decades that a convention has to explain
 HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
@@ -78,7 +79,12 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
         as_named = made_right(times, columns, start, right.length, frequency, rename=False)
         other = _of_rows(as_named, model, right, frequency, scene, allowed_m)
         if other.score < found.score:
-            return other
+            found = other
+    vague = any(one.id == "integrator_loose" for one in found.causes)
+    if vague or (not found.causes and found.corrected_m > max(allowed_m, 1.5 * read.noise)):
+        told = slip(read.times, read.positions, scene)
+        if told:  # one term of a formula, as no integrator changes it
+            return Explanation(found.conventions, slip=told)
     return found
 
 

@@ -142,10 +142,11 @@ class _Moments:
         bits = self._bits
         k = constants(self.files.scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
         columns = [FixedPoint.column(column, self.unit, bits) for column in self.columns]
-        rows, follows = self._deep, self._follows
+        rows = self._deep
         side = np.where(self.columns[2][rows] > 0, 1, -1)
         x, y = (column[rows] for column in columns[:2])
         columns[2].values[rows] = depth(x, y, k.length, side, FixedPoint.sqrt).values
+        follows = self._follows & np.asarray(columns[2].values != 0, dtype=bool)  # beyond the sphere, z comes out 0
         x, y, z, vx, vy = (column[follows] for column in columns[:5])
         columns[5].values[follows] = vertical_velocity(x, y, z, vx, vy).values
         return list(quantity(columns, k).fractions())
@@ -185,7 +186,7 @@ class _Moments:
         """What the smallest bound needs, up to twice the digits if it is absurdly small, and room for rounding."""
         smallest = min((bound for bound in self.bounds if bound), default=self.unit)
         digits = bits_of(self.files.manifest.digits)
-        return min(bits_in(Fraction(self.unit, smallest)), digits) + digits + INVARIANT_BITS
+        return max(0, min(bits_in(Fraction(self.unit, smallest)), digits)) + digits + INVARIANT_BITS
 
     @property
     def _deep(self) -> Array:

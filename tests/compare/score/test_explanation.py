@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -13,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy.linalg
 from mistakes import case
 from places import MISTAKEN_C, PENDULUM_C
 from small_scenes import make_scene
@@ -20,6 +22,7 @@ from typer.testing import CliRunner
 
 from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
+from compare.rhs.constants import constants_in_double
 from compare.score.explanation.explain import explain
 from compare.score.judge import Score, judge
 from foucault import commands
@@ -259,3 +262,25 @@ def test_an_approximation_of_the_papers_is_named(word: str) -> None:
     found = explain(times, {"x": positions[:, 0], "y": positions[:, 1]}, scene, 5e-7)
     assert [cause.id for cause in found.causes] == [word]
     assert found.model is not None and found.model.id == word and found.corrected_m < 1e-9
+
+
+@pytest.mark.parametrize(("term", "value"), [((1, 3), 1.0), ((1, 3), 0.0), ((0, 0), 1.001)])
+def test_a_slip_in_a_formula_is_found_in_the_accelerations(term: tuple[int, int], value: float) -> None:
+    """A linear program with one coefficient changed, which no combination of causes describes."""
+    scene, k = load_scene("paris"), constants_in_double(load_scene("paris").exact)
+    doubled, swing = 2 * float(k.turn[2]), float(k.gravity)
+    right = np.array([[-swing, 0, 0, doubled], [0, -swing, -doubled, 0]])
+    place = (term[0], 2) if term == (1, 3) else term
+    wrong = right.copy()
+    wrong[place] *= value if term == (0, 0) else -value
+    system = np.vstack([np.eye(4)[2:], wrong])
+    step, state = scipy.linalg.expm(0.2 * system), np.array([0.3, 0.4, 0.0, 0.0])
+    rows = [state := step @ state if i else state for i in range(3000)]
+    found = explain(0.2 * np.arange(3000.0), dict(zip("xy", np.array(rows).T, strict=False)), scene, 5e-7)
+    assert not found.causes
+    told = re.search(r"in the equation of ([xy]), the term with (\w+) is (\S+) .* the model has (\S+)\.", found.slip)
+    assert told is not None
+    assert told[1] == "xy"[place[0]] and told[2] == ("x", "y", "vx", "vy")[place[1]]
+    assert float(told[3]) == pytest.approx(wrong[place], rel=2e-3, abs=1e-7)
+    assert float(told[4]) == pytest.approx(right[place], rel=2e-3)
+    assert ("does work" in found.slip) is (place != (0, 0))

@@ -1,0 +1,158 @@
+"""A slip in a formula: the part of the force that is off, from the accelerations of the rows themselves.
+
+Near its lowest point the bob's acceleration is nearly linear in x, y and their velocities. What the rows have more than
+the model is fitted by such terms, and the largest are told beside what the model has in their place. Needs rows close
+enough to be differentiated twice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from reference import Scene
+from reference.model.constants import Constants
+from reference.model.force import acceleration
+from reference.precision import Array
+
+from ...rhs.constants import constants_in_double
+
+FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # stencils of order 6
+SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
+COARSE = np.array([-1, 16, -30, 16, -1]) / 12  # of order 4, whose difference from the other tells the error
+LEAST = 30  # rows that can be differentiated
+USUAL, FARTHEST = 0.15, 0.5  # steps between rows, in radians of the swing
+CLEAR = 10.0  # times their own error: accelerations that are off
+EXPLAINED = 0.02  # of the mean square that the terms told may leave
+MOST = 3  # terms that are told
+WORK = 0.2  # of |force| |velocity|: a force that does work
+ALIKE = 0.2  # by which two terms that are off alike may differ
+LOW = 0.3  # of the length: farther out, the force is not linear
+TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
+NUDGE = 1e-6
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """Rows that were differentiated: x, y, vx, vy, ax, ay, shape (rows,), and the error of ax and ay in m/s²."""
+
+    state: Array
+    rates: Array
+    error: float
+
+
+def slip(times: Array, positions: Array, scene: Scene) -> str:
+    """Return which part of the force is off, as a sentence; empty if the rows do not tell.
+
+    Args:
+        times: of the rows in s, shape (rows,).
+        positions: x, y and perhaps z in m, shape (rows, 2 or 3).
+        scene: the scene.
+    """
+    k = constants_in_double(scene.exact)
+    rate = float(np.linalg.norm([float(part) for part in k.pull])) ** 0.5
+    motion = _differentiated(times, positions[:, :2], rate)
+    if motion is None or not float(np.abs(motion.state[:2]).max()) < LOW * k.length:
+        return ""
+    # whatever g is taken for, a slip is what is off beside it
+    effective = replace(k, pull=(0, 0, -k.gravity), centrifugal=(0, 0, 0, 0))
+    k = min(k, effective, key=lambda one: _size(motion.rates - _model(motion.state, one)))
+    off = motion.rates - _model(motion.state, k)
+    size = _size(off)
+    if not size > CLEAR * motion.error:
+        return ""
+    found = list(_terms(motion.state, off, k))
+    if not found or _alike([(*term[:2], term[2] - term[3]) for term in found]):
+        return ""
+    told = "; ".join(_sentence(*term) for term in found)
+    power = np.mean(np.sum(off * motion.state[2:], axis=0))
+    speed = float(np.sqrt(np.mean(motion.state[2:] ** 2)))
+    work = " The difference does work, as no Coriolis force does." if abs(power) > WORK * 2 * size * speed else ""
+    taken = "" if k.pull[1] or not k.rate else ", with g as the effective gravity,"
+    return f"Its accelerations differ from the model's{taken} by {size:.2g} m/s²: {told}.{work}"
+
+
+def _size(rates: Array) -> float:
+    return float(np.sqrt(np.mean(rates**2)))
+
+
+def _differentiated(times: Array, plane: Array, rate: float) -> _Motion | None:
+    """Return rows with equal steps differentiated; None if they are too few or too far apart, or steps differ.
+
+    Of rows that are close to each other only some are taken: their rounding would be magnified most.
+    """
+    steps = np.diff(times)
+    if len(times) < LEAST or not np.ptp(steps) < 1e-6 * steps[0] or not steps[0] * rate < FARTHEST:
+        return None
+    stride = max(1, min(int(USUAL / (steps[0] * rate)), len(times) // LEAST))
+    h, plane = float(steps[0]) * stride, plane[::stride]
+    parts = [np.array([np.convolve(q, stencil[::-1], "valid") for q in plane.T]) for stencil in (FIRST, SECOND, COARSE)]
+    speeds, rates, coarse = parts[0] / h, parts[1] / h**2, parts[2][:, 1:-1] / h**2
+    return _Motion(np.vstack([plane[3:-3].T, speeds]), rates, _size(rates - coarse))
+
+
+def _model(state: Array, k: Constants) -> Array:
+    """Return the horizontal acceleration of the full model in m/s², shape (2, rows)."""
+    x, y, vx, vy = state / k.length
+    z = -np.sqrt(1 - x * x - y * y)
+    ax, ay, _ = acceleration((x, y, z), (vx, vy, -(x * vx + y * vy) / z), k)
+    return np.asarray(np.array([ax, ay]) * k.length)
+
+
+def _terms(state: Array, off: Array, k: Constants) -> Iterator[tuple[str, str, float, float]]:
+    """Yield equation, term, its coefficient in the rows and in the model: the fewest that leave next to nothing."""
+    count = state.shape[1]
+    basis = np.vstack([np.ones(count), state])
+    scale = np.sqrt(np.mean(basis**2, axis=1))
+    scale[scale == 0] = 1.0
+    places = [(i, j) for i in range(2) for j in range(len(TERMS))]
+    chosen: list[tuple[int, int]] = []
+    whole = float(np.sum(off**2))
+    for _ in range(MOST):
+        tried = [(_left(basis / scale[:, None], off, [*chosen, place])[0], place) for place in places]
+        rest, place = min(one for one in tried if one[1] not in chosen)
+        chosen.append(place)
+        if rest < EXPLAINED * whole:
+            break
+    else:
+        return
+    fitted = _left(basis / scale[:, None], off, chosen)[1]
+    origin = np.zeros((4, 1))
+    for (i, j), value in zip(chosen, fitted, strict=True):
+        if j:
+            nudge = np.zeros((4, 1))
+            nudge[j - 1] = NUDGE
+            right = float((_model(origin + nudge, k) - _model(origin - nudge, k))[i, 0]) / (2 * NUDGE)
+        else:
+            right = float(_model(origin, k)[i, 0])
+        yield "xy"[i], list(TERMS)[j], right + value / float(scale[j]), right
+
+
+def _left(basis: Array, off: Array, places: list[tuple[int, int]]) -> tuple[float, list[float]]:
+    """Return the sum of squares that some terms leave, and their coefficients."""
+    rest, fitted = 0.0, dict.fromkeys(places, 0.0)
+    for i in range(2):
+        own = [j for equation, j in places if equation == i]
+        if own:
+            solution = np.linalg.lstsq(basis[own].T, off[i], rcond=None)[0]
+            fitted |= {(i, j): float(value) for j, value in zip(own, solution, strict=True)}
+            rest += float(np.sum((off[i] - solution @ basis[own]) ** 2))
+        else:
+            rest += float(np.sum(off[i] ** 2))
+    return rest, list(fitted.values())
+
+
+def _alike(off: list[tuple[str, str, float]]) -> bool:
+    """Return whether x and y are off alike: by a number, such as g or drag, or by the integrator, not by a slip."""
+    pairs = ({("x", "x"), ("y", "y")}, {("x", "vx"), ("y", "vy")})
+    if {part[:2] for part in off} not in pairs:
+        return False
+    (_, _, a), (_, _, b) = off
+    return abs(a - b) < ALIKE * abs(a)
+
+
+def _sentence(equation: str, term: str, value: float, right: float) -> str:
+    name = "the constant term" if term == "1" else f"the term with {term}"
+    return f"in the equation of {equation}, {name} is {value:.6g} {TERMS[term]} where the model has {right:.6g}"
