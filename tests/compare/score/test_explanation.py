@@ -113,18 +113,18 @@ def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "decimals"),
+    ("name", "value", "decimals", "rows"),
     [
-        ("site.gravity", "9.80667", 4),  # the first minutes show nothing but the rounding of the output
-        ("site.latitude", "30", 17),
-        ("pendulum.drag", "1e-6", 17),
-        ("pendulum.length", "67.05", 17),
+        ("site.gravity", "9.80667", 4, 1441),  # the first minutes show nothing but the rounding of the output
+        ("site.latitude", "30", 17, 400),  # of as many rows as the others have, none is explained
+        ("pendulum.drag", "1e-6", 17, 1441),
+        ("pendulum.length", "67.05", 17, 1441),
     ],
 )
 def test_an_input_is_found_whether_its_shift_is_small_or_large(
-    paris: Scene, name: str, value: str, decimals: int
+    paris: Scene, name: str, value: str, decimals: int, rows: int
 ) -> None:
-    made = synthetic(paris, name, value, decimals)
+    made = synthetic(paris, name, value, decimals, rows)
     assert made.explanation is not None and made.explanation.diagnosis is not None
     assert made.explanation.diagnosis.id == name
     true = sensitivity(paris, [0.0]).values[name]

@@ -101,9 +101,9 @@ def completed(*words: str) -> list[str]:
     ("words", "offered"),
     [
         (("gen",), ["generate"]),
-        (("generate", "par"), ["paris", "paris_30d"]),
+        (("generate", "par"), ["paris", "paris_30d", "paris_measured"]),
         (("study", "paris", "--methods", "rk4,rkng"), ["rk4,rkng56", "rk4,rkng67"]),
-        (("stability", "--scenes", "hard,par"), ["hard,paris", "hard,paris_30d"]),
+        (("stability", "--scenes", "hard,par"), ["hard,paris", "hard,paris_30d", "hard,paris_measured"]),
         (("generate", "paris", "--level", "con"), ["confirmed"]),
         (("show", "paris", "--set", "site.lat"), ["site.latitude="]),
         (("verify", "paris.b"), ["paris.binary64"]),
