@@ -122,7 +122,9 @@ def command(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Solve a scene for many values of its fields, each number with its error.
+    """Solve a scene for many values of its fields.
+
+    Frequency, precession, transits and final state, each with its error.
 
     foucault sweep paris --over site.latitude=-90:90:1 --t-end 12000
     """
