@@ -8,12 +8,13 @@ from typing import Any
 
 from reference import FoucaultError
 from reference.errors import Stopped
+from reference.status import Status
 
 from ..score.document import document
 from ..score.judge import Score
 from ..score.verdict import lines
 
-REFUSED = "refused"  # the verdict on a candidate that could not be judged
+REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged
 ORDER = ("agrees", "disagrees", REFUSED)  # from best to worst
 
 

@@ -20,7 +20,7 @@ from reference.inputs import Inputs
 MP = mpmath.mp.clone()
 MP.dps = 60
 
-ORDINARY = {"paris", "pantheon", "pole", "equator", "southern", "spherical"}
+ORDINARY = {"paris", "paris_measured", "pantheon", "pole", "equator", "southern", "spherical"}
 EXTREME = [name for name in scene_ids() if name not in ORDINARY]
 LONG = {"paris_30d"}
 UNDAMPED = [name for name in EXTREME if name not in LONG and not load_scene(name).exact.drag]
