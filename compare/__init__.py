@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from .candidates.candidate import Candidate
     from .candidates.read import read
     from .methods import METHODS
-    from .score.judge import Score, judge
+    from .score.judge import judge
+    from .score.scored import Score
     from .studies.study import study
     from .testing import assert_agrees
 
@@ -44,7 +45,7 @@ __getattr__, __dir__ = lazy(
         "APPROXIMATIONS": "approximations",
         "Candidate": "candidates.candidate",
         "METHODS": "methods",
-        "Score": "score.judge",
+        "Score": "score.scored",
         "assert_agrees": "testing",
         "judge": "score.judge",
         "read": "candidates.read",

@@ -24,7 +24,8 @@ from reference.precision import Array
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .candidates.external import placeholders
-from .score.judge import Score, judge
+from .score.judge import judge
+from .score.scored import Score
 from .score.verdict import explanation_lines, percent
 
 

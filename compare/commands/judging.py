@@ -19,7 +19,8 @@ from ..candidates.candidate import COLUMNS, Candidate, candidate_of
 from ..candidates.external import arguments, timed
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
-from ..score.judge import Score, judge
+from ..score.judge import judge
+from ..score.scored import Score
 from ..suite import page
 from ..suite.files import Entry, entries
 from ..suite.outcome import Outcome, outcome

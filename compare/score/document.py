@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from .explanation.findings import Explanation
-from .judge import Score
+from .scored import Score
 
 
 def document(score: Score) -> dict[str, Any]:

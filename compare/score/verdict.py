@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from itertools import islice
 
-from .judge import Score
+from .scored import Score
 
 MERE = ("decimals", "digits", "single_precision", "z_constant", "off_the_sphere")  # nothing to put right
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most

@@ -11,7 +11,7 @@ from reference.errors import Stopped
 from reference.status import Status
 
 from ..score.document import document
-from ..score.judge import Score
+from ..score.scored import Score
 from ..score.verdict import lines
 
 REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged

@@ -13,7 +13,7 @@ from reference.precision import Array
 from reference.shortened import shortened
 from reference.workspace import replace_file
 
-from ...score.judge import Score
+from ...score.scored import Score
 from .drawing import COLOURS, GUIDE, check_matplotlib, line_style, logarithmic, picture, sheet
 from .labels import Line, draw, place
 from .ladders import band

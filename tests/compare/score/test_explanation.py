@@ -24,7 +24,8 @@ from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
 from compare.rhs.constants import constants_in_double
 from compare.score.explanation.explain import explain
-from compare.score.judge import Score, judge
+from compare.score.judge import judge
+from compare.score.scored import Score
 from foucault import commands
 from reference import Scene, load_scene
 from reference.engines.variants import Variants

@@ -1,0 +1,146 @@
+"""The judgement of a candidate: its errors, what was allowed, the verdict and its grade."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from reference import Golden, Scene
+
+from ..candidates.candidate import COLUMNS, Candidate
+from ..candidates.external import Timing
+from ..observed.turn_and_delay import SwingErrors
+from .errors import TrajectoryErrors
+from .explanation.findings import Explanation
+from .input_floor import input_floor
+from .transits import TransitErrors
+
+WHOLE = 1e-6  # a program that counts its steps ends this near to the end, as a part of the span, and has covered it
+
+
+class Worst(NamedTuple):
+    """One number of a candidate: its time in s and column, the truth, what it says, and their difference."""
+
+    t: float
+    component: str
+    expected: float
+    got: float
+    difference: float
+
+
+@dataclass(frozen=True, repr=False)
+class Score:
+    """The judgement of a candidate.
+
+    Attributes:
+        candidate: the trajectory that was judged.
+        scene: the problem, its inputs read as decimals or as doubles.
+        why_inputs: the reason for that reading.
+        golden: the dataset that the truth comes from.
+        errors: at the candidate's times.
+        tolerance_m: largest position error allowed, in m.
+        swing: turn of the swing plane and delay.
+        drifts: of h and of |r| - l, if the candidate has the columns.
+        transits: errors of its transits, or None.
+        timing: run time of the program, or None.
+        explanation: the likely reasons for the error; None if they were not looked for.
+        notes: remarks that a reader ought to know.
+        covers: share of the scene's span that was demanded, from 0 to 1.
+        as_model: whether agreement as a named model is enough.
+    """
+
+    candidate: Candidate
+    scene: Scene
+    why_inputs: str
+    golden: Golden
+    errors: TrajectoryErrors
+    tolerance_m: float
+    swing: SwingErrors
+    drifts: dict[str, float]
+    transits: TransitErrors | None = None
+    timing: Timing | None = None
+    explanation: Explanation | None = None
+    notes: tuple[str, ...] = ()
+    covers: float = 0.0
+    as_model: bool = False
+
+    def __repr__(self) -> str:
+        return f"Score({self.verdict} with {self.scene.id}: {self.errors.max_m:.2g} m)"
+
+    @cached_property
+    def input_floor_m(self) -> float:
+        """Distance in m by which rounding the inputs to binary64 moves the bob; computed at the first use."""
+        return input_floor(self.scene, float(self.candidate.t[-1]))
+
+    @property
+    def worst(self) -> Worst:
+        """The component in which the largest position error shows most."""
+        return self._at(*self.errors.worst)
+
+    @property
+    def worst_of_each(self) -> dict[str, Worst]:
+        """The largest error of each column."""
+        return {name: self._at(row, name) for name, row in self.errors.worst_rows.items()}
+
+    def _at(self, row: int, name: str) -> Worst:
+        expected, got = self.errors.truth.states[row, COLUMNS.index(name)], self.candidate.columns[name][row]
+        difference = self.errors.components[name][row]
+        return Worst(float(self.errors.t[row]), name, float(expected), float(got), float(difference))
+
+    @cached_property
+    def covered(self) -> float:
+        """Share of the scene's span up to the last row, from 0 to 1; of transits alone, up to the next true one."""
+        last, end = float(self.errors.t[-1]), float(self.scene.exact.t_end)
+        if not self.candidate.positions:
+            later = self.golden.transits["t"]
+            later = later[later > last + self.tolerance_m / self.errors.speed_m_s]
+            last = float(later[0]) if len(later) else float(self.golden.t[-1])
+        return 1.0 if last >= end * (1 - WHOLE) else last / end
+
+    @property
+    def falls_short(self) -> bool:
+        """True if it says nothing of the motion, having no row after t = 0, or covers less than is demanded."""
+        return self.covered < self.covers or not self.covered > 0
+
+    @property
+    def allowed_m(self) -> float:
+        """Tolerance plus the reference's own bound, in m: nothing is judged more finely than the reference is known."""
+        return self.tolerance_m + self.errors.bound_m
+
+    @property
+    def off_path(self) -> bool:
+        """True if the largest position error is above `allowed_m`."""
+        return self.errors.max_m > self.allowed_m
+
+    @property
+    def agrees(self) -> bool:
+        """True if nothing is off by more than `allowed_m`, missed, extra or left out."""
+        transits = self.transits
+        return not (self.off_path or self.falls_short) and (
+            transits is None or not (transits.missed or transits.extra or transits.max_conditioned_m > self.allowed_m)
+        )
+
+    @property
+    def verdict(self) -> str:
+        """'agrees' or 'disagrees', as in the JSON document."""
+        return "agrees" if self.agrees else "disagrees"
+
+    @property
+    def grade(self) -> str:
+        """'agrees', 'agrees as the model …' where it is exact within a named simplification, or 'disagrees'."""
+        model = None if self.explanation is None else self.explanation.model
+        return self.verdict if self.agrees or model is None else f"agrees as the model: {model.text}"
+
+    @property
+    def passes(self) -> bool:
+        """True if it agrees, or agrees as a named model and `as_model` says that this is enough."""
+        if self.agrees:
+            return True
+        modelled = self.explanation is not None and self.explanation.model is not None
+        return self.as_model and modelled and not self.falls_short and self.transits is None
+
+    @property
+    def at_bound(self) -> bool:
+        """True if the largest error is at or below the reference's own bound."""
+        return self.errors.max_m <= self.errors.bound_m
