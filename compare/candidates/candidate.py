@@ -22,10 +22,17 @@ class NotFiniteError(InputError):
 
 @dataclass(frozen=True)
 class Convention:
-    """How a candidate was read, or seems to be meant, where that is not plain: a stable word, and what to tell."""
+    """A way in which a candidate was read, or seems to be meant, that is not the usual one.
+
+    Attributes:
+        id: a stable word.
+        text: what to tell.
+        size_m: the largest distance in m by which it moves a row; 0 if it moves none or that is not known.
+    """
 
     id: str
     text: str
+    size_m: float = 0.0
 
 
 @dataclass(frozen=True, repr=False)

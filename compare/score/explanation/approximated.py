@@ -10,8 +10,8 @@ from reference import Scene
 from reference.precision import Array
 
 from ...approximations import APPROXIMATIONS, Motion
-from .conventions import Rows
 from .findings import Model, SizedCause
+from .rows import Rows
 
 LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
 SHARE = 0.01  # of the error that may be left

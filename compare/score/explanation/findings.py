@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .conventions import Convention
+from ...candidates.candidate import Convention
 
 
 @dataclass(frozen=True)
