@@ -38,7 +38,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "compare/score: transits": f"{SCORE}transit_errors.py",
     "compare/score: errors": f"{SCORE}errors.py",
     "compare/score: verdict": f"{SCORE}verdict.py",
-    "compare/score: judge": f"{SCORE}judge.py",
+    "compare/score: judge scored": f"{SCORE}judge.py",
     "reference: precision": f"tests/reference/test_precision.py tests/reference/test_table.py {BITS}",
     "reference/solver: rounding": f"{FILES} {SOLVER}solve.py",
     "reference/solver: agreement transit_errors": f"{SOLVER}agreement.py {SOLVER}solve.py",
