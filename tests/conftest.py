@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import io
+import os
 import signal
 import sys
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Generator
+from typing import Any
 
 import pytest
 from hypothesis import settings
 from small_scenes import make_scene
 
 from reference.scene import Scene, load_scene
+
+COSTLY = 15  # files named at the end of a test run, with the CPU seconds that they took
 
 settings.register_profile("here", deadline=None, derandomize=True)
 settings.load_profile("here")
@@ -35,7 +40,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture
-def size(pytestconfig: pytest.Config) -> Callable[[int, int], int]:
+def size(pytestconfig: pytest.Config) -> Callable[[Any, Any], Any]:
     """Choose how many cases a campaign tries: the first number in every test run, the second with --long."""
     return lambda short, long: long if pytestconfig.getoption("--long") else short
 
@@ -46,13 +51,38 @@ def tally(record_property: Callable[[str, object], None]) -> Callable[[str], Non
     return lambda line: record_property("tally", line)
 
 
+def cpu_s() -> float:
+    """Return the CPU seconds of this process and of those that it waited for."""
+    return sum(os.times()[:4])
+
+
+USED = pytest.StashKey[float]()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Note what a test, its preparation or its clearing away took."""
+    report = yield
+    before, now = item.config.stash.get(USED, 0.0), cpu_s()
+    item.config.stash[USED] = now
+    report.user_properties.append(("cpu_s", now - before))
+    return report
+
+
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    reports = [report for kind in ("passed", "failed") for report in terminalreporter.stats.get(kind, ())]
-    lines = [str(value) for report in reports for key, value in report.user_properties if key == "tally"]
+    reports = [report for kind in ("passed", "failed", "") for report in terminalreporter.stats.get(kind, ())]
+    lines = {str(value) for report in reports for key, value in report.user_properties if key == "tally"}
     if lines:
         terminalreporter.section("campaigns")
     for line in sorted(lines):
         terminalreporter.write_line(line)
+    taken: Counter[str] = Counter()
+    for report in reports:
+        properties = dict(report.user_properties)
+        taken[report.nodeid.partition("::")[0]] += properties.get("cpu_s", 0.0)
+    terminalreporter.section(f"{sum(taken.values()):.0f} CPU seconds")
+    for path, seconds in taken.most_common(COSTLY):
+        terminalreporter.write_line(f"{seconds:6.1f} {path}")
 
 
 @pytest.fixture

@@ -16,7 +16,8 @@ from places import ROOT
 import reference
 
 SMALL = ["paris", "--t-end", "60", "--digits", "10", "--level", "computed"]
-STUDY = ["study", "paris", "--t-end", "60", "--methods", "rk4", "--no-formulations"]
+STUDY = ["study", "paris", "--t-end", "60", "--methods", "heyoka_double", "--no-formulations"]
+STABILITY = ["stability", "--scenes", "hard", "--methods", "heyoka_double"]
 
 
 @pytest.fixture
@@ -66,15 +67,13 @@ def test_generate_finds_out_at_any_file(disk, foucault):
         assert os.listdir(disk) == ["filler"]
 
 
-@pytest.mark.parametrize("words", [STUDY, ["stability", "--scenes", "hard", "--methods", "rk4"]], ids=lambda w: w[0])
+@pytest.mark.parametrize("words", [STUDY, STABILITY], ids=lambda words: words[0])
 def test_a_campaign_ends_with_a_message(words, disk, foucault):
-    pytest.importorskip("numba")
     fill(disk)
     assert refused(foucault(*words, "--out", disk / "report"), "--out")
 
 
 def test_a_report_stays_as_it_was(disk, foucault):
-    pytest.importorskip("numba")
     assert foucault(*STUDY, "--out", disk / "report")[0] == 0
     before = contents(disk / "report")
     fill(disk)

@@ -84,8 +84,8 @@ SCENES = {
 
 
 @pytest.mark.parametrize("sections", SCENES.values(), ids=SCENES.keys())
-def test_every_kind_of_scene_is_proved_and_every_digit_is_right(sections):
-    scene = make_scene(**sections, run={**SHORT, "t_end": "60"})
+def test_every_kind_of_scene_is_proved_and_every_digit_is_right(sections, size):
+    scene = make_scene(**sections, run={**SHORT, "t_end": size("12", "60")})
     solution = reference.solve(scene)
     sheet, truth = grid_sheet(solution), finer(scene, 256)
     for name, text in zip(sheet.header[1:], sheet.rows[-1][1:], strict=True):
