@@ -8,7 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -57,7 +56,7 @@ def integrate(
 
     propagator = Propagator(variables, derivatives, number, tolerance=tolerance)
     of = propagator.numbers.of
-    states = propagator.from_zero([of(_exact(v)) for v in start], [of(_exact(t)) for t in times], max_steps=max_steps)
+    states = propagator.from_zero([of(v) for v in start], [of(t) for t in times], max_steps=max_steps)
     return np.asarray(states.astype(float))
 
 
@@ -93,7 +92,7 @@ def trajectory(
 
     try:
         model = RoundedModel(FORMULATIONS[formulation], start.k, number)
-        moments, state = [model.numbers.of(_exact(t)) for t in times], model.release(start)
+        moments, state = [model.numbers.of(t) for t in times], model.release(start)
     except OverflowError:
         raise BeyondDoublesError from None
     most = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * _fastest_rate(start) * float(moments[-1]))
@@ -110,8 +109,3 @@ def _fastest_rate(start: Start) -> float:
     """Return the sum of the rates of swing, release, rotation and drag, in 1/s."""
     ctx, k = start.ctx, start.k
     return float(ctx.sqrt(ctx.norm(k.pull)) + ctx.norm(start.v) + abs(k.rate) + k.drag)
-
-
-def _exact(value: Any) -> Any:
-    """Return a float as the fraction it is; mpf, Fraction and int as they are."""
-    return Fraction(*value.as_integer_ratio()) if isinstance(value, float | np.floating) else value

@@ -33,7 +33,11 @@ class Numbers:
         self._twos: dict[int, Any] = {}
 
     def of(self, value: Any) -> Any:
-        """Return the number of the type that is nearest to an mpf, int or Fraction."""
+        """Return the number of the type that is nearest to an mpf, int, Fraction or float."""
+        if isinstance(value, float | np.floating):
+            if self.number.hardware and np.isfinite(value):
+                return self.type(value)
+            value = Fraction(*value.as_integer_ratio())
         if isinstance(value, int | Fraction):
             top, bottom = value.numerator, value.denominator
         else:
