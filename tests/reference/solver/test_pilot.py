@@ -73,11 +73,11 @@ def test_perturbed_runs_that_diverge_at_every_precision_are_refused(monkeypatch)
 
 
 def test_growth_faster_than_any_precision_is_refused_from_the_first_runs():
-    scene = load_scene("separatrix", ["run.t_end=2400", "run.grid_step=1"])
+    scene = load_scene("separatrix", ["run.t_end=1500", "run.grid_step=10"])
     with pytest.raises(UnreachableError, match=r"to the end it takes about (\d+) bits") as caught:
         run_pilot(scene.exact, tuple(scene.exact.grid))
     bits = int(re.findall(r"(\d+) bits", caught.value.reason)[0])
-    needed = 2400 * 3 / math.log(2)
+    needed = 1500 * 3 / math.log(2)
     assert needed * 0.9 < bits < needed * 1.1
 
 
