@@ -122,20 +122,20 @@ def drawn(count: int, seed: int, module: str) -> list[Mutant]:
     return [mutant for _, _, mutant in sorted(found)[:count]]
 
 
-def status_of(tests: str, folder: Path, most: int) -> int:
+def status_of(tests: str, folder: Path, most: int, output: int | None = subprocess.DEVNULL) -> int:
     """Return the exit status of tests in a copy of the project, ended after `most` CPU s or ten times that of wall."""
     limits = ["timeout", "--signal=KILL", str(10 * most), "sh", "-c", f'ulimit -t {most}; exec "$@"', "sh"]
     words = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-k"]
     words += [f"not ({SLOW.replace(' ', ' or ')})", *tests.split()]
     environment = {**os.environ, "PYTHONPATH": str(folder)}
     call = [*limits, *words]
-    return subprocess.run(call, cwd=folder, env=environment, stdout=subprocess.DEVNULL, check=False).returncode
+    return subprocess.run(call, cwd=folder, env=environment, stdout=output, check=False).returncode
 
 
 def cpu_of(tests: str, folder: Path) -> int:
-    """Return the CPU seconds of tests without a change, which have to pass."""
+    """Return the CPU seconds of tests without a change, which have to pass; their output is shown."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    if status := status_of(tests, folder, 3600):
+    if status := status_of(tests, folder, 3600, output=None):
         raise SystemExit(f"{tests}: exit status {status} without any change")
     return int(resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before) + 1
 
