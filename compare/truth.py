@@ -36,6 +36,7 @@ def golden_of(
     report: Report | None = None,
     until: float | None = None,
     level: str = "confirmed",
+    grid: bool = False,
 ) -> Golden:
     """Return a dataset that solves a scene: one that ships, or one that is solved now and kept in the cache.
 
@@ -46,13 +47,15 @@ def golden_of(
         report: called with the simulated time reached, in s.
         until: end of the span that is needed, in s: a new dataset stops at the first grid time from there on.
         level: level of trust of a new dataset.
+        grid: whether the dataset's grid up to the scene's end must be the scene's; otherwise any grid will do.
 
     Raises:
         UnreachableError: the scene cannot be solved to the digits.
     """
     for folder in shipped(scene):
         golden = _loaded(folder)
-        if solves(golden, scene) and golden.manifest.digits >= digits:
+        fits = solves(golden, scene) and golden.manifest.digits >= digits
+        if fits and not (grid and _grid_until(golden.scene, scene.exact.t_end) != scene.exact.grid):
             return golden
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
     name = f"{scene.id}-{_hash_of_problem(problem)}"
@@ -129,6 +132,10 @@ def solves(golden: Golden, scene: Scene) -> bool:
     same = all(getattr(other, part) == getattr(scene, part) for part in ("inputs", "pendulum", "site", "release"))
     spans = other.exact.t_end >= scene.exact.t_end
     return same and spans and (other.run.transits or not scene.run.transits)
+
+
+def _grid_until(scene: Scene, t_end: Fraction) -> list[Fraction]:
+    return [t for t in scene.exact.grid if t <= t_end]
 
 
 def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import json
+import math
 import re
 import sys
 from collections.abc import Iterator
@@ -38,9 +39,19 @@ def plain_lines(text: str) -> str:
     return _CONTROL_BUT_LINES.sub(_written_out, text)
 
 
-def plain_json(text: str) -> str:
-    """Return a JSON document with the control characters in its strings as JSON writes them."""
+def plain_json(document: Any) -> str:
+    """Return a document as JSON, control characters as JSON writes them; NaN and infinity, which it lacks, as null."""
+    text = json.dumps(finite(document), indent=1, ensure_ascii=False, allow_nan=False)
     return _CONTROL_BUT_LINES.sub(lambda match: json.dumps(match[0])[1:-1], text)
+
+
+def finite(value: Any) -> Any:
+    """Return a document of dictionaries, lists and values with None for each NaN and infinity."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _written_out(match: re.Match[str]) -> str:

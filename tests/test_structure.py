@@ -140,7 +140,7 @@ PUBLIC = {
     "reference.nearest": "did_you_mean in_words unknown",
     "reference.opening": "open_at_once",
     "reference.packages": "missing switched_off",
-    "reference.plain_text": "plain plain_lines",
+    "reference.plain_text": "finite plain plain_json plain_lines",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
     "reference.process": "Emit Worker alarm terminable",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
@@ -38,6 +39,14 @@ def prepare(problem: Problem, setting: float) -> Work:
     return work
 
 
+def precision_runs(bits: Sequence[int]) -> list[tuple[str, float]]:
+    """Return the runs at those precisions that the engine has, in the form of the equations that it computes in."""
+    from reference.engines.registry import engines
+
+    limbs = engines()["limbs"]
+    return [(limbs.formulation, float(prec)) for prec in bits if prec in limbs.bits]
+
+
 METHODS = (
     Method(
         id="limbs",
@@ -55,6 +64,6 @@ METHODS = (
         libraries=("numpy", "numba"),
         stability=((None, 100),),
         long_runs=(("inertial", 100),),
-        precision_runs=lambda bits: [("inertial", setting) for setting in LADDER if setting <= bits[-1]],
+        precision_runs=precision_runs,
     ),
 )

@@ -47,7 +47,8 @@ FRONT = "No other row is both cheaper and more accurate than one of these. Cheap
 ROWS = (
     "● and shaded: on the Pareto front. ~: the cost is extrapolated from a part of the span; counts and errors are "
     "those of that part. Spread: the difference between the largest and the smallest CPU time of the repeats, divided "
-    "by their median. Compile: CPU seconds of imports and compilation, which are not part of the cost."
+    "by their median. Compile: CPU seconds of imports and compilation, which are not part of the cost. <: the error "
+    "of transits is not resolved, because it is measured from the doubles next to their true times; it is below this."
 )
 FAILED = "Failed rows keep their place in the tables: nothing is left out. A failed row is never on the Pareto front."
 NO_PICTURES = "The pictures need matplotlib: pip install 'foucault-reference[plot]'."

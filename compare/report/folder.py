@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-import json
-import math
 import os
 import shutil
 from collections.abc import Callable, Iterable, Mapping
@@ -15,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
-from reference.plain_text import plain_lines
+from reference.plain_text import plain_json, plain_lines
 from reference.workspace import workspace
 
 from .page import MARK
@@ -158,12 +156,4 @@ def _harmless(value: Any) -> Any:
 
 def json_text(document: Any) -> str:
     """Return a document as JSON; NaN and infinity, which JSON does not have, become null."""
-    return json.dumps(_finite(document), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def _finite(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_finite(item) for item in value]
-    return None if isinstance(value, float) and not math.isfinite(value) else value
+    return plain_json(document) + "\n"

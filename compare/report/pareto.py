@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any
 
 from reference import InputError
@@ -162,22 +162,52 @@ def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[
 def sentences(document: dict[str, Any]) -> list[str]:
     """Return the main results as sentences: the cheapest method at each error that is reached, and the cost of digits.
 
-    A study of high precisions alone says nothing about large errors; then only the cost of digits is given.
+    A study of precisions, in which no method has a ladder of steps or tolerances, says nothing about large errors; then
+    only the cost of digits is given: what was measured, the price of a further digit, and the power law.
     """
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
-    laws = costs_of_digits(rows, bound_m)
-    coarse = any(error_of(row, bound_m) > TARGETS_M[-1] for row in _measured(rows))
-    cheapest = [_sentence(rows, error_m, bound_m) for error_m in TARGETS_M] if coarse or not laws else []
-    costs = [cost_sentence(label, law) for label, law in laws.items()]
-    return [sentence for sentence in (*cheapest, *costs) if sentence]
+    by_precision = [curve for curve in curves(rows) if curve.kind == "precision" and curve.measured]
+    ladders = [curve for curve in curves(rows) if curve.kind != "precision" and len(curve.rows) > 1]
+    coarse = any(error_of(row, bound_m) > TARGETS_M[-1] for curve in ladders for row in _measured(curve.rows))
+    if by_precision and not coarse:
+        prices = [_prices(curve, bound_m) for curve in curves(rows)]
+    else:
+        prices = list(_cheapest(rows, bound_m))
+    laws = [cost_sentence(label, law) for label, law in costs_of_digits(rows, bound_m).items()]
+    return [sentence for sentence in (*prices, *laws) if sentence]
 
 
-def _sentence(rows: Sequence[Row], error_m: float, bound_m: float) -> str:
-    costs = costs_at(rows, error_m, bound_m)
-    if not costs:
+def _prices(curve: Curve, bound_m: float) -> str:
+    """Return what each number of digits costs with a method, and a further digit between the last two of them."""
+    measured = [row for row in _measured(curve.rows) if row.error_m is not None and row.error_m < 1 and row.cpu_s]
+    known = sorted(measured, key=lambda row: digits_of(row, bound_m))
+    if not known:
         return ""
+    costs = [f"{digits_of(row, bound_m):.0f} digits cost {seconds(cost_of(row))}" for row in known]
+    text = f"{curve.label}: {costs[0]}" + "".join(f", {cost.replace(' digits cost', ' digits')}" for cost in costs[1:])
+    if len(known) > 1:
+        further = digits_of(known[-1], bound_m) - digits_of(known[-2], bound_m)
+        if further > 1:
+            price = (cost_of(known[-1]) - cost_of(known[-2])) / further
+            text += f"; a further digit costs {seconds(price)} there"
+    return f"{text}."
+
+
+def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
+    """Yield the cheapest method at each error that is reached; errors at which it is the same run share a sentence."""
+    found = [(error_m, costs) for error_m in TARGETS_M if (costs := costs_at(rows, error_m, bound_m))]
+    for _, group in groupby(found, key=lambda one: (one[1][0].label, one[1][0].cpu_s)):
+        alike = list(group)
+        (first_m, costs), (last_m, _) = alike[0], alike[-1]
+        if len(alike) > 1 and all(others == costs for _, others in alike):
+            yield _sentence(rows, f"From {_metres(first_m)} to {_metres(last_m)}", costs, bound_m)
+        else:
+            yield from (_sentence(rows, f"At {_metres(error_m)}", costs, bound_m) for error_m, costs in alike)
+
+
+def _sentence(rows: Sequence[Row], where: str, costs: Sequence[CostAtError], bound_m: float) -> str:
     first = costs[0]
-    head = f"At {_metres(error_m)} the cheapest method is {first.label}, with {seconds(first.cpu_s)} of CPU time"
+    head = f"{where} the cheapest method is {first.label}, with {seconds(first.cpu_s)} of CPU time"
     if first.extrapolated:
         head += " (extrapolated from a part of the span)"
     paper = next((cost for cost in costs if cost.method == PAPER_METHOD), None)

@@ -18,12 +18,14 @@ from ..studies.long_runs import LongRun, laws
 from ..studies.machine import machine
 from ..studies.program import NUMBER
 from ..studies.stability import WRONG, Cell
+from .busy import busy
 from .charts import ErrorHistory, Field, error_growth, heat_map
 from .charts.heat_map import LETTERS
 from .folder import Report
 from .page import Column, Html, TableRow, facts, figure, findings, page, paragraph, section, table
-from .tables import LONGEST_COMMAND, advice, words
+from .tables import LONGEST_COMMAND, advice, cpu, setting, tidy, words
 
+COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
 
@@ -35,22 +37,30 @@ def document_of(
     return {
         "programs": dict(programs or {}),
         "rows": [asdict(cell) for cell in cells],
-        Status.SILENTLY_WRONG.value: sum(cell.status == Status.SILENTLY_WRONG for cell in cells),
+        **{one.value: sum(cell.status == one for cell in cells) for one in COUNTED},
         "long_runs": [run.document() for run in runs],
         "machine": machine(),
     }
 
 
 def headlines(cells: Sequence[Cell]) -> list[str]:
-    """Return the main results as sentences."""
+    """Return the main results as sentences: the methods' own failures first, then what no method could have kept."""
     wrong = [cell for cell in cells if cell.status == Status.SILENTLY_WRONG]
     tried = [cell for cell in cells if cell.status not in NOT_TRIED]
     methods = Counter(cell.method for cell in wrong)
     sentences = [
         *_programs_broken(cells),
         f"{len(wrong)} of {len(tried)} runs are silently wrong: they report success, but the error is over {WRONG} "
-        "times what was asked for.",
+        "times what was asked for, and over what the motion makes of such an error at the release.",
     ]
+    magnified = [cell for cell in tried if cell.status == Status.ILL_CONDITIONED]
+    if magnified:
+        where = Counter(cell.scene for cell in magnified)
+        scenes = ", ".join(f"{name} ({count})" for name, count in where.most_common())
+        sentences.append(
+            f"{len(magnified)} more are as far off because the motion itself magnifies what was asked by more than "
+            f"the error: {scenes}."
+        )
     if methods:
         worst = ", ".join(f"{name} ({count})" for name, count in methods.most_common(6))
         sentences.append(f"Silently wrong most often: {worst}.")
@@ -105,7 +115,7 @@ def page_text(document: dict[str, Any]) -> str:
         Field(cell.scene, f"{cell.method} {_short(cell.precision)}".strip(), cell.status, cell.digits) for cell in cells
     ]
     failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
-    wrong = [cell for cell in failures if cell.status == Status.SILENTLY_WRONG]
+    wrong, magnified = ([cell for cell in failures if cell.status == one] for one in COUNTED)
     parts = [
         section("Findings", findings(headlines(cells))),
         section(
@@ -116,7 +126,9 @@ def page_text(document: dict[str, Any]) -> str:
             ),
         ),
         section("Silently wrong", _reasons(wrong)),
-        section("Other failures", _reasons([cell for cell in failures if cell not in wrong])),
+        *([section("Ill-conditioned: the motion magnifies errors", _reasons(magnified))] if magnified else []),
+        section("Other failures", _reasons([cell for cell in failures if cell.status not in COUNTED])),
+        section("What each run was asked for, and what it kept", _asked(cells)),
         section("What the words mean", words({cell.status for cell in cells})),
         section("Scenes", _scenes(cells)),
     ]
@@ -132,7 +144,7 @@ def page_text(document: dict[str, Any]) -> str:
     programs = document.get("programs", {})
     if programs:
         parts.append(section("Programs", _programs(programs)))
-    parts.append(section("Measured on", facts(document["machine"])))
+    parts.append(section("Measured on", facts({**document["machine"], "load": busy(cells)})))
     return page(
         "Stiff and extreme scenes: what breaks, and when",
         parts,
@@ -154,13 +166,29 @@ def _short(precision: str) -> str:
 
 
 def _reasons(cells: Sequence[Cell]) -> Html:
-    columns = [Column("scene"), Column("method"), Column("precision"), Column("status")]
+    columns = [Column("scene"), Column("method"), Column("precision"), Column("setting"), Column("status")]
     columns += [Column("digits", "number"), Column("asked for", "number"), Column("reason", "prose")]
     rows = [
         TableRow(
             (
-                cell.scene, cell.method, cell.precision, cell.status.words,
+                cell.scene, cell.method, cell.precision, setting(cell), cell.status.words,
                 "" if cell.digits is None else f"{max(cell.digits, 0):.1f}", f"{cell.asked:.1f}", cell.reason,
+            )
+        )
+        for cell in cells
+    ]  # fmt: skip
+    return table(columns, rows)
+
+
+def _asked(cells: Sequence[Cell]) -> Html:
+    """Return each cell's setting, the digits that it was asked for, and those that it kept."""
+    columns = [Column("scene"), Column("method"), Column("precision"), Column("setting"), Column("asked for", "number")]
+    columns += [Column("kept", "number"), Column("CPU s", "number"), Column("status")]
+    rows = [
+        TableRow(
+            (
+                cell.scene, cell.method, cell.precision, setting(cell), f"{cell.asked:.1f}",
+                "" if cell.digits is None else f"{cell.digits:.1f}", cpu(cell.cpu_s), cell.status.words,
             )
         )
         for cell in cells
@@ -193,13 +221,25 @@ def text_table(document: dict[str, Any]) -> str:
     present = [one for one in Status if one in {cell.status for cell in cells}]
     lines = [
         *headlines(cells),
+        f"load: {busy(cells)}",
         "",
-        f"{'method':20}{'precision':24}" + "".join(f"{one.words:>16}" for one in present),
+        f"{'method':20}{'precision':24}{'setting':>12}{'asked':>7}" + "".join(f"{one.words:>16}" for one in present),
     ]
     for method, precision in names:
-        counts = Counter(cell.status for cell in cells if (cell.method, cell.precision) == (method, precision))
-        lines.append(f"{method:20}{precision:24}" + "".join(f"{counts[one] or '':>16}" for one in present))
+        own = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
+        counts = Counter(cell.status for cell in own)
+        head = f"{method:20}{precision:24}{_settings(own):>12}{own[0].asked:>7.1f}"
+        lines.append(head + "".join(f"{counts[one] or '':>16}" for one in present))
     return "\n".join([*lines, "", *advice(present), *([""] if runs else []), *laws(runs)])
+
+
+def _settings(cells: Sequence[Cell]) -> str:
+    """Return the setting of a method's cells, or from which to which they go: steps are parts of a scene's times."""
+    known = sorted({cell.setting for cell in cells if cell.setting is not None})
+    if not known:
+        return ""
+    unit = {"step": " s", "precision": " bits"}.get(cells[0].kind, "")
+    return "–".join(tidy(one) for one in dict.fromkeys((known[0], known[-1]))) + unit
 
 
 REPORT = Report("stability.json", text_table, page_text)

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..studies.row import Row
 from . import explanations, tables
+from .busy import busy
 from .folder import Report
 from .page import Html, facts, figure, findings, join, page, paragraph, section
 from .pareto import rows_of, sentences
@@ -40,6 +41,7 @@ def _lead(document: dict[str, Any]) -> Html:
         "scene": document["scene"],
         "span": f"{document['t_end']:g} s, {reference['transits']} transits",
         "reference": f"level {reference['level']}, bound {float(reference['bound_m']):.1e} m",
+        "load": busy(rows_of(document)),
         "machine": ", ".join(machine[key] for key in ("processor", "system") if key in machine),
         "versions": ", ".join(f"{k} {v}" for k, v in machine.items() if k not in ("processor", "system")),
     }

@@ -11,7 +11,9 @@ from reference.status import Status
 
 from ..methods import METHODS
 from ..studies.row import Row
+from ..studies.stability import Cell
 from . import explanations
+from .busy import busy
 from .page import Column, Html, TableRow, strong, table
 from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
 
@@ -71,7 +73,7 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
             kinds = ["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * (not row.measured)
             cells = [
                 FRONT_MARK if row.key in best else "", row.method, row.formulation, setting(row),
-                row.status.words, number(row.error_m), number(row.end_error_m), number(row.transit_error_s),
+                row.status.words, number(row.error_m), number(row.end_error_m), transit_error(row),
                 number(row.h_drift), cost(row), "" if row.cpu_spread is None else f"{100 * row.cpu_spread:.0f} %",
                 cpu(row.compile_s), count(row.rhs_evaluations), count(row.steps),
                 "" if row.reached_t is None else f"{row.reached_t:g}", row.reason,
@@ -134,6 +136,7 @@ def text_table(document: dict[str, Any]) -> str:
     head = f"{document['scene']}: {document['t_end']:g} s, reference {reference['level']}, bound {bound_m:.1e} m"
     lines = [
         head,
+        f"load: {busy(rows)}",
         "",
         f"  {'method':<28}{'setting':>10}{'error m':>11}{'transits s':>11}{'h drift':>10}{'CPU s':>11}{'calls':>13}",
     ]
@@ -142,7 +145,7 @@ def text_table(document: dict[str, Any]) -> str:
         for row in curve.rows:
             values = [
                 number(row.error_m),
-                number(row.transit_error_s),
+                transit_error(row),
                 number(row.h_drift),
                 cost(row),
                 count(row.rhs_evaluations),
@@ -168,8 +171,10 @@ def _why(row: Row) -> str:
     return row.reason if row.reason.startswith(status) else f"{status}: {row.reason}"
 
 
-def setting(row: Row) -> str:
-    """Return a row's setting with its unit."""
+def setting(row: Row | Cell) -> str:
+    """Return a row's setting with its unit; empty for None."""
+    if row.setting is None:
+        return ""
     return tidy(row.setting) + {"step": " s", "precision": " bits"}.get(row.kind, "")
 
 
@@ -184,6 +189,13 @@ def tidy(value: float) -> str:
 def number(value: float | None) -> str:
     """Return a number with three digits and an exponent; empty for None."""
     return "" if value is None else f"{value:.2e}"
+
+
+def transit_error(row: Row) -> str:
+    """Return the error of a row's worst transit in s, or below what it is: not resolved; empty where none was taken."""
+    if row.transit_error_s is None and row.transit_floor_s is not None:
+        return f"<{row.transit_floor_s:.1e}"
+    return number(row.transit_error_s)
 
 
 def cpu(value: float | None) -> str:

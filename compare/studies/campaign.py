@@ -16,14 +16,16 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from reference import InputError, IntegrationError
+from reference.plain_text import finite
 from reference.process import Worker, alarm
 from reference.status import Status
 
 from .. import cache
 from ..methods import METHODS, available
-from .machine import machine, single_thread
+from .machine import load_per_core, machine, single_thread
 from .row import Record
 
+JUDGED = 2  # changes when equal runs are measured or judged otherwise, so that old results are not used again
 STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
 
 Item = TypeVar("Item", bound=tuple[Any, ...])
@@ -88,7 +90,7 @@ def campaign(
         items: tuples of words and numbers, the first of which is shown as what runs now.
         kind: class of the results.
         failed: makes the result of an item that was lost, from the status OUT_OF_TIME or CRASHED and the reason.
-        patience_s: wall-clock seconds for one item; then its process is killed.
+        patience_s: wall-clock seconds for one item, on a machine with a core for it; then its process is killed.
         recipe: what else decides the results, to be written as JSON; together with machine and versions of libraries it
             must be equal for a stored result to be used again.
         recipe_of: what else decides the result of one item, beside the item itself.
@@ -98,7 +100,7 @@ def campaign(
     Raises:
         InputError: the journal cannot be written.
     """
-    common = [recipe, machine()]
+    common = [JUDGED, recipe, machine()]
     marks = {item: _mark(common if recipe_of is None else [*common, recipe_of(item)]) for item in items}
     stored = dict(_stored(journal_path))
     results = {item: kind.parsed(stored[mark, item]) for item, mark in marks.items() if (mark, item) in stored}
@@ -142,7 +144,7 @@ def _store(path: Path | None, record: dict[str, Any]) -> None:
             end = stream.seek(0, os.SEEK_END)
             stream.seek(max(0, end - 1))
             separator = b"" if stream.read(1) in (b"", b"\n") else b"\n"  # the line before was cut short
-            stream.write(separator + json.dumps(record).encode() + b"\n")
+            stream.write(separator + json.dumps(finite(record), allow_nan=False).encode() + b"\n")
     except OSError as error:
         raise InputError("--out", str(path), "a folder that can be written to", f"{error.strerror}.") from None
 
@@ -161,17 +163,20 @@ def _isolated(
             worker = Worker(measure, *arguments, remaining)
         timed_out = threading.Event()
         answers = iter(worker)
-        starting_s = STARTING_S
+        starting_s, waited_s = STARTING_S, patience_s
         try:
             while remaining:
-                with alarm(patience_s + starting_s, _end, worker, timed_out):
+                waited_s = patience_s * max(
+                    1.0, load_per_core() or 1.0
+                )  # where processes share a core, all take longer
+                with alarm(waited_s + starting_s, _end, worker, timed_out):
                     result = next(answers)
                 starting_s = 0.0
                 yield result
                 remaining.pop(0)
         except (IntegrationError, StopIteration) as error:
             if timed_out.is_set():
-                yield failed(remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {patience_s:g} s")
+                yield failed(remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {waited_s:.3g} s")
             else:
                 yield failed(remaining.pop(0), Status.CRASHED, f"its process ended: {error}")
         finally:

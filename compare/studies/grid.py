@@ -16,14 +16,17 @@ STEP_BITS = 12  # bits of a step's mantissa: its first 2**41 multiples are doubl
 
 
 def on_doubles(scene: Scene) -> Scene:
-    """Return the scene; if one of its grid times is not a double, with a grid step and an end of few bits."""
+    """Return the scene; if one of its grid times is not a double, with a grid step of few bits and the same end.
+
+    Args:
+        scene: its inputs read as binary64, so that its end is a double.
+    """
     inputs = scene.exact
     if all(Fraction(float(t)) == t for t in inputs.grid):
         return scene
     mantissa, exponent = math.frexp(float(inputs.grid_step))
     step = Fraction(round(mantissa * 2**STEP_BITS)) * Fraction(2) ** (exponent - STEP_BITS)
-    rows = max(1, math.floor(inputs.t_end / step))
-    return scene.with_values([f"run.grid_step={_decimal(step)}", f"run.t_end={_decimal(rows * step)}"])
+    return scene.with_values([f"run.grid_step={_decimal(step)}", f"run.t_end={_decimal(inputs.t_end)}"])
 
 
 def _decimal(value: Fraction) -> str:

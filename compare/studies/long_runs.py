@@ -100,7 +100,9 @@ def long_runs(
     """
     scene = scene or load_scene(SCENE, ["inputs=binary64", "run.transits=false"])
     days = float(scene.exact.t_end) / DAY_S
-    golden = golden_of(scene, TRUTH_DIGITS, report=solving and (lambda t: solving(t / DAY_S, days)), level=TRUTH_LEVEL)
+    golden = golden_of(
+        scene, TRUTH_DIGITS, report=solving and (lambda t: solving(t / DAY_S, days)), level=TRUTH_LEVEL, grid=True
+    )
     return campaign(
         errors_over_time,
         (scene.model_dump(exclude_none=True), golden.path),

@@ -1,4 +1,4 @@
-"""The machine that measures: its description, and one thread for every library, so that cost is that of one core."""
+"""The machine that measures: its description, its load, and one thread for every library: cost is that of one core."""
 
 from __future__ import annotations
 
@@ -40,6 +40,17 @@ def machine() -> dict[str, str]:
         except PackageNotFoundError:
             description[name] = "not installed"
     return description
+
+
+def load_per_core() -> float | None:
+    """Return how many processes wanted to run in the last minute, over the cores; None where the system does not tell.
+
+    One process that has a core for itself is 1 over the number of cores.
+    """
+    try:
+        return os.getloadavg()[0] / (os.cpu_count() or 1)
+    except (AttributeError, OSError):
+        return None
 
 
 def _processor() -> str:

@@ -1,8 +1,9 @@
 """One measurement: a method at a setting on a scene, its cost and error; every attempt gives a row, failed ones too.
 
 Only the integration itself is timed, in one thread, with output at the golden grid times. A probe over a short span
-comes first: it warms up, and it predicts the cost of the whole span. Where that exceeds the limit only a part of the
-span is measured and the cost is extrapolated; the row says so.
+comes first: it warms up, and it predicts the cost of the whole span. Where that exceeds the limit a part of the span is
+measured. What this part takes beyond the probe tells what the rest will take, so that a costly start, as of a stiff
+motion, is not counted again and again. Only if that exceeds the limit too is the cost extrapolated; the row says so.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from reference.status import Status
 from ..methods import METHODS, Method, Outcome, Problem, Work, available, external
 from ..rhs.swing import suited
 from .failure import FAILURES, failure
+from .machine import load_per_core
 from .method_errors import GridTruth, h_drift
 from .row import Row
 
@@ -33,7 +35,6 @@ LEAST_ROWS = 4  # grid rows in any span
 REPEAT_S = 1.0  # a run is repeated while the CPU time spent on its setting stays below this,
 REPEATS = 5  # and at most this often
 TRANSIT_S = 3.0  # transit times need a second, untimed run, which is made only if the first took at most this long
-TRANSIT_FLOOR_S = 1e-29  # error of one Newton step from the double next to a transit; nothing smaller is reported
 MISSED = 0.5  # a transit whose error exceeds this part of the gap to its neighbour counts as missed
 
 
@@ -60,7 +61,8 @@ class Bench:
 
         The formulation may be None: the first of the method's that can describe the motion.
         """
-        base = Row(method.id, formulation or "", setting, method.setting, self.scene.inputs, Status.OK)
+        inputs, load = self.scene.inputs, load_per_core()
+        base = Row(method.id, formulation or "", setting, method.setting, inputs, Status.OK, load=load)
         missing = available(method)
         if missing is not None:
             return replace(base, status=Status.NOT_INSTALLED, reason=missing)
@@ -83,22 +85,39 @@ class Bench:
         if probe_outcome.status != Status.OK:
             return self._stopped(base, probe_outcome, probe_s)
         probe_s = min(probe_s, timed(probe)[1]) if probe_s < self.limit_s / PROBE else probe_s
-        expected = probe_s * float(times[-1] / probe_times[-1])
-        rows = min(len(times), longest)
-        if expected > self.limit_s:
-            rows = min(rows, max(LEAST_ROWS, int(self.limit_s / 4 / expected * len(times))))
-        if rows <= len(probe_times):
-            return self._finished(base, method, probe_outcome, [probe_s], probe_times)
-        started = time.process_time()
-        work = method.prepare(self._problem(base, times[:rows]), base.setting)
-        base = replace(base, compile_s=compile_s + time.process_time() - started)
-        outcome, cpu_s = timed(work)
+        expected_s, rows = probe_s * float(times[-1] / probe_times[-1]), min(len(times), longest)
+        if rows <= len(probe_times) or probe_s > self.limit_s:
+            return self._finished(base, method, probe_outcome, [probe_s], probe_times, expected_s)
+        if expected_s > self.limit_s:
+            part = times[: max(2 * len(probe_times), int(self.limit_s / 4 / expected_s * len(times)))]
+            if len(part) < rows:
+                base, outcome, costs_s = self._run(base, method, part, repeats=1)
+                expected_s = costs_s[0] + max(0.0, costs_s[0] - probe_s) * float(
+                    (times[-1] - part[-1]) / (part[-1] - probe_times[-1])
+                )
+                if outcome.status != Status.OK:
+                    return self._stopped(base, outcome, costs_s[0])
+                if expected_s > self.limit_s:
+                    return self._finished(base, method, outcome, costs_s, part, expected_s)
+        base, outcome, costs_s = self._run(base, method, times[:rows], self.repeats)
         if outcome.status != Status.OK:
-            return self._stopped(base, outcome, cpu_s)
+            return self._stopped(base, outcome, costs_s[0])
+        share = float(times[-1] / times[rows - 1])
+        return self._finished(base, method, outcome, costs_s, times[:rows], statistics.median(costs_s) * share)
+
+    def _run(self, base: Row, method: Method, times: Array, repeats: int) -> tuple[Row, Outcome, list[float]]:
+        """Run a method to the end of `times`; return the row with what compiling took, the outcome, and CPU seconds.
+
+        It is repeated while that is cheap, and if it came to its end.
+        """
+        started = time.process_time()
+        work = method.prepare(self._problem(base, times), base.setting)
+        base = replace(base, compile_s=(base.compile_s or 0.0) + time.process_time() - started)
+        outcome, cpu_s = timed(work)
         costs_s = [cpu_s]
-        while len(costs_s) < self.repeats and sum(costs_s) + cpu_s < REPEAT_S:
+        while outcome.status == Status.OK and len(costs_s) < repeats and sum(costs_s) + cpu_s < REPEAT_S:
             costs_s.append(timed(work)[1])
-        return self._finished(base, method, outcome, costs_s, times[:rows])
+        return base, outcome, costs_s
 
     def _problem(self, base: Row, times: Array) -> Problem:
         return Problem.of(self.scene, base.formulation, times)
@@ -114,9 +133,11 @@ class Bench:
             rhs_evaluations=outcome.rhs_evaluations,
         )
 
-    def _finished(self, base: Row, method: Method, outcome: Outcome, costs_s: Sequence[float], times: Array) -> Row:
+    def _finished(
+        self, base: Row, method: Method, outcome: Outcome, costs_s: Sequence[float], times: Array, whole_s: float
+    ) -> Row:
+        """Return the row of a run to the end of `times`, which would take `whole_s` CPU seconds over the whole span."""
         whole = len(times) == len(self.truth.times)
-        share = float(self.truth.times[-1] / times[-1])
         errors = self.truth.position_errors(outcome)
         cpu_s = statistics.median(costs_s)
         reason = "" if whole else f"measured to t = {times[-1]:g} s; the cost is scaled to {self.truth.times[-1]:g} s"
@@ -127,7 +148,7 @@ class Bench:
             error_m=float(errors.max()),
             end_error_m=float(errors[-1]),
             h_drift=h_drift(self.scene, outcome),
-            cpu_s=cpu_s * share,
+            cpu_s=cpu_s if whole else whole_s,
             cpu_spread=(max(costs_s) - min(costs_s)) / cpu_s if cpu_s and len(costs_s) > 1 else None,
             rhs_evaluations=outcome.rhs_evaluations,
             steps=outcome.steps,
@@ -151,7 +172,8 @@ class Bench:
             first = float(transits[np.argmax(missed)])
             text = f"{int(missed.sum())} of {len(transits)} transits are missed, the first at t = {first:.6f} s"
             return replace(row, status=Status.MISSED_TRANSITS, reason=text)
-        return replace(row, transit_error_s=max(float(errors_s.max()), TRANSIT_FLOOR_S))
+        floor_s, largest = self.truth.transit_floor(self.scene, outcome), float(errors_s.max())
+        return replace(row, transit_error_s=largest if largest > floor_s else None, transit_floor_s=floor_s)
 
 
 def timed(work: Work) -> tuple[Outcome, float]:

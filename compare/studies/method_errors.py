@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from reference import Golden, Scene
+from reference import Golden, InputError, Scene
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
 from reference.precision import Array, context, to_mpf
@@ -19,6 +19,8 @@ from ..position_error import Column, difference, distance
 from ..rhs.constants import constants_in_double
 
 H_ROWS = 64  # rows at which h is evaluated
+_ROUNDINGS = 8  # of a double, in the difference of two times and in vx over ax
+_NUDGE = 1e-6  # of the time in which the motion changes
 
 
 @dataclass(frozen=True)
@@ -27,11 +29,20 @@ class GridTruth:
 
     Args:
         golden: of the scene, its inputs read as the methods read them.
-        t_end: end of the span in s.
+        t_end: end of the span in s, a time of the dataset's grid.
+
+    Raises:
+        InputError: the dataset has no such time, or none before it.
     """
 
     golden: Golden
     t_end: float
+
+    def __post_init__(self) -> None:
+        if len(self.times) < 2 or self.times[-1] != self.t_end:
+            last = f"{self.times[-1]:g} s" if len(self.times) else "none"
+            expected = f"a dataset whose grid has t = 0 and t = {self.t_end:g} s"
+            raise InputError("grid", f"{len(self.times)} times, the last {last}", expected, "Solve the scene to there.")
 
     @cached_property
     def times(self) -> Array:
@@ -74,6 +85,22 @@ class GridTruth:
         with np.errstate(divide="ignore", invalid="ignore"):
             errors_s = np.abs(self.transits_rounded_by - vx / ax)
         return np.where(np.isfinite(errors_s), errors_s, np.inf)
+
+    def transit_floor(self, scene: Scene, outcome: Outcome) -> float:
+        """Return what `transit_errors` resolves, in s: the rounding of its terms, and what Newton's step leaves out."""
+        states = outcome.states[1:]
+        k = constants_in_double(scene.exact)
+        n, v = (states[:, parts] / k.length for parts in (slice(0, 3), slice(3, 6)))
+        a = np.array(np.broadcast_arrays(*acceleration(tuple(n.T), tuple(v.T), k))).T
+        nudge = _NUDGE / (1 + np.abs(v).max() + np.abs(a).max())  # s, in which little changes
+        ahead, behind = (
+            np.asarray(acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0]) for dt in (nudge, -nudge)
+        )
+        away = np.abs(self.transits_rounded_by)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            curved = away**2 * np.abs((ahead - behind) / (2 * nudge) / (2 * a[:, 0]))
+        floors = _ROUNDINGS * np.finfo(float).eps * away + np.where(np.isfinite(curved), curved, 0.0)
+        return float(floors.max())
 
 
 def h_drift(scene: Scene, outcome: Outcome) -> float | None:

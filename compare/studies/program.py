@@ -19,6 +19,7 @@ from ..candidates.read import read_stream
 from ..methods.external import SETTING
 from ..position_error import difference, distance
 from ..truth import truth_at
+from .machine import load_per_core
 from .row import Row
 
 STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for
@@ -58,7 +59,7 @@ def measured(name: str, command: str, setting: float, scene: Scene, golden: Gold
         golden: its truth.
         limit_s: CPU seconds that it may take.
     """
-    base = Row(name, NUMBER, setting, "step", scene.inputs, Status.OK)
+    base = Row(name, NUMBER, setting, "step", scene.inputs, Status.OK, load=load_per_core())
 
     def failed(status: Status, reason: object) -> Measured:
         return Measured(replace(base, status=status, reason=str(reason)), np.empty(0), np.empty(0))

@@ -24,11 +24,18 @@ def reason_of(
     reported = f" It reported: {row.reason.rstrip('.')}." if row.reason and status != Status.OUT_OF_TIME else ""
     if status == Status.OUT_OF_TIME:
         cost = (
-            f"the whole span would take about {row.cpu_s:.0f} s; the limit is {limit_s:g} s"
+            f"the whole span would take about {row.cpu_s:.2g} s; the limit is {limit_s:g} s"
             if row.cpu_s
             else row.reason
         )
         return _sentence([cost, *causes])
+    if status == Status.ILL_CONDITIONED and digits is not None:
+        return _sentence(
+            [
+                f"the flow magnifies an error at the release {traits.magnified:.1g} times; the result is off by "
+                f"{10 ** (requested - digits):.1g} times what was asked for"
+            ]
+        )
     if status == Status.SILENTLY_WRONG and digits is not None:
         head = f"success was reported with {max(digits, 0):.1f} digits where {requested:.1f} were asked for"
         return _sentence([head, *(causes or [_accumulated(row)])])

@@ -140,7 +140,7 @@ def study(
     asked = load_scene(scene) if isinstance(scene, str) else scene
     span = [] if t_end is None else [f"run.t_end={t_end}"]
     problem = on_doubles(asked.with_values(["inputs=binary64", *span]))
-    golden = golden_of(problem, digits or problem.run.digits, announce, solving)
+    golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)
     commands = programs or {}
 
     def failed(item: Item, status: Status, reason: str) -> Row:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Annotated, Any
@@ -41,7 +40,7 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on
 
 def emit(document: dict[str, Any]) -> None:
     """Print one JSON document."""
-    typer.echo(plain_json(json.dumps(document, indent=1, ensure_ascii=False)))
+    typer.echo(plain_json(document))
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from .drawing import BAND, FAINT, INK, PAPER, sheet, svg_text
 
 LETTERS = {
     Status.SILENTLY_WRONG: "W",
+    Status.ILL_CONDITIONED: "I",
     Status.NOT_FINITE: "N",
     Status.GAVE_UP: "G",
     Status.CRASHED: "C",

@@ -196,7 +196,26 @@ def test_every_method_whose_setting_is_the_precision_has_its_cost_of_digits():
     points = [(10.0**-digits, 0.01 * digits**1.5) for digits in (15, 30, 60)]
     rows = [one for name in ("a", "b") for one in ladder(name, points, kind="precision")] + ladder("c", points)
     assert list(costs_of_digits(rows)) == ["a", "b"]
-    assert [line.split(" is ")[0] for line in sentences(document(rows, 0.0))] == ["The cost of a", "The cost of b"]
+    heads = [line.split(" is ")[0].partition(":")[0] for line in sentences(document(rows, 1e-70))]
+    assert heads == ["a", "b", "c", "The cost of a", "The cost of b"]
+
+
+def test_a_study_of_precisions_says_the_price_of_a_digit_and_not_the_cheapest_at_large_errors():
+    rows = [
+        row("heyoka_double", 2**-52, 1e-12, 0.001, "ok", "momentum", "tolerance"),
+        row("limbs", 113, 1e-34, 0.003, "ok", "inertial", "precision"),
+        row("limbs", 160, 1e-48, 0.010, "ok", "inertial", "precision"),
+    ]
+    assert sentences(document(rows, 1e-60)) == [
+        "heyoka_double: 12 digits cost 1 ms.",
+        "limbs: 34 digits cost 3 ms, 48 digits 10 ms; a further digit costs 500 µs there.",
+    ]
+
+
+def test_the_same_run_that_is_cheapest_at_several_errors_has_one_sentence():
+    rows = [row("a", 1e-12, 1e-10, 0.5, "ok", "space", "tolerance"), row("b", 1e-9, 1e-4, 2.0, kind="tolerance")]
+    rows[1] = row("b", 1e-9, 1e-10, 2.0, "ok", "space", "tolerance")
+    assert sentences(document(rows)) == ["From 1e-3 m to 1e-9 m the cheapest method is a, with 0.5 s of CPU time."]
 
 
 def test_evaluations_of_a_part_are_scaled_to_the_whole_span():

@@ -46,11 +46,18 @@ def run(items: list[tuple[str, str]], **keywords: Any) -> list[Answer]:
     return campaign(answers, (7,), items, kind=Answer, failed=failed, **keywords)
 
 
-def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done() -> None:
+def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "load_per_core", lambda: 0.5)
     results = run([("m", word) for word in ("a", "dies", "b", "hangs", "c")])
     assert [one.status for one in results] == ["ok", "crashed", "ok", "out_of_time", "ok"]
     assert [results[i].text for i in (0, 2, 3, 4)] == ["a 7", "b 7", "hangs: no answer within 2 s", "c 7"]
     assert results[1].text.startswith("dies: its process ended")
+
+
+def test_on_a_busy_machine_an_answer_is_awaited_longer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "load_per_core", lambda: 4.0)
+    (hung,) = run([("m", "hangs")], patience_s=0.5)
+    assert (hung.status, hung.text) == ("out_of_time", "hangs: no answer within 2 s")
 
 
 def test_items_that_differ_in_their_last_part_share_a_process_with_one_thread(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -13,11 +13,13 @@ import pytest
 from typer.testing import CliRunner
 
 from compare.methods import METHODS, Problem, gauss_legendre, rk4, rkng56, rkng67
+from compare.report.stability import document_of, headlines, page_text, text_table
 from compare.rhs.swing import suited
 from compare.runge_kutta.tableau import TableauError
-from compare.studies.character import character
+from compare.studies.character import Character, character
 from compare.studies.long_runs import LongRun, laws
-from compare.studies.stability import Cell, cut, default_scenes, digits_asked, stability
+from compare.studies.row import Row
+from compare.studies.stability import Cell, _judged, cut, default_scenes, digits_asked, stability
 from foucault import commands
 from reference import InputError, load_scene, trajectory
 from reference.shipped import data_root
@@ -111,6 +113,57 @@ def test_a_stiff_method_wins_where_it_is_stiff_and_loses_where_it_is_not() -> No
 
     assert 100 * evaluations("scipy_radau", "creeping", "10") < evaluations("scipy_dop853", "creeping", "10")
     assert evaluations("scipy_radau", "hard", "20") > 3 * evaluations("scipy_dop853", "hard", "20")
+
+
+def judged(digits: float, magnified: float) -> Cell:
+    """The cell of a run asked for 9 digits that kept so many, on a motion that magnifies an error so many times."""
+    traits = Character(0.4, 0.0, 1.0, magnified, 9.0, 0.001, 0.01, 600.0)
+    row = Row("scipy_dop853", "space", 1e-9, "tolerance", "binary64", Status.OK, "", 0.01 * 10**-digits, load=0.5)
+    return _judged(("scipy_dop853", "space", 1e-9, "x"), row, traits, 1.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    ("digits", "magnified", "status"),
+    [
+        (6.1, 1.0, "ok"),
+        (5.9, 1.0, "silently_wrong"),
+        (5.9, 1e3, "silently_wrong"),  # the motion makes 6 digits of 9, and no fewer
+        (5.9, 2e3, "ill_conditioned"),
+        (1.0, 1e8, "ill_conditioned"),
+        (0.9, 1e8, "silently_wrong"),
+        (6.1, 1e13, "ok"),
+    ],
+)
+def test_what_the_motion_magnifies_is_not_the_methods_fault(digits: float, magnified: float, status: str) -> None:
+    cell = judged(digits, magnified)
+    assert (cell.status, cell.setting, cell.kind, cell.load) == (status, 1e-9, "tolerance", 0.5)
+    assert ("magnifies an error at the release" in cell.reason) == (status == "ill_conditioned")
+
+
+def test_the_headline_counts_the_methods_own_failures_only() -> None:
+    cells = [replace(judged(*one), scene="paris") for one in ((9.0, 1.0), (5.0, 1.0), (5.0, 1e5), (1.0, 1e9))]
+    first, _, *_ = lines = headlines(cells)
+    assert first.startswith("1 of 4 runs are silently wrong")
+    assert any(line.startswith("2 more are as far off because the motion itself magnifies") for line in lines)
+    document = document_of(cells, [])
+    assert (document["silently_wrong"], document["ill_conditioned"]) == (1, 2)
+    text = text_table(document)
+    assert "scipy_dop853" in text and re.search(r"setting +asked", text) and re.search(r"1e-9 +9\.0", text)
+    assert "1e-9" in page_text(document).partition("What each run was asked for")[2].partition("</table>")[0]
+
+
+def test_a_method_that_is_asked_for_nothing_unusual_is_ill_conditioned_where_the_flow_is(tmp_path: Path) -> None:
+    text = (data_root() / "scenes" / "separatrix.toml").read_text()
+    own = tmp_path / "separatrix.toml"
+    own.write_text(text)
+    (cell,) = stability([str(own)], ["gauss_legendre"])
+    assert cell.status == "ill_conditioned", cell
+    assert cell.digits is not None and cell.digits < cell.asked - 3
+
+
+def test_a_stiff_start_is_not_extrapolated_into_out_of_time() -> None:
+    (cell,) = stability(["creeping_far"], ["scipy_radau"], limit_s=0.5)
+    assert cell.status == "ok", cell
 
 
 def test_a_failure_says_what_the_numbers_point_to(cells: list[Cell]) -> None:

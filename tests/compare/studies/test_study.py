@@ -8,12 +8,14 @@ import json
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
 import compare.studies.measure as measure
-from compare.methods import METHODS
+from compare.methods import METHODS, Problem
 from compare.report.pareto import front
+from compare.report.tables import transit_error
 from compare.studies.measure import Bench
 from compare.studies.method_errors import GridTruth
 from compare.studies.precisions import bits_of, precision_items, precision_scene
@@ -22,6 +24,7 @@ from compare.studies.study import plan, study
 from compare.truth import golden_of
 from foucault import commands
 from reference import InputError, Scene, load_scene
+from reference.engines.registry import engines
 
 T_END = "600"
 
@@ -69,6 +72,64 @@ def test_a_study_is_one_call_and_says_in_a_line_what_it_holds(bench: Bench) -> N
     assert doctest.testmod(import_module("compare.studies.study")).failed == 0
     row = bench.row(METHODS["rk4"], "plane", 4.0)
     assert repr(row).startswith("Row(rk4 in plane at 4: missed_transits, ")
+
+
+@pytest.mark.parametrize("t_end", [10.0, 59.0, 90.0, 100.1])
+def test_a_span_that_is_no_multiple_of_the_grid_step_is_measured_to_its_end(t_end: float) -> None:
+    result = study("paris", items=[("rk4", "plane", 0.1), ("rk4", "plane", 0.05)], t_end=t_end)
+    assert result.t_end == t_end == result.golden.t[-1]
+    for row in result.rows:
+        assert (row.status, row.reached_t) == ("ok", t_end)
+        assert row.steps is not None and row.steps * row.setting == pytest.approx(t_end, abs=2 * row.setting)
+    coarse, fine = (row.error_m for row in result.rows)
+    assert coarse is not None and fine is not None and coarse / fine == pytest.approx(16, rel=0.3)
+
+
+def test_the_grid_that_is_asked_for_is_the_one_that_is_measured_on() -> None:
+    result = study("paris", items=[("rk4", "plane", 0.1)], t_end=60.0)
+    finer = study(load_scene("paris", ["run.grid_step=20"]), items=[("rk4", "plane", 0.1)], t_end=60.0)
+    assert (len(result.golden.t[result.golden.t <= 60]), len(finer.golden.t)) == (2, 4)
+
+
+def test_a_truth_without_the_end_of_the_span_is_refused(bench: Bench) -> None:
+    for t_end in (0.0, 10.0, 90.0, 1e9):
+        with pytest.raises(InputError, match="expected a dataset whose grid has t = 0 and t ="):
+            GridTruth(bench.truth.golden, t_end)
+
+
+def test_transits_finer_than_two_doubles_are_not_resolved_and_coarser_ones_are(bench: Bench) -> None:
+    fine, coarse = bench.row(METHODS["limbs"], "inertial", 160), bench.row(METHODS["heyoka_real128"], "momentum", 1e-20)
+    assert (fine.status, fine.transit_error_s) == ("ok", None)
+    assert fine.transit_floor_s is not None and 0 < fine.transit_floor_s < 1e-27
+    assert transit_error(fine).startswith("<")
+    assert coarse.transit_error_s is not None and coarse.transit_error_s > 10 * fine.transit_floor_s
+
+
+def test_the_floor_of_transits_lies_above_what_many_digits_make_of_it(short: Scene, bench: Bench) -> None:
+    """With 200 bits all that is left is the measuring itself, so that it is the floor that is tested."""
+    times = np.concatenate([[0.0], bench.truth.transits])
+    outcome = METHODS["limbs"].prepare(Problem.of(short, "inertial", times), 200)()
+    errors_s, floor_s = bench.truth.transit_errors(short, outcome), bench.truth.transit_floor(short, outcome)
+    assert floor_s / 1000 < errors_s.max() <= floor_s
+
+
+def test_limbs_are_measured_in_the_form_that_the_reference_runs() -> None:
+    assert METHODS["limbs"].formulations == (engines()["limbs"].formulation,)
+    assert {formulation for formulation, _ in METHODS["limbs"].precision_runs([113])} == {
+        engines()["limbs"].formulation
+    }
+
+
+def no_such_number(word: str) -> float:
+    raise AssertionError(f"{word} in JSON")
+
+
+def test_json_of_the_shortest_span_has_no_nan() -> None:
+    words = ["study", "paris", "--t-end", "10", "--methods", "rk4", "--no-formulations", "--json"]
+    result = CliRunner().invoke(commands(), words)
+    assert result.exit_code == 0, result.output
+    rows = json.loads(result.stdout, parse_constant=no_such_number)["rows"]
+    assert all(row["error_m"] > 0 and row["cpu_s"] > 0 for row in rows)
 
 
 def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -148,7 +209,7 @@ def test_the_precision_ladder_gains_digits_with_bits() -> None:
     assert (scene.run.t_end, digits) == ("600", 57)
     processor = [("heyoka_double", "momentum", 2.0**-52), ("heyoka_long_double", "momentum", 2.0**-63)]
     mpfr = [("heyoka_real", "momentum", 113), ("heyoka_real", "momentum", 160)]
-    limbs = [("limbs", "inertial", 100), ("limbs", "inertial", 150)]
+    limbs = [("limbs", "inertial", 113), ("limbs", "inertial", 160)]
     assert precision_items(bits) == [*processor, *mpfr, *limbs]
     items = [item for item in precision_items(bits) if item[0] != "limbs"]
     result = study(scene.with_values(["run.t_end=60"]), items=items, digits=digits)
