@@ -7,7 +7,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 PYTEST := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
-.PHONY: golden test campaign coverage mutants lint lock clean
+.PHONY: golden test campaign coverage mutants studies lint lock clean
 
 golden: .venv/solving
 	@echo "Solving 24 h of the pendulum in Paris, twice, to compare: half a minute to two minutes"
@@ -32,6 +32,11 @@ coverage: .venv/testing
 mutants: .venv/testing
 	@echo "Changing the source in 60 places, one at a time, and running its tests"
 	$(BIN)/python tests/mutants.py
+
+# docs/studies.md again, from new runs; what was stopped goes on where it was
+studies: .venv/testing
+	@echo "Measuring what docs/studies.md says: some ten CPU minutes, best on an idle machine"
+	$(BIN)/python tests/bench/studies.py
 
 lint: .venv/testing
 	@echo "Checking style and types"

@@ -14,6 +14,7 @@ from functools import partial
 
 from reference import IntegrationError
 from reference.columns import STATE
+from reference.model.carried import carried
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.precision import DOUBLE, DOUBLE_BITS, GUARD_BITS, LONG_DOUBLE, LONG_DOUBLE_BITS, NumberType, real
@@ -36,9 +37,11 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
         tolerance: relative error of a step; the type's epsilon if None.
     """
     from reference.engines.heyoka.model import RoundedModel
+    from reference.engines.heyoka.numbers import Numbers
 
     start = Start.of(problem.scene.exact, number.prec + GUARD_BITS)
-    model = RoundedModel(FORMULATIONS[problem.formulation], start.k, number)
+    formulation = carried(FORMULATIONS[problem.formulation], start, Numbers(number).of)
+    model = RoundedModel(formulation, start.k, number)
     propagator, release = model.propagator(tolerance), model.release(start)
     times = [model.numbers.of(Fraction(t)) for t in problem.times.tolist()]
 

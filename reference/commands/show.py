@@ -11,6 +11,10 @@ from ..scene import Scene, load_scene
 from ..shipped import flag_meanings
 from .terminal import AsJson, Assignments, SceneWord, emit
 
+FORMS = {  # of the forms that an engine publishes: what its letters mean
+    "momentum": "n = r/l, H = n × (n' + Ω × n), c = pull/l",
+    "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
+}
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -35,9 +39,7 @@ def command(
         "derived": _derived(scene),
     }
     if equations:
-        from ..engines.equations import lines_and_left_out
-
-        document["equations"], document["left_out"] = lines_and_left_out(scene, "momentum")
+        document |= _compiled(scene)
     if sensitivity:
         from ..solver.digits_lost import digits_lost
 
@@ -61,12 +63,31 @@ def command(
         typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
         typer.echo(f"  the inputs have to be right to n + {lost:.1f}")
     if equations:
-        typer.echo("compiled (momentum form; n = r/l, H = n × (n' + Ω × n), c = pull/l):")
+        form, where = document["formulation"], f"{document['engine']}, {document['number']}"
+        typer.echo(f"compiled by generate ({where}; {form} form: {FORMS[form]}):")
         for line in document["equations"]:
             typer.echo(f"  {line}")
         typer.echo("left out:")
         for line in document["left_out"] or ["nothing"]:
             typer.echo(f"  {line}")
+
+
+def _compiled(scene: Scene) -> dict[str, Any]:
+    """Return the run that `generate` begins with, its equations, and what is left out of them.
+
+    Raises:
+        UnreachableError: `generate` refuses the scene.
+    """
+    from ..engines.equations import lines_and_left_out
+    from ..solver.choice import first_plan
+    from ..solver.pilot import run_pilot
+
+    times = tuple(scene.exact.grid)
+    plan = first_plan(scene, times, run_pilot(scene.exact, times))
+    number = str(plan.number)
+    lines, left_out = lines_and_left_out(scene, plan.formulation, number)
+    run = {"engine": plan.engine, "formulation": plan.formulation, "number": number}
+    return {**run, "equations": lines, "left_out": left_out}
 
 
 def _derived(scene: Scene) -> dict[str, str]:

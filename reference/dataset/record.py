@@ -63,7 +63,7 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
             for low, high, parity in solution.possible
         ],
         invariant=Invariant(h_m2_s2=initial, drift_m2_s2=drift),
-        equations=equations_of(scene, run.formulation),
+        equations=equations_of(scene, run.formulation, run.number),
         run=RunRecord(formulation=run.formulation, number=run.number, order=run.order, steps=run.steps),
         cross_checks=[
             CrossCheckRecord(
@@ -96,9 +96,9 @@ def notes_of(scene: Scene) -> dict[str, str]:
     return {flag: meanings.get(flag, "not a flag of the scenes that ship") for flag in scene.flags}
 
 
-def equations_of(scene: Scene, formulation: str) -> Equations:
-    """Return the compiled equations of a scene in a formulation, and what they leave out."""
-    lines, left_out = lines_and_left_out(scene, formulation)
+def equations_of(scene: Scene, formulation: str, number: str) -> Equations:
+    """Return the compiled equations of a scene in a formulation and a number type, and what they leave out."""
+    lines, left_out = lines_and_left_out(scene, formulation, number)
     return Equations(formulation=formulation, lines=lines, left_out=left_out)
 
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import BeyondDoublesError, IntegrationError
+from ..model.carried import carried
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
@@ -89,9 +90,10 @@ def trajectory(
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
     from .heyoka.model import RoundedModel
+    from .heyoka.numbers import Numbers
 
     try:
-        model = RoundedModel(FORMULATIONS[formulation], start.k, number)
+        model = RoundedModel(carried(FORMULATIONS[formulation], start, Numbers(number).of), start.k, number)
         moments, state = [model.numbers.of(t) for t in times], model.release(start)
     except OverflowError:
         raise BeyondDoublesError from None

@@ -5,5 +5,6 @@
 - `algebra`: sums and products that leave out exact zeros.
 - `force`: force, tension of the cord, acceleration, the invariant h and the rest position.
 - `formulations`: seven ways to write the motion as a first-order system.
+- `carried`: a formulation without the variables that are constant on a scene.
 - `vanishing`: whether xdot is exactly zero, always or at the release.
 """

@@ -2,6 +2,7 @@
 
 - `solve`: the entry: from a scene to a `Solution`, at every level.
 - `solution`: the result: tables with bounds, and the runs they came from.
+- `choice`: the run that is published: its bits, engine and form.
 - `pilot`: pilot runs, which measure how rounding errors grow; `reach`: the limits of a run.
 - `agreement`: how far two runs of a scene are apart, and the errors that follow; `transit_errors`: those of transits.
 - `enclosed`: the level enclosed; `approximant`: the run whose Taylor polynomials its proof takes.

@@ -14,7 +14,7 @@ from itertools import pairwise
 from math import ceil
 from typing import Any
 
-from ..columns import GRID, POSITION, TRANSITS, VELOCITY
+from ..columns import GRID, POSITION, TRANSITS
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import InputError, IntegrationError, UnreachableError
@@ -22,11 +22,11 @@ from ..precision import cheapest_type, rounded_up
 from ..scene import Scene
 from ..table import Table, bits_in
 from .approximant import COEFFICIENT_BITS, Feed
+from .choice import first_radius
 from .pilot import Pilot, run_pilot
 from .rounding import UndecidedRounding, check_decided, grid_decimals, transit_decimals
 from .solution import CrossCheck, Proof, Solution, Source
 
-ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
 ROUNDING_TRIES = 8  # radii that are tried before giving up
 FINER = 2**16  # the next radius is smaller by this factor at least,
 SPARE = 2**20  # and at least so small that the widest undecided number is known to this part of its last digit
@@ -78,7 +78,7 @@ def _decided(
 ) -> Solution:
     """Return a solution with every digit decided, proved by `enclose`."""
     span = float(times[-1])
-    radius = _usual_unit(pilot, scene.run.digits) / 2**ROUNDING_BITS
+    radius = first_radius(pilot, scene.run.digits)
     feed = Feed(scene.exact, times, engine)
 
     try:
@@ -113,12 +113,6 @@ def _decided(
 
 def _scaled(report: Report, span: float) -> Callable[[float], None]:
     return lambda part: report(part * span)
-
-
-def _usual_unit(pilot: Pilot, digits: int) -> Fraction:
-    """Return the unit of the last digit of the middle position or velocity column; smaller ones have smaller balls."""
-    decimals = pilot.decimals(digits)
-    return Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
 
 
 def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approximant: Run, pilot: Pilot) -> Solution:

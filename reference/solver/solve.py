@@ -16,17 +16,16 @@ from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
 from ..engines.side_by_side import run_both
 from ..errors import InputError, UnreachableError
-from ..precision import LONG_DOUBLE, real
+from ..precision import real
 from ..scene import Scene
 from ..table import Table
 from .agreement import Agreement
+from .choice import first_prec, published_plan, rounded_prec
 from .pilot import Pilot, run_pilot
 from .reach import MAX_PREC, MAX_STEPS, effort
 from .solution import CrossCheck, Solution, Source
 from .transit_errors import with_transit_errors
 
-FINER_BITS = 16  # bits that the published run has more than the one it is compared with
-ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
 MAX_RAISES = 6  # pairs of runs before giving up
 
 
@@ -85,22 +84,20 @@ def solve(
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
     """Solve by a single run, whose errors are estimated from the pilot's."""
-    prec = pilot.bits_for(scene.run.digits, _span(scene), checked=False)
+    prec = first_prec(scene, pilot)
     _check_reach(pilot, prec, scene.run.digits)
-    prec = _rounded(prec) if prec > LONG_DOUBLE.prec else prec
-    single = run(fastest(prec, engine).plan(scene.exact, prec, times, scene.run.transits), report)
+    single = run(published_plan(scene, times, prec, engine), report)
     return _assemble(scene, times, single, pilot.estimates(single.plan.number.prec), None, (), pilot)
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
     """Solve by two runs, at a precision that is raised until they agree."""
     inputs, transits, digits = scene.exact, scene.run.transits, scene.run.digits
-    prec = _rounded(max(pilot.bits_for(digits, _span(scene), checked=True), LONG_DOUBLE.prec))
+    prec = first_prec(scene, pilot)
     _check_reach(pilot, prec, digits)
     last_gap: Fraction | None = None
     for _ in range(MAX_RAISES):
-        fine_prec = prec + FINER_BITS
-        fine = fastest(fine_prec, engine).plan(inputs, fine_prec, times, transits)
+        fine = published_plan(scene, times, prec, engine)
         if scene.run.level == "confirmed":
             coarse = Plan(inputs, confirming_formulation(pilot), real(prec), times, transits)
         else:
@@ -117,7 +114,7 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
             if fine.engine == last_resort:
                 raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
             engine = last_resort
-        last_gap, next_prec = largest, _rounded(prec + gap.missing_bits)
+        last_gap, next_prec = largest, rounded_prec(prec + gap.missing_bits)
         if _out_of_reach(pilot, next_prec):
             break
         prec = next_prec
@@ -145,16 +142,6 @@ def _check_reach(pilot: Pilot, prec: int, digits: int) -> None:
             f"{digits} digits take {prec} bits over about {pilot.steps} steps, which is out of reach.",
             "Ask for fewer digits (run.digits) or a shorter run (run.t_end).",
         )
-
-
-def _span(scene: Scene) -> Fraction | None:
-    """Return the time in s over which transits are wanted."""
-    return scene.exact.t_end if scene.run.transits else None
-
-
-def _rounded(prec: int) -> int:
-    """Round a precision up to a multiple of `ROUND_TO_BITS`."""
-    return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
 
 
 def _assemble(

@@ -20,7 +20,16 @@ import studies_page
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT, PAGE, WORK = ROOT / "docs/studies", ROOT / "docs/studies.md", ROOT / "build/studies"
-LEFT_OUT = {"reason", "compile_s", "steps", "reached_t", "inputs", "end_error_m", "wrong_from_s", "t"}  # of kept rows
+LEFT_OUT = {
+    "compile_s",
+    "steps",
+    "rhs_evaluations",
+    "h_drift",
+    "reached_t",
+    "end_error_m",
+    "wrong_from_s",
+    "t",
+}  # of kept rows
 DIGITS = 4  # significant ones of kept numbers
 
 

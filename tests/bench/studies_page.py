@@ -1,6 +1,24 @@
-"""docs/studies.md, written from the kept results."""
+"""docs/studies.md, written from the results that docs/studies/ keeps: no figure stands here, and each claim is checked.
+
+A claim that the results do not bear out raises `NotSoError`: then the sentence has to be written anew.
+"""
 
 from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from textwrap import wrap
+from typing import Any
+
+from compare.report.busy import busy
+from compare.report.pareto import Curve, cost_at, curves, rows_of, sentences
+from compare.report.stability import headlines
+from compare.report.tables import setting, tidy
+from compare.studies.row import Row
+from compare.studies.stability import SWINGS, WRONG, Cell
+from reference import load_scene
+from reference.status import Status
 
 COMMON = "heyoka_double,numbalsoda_dop853,rkng67,gauss_legendre,rk4,scipy_dop853"
 COMMANDS = {
@@ -21,5 +39,333 @@ COMMANDS = {
 }
 
 
-def page(kept):
-    return "x\n"
+Document = dict[str, Any]
+Documents = dict[str, Document]
+TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)
+WIDTH = 120
+SAME_ORDER = 0.9  # Kendall's tau of two rankings that count as the same
+
+
+class NotSoError(Exception):
+    """The results do not bear out what the page says."""
+
+
+def so(holds: bool, text: str) -> str:
+    """Return a sentence if what it claims holds."""
+    if not holds:
+        raise NotSoError(text)
+    return text
+
+
+def page(kept: Documents) -> str:
+    """Return docs/studies.md."""
+    parts = [_head(kept), _paris(kept), _precisions(kept), _stability(kept), _long(kept)]
+    return "\n".join(_wrapped(line) for part in parts for line in part) + "\n"
+
+
+def _wrapped(line: str) -> str:
+    """Return a line in lines of the page's width; tables, commands and headings as they are."""
+    if line.startswith(("|", "`foucault", "foucault", " ", "#")):
+        return line
+    indent = "  " if line.startswith("- ") else ""
+    return "\n".join(
+        wrap(line, WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False) or [""]
+    )
+
+
+def _head(kept: Documents) -> Iterator[str]:
+    machine = kept["paris"]["machine"]
+    yield "# What the studies show"
+    yield ""
+    yield (
+        "This page is written by `make studies`, which runs the commands below one after the other, keeps "
+        "their results "
+        "in `docs/studies/` and takes every figure from there; a test holds the page against these files. "
+        "CPU seconds are "
+        "those of the work alone, one thread, imports and compilation apart; errors are the largest position "
+        "errors over "
+        "the grid against the golden dataset of the same binary64 inputs. `~` is extrapolated from a part of the span. "
+        "Methods, scenes and limits are fewer than the commands' own, so that all of it takes some ten CPU minutes; "
+        "without `--methods`, `--scenes` and `--limit` the commands measure everything."
+    )
+    yield ""
+    libraries = ("python", "heyoka", "numba", "scipy", "numbalsoda", "rebound")
+    versions = ", ".join(f"{name} {machine[name]}" for name in libraries if machine[name][0].isdigit())
+    yield f"Measured on {machine['processor']}, {machine['system']}, {versions}, beside other work:"
+    yield ""
+    for name in COMMANDS:
+        yield f"- {name}: {busy(_results(name, kept))}."
+    yield ""
+
+
+def _results(name: str, kept: Documents) -> Sequence[Row | Cell]:
+    return cells(kept[name]) if name in ("stability", "long") else rows_of(kept[name])
+
+
+def cells(document: Document) -> list[Cell]:
+    """Return the cells of a study of stability."""
+    empty = {"digits": None, "cpu_s": None, "reason": ""}
+    return [Cell.parsed({**empty, **row}) for row in document["rows"]]
+
+
+def _paris(kept: Documents) -> Iterator[str]:
+    document = kept["paris"]
+    ladders = {curve.label: curve for curve in curves(rows_of(document))}
+    yield "## Error against run time: Paris, 24 h"
+    yield ""
+    yield from _command("paris")
+    yield f"| method | {' | '.join(f'CPU s at {tidy(one)} m' for one in TARGETS_M)} | best error, m |"
+    yield "|---|" + "---|" * (len(TARGETS_M) + 1)
+    yield from sorted((_costs(curve) for curve in ladders.values()), key=_least)
+    yield ""
+    momentum, space = ladders["heyoka_double (momentum)"], ladders["heyoka_double"]
+    ratio = _cost(ladders["rk4"], 1e-9) / _cost(momentum, 1e-9)
+    yield f"At 1e-9 m heyoka's Taylor method in double is {ratio:.0f} times cheaper than the paper's RK4. Also:"
+    yield ""
+    coarse = (1e-3, 1e-6, 1e-9)
+    others = [curve for label, curve in ladders.items() if label.startswith("heyoka_double") and curve != momentum]
+    angles = [_cost(ladders["heyoka_double (angles)"], at) / _cost(momentum, at) for at in coarse]
+    yield so(
+        all(_cost(momentum, at) <= _cost(one, at) for one in others for at in coarse)
+        and _best(space) < _best(momentum)
+        and min(angles) > 3,
+        "- The equations matter as much as the method. `momentum` is the cheapest form at 1e-3, 1e-6 and "
+        "1e-9 m; where the "
+        f"last digit counts `space` is better in double ({_best(space):.1e} m against {_best(momentum):.1e} "
+        f"m), because it "
+        "corrects what rounding does to |n|. The angles of the paper's Lagrangian cost "
+        f"{min(angles):.0f} to {max(angles):.0f} times more: the path passes near the vertical, where they "
+        f"are singular.",
+    )
+    gauss = min(ladders["gauss_legendre"].measured, key=lambda row: row.error_m or 1.0)
+    swing = 2 * document["t_end"] / document["reference"]["transits"]
+    yield (
+        "- In `momentum` everything that is conserved is quadratic, and Gauss' method keeps quadratic invariants: "
+        f"{gauss.error_m:.0e} m with steps of {gauss.setting:g} s, {gauss.setting / swing:.2f} of a swing."
+    )
+    pairs = (("scipy_radau", "scipy_dop853"), ("cvode_bdf", "cvode_adams"))
+    radau, bdf = (_cost(ladders[implicit], 1e-6) / _cost(ladders[explicit], 1e-6) for implicit, explicit in pairs)
+    yield so(
+        radau > 1 and bdf > 1,
+        "- An undamped pendulum is not stiff: implicit methods pay for a stability that nothing asks for. At "
+        "1e-6 m SciPy's "
+        f"Radau costs {radau:.2g} times as much as its DOP853, and CVODE's BDF {bdf:.2g} times as much as its Adams.",
+    )
+    yield ""
+    yield from _again(kept)
+    yield from _hard(kept)
+    yield from _pantheon(kept)
+
+
+def _again(kept: Documents) -> Iterator[str]:
+    yield "### The same again"
+    yield ""
+    yield from _command("paris_again")
+    first, second = (
+        {row.key: row.cpu_s or 0.0 for row in rows_of(kept[name]) if row.status == Status.OK}
+        for name in ("paris", "paris_again")
+    )
+    both = [key for key in first if key in second]
+    tau = kendall([first[key] for key in both], [second[key] for key in both])
+    ratios = sorted(second[key] / first[key] for key in both)
+    quarter = len(ratios) // 4
+    yield so(
+        tau > SAME_ORDER,
+        f"{len(both)} of the runs once more, under another load: their ranking by cost is nearly the same "
+        f"(Kendall's tau "
+        f"{tau:.2f}), although single costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times what they were, and "
+        f"half of them "
+        f"{ratios[quarter]:.2f} to {ratios[-1 - quarter]:.2f} times. Ratios of costs hold to about that.",
+    )
+    yield ""
+
+
+def kendall(a: Sequence[float], b: Sequence[float]) -> float:
+    """Return Kendall's tau of two rankings without ties: 1 for the same order, -1 for the reverse."""
+    signs = [(a[i] - a[j]) * (b[i] - b[j]) for i, j in combinations(range(len(a)), 2)]
+    return (sum(one > 0 for one in signs) - sum(one < 0 for one in signs)) / len(signs)
+
+
+def _hard(kept: Documents) -> Iterator[str]:
+    document = kept["hard"]
+    ladders = {curve.label: curve for curve in curves(rows_of(document))}
+    swing = 2 * document["t_end"] / document["reference"]["transits"]
+    yield f"### {document['title'].partition(':')[0]}, {document['t_end']:g} s"
+    yield ""
+    yield from _command("hard")
+    yield f"CPU seconds at 1e-6 m: {_at(ladders)}. A swing takes {swing:.3g} s."
+    for label, curve in ladders.items():
+        lost = [row for row in curve.rows if not row.measured]
+        if lost:
+            yield f"{label} fails at {', '.join(f'{setting(row)} ({row.status.words})' for row in lost)}."
+    yield ""
+
+
+def _pantheon(kept: Documents) -> Iterator[str]:
+    document = kept["pantheon"]
+    yield f"### {document['title']}, {document['t_end'] / 3600:g} h"
+    yield ""
+    yield from _command("pantheon")
+    yield f"CPU seconds at 1e-6 m: {_at({curve.label: curve for curve in curves(rows_of(document))})}."
+    yield ""
+
+
+def _precisions(kept: Documents) -> Iterator[str]:
+    document = kept["precisions"]
+    costs_s = {(row.method, row.setting): row.cpu_s or 0.0 for row in rows_of(document)}
+    yield f"## What a digit costs: Paris, {document['t_end']:g} s"
+    yield ""
+    yield from _command("precisions")
+    yield from (f"- {sentence}" for sentence in sentences(document))
+    bits = [setting for method, setting in costs_s if method == "limbs"]
+    ratios = {prec: costs_s["heyoka_real", prec] / costs_s["limbs", prec] for prec in bits}
+    yield so(
+        min(ratios.values()) > 1,
+        "- The limbs (pieces of 22 bits in doubles), in the form that `generate` runs, cost less than heyoka "
+        "in MPFR at the "
+        f"same bits: {', '.join(f'{ratio:.0f} times less at {prec:g} bits' for prec, ratio in ratios.items())}.",
+    )
+    yield ""
+
+
+def _stability(kept: Documents) -> Iterator[str]:
+    found = cells(kept["stability"])
+    yield f"## Stiff and extreme: {len({cell.scene for cell in found})} scenes"
+    yield ""
+    yield from _command("stability")
+    yield (
+        f"Every method is asked for the same on every scene, and at most {SWINGS} small swings are run. A run "
+        f"is silently "
+        f"wrong if it reports success with an error above {WRONG} times what was asked for, and above what the motion "
+        "itself makes of such an error at the release; where the motion magnifies it by more, the run is "
+        "ill-conditioned, "
+        "and nobody's fault."
+    )
+    yield ""
+    yield from (f"- {sentence}" for sentence in headlines(found))
+    yield ""
+    yield "| method | setting | digits asked | right | silently wrong | ill-conditioned | other failures |"
+    yield "|---|---|---|---|---|---|---|"
+    groups: dict[tuple[str, str], list[Cell]] = {}
+    for cell in found:
+        groups.setdefault((cell.method, cell.precision), []).append(cell)
+    yield from sorted((_counted(own) for own in groups.values()), key=lambda line: -int(line.split("|")[4]))
+    yield ""
+    yield from _what_breaks(found)
+
+
+def _counted(own: Sequence[Cell]) -> str:
+    count = Counter(cell.status for cell in own)
+    first = next((cell for cell in own if cell.setting is not None), own[0])
+    asked = "a part of the fastest time" if first.kind == "step" else setting(first)
+    right, wrong, ill = (count[one] for one in (Status.OK, Status.SILENTLY_WRONG, Status.ILL_CONDITIONED))
+    figures = (asked, f"{first.asked:.1f}", right, wrong, ill, len(own) - right - wrong - ill)
+    return f"| {first.method}, {first.precision} | {' | '.join(map(str, figures))} |"
+
+
+def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
+    status = {(cell.method, cell.precision, cell.scene): cell.status for cell in found}
+    wrong = Counter(cell.method for cell in found if cell.status == Status.SILENTLY_WRONG)
+    yield so(
+        {name for name, _ in wrong.most_common(3)} == {"scipy_bdf", "scipy_lsoda", "cvode_bdf"},
+        "- Multistep methods are silently wrong most often: their error is kept per step, and adds up over the swings.",
+    )
+    yield so(
+        status["heyoka_double", "double, space", "near_inverted"] == Status.SILENTLY_WRONG
+        and status["heyoka_double", "double, momentum", "near_inverted"] == Status.OK,
+        "- `space` leaves the sphere where a rod is pushed (`near_inverted`), and does not say so; "
+        "`momentum` keeps to it.",
+    )
+    yield so(
+        status["heyoka_double", "double, plane", "above_horizontal"] != Status.OK,
+        "- `plane` does not know on which side of the horizontal it is, and fails on `above_horizontal`.",
+    )
+    kept = {cell.method for cell in found if cell.scene == "separatrix" and cell.status == Status.OK}
+    yield so(
+        not kept,
+        "- `separatrix`, which ends on top of the rod, defeats all of them: the motion magnifies an error "
+        "more than anybody "
+        "allows for.",
+    )
+    stiff = [name for name in dict.fromkeys(cell.scene for cell in found) if "stiff" in load_scene(name).flags]
+    yield so(
+        all(cell.status == Status.OK for cell in found if cell.method == "scipy_radau" and cell.scene in stiff),
+        f"- Where drag makes it stiff ({', '.join(f'`{name}`' for name in stiff)}) SciPy's Radau is right everywhere.",
+    )
+    yield ""
+
+
+def _long(kept: Documents) -> Iterator[str]:
+    runs = kept["long"]["long_runs"]
+    yield "## Thirty days"
+    yield ""
+    yield from _command("long")
+    yield (
+        "Largest position error after 30 days of Paris, and the exponent p of error ∝ t^p, fitted from 18 "
+        "hours on. The "
+        "truth is from limbs."
+    )
+    yield ""
+    yield "| method | setting | error, m | p | CPU s |"
+    yield "|---|---|---|---|---|"
+    for run in runs:
+        label, power = f"{run['method']}, `{run['formulation']}`", f"{run['exponent']:.2f}"
+        yield f"| {label} | {tidy(run['setting'])} | {run['error_m']:.1e} | {power} | {_short(run['cpu_s'])} |"
+    yield ""
+    power = {(run["method"], run["formulation"]): run["exponent"] for run in runs}
+    yield so(
+        power["heyoka_double", "momentum"] > 1.7 and abs(power["rk4", "plane"] - 1) < 0.1,
+        "A drift of the energy or of the length that keeps its sign (`momentum` in a fixed number type, where nothing "
+        "corrects what rounding does to |n|) gives t²; a constant error of the frequency (RK4) gives t.",
+    )
+
+
+def _command(name: str) -> Iterator[str]:
+    yield "```"
+    yield from _folded(COMMANDS[name])
+    yield "```"
+    yield ""
+
+
+def _folded(command: str, width: int = 118) -> Iterator[str]:
+    """Yield a command in lines that end in a backslash, broken at blanks."""
+    line = ""
+    for word in command.split():
+        if line and len(line) + len(word) + 3 > width:
+            yield f"{line} \\"
+            line = " "
+        line = f"{line} {word}" if line else word
+    yield line
+
+
+def _cost(curve: Curve, error_m: float) -> float:
+    found = cost_at(curve, error_m)
+    if found is None:
+        raise NotSoError(f"{curve.label} does not reach {error_m} m")
+    return found.cpu_s
+
+
+def _best(curve: Curve) -> float:
+    return min(row.error_m for row in curve.measured if row.error_m is not None)
+
+
+def _costs(curve: Curve) -> str:
+    found = [cost_at(curve, error_m) for error_m in TARGETS_M]
+    figures = [f"{_short(one.cpu_s)}{'~' if one.extrapolated else ''}" if one else "–" for one in found]
+    label = curve.label if "(" in curve.label else f"{curve.label} ({curve.rows[0].formulation})"
+    return f"| {label} | {' | '.join(figures)} | {_best(curve):.1e} |"
+
+
+def _short(cost_s: float) -> str:
+    return tidy(float(f"{cost_s:.2g}")) if cost_s < 1e-3 else f"{float(f'{cost_s:.2g}'):g}"
+
+
+def _least(line: str) -> tuple[bool, float]:
+    figure = line.split("|")[3].strip().rstrip("~")
+    return figure == "–", 0.0 if figure == "–" else float(figure)
+
+
+def _at(ladders: dict[str, Curve], error_m: float = 1e-6) -> str:
+    costs = {label: cost_at(curve, error_m) for label, curve in ladders.items()}
+    known = sorted((one.cpu_s, one.extrapolated, label) for label, one in costs.items() if one)
+    return ", ".join(f"{label} {_short(cost_s)}{'~' if part else ''}" for cost_s, part, label in known)

@@ -36,7 +36,7 @@ def problems(files: Files) -> Iterator[str]:
         "notes": notes_of(scene),
         "frame": frame_of(scene),
         "units": UNIT_OF,
-        "equations": equations_of(scene, run.formulation),
+        "equations": equations_of(scene, run.formulation, run.number),
     }
     for name, value in expected.items():
         if getattr(manifest, name) != value:

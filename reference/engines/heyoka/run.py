@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import IntegrationError
+from ...model.carried import carried
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start
 from ...model.vanishing import xdot_vanishes, zero_at_release
@@ -17,6 +18,7 @@ from ...precision import GUARD_BITS
 from ...table import Table
 from ..plan import Plan, Report, Run
 from .log import watched_log
+from .numbers import Numbers
 from .stepper import Stepper, Zero
 from .transits import march, quiet_start
 
@@ -33,7 +35,8 @@ def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Stepper]
     start = Start.of(plan.inputs, plan.number.prec + GUARD_BITS)
     watching = plan.transits and not xdot_vanishes(start)
     longest = plan.times[-1] * OTHER_STEPS if plan.other_steps else None
-    stepper = Stepper(FORMULATIONS[plan.formulation], start, plan.number, events=watching, longest=longest)
+    formulation = carried(FORMULATIONS[plan.formulation], start, Numbers(plan.number).of)
+    stepper = Stepper(formulation, start, plan.number, events=watching, longest=longest)
     times = [stepper.numbers.of(t) for t in plan.times]
     if look_ahead is not None:
         look_ahead(stepper)

@@ -9,6 +9,7 @@ from typing import Any
 import heyoka as hy
 
 from ...model.algebra import minus, product
+from ...model.carried import constant_variables
 from ...model.constants import Constants
 from ...model.force import acceleration
 from ...model.formulations import Formulation, Lagrangian
@@ -65,6 +66,8 @@ def _euler_lagrange(formulation: Lagrangian, state: Any, constants: Constants) -
 
 
 def equations_text(formulation: Formulation, constants: Constants) -> list[str]:
-    """Return the lines "name' = …" that are compiled, constants by name and exact zeros left out."""
+    """Return the lines "name' = …" that are compiled, constants by name, without exact zeros and constant variables."""
     named = Constants.of({name: hy.make_vars(NAMES[name]) for name in constants.entries()})
-    return [f"{name}' = {rate}" for name, rate in System.build(formulation, named).equations]
+    constant = constant_variables(formulation, constants)
+    pairs = zip(formulation.variables, System.build(formulation, named).equations, strict=True)
+    return [f"{name}' = {rate}" for name, (_, rate) in pairs if name not in constant]

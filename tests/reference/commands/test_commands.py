@@ -56,6 +56,35 @@ def test_show_equations_says_what_was_left_out_and_why(foucault):
     assert "xdot is identically zero" in planar
 
 
+@pytest.mark.parametrize(
+    ("changes", "left_out"),
+    [
+        (("run.level=computed", "run.digits=6"), "extended precision: double serves 6 digits."),
+        (("run.level=computed", "run.digits=10"), "precision beyond long double: it serves 10 digits."),
+        (("run.level=computed", "run.digits=30"), None),
+        (("run.level=confirmed", "run.digits=6"), None),
+        (("run.level=enclosed", "run.digits=12"), None),
+    ],
+    ids=lambda one: one[0] + one[1] if isinstance(one, tuple) else "",
+)
+def test_show_equations_shows_what_generate_compiles(foucault, tmp_path, changes, left_out):
+    words = [word for change in ("run.t_end=60", *changes) for word in ("--set", change)]
+    shown = json.loads(foucault("show", "pole", "--equations", "--json", *words)[1])
+    status, _, err = foucault("generate", "pole", "--out", str(tmp_path / "pole"), *words)
+    assert status == 0, err
+    manifest = json.loads((tmp_path / "pole" / "manifest.json").read_text())
+    made = manifest["equations"]
+    assert (shown["formulation"], shown["equations"]) == (made["formulation"], made["lines"])
+    assert shown["left_out"] == made["left_out"]
+    assert shown["number"].partition("(")[0] == manifest["run"]["number"].partition("(")[0]
+    precision = [line for line in shown["left_out"] if "precision" in line]
+    assert precision == ([] if left_out is None else [left_out])
+    constant = "the rate of Hz: it is constant." in shown["left_out"]
+    assert constant == (shown["formulation"] == "momentum")
+    assert not any(line.startswith("Hz'") for line in made["lines"])
+    assert foucault("verify", str(tmp_path / "pole"))[0] == 0
+
+
 def test_generate_writes_a_dataset_that_verify_accepts(foucault, tmp_path):
     target = tmp_path / "paris"
     status, out, err = foucault("generate", "paris", *SHORT, "--out", str(target))

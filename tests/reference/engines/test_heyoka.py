@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from small_scenes import make_scene, model_at, stepper_of
 
+import reference.engines.heyoka.run as module
 from reference.columns import STATE
 from reference.engines.heyoka.log import watched_log
 from reference.engines.heyoka.system import System, equations_text
+from reference.engines.plan import Plan
 from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
 from reference.precision import DOUBLE, LONG_DOUBLE, real
@@ -62,6 +64,23 @@ def test_the_equations_shown_are_the_ones_compiled():
     assert "Omega_z" in text
     assert "Omega_y" not in text
     assert "gamma" not in text
+
+
+def test_what_is_constant_is_neither_shown_nor_integrated(monkeypatch):
+    """At a pole H_z is constant: five variables are left, and the states are those of all six to the last bits."""
+    scene = make_scene(site={"latitude": "90"}, run={"t_end": "60"})
+    _, k, _, _ = model_at(scene, 100)
+    assert [line.partition("'")[0] for line in equations_text(FORMULATIONS["momentum"], k)] == [
+        "nx", "ny", "nz", "Hx", "Hy",
+    ]  # fmt: skip
+    plan = Plan(scene.exact, "momentum", real(120), (Fraction(0), Fraction(7), Fraction(60)), transits=True)
+    less = module.run(plan)
+    monkeypatch.setattr(module, "carried", lambda formulation, start, number: formulation)
+    whole = module.run(plan)
+    assert less.terms < whole.terms
+    gaps = less.grid.distance(whole.grid).largest()
+    assert all(0 <= gap < Fraction(1, 2**100) for gap in gaps.values())
+    assert less.directions == whole.directions and len(less.directions) > 0
 
 
 def test_drag_is_in_the_equations_when_the_scene_has_it():

@@ -12,11 +12,12 @@ from small_scenes import make_scene, model_at
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.heyoka.system import System
 from reference.model.algebra import cross, dot, minus, plus, product
+from reference.model.carried import carried, constant_variables
 from reference.model.constants import Constants, constants
 from reference.model.earth import axis_distance
 from reference.model.force import acceleration, force, invariant, rest_position, tension
 from reference.model.formulations import FORMULATIONS
-from reference.model.start import release
+from reference.model.start import Start, release
 from reference.precision import context, real
 
 PREC = 400  # bits; 60 digits need 200
@@ -256,3 +257,43 @@ def test_forms_that_do_not_reach_a_state_refuse_it():
     down = (ctx.mpf(0), ctx.mpf(0), ctx.mpf(-1))
     with pytest.raises(ValueError, match="vertical"):
         FORMULATIONS["angles"].start(down, (0, 0, 0), k, ctx)
+
+
+@pytest.mark.parametrize(
+    ("site", "name", "expected"),
+    [
+        ({}, "momentum", []),
+        ({"latitude": "90"}, "momentum", ["Hz"]),
+        ({"latitude": "-90"}, "momentum", ["Hz"]),
+        ({"rotation_rate": "0"}, "momentum", ["Hz"]),
+        ({"rotation_rate": "0", "gravity": "0"}, "momentum", ["Hx", "Hy", "Hz"]),
+        ({"latitude": "90"}, "inertial", []),
+        ({"latitude": "90"}, "spin", []),
+        ({"latitude": "90"}, "angles", []),
+    ],
+)
+def test_a_variable_whose_rate_is_exactly_zero_is_not_carried(site, name, expected):
+    start = start_of(make_scene(site=site))
+    whole = FORMULATIONS[name]
+    assert constant_variables(whole, start.k) == expected
+    less = carried(whole, start, start.ctx.mpf)
+    assert less.variables == tuple(one for one in whole.variables if one not in expected)
+    state, full = start.state(less), start.state(whole)
+    assert len(state) == len(less.variables)
+    assert less.cartesian(state, start.k, start.ctx) == whole.cartesian(full, start.k, start.ctx)
+    rates = dict(zip(whole.variables, whole.derivatives(full, start.k, start.ctx), strict=True))
+    assert list(less.derivatives(state, start.k, start.ctx)) == [rates[one] for one in less.variables]
+    assert [rates[one] for one in expected] == [0] * len(expected)
+
+
+def test_with_drag_nothing_is_constant():
+    assert (
+        constant_variables(
+            FORMULATIONS["momentum"], start_of(make_scene(pendulum={"drag": "1e-9"}, site={"latitude": "90"})).k
+        )
+        == []
+    )
+
+
+def start_of(scene):
+    return Start.of(scene.exact, PREC)

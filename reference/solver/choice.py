@@ -1,0 +1,69 @@
+"""The run that a scene's published numbers come from: its bits, engine and form of the equations; chosen here alone.
+
+`solve` begins with it, and `foucault show --equations` prints its equations.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+from ..columns import POSITION, VELOCITY
+from ..engines import AUTO
+from ..engines.plan import Plan
+from ..engines.registry import fastest
+from ..precision import LONG_DOUBLE
+from ..scene import Scene
+from .approximant import COEFFICIENT_BITS
+from .pilot import Pilot
+
+FINER_BITS = 16  # bits that the published run has more than the one it is compared with
+ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
+ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
+
+
+def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str = AUTO) -> Plan:
+    """Return the published run as it is begun; where runs disagree, `solve` raises its precision.
+
+    Args:
+        scene: with its digits and level.
+        times: its output times in s.
+        pilot: its pilot run.
+        engine: name of the engine, or "auto" for the fastest.
+    """
+    if scene.run.level == "enclosed":
+        from ..enclosure.plan import plan_for  # python-flint is not imported unless the level asks for it
+
+        bits = plan_for(scene.exact, times[-1], first_radius(pilot, scene.run.digits), None).bits - COEFFICIENT_BITS
+        return fastest(bits, engine).plan(scene.exact, bits, times, transits=False)
+    return published_plan(scene, times, first_prec(scene, pilot), engine)
+
+
+def first_prec(scene: Scene, pilot: Pilot) -> int:
+    """Return the bits that a scene's digits need: of the only run, or of the coarser of two that have to agree."""
+    span = scene.exact.t_end if scene.run.transits else None
+    if scene.run.level == "computed":
+        prec = pilot.bits_for(scene.run.digits, span, checked=False)
+        return rounded_prec(prec) if prec > LONG_DOUBLE.prec else prec
+    return rounded_prec(max(pilot.bits_for(scene.run.digits, span, checked=True), LONG_DOUBLE.prec))
+
+
+def published_plan(scene: Scene, times: tuple[Fraction, ...], prec: int, engine: str) -> Plan:
+    """Return the run that is published: of `prec` bits if it is alone, else finer than the one beside it."""
+    bits = prec if scene.run.level == "computed" else prec + FINER_BITS
+    return fastest(bits, engine).plan(scene.exact, bits, times, scene.run.transits)
+
+
+def rounded_prec(prec: int) -> int:
+    """Round a precision up to a multiple of `ROUND_TO_BITS`."""
+    return -(-prec // ROUND_TO_BITS) * ROUND_TO_BITS
+
+
+def first_radius(pilot: Pilot, digits: int) -> Fraction:
+    """Return the radius in m of the balls that a proof begins with.
+
+    It is a small part of the last digit's unit in the middle position or velocity column; smaller ones have smaller
+    balls.
+    """
+    decimals = pilot.decimals(digits)
+    unit = Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
+    return unit / 2**ROUNDING_BITS
