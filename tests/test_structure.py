@@ -149,6 +149,7 @@ PUBLIC = {
     "reference.scene": "LEVELS MAX_ROWS RunTable",
     "reference.shortened": "shortened",
     "reference.shipped": "data_root seals",
+    "reference.solver.digits_lost": "digits_lost",
     "reference.solver.sensitivity": "sensitivity",
     "reference.status": "Status",
     "reference.sweeps.axes": "Grid",

@@ -149,6 +149,6 @@ def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None
 
     report = report_of(scene)
     report.check(out)
-    with stoppable(resumes(None)), progress() as show:
+    with stoppable("nothing was kept"), progress() as show:
         document = document_of(scene, show(scene.id, unit="tables"))
     finish(document, report.text, report.write(document, out), as_json)

@@ -11,16 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference import Scene
+from reference import Scene, UnreachableError
 from reference.model.constants import Constants
 from reference.model.force import tension
 from reference.model.formulations import FORMULATIONS
 from reference.precision import Array
+from reference.solver.digits_lost import digits_lost
 from reference.solver.sensitivity import sensitivity
 
 from ..rhs.constants import constants_in_double
 
 SAMPLES = 64  # states of the trajectory at which rates are measured
+IN_DOUBLE = 1e6  # what is magnified no more than this is followed in double
 _NUDGE = 1e-6  # relative displacement of the central differences
 
 
@@ -115,7 +117,11 @@ def _tangent_jacobian(state: Array, k: Constants) -> Array:
 
 
 def _magnified(scene: Scene, times: Array, length: float) -> float:
-    """Return the largest response of the position to a displacement of the release, by the variational equations."""
+    """Return the largest response of the position to a displacement of the release, by the variational equations.
+
+    They follow a trajectory in double, which leaves the true one where little more than its errors is left; then runs
+    from neighbouring releases are compared in as many bits as that takes, and a relative change counts.
+    """
     response = sensitivity(scene, times)
     names = [name for name in ("x", "y", "angle", "azimuth") if f"release.{name}" in response.values]
     factors = [1.0]
@@ -125,4 +131,9 @@ def _magnified(scene: Scene, times: Array, length: float) -> float:
         at_release = float(sizes[0]) if name in ("angle", "azimuth") else 1.0
         if at_release > 1e-12 * length:
             factors.append(float(sizes.max()) / at_release)
-    return max(factors)
+    if max(factors) <= IN_DOUBLE:
+        return max(factors)
+    try:
+        return max(*factors, 10 ** digits_lost(scene.exact, tuple(scene.exact.grid), constants=False))
+    except UnreachableError:
+        return math.inf

@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from reference import Scene, UnreachableError, load, load_scene, parse_scene, scene_ids
+from reference import Golden, Scene, UnreachableError, load, load_scene, parse_scene, scene_ids
+from reference.columns import STATE
 from reference.process import Emit
 from reference.status import Status
 
@@ -42,7 +43,7 @@ TRUTH_DIGITS = 34  # six more than are asked of the finest method
 
 # method or program, formulation and setting as the method declares them, and the scene
 Item = tuple[str, str | None, float, str]
-Problems = dict[str, tuple[dict[str, Any], Path]]  # document and golden folder of each scene
+Problems = dict[str, tuple[dict[str, Any], Path, Character]]  # document and golden folder of each scene, its difficulty
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ def stability(
         moved = solving and partial(_moved, solving, count, len(cuts), float(scene.exact.t_end))
         try:
             golden = golden_of(scene, TRUTH_DIGITS, report=moved, grid=True)
-            problems[name] = scene.model_dump(exclude_none=True), golden.path
+            problems[name] = scene.model_dump(exclude_none=True), golden.path, _traits(scene, golden)
         except UnreachableError as error:
             unsolved[name] = f"The reference cannot solve it: {error}"
         if solving is not None:
@@ -148,6 +149,12 @@ def stability(
     )
     finished = dict(zip(solved, cells, strict=True))
     return [finished.get(item) or _failed(item, Status.UNREACHABLE, unsolved[item[-1]]) for item in items]
+
+
+def _traits(scene: Scene, golden: Golden) -> Character:
+    times = GridTruth(golden, float(scene.exact.t_end)).times
+    states = np.column_stack([getattr(golden, column) for column in STATE])
+    return character(scene, times, states[: len(times)])
 
 
 def _moved(solving: Callable[[float, int], None], solved: int, scenes: int, t_end: float, t: float) -> None:
@@ -173,11 +180,9 @@ def cells_of(emit: Emit, problems: Problems, limit_s: float, programs: dict[str,
     """Run methods and programs on scenes, in a child process, and send each cell."""
     for item in items:
         name, formulation, setting, scene_id = item
-        document, folder = problems[scene_id]
+        document, folder, traits = problems[scene_id]
         scene, golden = parse_scene(document), load(folder)
         truth = GridTruth(golden, float(scene.exact.t_end))
-        states = np.column_stack([getattr(golden, column) for column in ("x", "y", "z", "vx", "vy", "vz")])
-        traits = character(scene, truth.times, states[: len(truth.times)])
         step = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
         if name in programs:
             run = program.measured(name, programs[name], step, scene, golden, limit_s)

@@ -66,4 +66,4 @@ def first_radius(pilot: Pilot, digits: int) -> Fraction:
     """
     decimals = pilot.decimals(digits)
     unit = Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
-    return unit / 2**ROUNDING_BITS
+    return unit / (1 << ROUNDING_BITS)

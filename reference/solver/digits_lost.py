@@ -21,7 +21,9 @@ Quadruple = tuple[Fraction, Fraction, Fraction, Fraction]
 DIVERGED = Fraction(1, 64)  # a change above this part of a column's size is no longer proportional to the perturbation
 
 
-def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], pilot: Pilot | None = None) -> float:
+def digits_lost(
+    inputs: Inputs, times: tuple[Fraction, ...], pilot: Pilot | None = None, *, constants: bool = True
+) -> float:
     """Return the decimal digits that the motion costs: n digits of every result need n + this many in the inputs.
 
     Three runs are compared: the scene's own, one with a perturbed release, and one with perturbed constants. At a
@@ -33,6 +35,7 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], pilot: Pilot | None
         inputs: the exact inputs of a scene.
         times: increasing, from 0, in s.
         pilot: the result of `run_pilot` for the same inputs and times, to save two runs.
+        constants: whether errors of the constants count as well, or only those of the release.
 
     Raises:
         UnreachableError: as `run_pilot`, or the perturbed runs diverge at every precision.
@@ -41,10 +44,8 @@ def digits_lost(inputs: Inputs, times: tuple[Fraction, ...], pilot: Pilot | None
     number = DOUBLE if pilot.prec <= DOUBLE.prec else real(2 * LONG_DOUBLE.prec)
     while number.prec <= MAX_PREC:
         nudge = Fraction(1, 2 ** (number.prec // 2))
-        base, *perturbed = (
-            run(Plan(each, "momentum", number, times, transits=False))
-            for each in (inputs, _perturbed_release(inputs, nudge), _perturbed_constants(inputs, nudge))
-        )
+        changed = [_perturbed_release(inputs, nudge), *([_perturbed_constants(inputs, nudge)] if constants else [])]
+        base, *perturbed = (run(Plan(each, "momentum", number, times, transits=False)) for each in (inputs, *changed))
         changes = [base.grid.only(GRID).distance(other.grid).largest() for other in perturbed]
         worst = max(change[name] / size for change in changes for name, size in pilot.sizes.items() if size)
         if worst <= DIVERGED:

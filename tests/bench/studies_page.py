@@ -11,6 +11,7 @@ from itertools import combinations
 from textwrap import wrap
 from typing import Any
 
+from compare.methods import METHODS
 from compare.report.busy import busy
 from compare.report.pareto import Curve, cost_at, curves, rows_of, sentences
 from compare.report.stability import headlines
@@ -93,9 +94,14 @@ def _head(kept: Documents) -> Iterator[str]:
     versions = ", ".join(f"{name} {machine[name]}" for name in libraries if machine[name][0].isdigit())
     yield f"Measured on {machine['processor']}, {machine['system']}, {versions}, beside other work:"
     yield ""
-    for name in COMMANDS:
-        yield f"- {name}: {busy(_results(name, kept))}."
+    loads = {name: busy(_results(name, kept)).partition(". ") for name in COMMANDS}
+    for name, (load, _, _) in loads.items():
+        yield f"- {name}: {load}."
+    remarks = list(dict.fromkeys(remark for _, _, remark in loads.values() if remark))
     yield ""
+    for remark in remarks:
+        yield f"{remark}."
+        yield ""
 
 
 def _results(name: str, kept: Documents) -> Sequence[Row | Cell]:
@@ -116,7 +122,8 @@ def _paris(kept: Documents) -> Iterator[str]:
     yield from _command("paris")
     yield f"| method | {' | '.join(f'CPU s at {tidy(one)} m' for one in TARGETS_M)} | best error, m |"
     yield "|---|" + "---|" * (len(TARGETS_M) + 1)
-    yield from sorted((_costs(curve) for curve in ladders.values()), key=_least)
+    bound_m = document["reference"]["bound_m"]
+    yield from sorted((_costs(curve, bound_m) for curve in ladders.values()), key=_least)
     yield ""
     momentum, space = ladders["heyoka_double (momentum)"], ladders["heyoka_double"]
     ratio = _cost(ladders["rk4"], 1e-9) / _cost(momentum, 1e-9)
@@ -190,7 +197,7 @@ def _hard(kept: Documents) -> Iterator[str]:
     document = kept["hard"]
     ladders = {curve.label: curve for curve in curves(rows_of(document))}
     swing = 2 * document["t_end"] / document["reference"]["transits"]
-    yield f"### {document['title'].partition(':')[0]}, {document['t_end']:g} s"
+    yield f"### {document['title'].partition(':')[0]}"
     yield ""
     yield from _command("hard")
     yield f"CPU seconds at 1e-6 m: {_at(ladders)}. A swing takes {swing:.3g} s."
@@ -239,7 +246,7 @@ def _stability(kept: Documents) -> Iterator[str]:
         f"wrong if it reports success with an error above {WRONG} times what was asked for, and above what the motion "
         "itself makes of such an error at the release; where the motion magnifies it by more, the run is "
         "ill-conditioned, "
-        "and nobody's fault."
+        "and nobody's fault. A step is given as a part of 2π over the fastest rate of the scene."
     )
     yield ""
     yield from (f"- {sentence}" for sentence in headlines(found))
@@ -257,7 +264,7 @@ def _stability(kept: Documents) -> Iterator[str]:
 def _counted(own: Sequence[Cell]) -> str:
     count = Counter(cell.status for cell in own)
     first = next((cell for cell in own if cell.setting is not None), own[0])
-    asked = "a part of the fastest time" if first.kind == "step" else setting(first)
+    asked = f"1/{1 / METHODS[first.method].stability[0][1]:.0f}" if first.kind == "step" else setting(first)
     right, wrong, ill = (count[one] for one in (Status.OK, Status.SILENTLY_WRONG, Status.ILL_CONDITIONED))
     figures = (asked, f"{first.asked:.1f}", right, wrong, ill, len(own) - right - wrong - ill)
     return f"| {first.method}, {first.precision} | {' | '.join(map(str, figures))} |"
@@ -265,10 +272,13 @@ def _counted(own: Sequence[Cell]) -> str:
 
 def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
     status = {(cell.method, cell.precision, cell.scene): cell.status for cell in found}
-    wrong = Counter(cell.method for cell in found if cell.status == Status.SILENTLY_WRONG)
+    wrong = Counter((cell.method, cell.precision) for cell in found if cell.status == Status.SILENTLY_WRONG)
+    top = wrong.most_common(3)
     yield so(
-        {name for name, _ in wrong.most_common(3)} == {"scipy_bdf", "scipy_lsoda", "cvode_bdf"},
-        "- Multistep methods are silently wrong most often: their error is kept per step, and adds up over the swings.",
+        {method for (method, _), _ in top[:2]} == {"scipy_bdf", "cvode_bdf"} and top[1][1] > top[2][1],
+        "- The BDF methods are silently wrong most often "
+        f"({', '.join(f'{method} on {count} scenes' for (method, _), count in top[:2])}): their error is kept per step, "
+        "and adds up over the swings.",
     )
     yield so(
         status["heyoka_double", "double, space", "near_inverted"] == Status.SILENTLY_WRONG
@@ -349,11 +359,18 @@ def _best(curve: Curve) -> float:
     return min(row.error_m for row in curve.measured if row.error_m is not None)
 
 
-def _costs(curve: Curve) -> str:
+def _costs(curve: Curve, bound_m: float) -> str:
     found = [cost_at(curve, error_m) for error_m in TARGETS_M]
     figures = [f"{_short(one.cpu_s)}{'~' if one.extrapolated else ''}" if one else "–" for one in found]
     label = curve.label if "(" in curve.label else f"{curve.label} ({curve.rows[0].formulation})"
-    return f"| {label} | {' | '.join(figures)} | {_best(curve):.1e} |"
+    return f"| {label} | {' | '.join(figures)} | {_least_error(curve, bound_m)} |"
+
+
+def _least_error(curve: Curve, bound_m: float) -> str:
+    """Return the least error, marked if only a part of the span was run, or if it is no more than the truth's own."""
+    whole = [row for row in curve.measured if row.status == Status.OK]
+    best = min(row.error_m for row in whole or curve.measured if row.error_m is not None)
+    return f"below {bound_m:.1e}" if best <= bound_m else f"{best:.1e}{'' if whole else '~'}"
 
 
 def _short(cost_s: float) -> str:

@@ -53,6 +53,12 @@ def test_near_the_top_the_flow_magnifies_and_the_rod_is_pushed() -> None:
     assert traits.magnified > 100  # exp(t sqrt(g/l)) while it lingers there
 
 
+def test_on_the_separatrix_all_that_a_double_holds_is_not_all_that_is_magnified() -> None:
+    """An error grows like exp(3 t) to t = 20 s: by 26 digits, more than a trajectory in double can show."""
+    traits = character_of("separatrix")
+    assert traits.digits_lost == pytest.approx(60 / math.log(10), abs=1)
+
+
 def test_there_are_thirty_extreme_scenes_and_each_says_what_it_catches() -> None:
     names = default_scenes()
     assert len(names) >= 31

@@ -82,7 +82,7 @@ def test_statuses_that_are_others_are_refused_or_counted(kept: dict[str, Any]) -
     others = copy.deepcopy(kept)
     for row in others["stability"]["rows"]:
         row["status"] = "ok"
-    with pytest.raises(studies_page.NotSoError, match="Multistep methods"):
+    with pytest.raises(studies_page.NotSoError, match="The BDF methods"):
         studies_page.page(others)
 
 
