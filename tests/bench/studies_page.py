@@ -277,8 +277,8 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
     yield so(
         {method for (method, _), _ in top[:2]} == {"scipy_bdf", "cvode_bdf"} and top[1][1] > top[2][1],
         "- The BDF methods are silently wrong most often "
-        f"({', '.join(f'{method} on {count} scenes' for (method, _), count in top[:2])}): their error is kept per step, "
-        "and adds up over the swings.",
+        f"({', '.join(f'{method} on {count} scenes' for (method, _), count in top[:2])}): their error is kept per "
+        "step, and adds up over the swings.",
     )
     yield so(
         status["heyoka_double", "double, space", "near_inverted"] == Status.SILENTLY_WRONG

@@ -45,12 +45,12 @@ def test_thirty_days_are_paris_with_a_truth_of_its_own(monkeypatch: pytest.Monke
     class Asked(Exception):
         pass
 
-    def golden_of(scene, digits, report, level):  # type: ignore[no-untyped-def]
+    def golden_of(scene, digits, report, level, grid):  # type: ignore[no-untyped-def]
         report(86400.0)
-        requests.append(f"{scene.id} {scene.inputs} {float(scene.exact.t_end):g} {digits} {level}")
+        requests.append(f"{scene.id} {scene.inputs} {float(scene.exact.t_end):g} {digits} {level} {grid}")
         raise Asked
 
     monkeypatch.setattr(module, "golden_of", golden_of)
     with pytest.raises(Asked):
         long_runs(ITEMS, solving=lambda day, days: requests.append(f"day {day:g} of {days:g}"))
-    assert requests == ["day 1 of 30", "paris_30d binary64 2.592e+06 36 self_consistent"]
+    assert requests == ["day 1 of 30", "paris_30d binary64 2.592e+06 36 self_consistent True"]
