@@ -1,4 +1,4 @@
-"""What else the machine did during a study, in a sentence: its load, and how much repeats of a run differ."""
+"""The header of a report on a machine shared with other work: its load, and how much repeats of a run differ."""
 
 from __future__ import annotations
 

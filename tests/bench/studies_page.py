@@ -34,9 +34,8 @@ COMMANDS = {
     "scipy_rk45,scipy_radau,scipy_bdf,scipy_lsoda,cvode_bdf",
     "paris_again": "foucault study paris --limit 2 --no-formulations --methods heyoka_double,heyoka_long_double,limbs,"
     "numbalsoda_dop853,rkng67,rkng56,gauss_legendre,rebound_bs,rebound_ias15,rk4,rkmk4,scipy_dop853,scipy_lsoda",
-    "pantheon": f"foucault study pantheon --limit 2 --no-formulations --methods {COMMON}",
-    "long": "foucault stability --long --scenes paris --methods heyoka_double,limbs,gauss_legendre,rk4,rkng67,"
-    "numbalsoda_dop853,rebound_bs",
+    "pantheon": f"foucault study pantheon --t-end 3600 --limit 2 --no-formulations --methods {COMMON}",
+    "long": "foucault stability --long --scenes paris --methods heyoka_double,limbs,gauss_legendre,rk4,rebound_bs",
 }
 
 
@@ -86,8 +85,8 @@ def _head(kept: Documents) -> Iterator[str]:
         "those of the work alone, one thread, imports and compilation apart; errors are the largest position "
         "errors over "
         "the grid against the golden dataset of the same binary64 inputs. `~` is extrapolated from a part of the span. "
-        "Methods, scenes and limits are fewer than the commands' own, so that all of it takes some ten CPU minutes; "
-        "without `--methods`, `--scenes` and `--limit` the commands measure everything."
+        "Methods, scenes, spans and limits are less than the commands' own, so that all of it takes some ten CPU "
+        "minutes; without `--methods`, `--scenes`, `--t-end` and `--limit` the commands measure everything."
     )
     yield ""
     libraries = ("python", "heyoka", "numba", "scipy", "numbalsoda", "rebound")
