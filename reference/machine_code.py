@@ -9,11 +9,14 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
 from numba.core import caching, ccallback, dispatcher
+
+from .first_use import announce
 
 _HASH_BYTES = 32
 
@@ -63,29 +66,41 @@ class _CheckedCache(caching.FunctionCache):  # type: ignore[misc]
 
     _impl_class = _Places
 
-    def __init__(self, function: Any) -> None:
+    def __init__(self, function: Any, what: str, seconds: int) -> None:
         super().__init__(function)
+        self._what, self._seconds = what, seconds
         stamp = self._impl.locator.get_source_stamp()
         self._cache_file = _CheckedFile(self._cache_path, self._impl.filename_base, stamp)
+
+    def load_overload(self, types: Any, target: Any) -> Any:
+        code = super().load_overload(types, target)
+        if code is None:
+            announce(self._what, self._seconds)
+        return code
 
     def save_overload(self, types: Any, code: Any) -> None:
         with suppress(OSError):
             super().save_overload(types, code)
 
 
-def _cache_of(function: Any) -> Any:
+def _cache_of(function: Any, what: str, seconds: int) -> Any:
     try:
-        return _CheckedCache(function)
+        return _CheckedCache(function, what, seconds)
     except (RuntimeError, OSError):  # there is no folder for it that can be written
         return caching.NullCache()
 
 
 @contextmanager
-def kept() -> Iterator[None]:
-    """Have functions that are declared meanwhile with `cache=True` use a checked cache."""
+def kept(what: str = "", seconds: int = 0) -> Iterator[None]:
+    """Have functions that are declared meanwhile with `cache=True` use a checked cache.
+
+    Args:
+        what: what they are, in the plural, for the line that announces a long compilation; without it there is none.
+        seconds: that it takes, about.
+    """
     users: tuple[Any, Any] = (dispatcher, ccallback)
     for module in users:
-        module.FunctionCache = _cache_of
+        module.FunctionCache = partial(_cache_of, what=what, seconds=seconds)
     try:
         yield
     finally:

@@ -31,7 +31,7 @@ FLOORS = {
         ["inputs", "fields", "precision", "shipped", "columns", "workspace", "machine_code"],
         ["lazy"],
         ["nearest"],
-        ["errors", "status", "opening", "packages"],
+        ["errors", "status", "opening", "packages", "first_use"],
         ["shortened", "plain_text"],
     ],
     "reference/engines": [

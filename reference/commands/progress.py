@@ -6,10 +6,12 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import Any, Protocol
 
 import typer
 
+from ..first_use import announced_to
 from ..plain_text import plain, terminal_of
 
 NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
@@ -40,7 +42,8 @@ def progress() -> Iterator[Show]:
 
     console = Console(file=terminal_of(sys.stderr))
     if not console.is_terminal:
-        yield Notice
+        with announced_to(partial(typer.echo, err=True)):
+            yield Notice
         return
     columns = (
         TextColumn("{task.description}", markup=False),
@@ -49,7 +52,10 @@ def progress() -> Iterator[Show]:
         TimeElapsedColumn(),
         TimeRemainingColumn(),
     )
-    with Progress(*columns, console=console, transient=True) as bars:
+    with (
+        Progress(*columns, console=console, transient=True) as bars,
+        announced_to(partial(bars.console.print, markup=False, highlight=False)),
+    ):
         yield lambda label, total=0, unit="s simulated": _bar(bars, label, total, unit)
 
 

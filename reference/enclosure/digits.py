@@ -19,6 +19,11 @@ from ..packing import DIGIT_BITS
 MASK = (1 << DIGIT_BITS) - 1
 PAD = 3  # zeros before each row, and at least as many behind it, for sums of four products at once
 MORE_ROWS = 1  # of a product's rows that are summed, beyond those of its factors; what is left out is bounded
+# which sum (of d, or 3 of τ) a product is added to; its factors, as in `defects`: a number, and derivative and row
+PRODUCTS = (
+    *((0, 0, 0, 0), (1, 0, 0, 1), (2, 1, 0, 2), (0, 2, 1, 0), (1, 2, 1, 1), (2, 2, 1, 2)),
+    *((0, 3, 1, 1), (1, 4, 1, 0), (3, 5, 0, 0), (3, 6, 0, 1), (3, 7, 0, 2)),
+)
 TOP_ROWS = 3  # in which a sum below 2^62 is carried on
 
 
@@ -38,20 +43,7 @@ def check(rows: Any, constants: Any) -> tuple[int, int]:
 
 compiled: Callable[[Any], Any] = njit(cache=True)
 
-with kept():
-
-    @compiled
-    def padded(rows: Any) -> Any:
-        """Return the rows of digits between zeros, and those of the derivatives."""
-        polynomials, digits, orders = rows.shape
-        f = np.zeros((2, polynomials, digits, orders + 3 * PAD), np.int32)
-        for i in range(polynomials):
-            for q in range(digits):
-                for k in range(orders):
-                    f[0, i, q, k + PAD] = rows[i, q, k]
-                    if k:
-                        f[1, i, q, k - 1 + PAD] = k * rows[i, q, k]
-        return f
+with kept("the proof's sums", 5):
 
     @compiled
     def used(row: Any) -> Any:
@@ -78,74 +70,46 @@ with kept():
                         out[j] += a * r0[j] + b * r1[j] + c * r2[j] + d * r3[j]
 
     @compiled
+    def multiply_all(to: Any, factors: Any, f: Any) -> None:
+        """Add all products of a defect and of τ."""
+        for i, factor, derivative, row in PRODUCTS:
+            multiply(to[i], factors[factor], f[derivative, row], i == 3)
+
+    @compiled
     def weigh(to: Any) -> Any:
         """Return the sums over the orders n of |c|, n |c| and n (n - 1) |c|, in digits of TOP_ROWS more rows."""
-        rows, orders = to.shape
-        out, digits = np.zeros((3, rows + TOP_ROWS), np.int64), np.zeros(rows + TOP_ROWS, np.int64)
-        for n in range(orders):
-            for sign in (1, -1):
-                over = 0
-                for t in range(rows + TOP_ROWS - 1, -1, -1):
-                    whole = over + (sign * to[t - TOP_ROWS, n] if t >= TOP_ROWS else 0)
-                    digits[t], over = whole & MASK, whole >> DIGIT_BITS
-                if not over:  # else the coefficient is negative
-                    break
-            for t in range(rows + TOP_ROWS):
-                out[0, t] += digits[t]
-                out[1, t] += n * digits[t]
-                out[2, t] += n * (n - 1) * digits[t]
+        count, rows, orders = to.shape
+        out, digits = np.zeros((count, 3, rows + TOP_ROWS), np.int64), np.zeros(rows + TOP_ROWS, np.int64)
+        for i in range(count):
+            for n in range(orders):
+                for sign in (1, -1):
+                    over = 0
+                    for t in range(rows + TOP_ROWS - 1, -1, -1):
+                        whole = over + (sign * to[i, t - TOP_ROWS, n] if t >= TOP_ROWS else 0)
+                        digits[t], over = whole & MASK, whole >> DIGIT_BITS
+                    if not over:  # else the coefficient is negative
+                        break
+                for t in range(rows + TOP_ROWS):
+                    out[i, 0, t] += digits[t]
+                    out[i, 1, t] += n * digits[t]
+                    out[i, 2, t] += n * (n - 1) * digits[t]
         return out
 
     @compiled
-    def defects(rows: Any, constants: Any, more: int) -> tuple[Any, Any]:
-        """Return the weighed sums of d (three components) and τ, and of p; with more = L - 1 nothing is left out.
-
-        Args:
-            rows: digits of x, m, w, λ, shape (4, L, orders).
-            constants: digits of ω, ω², γ, c_m, c_w, shape (5, L).
-            more: rows of a product that are summed beyond L.
-        """
-        _, digits, orders = rows.shape
-        f, half = padded(rows), DIGIT_BITS - 1
-        fixed = padded(constants.reshape(5, digits, 1))[0]
-        lift, turn = f[0, 3].copy(), 2 * fixed[0]
-        lift[:, PAD] -= constants[1]
-        to = np.zeros((4, digits + more, 2 * orders + 3 * PAD + 4), np.int64)
-        for i in range(3):
-            multiply(to[i], f[0, 3] if i == 2 else lift, f[0, i], False)
-            multiply(to[i], fixed[2], f[1, i], False)
-            multiply(to[3], f[0, i], f[0, i], True)
-            for q in range(digits):
-                for k in range(2, orders):
-                    to[i, q, k - 2] += (k * (k - 1) * np.int64(rows[i, q, k])) << half
-                if i:
-                    to[i, q, 0] -= np.int64(constants[2 + i, q]) << half
-        multiply(to[0], -turn, f[1, 1], False)
-        multiply(to[1], turn, f[1, 0], False)
-        to[3, 0, 0] -= 1 << 2 * half
-        one, two = np.zeros((4, 3, digits + more + TOP_ROWS), np.int64), np.zeros((3, 3, digits + TOP_ROWS), np.int64)
-        for i in range(4):
-            one[i] = weigh(to[i])
-        for i in range(3):
-            two[i] = weigh(rows[i].astype(np.int64))
-        return one, two
-
-    @compiled
-    def powers(s: Any, orders: int, sign: int) -> Any:
-        """Return the digits of the powers of sign s, cut; row q of s in [0, 1] and of these stands for 2^(-22 q)."""
+    def powers(s: Any, orders: int) -> Any:
+        """Return the digits of the powers of s, cut; row q of s in [0, 1] and of these stands for 2^(-22 q)."""
         out, sums = np.zeros((s.size, orders), np.int32), np.zeros(s.size, np.int64)
         out[0, 0] = 1
         for k in range(1, orders):
-            sums[:] = 0
+            for t in range(s.size):
+                sums[t] = 0
             for q in range(s.size):
                 for r in range(s.size - q):
-                    sums[q + r] += np.int64(abs(out[q, k - 1])) * s[r]
+                    sums[q + r] += np.int64(out[q, k - 1]) * s[r]
             over = 0
             for t in range(s.size - 1, -1, -1):
                 whole = sums[t] + over
                 out[t, k], over = (whole & MASK if t else whole), whole >> DIGIT_BITS
-        if sign < 0:
-            out[:, 1::2] *= -1
         return out
 
     @compiled
@@ -163,6 +127,39 @@ with kept():
         return out
 
 
+def padded(rows: Any) -> Any:
+    """Return the rows of digits between zeros, and those of the derivatives."""
+    *shape, orders = rows.shape
+    f = np.zeros((2, *shape, orders + 3 * PAD), np.int32)
+    f[0, ..., PAD : PAD + orders] = rows
+    f[1, ..., PAD : PAD + orders - 1] = rows[..., 1:] * np.arange(1, orders, dtype=np.int32)
+    return f
+
+
+def defects(rows: Any, f: Any, constants: Any, more: int) -> tuple[Any, Any]:
+    """Return the weighed sums of d (three components) and τ, and of p; with more = L - 1 nothing is left out.
+
+    Args:
+        rows: digits of x, m, w, λ, shape (4, L, orders).
+        f: the same, padded.
+        constants: digits of ω, ω², γ, c_m, c_w, shape (5, L).
+        more: rows of a product that are summed beyond L.
+    """
+    _, digits, orders = rows.shape
+    half, order = DIGIT_BITS - 1, np.arange(1, orders - 1, dtype=np.int64)
+    to = np.zeros((4, digits + more, 2 * orders + 3 * PAD + 4), np.int64)
+    factors = np.zeros((8, digits, f.shape[3]), np.int32)
+    factors[:2], factors[5:] = f[0, 3], f[0, :3]
+    factors[0, :, PAD] -= constants[1]
+    for i, (factor, constant) in enumerate(((1, 2), (-2, 0), (2, 0)), 2):
+        factors[i, :, PAD] = factor * constants[constant]
+    multiply_all(to, factors, f)
+    to[:3, :digits, : order.size] += rows[:3, :, 2:] * (order * (order + 1)) << half
+    to[1:3, :digits, 0] -= constants[3:] << half
+    to[3, 0, 0] -= 1 << 2 * half
+    return weigh(to), weigh(rows[:3].astype(np.int64))
+
+
 def whole(digits: Iterable[int]) -> fmpz:
     """Return the integer of digits, the highest first."""
     n = 0
@@ -171,15 +168,19 @@ def whole(digits: Iterable[int]) -> fmpz:
     return fmpz(n)
 
 
-def split(n: int, count: int) -> list[int]:
+@lru_cache(maxsize=64)
+def split(n: int, count: int) -> tuple[int, ...]:
     """Return the digits of an integer, the highest first and signed."""
-    return [n >> DIGIT_BITS * (count - 1), *(n >> DIGIT_BITS * q & MASK for q in range(count - 2, -1, -1))]
+    return n >> DIGIT_BITS * (count - 1), *(n >> DIGIT_BITS * q & MASK for q in range(count - 2, -1, -1))
 
 
 @lru_cache(maxsize=16)
 def power_table(s: Fraction, orders: int, count: int) -> Any:
     """Return the powers of s in [-1, 1], cut to `count` digits."""
-    return powers(np.array(split(abs(s) * (1 << DIGIT_BITS * (count - 1)) // 1, count)), orders, -1 if s < 0 else 1)
+    table = powers(np.array(split(abs(s) * (1 << DIGIT_BITS * (count - 1)) // 1, count)), orders)
+    if s < 0:
+        table[:, 1::2] *= -1
+    return table
 
 
 class DigitRows:
@@ -192,7 +193,7 @@ class DigitRows:
 
     def norms(self, more: int = MORE_ROWS) -> list[list[arb]]:
         """Return sums of |c|, n |c|, n (n - 1) |c| of d (three components), τ, x, m, w; exact with more = L - 1."""
-        products, own = defects(self.rows, self.constants, more)
+        products, own = defects(self.rows, self.padded, self.constants, more)
         cut = 0 if more >= self.count - 1 else (4 * self.orders * self.most >> DIGIT_BITS) + 1
         last = -DIGIT_BITS * (self.count + 1 + more) + 2
         out = []

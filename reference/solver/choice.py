@@ -11,13 +11,14 @@ from ..columns import POSITION, VELOCITY
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
-from ..precision import LONG_DOUBLE
+from ..precision import DOUBLE, LONG_DOUBLE
 from ..scene import Scene
 from .approximant import COEFFICIENT_BITS
 from .pilot import Pilot
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
+HARDWARE_ENGINE = "heyoka"  # computes in double and long double
 ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
 
 
@@ -35,21 +36,28 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: 
 
         bits = plan_for(scene.exact, times[-1], first_radius(pilot, scene.run.digits), None).bits - COEFFICIENT_BITS
         return fastest(bits, engine).plan(scene.exact, bits, times, transits=False)
-    return published_plan(scene, times, first_prec(scene, pilot), engine)
+    return published_plan(scene, times, first_prec(scene, pilot, engine), engine)
 
 
-def first_prec(scene: Scene, pilot: Pilot) -> int:
-    """Return the bits that a scene's digits need: of the only run, or of the coarser of two that have to agree."""
+def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
+    """Return the bits that a scene's digits need: of the only run, or of the coarser of two that have to agree.
+
+    Where double serves, long double is compared with it, and nothing of higher precision is compiled.
+    """
     span = scene.exact.t_end if scene.run.transits else None
     if scene.run.level == "computed":
         prec = pilot.bits_for(scene.run.digits, span, checked=False)
         return rounded_prec(prec) if prec > LONG_DOUBLE.prec else prec
-    return rounded_prec(max(pilot.bits_for(scene.run.digits, span, checked=True), LONG_DOUBLE.prec))
+    prec = pilot.bits_for(scene.run.digits, span, checked=True)
+    if prec <= DOUBLE.prec and engine in (AUTO, HARDWARE_ENGINE):
+        return DOUBLE.prec
+    return rounded_prec(max(prec, LONG_DOUBLE.prec))
 
 
 def published_plan(scene: Scene, times: tuple[Fraction, ...], prec: int, engine: str) -> Plan:
     """Return the run that is published: of `prec` bits if it is alone, else finer than the one beside it."""
-    bits = prec if scene.run.level == "computed" else prec + FINER_BITS
+    finer = LONG_DOUBLE.prec if prec == DOUBLE.prec else prec + FINER_BITS
+    bits = prec if scene.run.level == "computed" else finer
     return fastest(bits, engine).plan(scene.exact, bits, times, scene.run.transits)
 
 

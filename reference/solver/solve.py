@@ -16,7 +16,7 @@ from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
 from ..engines.side_by_side import run_both
 from ..errors import InputError, UnreachableError
-from ..precision import real
+from ..precision import DOUBLE, LONG_DOUBLE, real
 from ..scene import Scene
 from ..table import Table
 from .agreement import Agreement
@@ -84,7 +84,7 @@ def solve(
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
     """Solve by a single run, whose errors are estimated from the pilot's."""
-    prec = first_prec(scene, pilot)
+    prec = first_prec(scene, pilot, engine)
     _check_reach(pilot, prec, scene.run.digits)
     single = run(published_plan(scene, times, prec, engine), report)
     return _assemble(scene, times, single, pilot.estimates(single.plan.number.prec), None, (), pilot)
@@ -93,13 +93,14 @@ def _computed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: s
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
     """Solve by two runs, at a precision that is raised until they agree."""
     inputs, transits, digits = scene.exact, scene.run.transits, scene.run.digits
-    prec = first_prec(scene, pilot)
+    prec = first_prec(scene, pilot, engine)
     _check_reach(pilot, prec, digits)
     last_gap: Fraction | None = None
     for _ in range(MAX_RAISES):
         fine = published_plan(scene, times, prec, engine)
         if scene.run.level == "confirmed":
-            coarse = Plan(inputs, confirming_formulation(pilot), real(prec), times, transits)
+            number = DOUBLE if prec == DOUBLE.prec else real(prec)
+            coarse = Plan(inputs, confirming_formulation(pilot), number, times, transits)
         else:
             coarse = _witness(fine, prec, engine)
         published, witness = run_both(fine, coarse, pilot.steps, report)
@@ -114,7 +115,7 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
             if fine.engine == last_resort:
                 raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
             engine = last_resort
-        last_gap, next_prec = largest, rounded_prec(prec + gap.missing_bits)
+        last_gap, next_prec = largest, max(LONG_DOUBLE.prec, rounded_prec(prec + gap.missing_bits))
         if _out_of_reach(pilot, next_prec):
             break
         prec = next_prec

@@ -24,7 +24,6 @@ from ...table import Table
 from ..files import Files
 from ..manifest import Manifest
 from ..sheets import Sheet
-from . import shooting
 
 MAX_ROWS = 20  # rows that are named
 BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
@@ -86,6 +85,8 @@ def problems(files: Files, report: Progress | None = None) -> tuple[list[str], l
             if found is not None:
                 return found, []
             prec += FINER_BITS
+        from . import shooting  # loads numba, which writing a dataset does without
+
         reason = shooting.impossible(files)
         if not reason:
             return list(islice(shooting.problems(files, seek), MAX_ROWS)), []

@@ -46,10 +46,10 @@ def inlined(function: Function) -> Function:
     return callee
 
 
-def entry(function: Function, nogil: bool = False) -> Function:
-    """Compile with numba, to be called from Python; the machine code is cached on disk."""
+def entry(function: Function, what: str, seconds: int, nogil: bool = False) -> Function:
+    """Compile with numba, to be called from Python; the machine code of `what` is cached on disk."""
     compiler: Any = numba.njit
-    with kept():
+    with kept(what, seconds):
         dispatcher: Function = compiler(cache=True, nogil=nogil, **_OPTIONS)(function)
     return dispatcher
 

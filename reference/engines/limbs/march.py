@@ -28,6 +28,7 @@ from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search
 
 # why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
 GOOD, FULL, STUCK, DOUBTFUL = range(4)
+COMPILE_S = 20  # what compiling takes, about, of which users are told
 COLUMNS = 7  # x, y, z, vx, vy, vz, ax
 TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # in `MarchState.counts`
 
@@ -194,11 +195,10 @@ def _entry(sources: str) -> Any:
     closes over is part of its key.
     """
 
-    @entry
     def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
         return _march(state, model, out, until, steps, seek) if sources else STUCK
 
-    return march
+    return entry(march, "limbs", COMPILE_S)
 
 
 march = _entry(SOURCES)

@@ -21,6 +21,7 @@ from .long_way import DOUBT, MOST_ZEROS, LongWay, all_zeros, empty_long_way
 from .series import MOST_ORDER, Series, empty_series, step_length, sum_series, taylor_coefficients, udot_of, xdot_of
 from .zeros import CONVERGED, Zeros, empty_zeros, refine, seek
 
+COMPILE_S = 15  # what compiling takes, about, of which users are told
 SHORTEST = 2.0**-40  # of a row's unit of time: a step that is shorter stops the row
 NEXT, BUSY, ROW = range(3)  # in `March.counts`
 
@@ -232,7 +233,7 @@ def _entry(sources: str) -> Any:
     def march(m: March, plan: Settings, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
         return _march(m, plan, numbers, results, moments, steps) if sources else False
 
-    return entry(march, nogil=True)
+    return entry(march, "steps of eight rows at once", COMPILE_S, nogil=True)
 
 
 march = _entry(
