@@ -1,4 +1,4 @@
-"""Work that is done once on a machine, such as compiling: whoever listens is told before it begins, and how long it takes."""
+"""Work that is done once on a machine, such as compiling: whoever listens is told before, and how long it takes."""
 
 from __future__ import annotations
 

@@ -59,14 +59,18 @@ def command(
     ] = AUTO,
     no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for transits, xdot = 0.")] = False,
     audit: Annotated[
-        bool, typer.Option("--audit", help="At the level enclosed, prove it again by FLINT alone: the same digits.")
+        bool,
+        typer.Option(
+            "--audit",
+            help="At the level enclosed, prove it again by FLINT alone: the same digits; always for what ships.",
+        ),
     ] = False,
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
     """Solve a scene and write its golden dataset."""
     from ..columns import POSITION
-    from ..dataset.place import dataset_id, default_folder
+    from ..dataset.place import dataset_id, default_folder, ships
     from ..dataset.sheets import column_bounds
     from ..dataset.write import check_target, write
 
@@ -81,6 +85,7 @@ def command(
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
     check_target(folder)
+    audit = audit or (scene.run.level == "enclosed" and ships(folder))
     from ..solver.rounding import grid_decimals
     from ..solver.solve import solve
 

@@ -60,10 +60,15 @@ def default_folder(scene: Scene, name: str) -> Path:
     """Return the folder that a dataset of this id is written to: ./golden, or the checkout's data for what ships."""
     local = Path(GOLDEN) / name
     shipped = shipped_scene(scene)
-    ships = shipped is not scene and name == dataset_id(shipped.model_copy(update={"inputs": scene.inputs}))
-    if ships and scene.run == shipped.run and in_checkout() and not local.is_dir():
+    own = shipped is not scene and name == dataset_id(shipped.model_copy(update={"inputs": scene.inputs}))
+    if own and scene.run == shipped.run and in_checkout() and not local.is_dir():
         return golden_root() / name
     return local
+
+
+def ships(folder: Path) -> bool:
+    """Return whether a dataset in this folder comes with the project."""
+    return folder.resolve().parent == golden_root().resolve()
 
 
 def golden_folder(name: str | Path) -> Path:

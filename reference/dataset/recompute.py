@@ -8,6 +8,7 @@ from ..solver.solve import solve
 from .checks.motion import Progress
 from .files import read_files
 from .manifest import MANIFEST
+from .record import AUDIT
 from .render import render
 
 
@@ -22,7 +23,8 @@ def recompute(folder: Path, report: Progress | None = None) -> list[str]:
     manifest = files.manifest
     engine = manifest.command.partition("--engine ")[2].partition(" ")[0]
     end = float(files.scene.exact.t_end)
-    solution = solve(files.scene, engine=engine, report=report and (lambda t: report(t, end)))
+    audit = AUDIT in manifest.command.split()
+    solution = solve(files.scene, engine=engine, audit=audit, report=report and (lambda t: report(t, end)))
     texts = render(solution, manifest.id)
     found = {MANIFEST: manifest.text(), **files.texts}
     return [

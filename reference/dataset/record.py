@@ -32,6 +32,7 @@ _UP = {
     "effective": "z up along the plumb line",
 }
 UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
+AUDIT = "--audit"  # in a dataset's command, it says that FLINT alone proved the same digits
 PACKAGES = ("foucault-reference", "heyoka", "mpmath")
 
 
@@ -79,7 +80,7 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
         ],
         enclosure=None if solution.proof is None else _enclosure(solution.proof),
         generator=generator(),
-        command=command(scene, run.engine, name),
+        command=command(scene, run.engine, name, solution.proof is not None and solution.proof.audited),
         files={},
     )
 
@@ -114,15 +115,16 @@ def _version(package: str) -> str:
         return "unknown"
 
 
-def command(scene: Scene, engine: str, name: str) -> str:
+def command(scene: Scene, engine: str, name: str, audited: bool = False) -> str:
     """Return the command that makes a dataset: of a shipped scene, or of the scene's own file, with what was changed.
 
-    `name` is the dataset's id, which names the changes.
+    `name` is the dataset's id, which names the changes; `audited` says that its proof was audited.
     """
     run = scene.run
     parts = ["foucault", "generate", scene.id if scene.id in scene_ids() else f"{scene.id}.toml"]
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
     parts += ["--engine", engine]
+    parts += [AUDIT] if audited else []
     parts += [] if run.transits else ["--no-transits"]
     own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=")
     shipped = shipped_scene(scene)

@@ -23,10 +23,23 @@ def render(solution: Solution, name: str | None = None) -> dict[str, str]:
         tables |= {"transits.csv": transits, "transits.binary64.csv": binary64_sheet(transits, doubles)}
     record = manifest_of(solution, grid, transits, name)
     texts = {name: sheet.csv() for name, sheet in tables.items()} | derived_texts(record, tables)
+    _check_against_proof(solution, record, texts)
     manifest = Manifest.model_validate(
         {**dict(record), "files": {file: file_record(text) for file, text in texts.items()}}
     )
     return {MANIFEST: manifest.sealed().text(), **texts}
+
+
+def _check_against_proof(solution: Solution, record: Manifest, texts: dict[str, str]) -> None:
+    """Hold the tables, as they will be written, against the intervals that were proved."""
+    if solution.proof is None:
+        return
+    from ..enclosure.printed import check_grid, check_transits
+
+    proved = solution.proof.enclosed
+    check_grid(texts["grid.csv"], proved.times, proved.states, record.bounds.grid)
+    if "transits.csv" in texts:
+        check_transits(texts["transits.csv"], proved.transits or (), record.bounds.transits)
 
 
 def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str]:

@@ -10,10 +10,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import DatasetError, InputError
-from ..shipped import golden_root, keep_seal
+from ..shipped import keep_seal
 from ..solver.solution import Solution
 from ..workspace import OLD, workspace
 from .manifest import MANIFEST
+from .place import ships
 from .render import render
 from .verify import problems_of
 
@@ -60,11 +61,15 @@ def write(solution: Solution, folder: str | Path, name: str | None = None) -> Pa
         name: the dataset's id, by default the scene's own with its changes (`place.dataset_id`).
 
     Raises:
-        InputError: the folder cannot be written.
+        InputError: the folder cannot be written, or it ships and the proof is not audited.
         DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as it is.
     """
     folder = Path(folder)
     check_target(folder)
+    if ships(folder) and solution.proof is not None and not solution.proof.audited:
+        raise InputError(
+            "audit", "no audit", "an audited proof", "What ships in data/golden is proved by FLINT alone, too."
+        )
     texts = render(solution, name)
     with _place(folder) as (work, target):
         new = work / "new"
@@ -78,7 +83,7 @@ def write(solution: Solution, folder: str | Path, name: str | None = None) -> Pa
         if problems:
             raise DatasetError(str(folder), problems)
         _put_in_place(new, target)
-        if target.parent == golden_root().resolve():
+        if ships(target):
             keep_seal(target.name, json.loads(texts[MANIFEST])["seal"])
     return folder
 

@@ -62,6 +62,8 @@ def solve_enclosed(
         again = _decided(scene, times, engine, report, pilot, partial(enclosure.enclose, audit=True))
         if _digits(again) != _digits(solution):
             raise IntegrationError("FLINT alone proves other digits.")
+        assert solution.proof is not None
+        solution = replace(solution, proof=replace(solution.proof, audited=True))
     return solution
 
 
@@ -139,6 +141,7 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
         transit_radius=None if transits is None else max(transits.bound("t"), default=None),
         agreement_bits=-bits_in(gap / size) if gap else approximant.plan.number.prec,
         cpu_s={part: float(seconds) for part, seconds in vars(enclosed.cpu_s).items()},
+        enclosed=enclosed,
     )
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)

@@ -66,7 +66,10 @@ class Source:
 
 @dataclass(frozen=True)
 class Proof:
-    """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it."""
+    """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
+
+    `enclosed` is what was proved, which printed decimals are compared with; `audited`: FLINT alone proves it too.
+    """
 
     method: str
     prec: int
@@ -77,6 +80,8 @@ class Proof:
     transit_radius: Fraction | None
     agreement_bits: int
     cpu_s: dict[str, float]
+    enclosed: Any = field(default=None, repr=False)
+    audited: bool = False
 
 
 @dataclass(frozen=True, repr=False)

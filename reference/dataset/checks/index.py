@@ -9,16 +9,19 @@ from ...errors import FoucaultError
 from ...shipped import golden_root, seals
 from ..files import Files, read_files
 from ..manifest import MANIFEST, Manifest
-from ..record import generator
+from ..record import AUDIT, generator
 
 
 def problems(files: Files) -> Iterator[str]:
     """Check the seal of a dataset that ships, in its place or copied from there."""
     manifest, ships = files.manifest, golden_root() / files.manifest.id
+    in_place = files.folder.resolve() == ships.resolve()
+    if in_place and manifest.level == "enclosed" and AUDIT not in manifest.command.split():
+        yield f"{MANIFEST}: a proof that ships must be audited: make it again with {AUDIT}"
     seal = seals().get(manifest.id)
     if seal in (None, manifest.seal):
         return
-    if files.folder.resolve() == ships.resolve() or _is_copy(manifest, ships):
+    if in_place or _is_copy(manifest, ships):
         own, other = manifest.seal[:12], seal[:12]
         yield f"{MANIFEST}: its seal {own}… is not that of the dataset that ships, {other}… (index.json)"
 

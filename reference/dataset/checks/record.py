@@ -43,7 +43,10 @@ def problems(files: Files) -> Iterator[str]:
             yield f"{MANIFEST}: {name} does not follow from the scene"
     if not _is_its_id(files):
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
-    if manifest.command not in {command(scene, engine, manifest.id) for engine in engine_names()}:
+    audits = (False, True) if manifest.level == "enclosed" else (False,)
+    if manifest.command not in {
+        command(scene, engine, manifest.id, audited) for engine in engine_names() for audited in audits
+    }:
         yield f"{MANIFEST}: command does not follow from the scene"
     vanishes = xdot_vanishes(Start.of(scene.exact, PREC))
     if (manifest.transits == "xdot is identically zero") != (vanishes and scene.run.transits):

@@ -7,6 +7,7 @@ import pytest
 import reference
 from reference.columns import STATE
 from reference.dataset.recompute import recompute
+from reference.dataset.record import AUDIT
 from reference.dataset.verify import problems_of
 from reference.shipped import data_root, seals
 
@@ -25,6 +26,12 @@ def test_paris_is_among_them_with_its_whole_day():
 @pytest.mark.parametrize("name", SHIPPED)
 def test_it_passes_every_check(name):
     assert problems_of(data_root() / "golden" / name) == []
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_proof_that_ships_was_audited(name):
+    manifest = reference.load(name).manifest
+    assert (AUDIT in manifest.command.split()) == (manifest.level == "enclosed")
 
 
 @pytest.mark.parametrize("name", SHIPPED)

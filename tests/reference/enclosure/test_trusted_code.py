@@ -10,10 +10,10 @@ import pytest
 import reference.enclosure
 
 HOME = Path(reference.enclosure.__file__).parent
-TRUSTED = ("balls", "bound", "columns", "course", "digits", "transits")
+TRUSTED = ("balls", "bound", "columns", "course", "digits", "printed", "transits")
 ARRAYS = {"digits": {"numpy", "numba"}, "bound": {"numpy"}}  # integers only
 PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
-BUDGET = 560  # lines of code
+BUDGET = 590  # lines of code; the goal is 420
 BARE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
 SCOPES = (ast.Module, ast.ClassDef, ast.FunctionDef)
 
