@@ -1,8 +1,9 @@
 """A proof of a run: intervals that contain the true state and every transit (THEOREM.md); needs python-flint.
 
 Trusted, and enough to believe a proof: `balls`, `bound`, `digits`, `columns`, `transits`, `course`, which drives them,
-and `printed`, which holds the files that are written against the intervals. Untrusted, because the bound measures whatever they get wrong: `approximant` and `frames`, which propose
-polynomials, `guess`, which proposes zeros, `plan`, which chooses the precision, and `run`, which passes steps on.
+and `printed`, which holds the files that are written against the intervals. Untrusted, because the bound measures
+whatever they get wrong: `approximant` and `frames`, which propose polynomials, `guess`, which proposes zeros, `plan`,
+which chooses the precision, and `run`, which passes steps on.
 `audit` compares the sums of `digits` with FLINT's integers. `shapes` only declares. Endpoints of intervals are
 Fractions; no flint object leaves this package.
 """
