@@ -305,7 +305,7 @@ def test_a_target_that_is_a_link_stays_one(dataset, solution):
 
 def test_the_seal_of_what_ships_is_kept_and_of_nothing_else(solution, tmp_path, monkeypatch):
     kept = []
-    monkeypatch.setattr(writer, "golden_root", lambda: tmp_path / "golden")
+    monkeypatch.setattr("reference.dataset.place.golden_root", lambda: tmp_path / "golden")
     monkeypatch.setattr(writer, "keep_seal", lambda *seal: kept.append(seal))
     write(solution, tmp_path / "paris")
     write(solution, tmp_path / "golden" / "older" / "paris")
