@@ -94,7 +94,7 @@ def not_integration(count: int) -> float:
     def once() -> None:
         own = fold(columns, "ellipsoid", count)
         for moved in (0, 1):
-            outcomes(own, packed(own, moved), results, (results[:0, 0],) * 3)
+            outcomes(own, packed(own, Wanted(moved=moved)), results, (results[:0, 0],) * 3)
         errors(own, several, several)
 
     with np.errstate(all="ignore"):

@@ -9,7 +9,9 @@ imports for type checkers included. A room stands one floor above the highest ro
 from __future__ import annotations
 
 import ast
+import io
 import sys
+import tokenize
 from collections import Counter
 from functools import cache
 from pathlib import Path
@@ -121,6 +123,22 @@ def class_names(root: Path) -> dict[str, list[str]]:
             if isinstance(node, ast.ClassDef):
                 places.setdefault(node.name, []).append(path.relative_to(root).as_posix())
     return {name: files for name, files in sorted(places.items()) if len(files) > 1}
+
+
+def code_lines(path: Path) -> int:
+    """The lines of a source file that hold code: neither blank, nor comments, nor docstrings."""
+    text, skipped = path.read_text(encoding="utf-8"), {"COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENDMARKER"}
+    tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+    held = {
+        line
+        for token in tokens
+        if tokenize.tok_name[token.type] not in skipped
+        for line in range(token.start[0], token.end[0] + 1)
+    }
+    for node in ast.walk(tree(path)):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node) is not None:
+            held -= set(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
+    return len(held)
 
 
 def main(root: Path) -> None:

@@ -20,14 +20,18 @@ from numba.core import cgutils
 from ...machine_code import kept
 
 LANES = 8
-# a hash of all files of this folder, for cached functions to close over: numba itself looks at their own file alone
-SOURCES = "".join(sha256(path.read_bytes()).hexdigest() for path in sorted(Path(__file__).parent.glob("*.py")))
 _insert: Any = cgutils.get_or_insert_function
 Function = TypeVar("Function", bound=Callable[..., Any])
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 FUSE = ("contract",)
 
 
+def hashed(folder: Path) -> str:
+    """Return a hash of a folder's sources for cached functions to close over: numba looks at their own file alone."""
+    return "".join(sha256(path.read_bytes()).hexdigest() for path in sorted(folder.glob("*.py")))
+
+
+SOURCES = hashed(Path(__file__).parent)
 _extending: Any = numba.extending  # untyped
 _OPTIONS = {"error_model": "numpy", "_nrt": False}  # no reference counting: all arrays come from the caller
 

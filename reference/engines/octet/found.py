@@ -48,12 +48,8 @@ def note_highest(out: Array, at: int, time: float, x: float, p: float, u: float,
     if p < 0.0 or (p == 0.0 and x < 0.0):
         x, p = -x, -p
     if out[at + rows.APSIDES] == 0.0:
-        out[at + rows.A_FIRST], out[at + rows.X_FIRST], out[at + rows.P_FIRST], out[at + rows.LEAST_BEND] = (
-            time,
-            x,
-            p,
-            bend,
-        )
+        out[at + rows.A_FIRST], out[at + rows.LEAST_BEND] = time, bend
+        out[at + rows.X_FIRST], out[at + rows.P_FIRST] = x, p
     elif out[at + rows.X_LAST] * x + out[at + rows.P_LAST] * p < 0.0:
         out[at + rows.HALF_TURNS] += 1.0 if out[at + rows.X_LAST] * p - out[at + rows.P_LAST] * x < 0.0 else -1.0
     out[at + rows.APSIDES] += 1.0

@@ -10,17 +10,17 @@ from ..limbs.lanes import LANES, compiled
 from ..limbs.limb import Array
 from ..limbs.polynomial import FREE, MONOTONE, classify, crossing, value_at
 from .series import MOST_ORDER
-from .zeros import NOISE
+from .zeros import NOISE, Zeros
 
 MOST_ZEROS = 16  # of one step
 DOUBT = -1  # returned where a sign is lost in rounding
 _CUT = 0.4871  # of an interval: no special place, where symmetry could put a zero
 _NARROWEST = 2.0**-40
-_DEEPEST = 128
+_DEEPEST = 64  # halves of a step, one in another, down to the narrowest
 
 
 class LongWay(NamedTuple):
-    """Working arrays: the polynomial, intervals still to be examined, the zeros and the slopes there."""
+    """Working arrays: the polynomial, the ends of intervals still to be examined, the zeros and the slopes there."""
 
     f: Array
     stack: Array
@@ -30,66 +30,53 @@ class LongWay(NamedTuple):
 
 def empty_long_way() -> LongWay:
     """Return working arrays."""
-    return LongWay(np.zeros(MOST_ORDER + 1), np.zeros(4 * _DEEPEST), np.zeros(MOST_ZEROS), np.zeros(MOST_ZEROS))
+    return LongWay(np.zeros(MOST_ORDER + 1), np.zeros(2 * _DEEPEST), np.zeros(MOST_ZEROS), np.zeros(MOST_ZEROS))
 
 
 @compiled
-def all_zeros(
-    w: LongWay, f: Array, lane: int, length: float, before: float, after: float, multiplicity: int, order: int
-) -> int:
+def all_zeros(w: LongWay, z: Zeros, f: Array, lane: int, length: float, multiplicity: int, order: int) -> int:
     """Write the zeros on 0 < s <= length, in order; return their number, or DOUBT.
 
     Args:
         w: where they are written.
+        z: the values at the start, of which the sign counts, and at the end.
         f: the polynomials of all lanes.
         lane: which of them.
         length: of the step.
-        before: the value at the start; its sign counts.
-        after: the value at the end.
         multiplicity: of a zero at the start that is exact; -1 where the start's value alone gives the sign.
         order: number of coefficients.
     """
     skipped = max(multiplicity, 0)
-    size, total, count, depth = order - skipped, 0.0, 0, 1
-    for k in range(size):
-        w.f[k] = f[LANES * (k + skipped) + lane]
+    size, total, count = order - skipped, 0.0, 0
     for k in range(size - 1, -1, -1):
+        w.f[k] = f[LANES * (k + skipped) + lane]
         total = total * length + abs(w.f[k])
     noise = NOISE * total
-    left = before if multiplicity < 0 else w.f[0]
+    left = z.before[lane] if multiplicity < 0 else w.f[0]
     right = value_at(w.f, size, length)
     # the polynomial is cut off: the state's own value has to be on the same side
-    if abs(left) <= noise or abs(right) <= noise or (right > 0.0) != (after > 0.0):
+    if abs(left) <= noise or abs(right) <= noise or (right > 0.0) != (z.after[lane] > 0.0):
         return DOUBT
-    w.stack[0], w.stack[1], w.stack[2], w.stack[3] = 0.0, length, left, right
-    while depth > 0:
-        depth -= 1
-        low, high, left, right = (
-            w.stack[4 * depth],
-            w.stack[4 * depth + 1],
-            w.stack[4 * depth + 2],
-            w.stack[4 * depth + 3],
-        )
-        half = 0.5 * (high - low)
+    low, n = 0.0, 0  # the stack holds the intervals' ends, and the values there: the next interval's on top
+    w.stack[0], w.stack[1] = length, right
+    while n >= 0:
+        high, right = w.stack[2 * n], w.stack[2 * n + 1]
+        half, same = 0.5 * (high - low), (left > 0.0) == (right > 0.0)
         kind = classify(w.f, size, low + half, half, noise)[0]
-        same = (left > 0.0) == (right > 0.0)
-        if kind in (FREE, MONOTONE):
-            if kind == FREE and not same:
+        if kind not in (FREE, MONOTONE):
+            cut = low + _CUT * (high - low)
+            value = value_at(w.f, size, cut)
+            if half < _NARROWEST or not abs(value) > noise:
                 return DOUBT
-            if not same:
-                if count == MOST_ZEROS:
-                    return DOUBT
-                w.places[count] = crossing(w.f, size, low, high, 1 if left > 0.0 else -1)
-                count += 1
+            n += 1
+            w.stack[2 * n], w.stack[2 * n + 1] = cut, value
             continue
-        cut = low + _CUT * (high - low)
-        value = value_at(w.f, size, cut)
-        if half < _NARROWEST or depth + 2 > _DEEPEST or not abs(value) > noise:
-            return DOUBT
-        top = 4 * depth
-        w.stack[top], w.stack[top + 1], w.stack[top + 2], w.stack[top + 3] = cut, high, value, right
-        w.stack[top + 4], w.stack[top + 5], w.stack[top + 6], w.stack[top + 7] = low, cut, left, value
-        depth += 2
+        if not same:
+            if kind == FREE or count == MOST_ZEROS:
+                return DOUBT
+            w.places[count] = crossing(w.f, size, low, high, 1 if left > 0.0 else -1)
+            count += 1
+        low, left, n = high, right, n - 1
     for i in range(count):
         slope = value = 0.0
         for k in range(order - 1, -1, -1):

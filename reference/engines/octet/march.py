@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -11,34 +9,19 @@ import numpy as np
 import numpy.typing as npt
 
 from ..batch import DOUBTFUL, STOPPED
-from ..limbs.lanes import LANES, SOURCES, at_least, compiled, entry, load, occupied, spread, store, where
+from ..limbs.lanes import LANES, SOURCES, at_least, compiled, entry, hashed, load, occupied, spread, store, where
 from ..limbs.limb import Array, aligned
 from . import rows
 from .apsides import CONVERGED as TURNED
-from .apsides import evaluate, seek_highest
+from .apsides import place_highest, seek_highest
 from .found import Moments, note_highest, note_transit
 from .long_way import DOUBT, MOST_ZEROS, LongWay, all_zeros, empty_long_way
-from .series import MOST_ORDER, Series, empty_series, step_length, sum_series, taylor_coefficients, udot_of, xdot_of
+from .series import Series, empty_series, step_length, sum_series, taylor_coefficients, udot_of, xdot_of
 from .zeros import CONVERGED, Zeros, empty_zeros, refine, seek
 
 COMPILE_S = 15  # what compiling takes, about, of which users are told
 SHORTEST = 2.0**-40  # of a row's unit of time: a step that is shorter stops the row
-NEXT, BUSY, ROW = range(3)  # in `March.counts`
-
-
-class Settings(NamedTuple):
-    """What is asked of the kernel.
-
-    Attributes:
-        order: even, at most MOST_ORDER.
-        tolerance: the size that the last coefficients have, against the motion.
-        transits, apsides: whether they are looked for.
-    """
-
-    order: int
-    tolerance: float
-    transits: bool
-    apsides: bool
+NEXT, DONE, ROW = range(3)  # in `March.counts`
 
 
 class March(NamedTuple):
@@ -52,9 +35,8 @@ class March(NamedTuple):
         time, time_low: time reached in s, as a sum of two doubles.
         length: the step's length, in units of time.
         last: above 0 where the step is the row's last one: 1 more than its fate.
-        at_x, at_p, at_u: n at the highest points.
-        inverses, threes: 1, 1/2, 1/3, … and the binomials k over 3.
-        counts: the next row, the number of lanes with a row, and the row of each lane, -1 for none.
+        top: x, p and u at the highest points, a row of eight each.
+        counts: the next row, the number of rows that are done, and the row of each lane, -1 for none.
     """
 
     own: Array
@@ -66,27 +48,19 @@ class March(NamedTuple):
     time_low: Array
     length: Array
     last: Array
-    at_x: Array
-    at_p: Array
-    at_u: Array
-    inverses: Array
-    threes: Array
+    top: Array
     counts: npt.NDArray[np.int64]
 
 
 def empty_march() -> March:
     """Return lanes without rows."""
-    own = aligned(LANES * rows.COLUMNS)
-    time, low, length, last, x, p, u = (aligned(LANES) for _ in range(7))
-    inverses = 1.0 / np.arange(1.0, MOST_ORDER + 2)
-    threes = np.array([math.comb(k, 3) for k in range(MOST_ORDER + 1)], dtype=float)
-    counts = np.zeros(ROW + LANES, dtype=np.int64)
-    found, w = (empty_zeros(), empty_zeros()), empty_long_way()
-    return March(own, empty_series(), *found, w, time, low, length, last, x, p, u, inverses, threes, counts)
+    own, *rest = (aligned(size * LANES) for size in (rows.COLUMNS, 1, 1, 1, 1, 3))
+    working = empty_series(), empty_zeros(), empty_zeros(), empty_long_way()
+    return March(own, *working, *rest, np.zeros(ROW + LANES, dtype=np.int64))
 
 
 @compiled
-def _take_row(m: March, plan: Settings, lane: int, numbers: Array, results: Array) -> None:
+def _take_row(m: March, lane: int, numbers: Array, results: Array) -> None:
     """Give a lane the next row, or one that never ends."""
     row = m.counts[NEXT]
     sought = row < len(numbers) // rows.COLUMNS
@@ -95,23 +69,22 @@ def _take_row(m: March, plan: Settings, lane: int, numbers: Array, results: Arra
     for column in range(rows.COLUMNS):
         m.own[LANES * column + lane] = numbers[at + column]
     m.time[lane] = m.time_low[lane] = 0.0
-    m.transits.fresh[lane] = 1.0
-    m.transits.sought[lane] = numbers[at + rows.MOVES] if sought and plan.transits else 0.0
-    m.highest.sought[lane] = 1.0 if sought and plan.apsides else 0.0
+    for z, column in ((m.transits, rows.SEEKS_X), (m.highest, rows.SEEKS_U)):
+        z.sought[lane] = numbers[at + column] if sought else 0.0
+        z.hit[lane] = z.doubt[lane] = 0.0
+    m.counts[NEXT] += 1
     if sought:
-        m.counts[NEXT] += 1
-        m.counts[BUSY] += 1
         results[row * rows.RESULTS + rows.HIGHEST] = numbers[at + rows.U]
     else:
         m.own[LANES * rows.END + lane] = np.inf
 
 
 @compiled
-def _set_length(m: March, plan: Settings) -> None:
+def _set_length(m: March, order: int) -> None:
     """Set the steps' lengths, none beyond its row's end."""
     left = load(m.own, LANES * rows.END) - load(m.time, 0)
     left = (left + (load(m.own, LANES * rows.END_LOW) - load(m.time_low, 0))) / load(m.own, LANES * rows.UNIT)
-    length = step_length(m.c, plan.tolerance, m.inverses, plan.order)
+    length = step_length(m.c, order)
     last = at_least(length, left)
     store(m.last, 0, last)
     store(m.length, 0, where(last, left, length))
@@ -128,114 +101,105 @@ def _advance_time(m: March) -> None:
 
 
 @compiled
-def _leave(m: March, plan: Settings, lane: int, numbers: Array, results: Array, fate: int) -> None:
+def _leave(m: March, lane: int, numbers: Array, results: Array, fate: int) -> None:
     """Write a row's end, and take the next row."""
     at = m.counts[ROW + lane] * rows.RESULTS
     for column in range(rows.S + 1):
         results[at + column] = m.own[LANES * column + lane]
     results[at + rows.FATE] = fate
-    m.counts[BUSY] -= 1
-    _take_row(m, plan, lane, numbers, results)
+    m.counts[DONE] += 1
+    _take_row(m, lane, numbers, results)
 
 
 @compiled
 def _begin(m: March) -> None:
     """Set the rates at the release of rows that begin: where u' is exactly zero, its slope gives the sign."""
-    fresh = load(m.transits.fresh, 0)
+    fresh = at_least(spread(0.0), load(m.time, 0))
     level = where(load(m.own, LANES * rows.ZEROS_U), load(m.c.udot, LANES), load(m.c.udot, 0))
     store(m.transits.before, 0, where(fresh, load(m.c.xdot, 0), load(m.transits.before, 0)))
     store(m.highest.before, 0, where(fresh, level, load(m.highest.before, 0)))
 
 
 @compiled
-def _place_zeros(m: March, plan: Settings) -> None:
+def _place_zeros(m: March, order: int) -> None:
     """Find transits and highest points on the step of each lane."""
-    if plan.transits:
+    if occupied(load(m.transits.sought, 0)):
         store(m.transits.after, 0, xdot_of(m.own))
-        seek(m.transits, m.c.xdot, m.length, m.threes, plan.order)
-        refine(m.transits, m.c.xdot, m.length, plan.order, CONVERGED)
-    if plan.apsides:
+        seek(m.transits, m.c.xdot, m.length, m.time, order)
+        refine(m.transits, m.c.xdot, m.length, order, CONVERGED)
+    if occupied(load(m.highest.sought, 0)):
         store(m.highest.after, 0, udot_of(m.own))
-        seek_highest(m.highest, m.c.udot, m.length, plan.order)
+        seek_highest(m.highest, m.c.udot, m.length, order)
         if occupied(load(m.highest.hit, 0)):
-            refine(m.highest, m.c.udot, m.length, plan.order, TURNED)
-            evaluate(m.at_x, m.c.x, m.highest.place, plan.order)
-            evaluate(m.at_p, m.c.p, m.highest.place, plan.order)
-            evaluate(m.at_u, m.c.u, m.highest.place, plan.order)
+            refine(m.highest, m.c.udot, m.length, order, TURNED)
+            place_highest(m.top, m.c, m.highest, order)
 
 
 @compiled
-def _note(m: March, plan: Settings, lane: int, row: int, results: Array, moments: Moments) -> bool:
+def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Moments) -> bool:
     """Note what a lane has passed; return false if its transits stay in doubt."""
     at, unit, close = row * rows.RESULTS, m.own[LANES * rows.UNIT + lane], m.own[LANES * rows.CLOSE_S + lane]
-    since, low = m.time[lane], m.time_low[lane]
+    since, low, n = m.time[lane], m.time_low[lane], 0
+    results[at + rows.STEPS] += 1.0
     if m.transits.doubt[lane] != 0.0:
-        multiplicity = -1 if m.transits.fresh[lane] == 0.0 else int(m.own[LANES * rows.ZEROS_X + lane])
-        before, after = m.transits.before[lane], m.transits.after[lane]
-        n = all_zeros(m.w, m.c.xdot, lane, m.length[lane], before, after, multiplicity, plan.order)
+        multiplicity = -1 if since > 0.0 else int(m.own[LANES * rows.ZEROS_X + lane])
+        n = all_zeros(m.w, m.transits, m.c.xdot, lane, m.length[lane], multiplicity, order)
         if n == DOUBT:
             return False
-        for i in range(n):
-            note_transit(results, at, row, moments, since + (low + m.w.places[i] * unit), m.w.slopes[i], close)
     elif m.transits.hit[lane] != 0.0:
-        place, slope = m.transits.place[lane], m.transits.slope[lane]
-        note_transit(results, at, row, moments, since + (low + place * unit), slope, close)
+        m.w.places[0], m.w.slopes[0], n = m.transits.place[lane], m.transits.slope[lane], 1
+    for i in range(n):
+        note_transit(results, at, row, moments, since + (low + m.w.places[i] * unit), m.w.slopes[i], close)
     if m.highest.hit[lane] != 0.0:
-        u, pull = m.at_u[lane], m.own[LANES * rows.PULL + lane]
-        bend = -m.highest.slope[lane] / (pull * u * (2.0 - u)) if m.highest.doubt[lane] == 0.0 else 0.0
-        note_highest(results, at, since + (low + m.highest.place[lane] * unit), m.at_x[lane], m.at_p[lane], u, bend)
+        x, p, u = m.top[lane], m.top[LANES + lane], m.top[2 * LANES + lane]
+        sharpness = -m.highest.slope[lane] / (m.own[LANES * rows.PULL + lane] * u * (2.0 - u))
+        bend = sharpness if m.highest.doubt[lane] == 0.0 else 0.0
+        note_highest(results, at, since + (low + m.highest.place[lane] * unit), x, p, u, bend)
     elif m.highest.doubt[lane] != 0.0:
         results[at + rows.LEAST_BEND], results[at + rows.APSIDES] = 0.0, max(results[at + rows.APSIDES], 1.0)
     return True
 
 
 @compiled
-def _march(m: March, plan: Settings, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
+def _march(m: March, order: int, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
     """Take at most `steps` steps, or until no room is left for times; return whether all rows are done."""
+    many = len(numbers) // rows.COLUMNS
     if m.counts[NEXT] == 0:
         for lane in range(LANES):
-            _take_row(m, plan, lane, numbers, results)
+            _take_row(m, lane, numbers, results)
     for _ in range(steps):
-        room = len(moments.row) - moments.number[0]
-        if m.counts[BUSY] == 0 or (len(moments.row) > 0 and room < LANES * MOST_ZEROS):
+        if m.counts[DONE] == many or 0 < len(moments.row) < moments.number[0] + LANES * MOST_ZEROS:
             break
-        taylor_coefficients(m.c, m.own, m.inverses, plan.order)
-        if occupied(load(m.transits.fresh, 0)):
-            _begin(m)
-        _set_length(m, plan)
-        sum_series(m.own, m.c, m.length, plan.order)
-        _place_zeros(m, plan)
+        taylor_coefficients(m.c, m.own, order)
+        _begin(m)
+        _set_length(m, order)
+        sum_series(m.own, m.c, m.length, order)
+        _place_zeros(m, order)
         for lane in range(LANES):
             row = m.counts[ROW + lane]
             if row >= 0:
-                clear = _note(m, plan, lane, row, results, moments)
-                results[row * rows.RESULTS + rows.STEPS] += 1.0
-                if (m.last[lane] == 0.0 and not m.length[lane] > SHORTEST) or not abs(
-                    m.own[LANES * rows.X + lane]
-                ) < 2.0:
-                    m.last[lane] = 1.0 + STOPPED
-                elif not clear:
+                short = m.last[lane] == 0.0 and not m.length[lane] > SHORTEST
+                if not _note(m, order, lane, row, results, moments):
                     m.last[lane] = 1.0 + DOUBTFUL
+                if short or not abs(m.own[LANES * rows.X + lane]) < 2.0:
+                    m.last[lane] = 1.0 + STOPPED
         _advance_time(m)
         store(m.transits.before, 0, load(m.transits.after, 0))
         store(m.highest.before, 0, load(m.highest.after, 0))
-        store(m.transits.fresh, 0, spread(0.0))
         if occupied(load(m.last, 0)):
             for lane in range(LANES):
                 if m.last[lane] != 0.0 and m.counts[ROW + lane] >= 0:
-                    _leave(m, plan, lane, numbers, results, int(m.last[lane]) - 1)
-    return bool(m.counts[BUSY] == 0)
+                    _leave(m, lane, numbers, results, int(m.last[lane]) - 1)
+    return bool(m.counts[DONE] == many)
 
 
 def _entry(sources: str) -> Any:
     """Return the function that Python calls, cached on disk for these sources: see `limbs.march`."""
 
-    def march(m: March, plan: Settings, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
-        return _march(m, plan, numbers, results, moments, steps) if sources else False
+    def march(m: March, order: int, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
+        return _march(m, order, numbers, results, moments, steps) if sources else False
 
     return entry(march, "steps of eight rows at once", COMPILE_S, nogil=True)
 
 
-march = _entry(
-    SOURCES + "".join(sha256(path.read_bytes()).hexdigest() for path in sorted(Path(__file__).parent.glob("*.py")))
-)
+march = _entry(SOURCES + hashed(Path(__file__).parent))

@@ -9,28 +9,29 @@ import numpy as np
 
 from ...double_double import DoubleDouble, square_root
 from ...precision import Array
-from ..batch import CLOSE_PAIR, OK, Outcomes, Rows
+from ..batch import CLOSE_PAIR, OK, Outcomes, Rows, Wanted
 from ..batch import LEAST_BEND as LEAST
 
 # of a row's numbers: state and constants in its unit of time, unit and span in s, multiplicities of zeros at release
-X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, MOVES, CLOSE_S = range(16)
-COLUMNS = 16
+X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, CLOSE_S, SEEKS_X, SEEKS_U = range(17)
+COLUMNS = 17
 # of what comes out: the state, and what was found on the way
 STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
 APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND = range(13, 23)
 RESULTS = 24
+TOLERANCE = 2.0**-54  # the size that a step's last coefficients have, against the motion
 _SAME = 2.0**-94  # of a row's velocities: u' that is less at the release is zero
 
 
-def packed(rows: Rows, moved: int) -> Array:
+def packed(rows: Rows, wanted: Wanted) -> Array:
     """Return the numbers of rows, shape (rows, COLUMNS).
 
-    Constants and state are moved by an ulp: not at all (0), away from zero (1) or towards it (-1).
+    Constants and state are moved by an ulp as `wanted.moved` says.
     """
-    of = DoubleDouble.from_pairs
+    of, moved = DoubleDouble.from_pairs, wanted.moved
     north, up = of(rows.pull[:, 1]), of(rows.pull[:, 2])
     size = square_root(north * north + up * up)
-    sin, cos = _plumb_line(north, up, size)
+    sin, cos = _plumb_line(north, up, size, np.where(size.vanishes, 1.0, 0.0))
     turn_p, turn_u = _turned(of(rows.turn[:, 1]), of(rows.turn[:, 2]), sin, cos)
     x, (p, down) = of(rows.n[:, 0]), _turned(of(rows.n[:, 1]), of(rows.n[:, 2]), sin, cos)
     v, s = _turned(of(rows.V[:, 1]), of(rows.V[:, 2]), sin, cos)
@@ -49,7 +50,8 @@ def packed(rows: Rows, moved: int) -> Array:
     numbers[:, PULL] *= unit * unit
     numbers[:, UNIT], numbers[:, END : END + 2] = unit, rows.t_end
     numbers[:, ZEROS_X], numbers[:, ZEROS_U] = rows.zeros_at_release, np.abs(udot.high) <= _SAME * speed
-    numbers[:, MOVES] = ~rows.still
+    numbers[:, SEEKS_X] = (wanted.transits or wanted.times) & ~rows.still
+    numbers[:, SEEKS_U] = wanted.apsides
     with np.errstate(divide="ignore"):
         numbers[:, CLOSE_S] = CLOSE_PAIR * 2.0 * np.pi / np.sqrt(size.high)
     return numbers
@@ -61,7 +63,8 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     turn_p, turn_u = numbers[:, TURN_P], numbers[:, TURN_U]
     x, p, u, w, v, s = r[:6]
     north, up = rows.pull[:, 1, 0], rows.pull[:, 2, 0]
-    sin, cos = _plumb_line_doubles(north, up)
+    size = np.hypot(north, up)
+    sin, cos = _plumb_line(north, up, size, np.where(size == 0, 1.0, 0.0))
     n = (x, *_turned(p, u - 1.0, -sin, cos))
     velocity = (w - turn_p * u + turn_u * p, *_turned(v - turn_u * x, s + turn_p * x, -sin, cos))
     result = Outcomes.empty(len(rows))
@@ -79,25 +82,13 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     first, last = np.arctan2(r[P_FIRST], r[X_FIRST]), np.arctan2(r[P_LAST], r[X_LAST])
     result.turn[:] = np.where(some, last - first + np.pi * r[HALF_TURNS], np.nan)
     result.largest_angle[:] = 2.0 * np.arcsin(np.sqrt(np.clip(0.5 * r[HIGHEST], 0.0, 1.0)))
-    lost = result.fate != OK
-    result.state[lost] = np.nan
-    row, t, direction = moments
-    return replace(result, transit_row=row, transit_t=t, transit_direction=direction)
+    result.state[result.fate != OK] = np.nan
+    return replace(result, transit_row=moments[0], transit_t=moments[1], transit_direction=moments[2])
 
 
-def _plumb_line(north: DoubleDouble, up: DoubleDouble, size: DoubleDouble) -> tuple[DoubleDouble, DoubleDouble]:
-    """Return the unit vector up along -c; the vertical where there is no force."""
-    none = size.vanishes
-    safe = DoubleDouble(np.where(none, 1.0, size.high), size.low)
-    one = DoubleDouble(np.ones_like(size.high), np.zeros_like(size.high))
-    return -north / safe, one.where(none, -up / safe)
-
-
-def _plumb_line_doubles(north: Array, up: Array) -> tuple[Array, Array]:
-    size = np.hypot(north, up)
-    none = size == 0
-    safe = np.where(none, 1.0, size)
-    return -north / safe, np.where(none, 1.0, -up / safe)
+def _plumb_line(north: Any, up: Any, size: Any, none: Array) -> tuple[Any, Any]:
+    """Return the unit vector up along -c; the vertical where there is no force, `none` 1 instead of 0."""
+    return -north / (size + none), (none - up) / (size + none)
 
 
 def _turned(north: Any, up: Any, sin: Any, cos: Any) -> tuple[Any, Any]:

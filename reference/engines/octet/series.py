@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from ..limbs.lanes import LANES, compiled, exp2_of, inlined, larger, load, log2_of, magnitude, spread, store
 from ..limbs.lanes import plus_product as fma
 from ..limbs.limb import Array, aligned
-from .rows import PULL, TURN_P, TURN_U, P, S, U, V, W, X
+from .rows import PULL, TOLERANCE, TURN_P, TURN_U, P, S, U, V, W, X
 
 MOST_ORDER = 24  # even, as two orders are computed at a time
 LONGEST = 3.0  # log2 of the longest step in units of time, where nothing changes
@@ -50,9 +50,9 @@ def empty_series() -> Series:
 
 
 @inlined
-def _next_order(c: Series, own: Array, k: int, inverse: float, lx: Any, lp: Any, lu: Any) -> None:
+def _next_order(c: Series, own: Array, k: int, lx: Any, lp: Any, lu: Any) -> None:
     """Write the coefficients of order k + 1 from those of order k and from order k of λ x, λ p, λ u."""
-    at, to, share = LANES * k, LANES * (k + 1), spread(inverse)
+    at, to, share, less = LANES * k, LANES * (k + 1), spread(1.0 / (k + 1)), spread(-1.0 / (k + 1))
     op, ou, pull = load(own, LANES * TURN_P), load(own, LANES * TURN_U), load(own, LANES * PULL)
     x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
     w, v, s = load(c.w, at), load(c.v, at), load(c.s, at)
@@ -65,7 +65,7 @@ def _next_order(c: Series, own: Array, k: int, inverse: float, lx: Any, lp: Any,
     store(c.x, to, xdot * share)
     store(c.p, to, fma(v, none - ou, x) * share)
     store(c.u, to, udot * share)
-    store(c.tension, to, fma(op * x, s, spread(3.0)) * (spread(-inverse) * pull))
+    store(c.tension, to, fma(op * x, s, spread(3.0)) * (less * pull))
     store(c.w, to, (fma(ou * v, none - op, s) - lx) * share)
     if k == 0:
         # λ less its value at rest, without cancellation
@@ -74,12 +74,12 @@ def _next_order(c: Series, own: Array, k: int, inverse: float, lx: Any, lp: Any,
         store(c.v, to, (ou * (op - w) - lp) * share)
         store(c.s, to, (fma(excess, op, w) - lu) * share)
     else:
-        store(c.v, to, (ou * w + lp) * spread(-inverse))
+        store(c.v, to, (ou * w + lp) * less)
         store(c.s, to, (fma(load(c.tension, at), op, w) - lu) * share)
 
 
 @compiled
-def taylor_coefficients(c: Series, own: Array, inverses: Array, order: int) -> None:
+def taylor_coefficients(c: Series, own: Array, order: int) -> None:
     """Fill the coefficients from the state in `own`, a row of eight for each of `rows`' columns."""
     for array, column in ((c.x, X), (c.p, P), (c.u, U), (c.w, W), (c.v, V), (c.s, S)):
         store(array, 0, load(own, LANES * column))
@@ -87,9 +87,9 @@ def taylor_coefficients(c: Series, own: Array, inverses: Array, order: int) -> N
     w, v, s = load(c.w, 0) - op, load(c.v, 0), load(c.s, 0)
     l0 = fma(fma(fma(w * w, v, v), s, s), load(own, LANES * PULL), spread(1.0) - u0)
     store(c.tension, 0, l0)
-    _next_order(c, own, 0, inverses[0], l0 * x0, l0 * p0, l0 * u0)
+    _next_order(c, own, 0, l0 * x0, l0 * p0, l0 * u0)
     x1, p1, u1, l1 = load(c.x, LANES), load(c.p, LANES), load(c.u, LANES), load(c.tension, LANES)
-    _next_order(c, own, 1, inverses[1], fma(l0 * x1, l1, x0), fma(l0 * p1, l1, p0), fma(l0 * u1, l1, u0))
+    _next_order(c, own, 1, fma(l0 * x1, l1, x0), fma(l0 * p1, l1, p0), fma(l0 * u1, l1, u0))
     for k in range(2, order, 2):
         # orders k and k + 1 together: each coefficient that is loaded serves both
         ax = ap = au = bx = bp = bu = spread(0.0)
@@ -105,12 +105,12 @@ def taylor_coefficients(c: Series, own: Array, inverses: Array, order: int) -> N
         x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
         ax, ap, au = fma(ax, before, x1), fma(ap, before, p1), fma(au, before, u1)
         ax, ap, au = fma(fma(ax, pull, x0), l0, x), fma(fma(ap, pull, p0), l0, p), fma(fma(au, pull, u0), l0, u)
-        _next_order(c, own, k, inverses[k], ax, ap, au)
+        _next_order(c, own, k, ax, ap, au)
         bx, bp, bu = fma(fma(bx, pull, x1), l1, x), fma(fma(bp, pull, p1), l1, p), fma(fma(bu, pull, u1), l1, u)
         at += LANES
         pull, x, p, u = load(c.tension, at), load(c.x, at), load(c.p, at), load(c.u, at)
         bx, bp, bu = fma(fma(bx, pull, x0), l0, x), fma(fma(bp, pull, p0), l0, p), fma(fma(bu, pull, u0), l0, u)
-        _next_order(c, own, k + 1, inverses[k + 1], bx, bp, bu)
+        _next_order(c, own, k + 1, bx, bp, bu)
 
 
 @inlined
@@ -119,14 +119,14 @@ def _size(c: Series, k: int) -> Any:
 
 
 @inlined
-def step_length(c: Series, tolerance: float, inverses: Array, order: int) -> Any:
-    """Return how far the series reaches: to where its last two coefficients are `tolerance` of the motion.
+def step_length(c: Series, order: int) -> Any:
+    """Return how far the series reaches: to where its last two coefficients are TOLERANCE of the motion.
 
     The height u is left out: what its tail lacks is put right when n is put back on the sphere.
     """
-    scale, none = larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(tolerance), spread(0.0)
-    last = log2_of(_size(c, order) / scale) * spread(inverses[order - 1])
-    other = log2_of(_size(c, order - 1) / scale) * spread(inverses[order - 2])
+    scale, none = larger(larger(_size(c, 0), _size(c, 1)), _size(c, 2)) * spread(TOLERANCE), spread(0.0)
+    last = log2_of(_size(c, order) / scale) * spread(1.0 / order)
+    other = log2_of(_size(c, order - 1) / scale) * spread(1.0 / (order - 1))
     return exp2_of(none - larger(larger(last, other), spread(-LONGEST)))
 
 

@@ -9,19 +9,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..limbs.lanes import (
-    LANES,
-    at_least,
-    compiled,
-    inlined,
-    larger,
-    load,
-    magnitude,
-    plus_product,
-    spread,
-    store,
-    where,
-)
+from ..limbs.lanes import LANES, at_least, compiled, inlined, larger, load, magnitude, spread, store, where
+from ..limbs.lanes import plus_product as fma
 from ..limbs.limb import Array, aligned
 
 NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding
@@ -34,7 +23,6 @@ class Zeros(NamedTuple):
 
     Attributes:
         before, after: the rate at the step's start and end; the former's sign alone counts.
-        fresh: 1 in a row's first step.
         sought: 1 where zeros are looked for.
         hit: 1 where there is exactly one zero.
         doubt: 1 where the lanes cannot tell.
@@ -44,7 +32,6 @@ class Zeros(NamedTuple):
 
     before: Array
     after: Array
-    fresh: Array
     sought: Array
     hit: Array
     doubt: Array
@@ -60,45 +47,52 @@ def empty_zeros() -> Zeros:
 
 
 @compiled
-def seek(z: Zeros, f: Array, length: Array, threes: Array, order: int) -> None:
-    """Find which lanes have one zero of the polynomial f on the step, and where about; `threes` are k over 3."""
+def seek(z: Zeros, f: Array, length: Array, time: Array, order: int) -> None:
+    """Find which lanes have one zero of the polynomial f on the step, and where about; at time 0 all are in doubt."""
     r, none = load(length, 0), spread(0.0)
     h, middle = r * spread(0.25), r * spread(0.5)
     high = middle + h
     v = s = b = v3 = s3 = b3 = vm = total = third = none
     for k in range(order - 1, -1, -1):
         a = load(f, LANES * k)
-        b, s, v = plus_product(s, b, h), plus_product(v, s, h), plus_product(a, v, h)
-        b3, s3, v3 = plus_product(s3, b3, high), plus_product(v3, s3, high), plus_product(a, v3, high)
-        vm, size = plus_product(a, vm, middle), magnitude(a)
-        total = plus_product(size, total, r)
+        b, s, v = fma(s, b, h), fma(v, s, h), fma(a, v, h)
+        b3, s3, v3 = fma(s3, b3, high), fma(v3, s3, high), fma(a, v3, high)
+        vm, size = fma(a, vm, middle), magnitude(a)
+        total = fma(size, total, r)
         if k >= 3:
-            third = plus_product(size * spread(threes[k]), third, r)
+            third = fma(size * spread(k * (k - 1) * (k - 2) / 6.0), third, r)
     noise, third = total * spread(NOISE), third * h
     slack = noise * spread(float(order))
     known = _known(v, s, b, third, h, noise, slack) * _known(v3, s3, b3, third, h, noise, slack)
     before, after = load(z.before, 0), load(z.after, 0)
     known = known * at_least(magnitude(vm), noise) * at_least(magnitude(after), noise)
     early, late = at_least(none, before * vm), at_least(none, vm * after)
-    known = known * (spread(1.0) - early * late) * (spread(1.0) - load(z.fresh, 0))
-    sought = load(z.sought, 0)
-    store(z.doubt, 0, (spread(1.0) - known) * sought)
-    store(z.hit, 0, (early + late) * known * sought)
-    low, top = where(late, middle, none), where(late, r, middle)
-    store(z.low, 0, low)
-    store(z.high, 0, top)
+    known = known * (spread(1.0) - early * late) * (spread(1.0) - at_least(none, load(time, 0)))
+    low, top = keep(z, early, late, known, known, r)
     s = where(late, s3, s)
     step = where(late, v3, v) / s
-    place = where(late, high, h) - plus_product(step, where(late, b3, b) / s * step, step)
+    place = where(late, high, h) - fma(step, where(late, b3, b) / s * step, step)
     store(z.place, 0, _between(place, low, top))
+
+
+@inlined
+def keep(z: Zeros, early: Any, late: Any, sure: Any, known: Any, r: Any) -> tuple[Any, Any]:
+    """Keep which lanes have a zero, if they are sure of it, and which are in doubt; return the half that holds it."""
+    sought, middle = load(z.sought, 0), r * spread(0.5)
+    low, high = where(late, middle, spread(0.0)), where(late, r, middle)
+    store(z.doubt, 0, (spread(1.0) - known) * sought)
+    store(z.hit, 0, (early + late) * sure * sought)
+    store(z.low, 0, low)
+    store(z.high, 0, high)
+    return low, high
 
 
 @inlined
 def _known(v: Any, s: Any, b: Any, third: Any, h: Any, noise: Any, slack: Any) -> Any:
     """Return 1 where a polynomial has no zero within h of a place, or is monotone there, else 0."""
-    slope, bend = magnitude(s) * h, plus_product(magnitude(b), third, spread(1.0)) * h * h
+    slope, bend = magnitude(s) * h, fma(magnitude(b), third, spread(1.0)) * h * h
     free = at_least(magnitude(v), slope + bend + noise)
-    return larger(free, at_least(slope, plus_product(bend + bend, third * h, h) + slack))
+    return larger(free, at_least(slope, fma(bend + bend, third * h, h) + slack))
 
 
 @inlined
@@ -118,11 +112,11 @@ def refine(z: Zeros, f: Array, length: Array, order: int, converged: float) -> N
         even = even_slope = odd = odd_slope = none
         square = place * place
         for k in range(order - 2, -1, -2):
-            even_slope, even = plus_product(even, even_slope, square), plus_product(load(f, LANES * k), even, square)
+            even_slope, even = fma(even, even_slope, square), fma(load(f, LANES * k), even, square)
             at = LANES * (k + 1)
-            odd_slope, odd = plus_product(odd, odd_slope, square), plus_product(load(f, at), odd, square)
-        slope = plus_product(odd, plus_product(even_slope, odd_slope, place), place + place)
-        new = _between(place - plus_product(even, odd, place) / slope, low, high)
+            odd_slope, odd = fma(odd, odd_slope, square), fma(load(f, at), odd, square)
+        slope = fma(odd, fma(even_slope, odd_slope, place), place + place)
+        new = _between(place - fma(even, odd, place) / slope, low, high)
         moved, place = magnitude(new - place), new
     hit = load(z.hit, 0)
     good = at_least(load(length, 0) * spread(converged), moved) * hit

@@ -135,6 +135,18 @@ def test_no_rows_and_still_rows(paris):
     assert np.abs(run.state[0, [0, 1, 3, 4, 5]]).max() == 0
 
 
+def test_a_still_row_finds_nothing_in_a_lane_that_has_just_found_a_transit(paris):
+    # the rows before end on a transit and leave their lanes to rows in which none is looked for
+    moving = replace(paris.exact, latitude=Fraction(40), t_end=Fraction(200))
+    t = BATCH.solve(rows_of([moving]), Wanted()).t_last[0]
+    moving = replace(moving, t_end=Fraction(t) + Fraction(1, 100))
+    still = replace(paris.exact, latitude=Fraction(90), position=(Fraction(0),) * 4, t_end=Fraction(100))
+    run = BATCH.solve(rows_of([moving] * 8 + [still] * 8), Wanted(times=True))
+    assert (run.transits[:8] == run.transits[0]).all() and run.transits[0] > 0
+    assert (run.transits[8:] == 0).all() and (run.transit_row < 8).all()
+    assert (run.fate == OK).all()
+
+
 def test_drag_is_not_for_this_kernel(paris):
     assert not BATCH.drag
     with pytest.raises(ValueError, match="drag"):

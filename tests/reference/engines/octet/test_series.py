@@ -13,6 +13,7 @@ pytest.importorskip("numba")
 import numba
 from random_rows import KINDS, random_inputs, rows_of
 
+from reference.engines.batch import Wanted
 from reference.engines.limbs.lanes import LANES
 from reference.engines.octet.march import empty_march
 from reference.engines.octet.rows import UNIT, packed
@@ -32,11 +33,11 @@ def coefficients():
 
     @numba.njit(error_model="numpy")
     def fill(m, order):
-        taylor_coefficients(m.c, m.own, m.inverses, order)
+        taylor_coefficients(m.c, m.own, order)
 
     def of(many):
         rows, m = rows_of(many), empty_march()
-        numbers = packed(rows, 0).T
+        numbers = packed(rows, Wanted()).T
         m.own.reshape(-1, LANES)[:, : len(many)] = numbers
         fill(m, ORDER)
         x, p, u = (array.reshape(-1, LANES)[: ORDER + 1, : len(many)] for array in (m.c.x, m.c.p, m.c.u))

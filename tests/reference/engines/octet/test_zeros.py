@@ -28,18 +28,18 @@ def search():
 
     @numba.njit(error_model="numpy")
     def on_lanes(m, order):
-        seek(m.transits, m.c.xdot, m.length, m.threes, order)
+        seek(m.transits, m.c.xdot, m.length, m.time, order)
         refine(m.transits, m.c.xdot, m.length, order, CONVERGED)
 
     @numba.njit(error_model="numpy")
     def on_one(m, lane, multiplicity, order):
-        before, after = m.transits.before[lane], m.transits.after[lane]
-        return all_zeros(m.w, m.c.xdot, lane, m.length[lane], before, after, multiplicity, order)
+        return all_zeros(m.w, m.transits, m.c.xdot, lane, m.length[lane], multiplicity, order)
 
     def of(polynomials, lengths):
         m = empty_march()
         m.c.xdot.reshape(-1, LANES)[:ORDER] = polynomials.T
         m.length[:], m.transits.sought[:] = lengths, 1.0
+        m.time[:] = 1.0
         m.transits.before[:] = polynomials[:, 0]
         m.transits.after[:] = [np.polyval(f[::-1], r) for f, r in zip(polynomials, lengths, strict=True)]
         on_lanes(m, ORDER)
