@@ -135,7 +135,8 @@ PUBLIC = {
     "reference.capture": "captured",
     "reference.columns": "STATE",
     "reference.commands.progress": "progress",
-    "reference.commands.terminal": "AsJson Assignments SceneWord chosen completion emit refuse replacements stoppable",
+    "reference.commands.terminal": "AsJson Assignments EndTime SceneWord chosen completion emit refuse replacements "
+    "stoppable",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.engines.heyoka.model": "RoundedModel",
     "reference.engines.heyoka.numbers": "Numbers",

@@ -13,7 +13,7 @@ from ..nearest import in_words
 from ..scene import LEVELS, load_scene
 from ..shipped import scene_ids
 from .progress import progress
-from .terminal import AsJson, Assignments, SceneWord, chosen, completion, emit, replacements, stoppable
+from .terminal import AsJson, Assignments, EndTime, SceneWord, chosen, completion, emit, replacements, stoppable
 
 ENGINES = (AUTO, *engine_names())
 
@@ -28,9 +28,7 @@ def command(
             help="Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).",
         ),
     ] = None,
-    t_end: Annotated[
-        str | None, typer.Option("--t-end", metavar="S", help="End the run at this time, in s (default: the scene's).")
-    ] = None,
+    t_end: EndTime = None,
     digits: Annotated[
         str | None,
         typer.Option(

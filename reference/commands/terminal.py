@@ -35,6 +35,9 @@ Assignments = Annotated[
         autocompletion=completion(lambda: (f"{name}=" for name in field_names())),
     ),
 ]
+EndTime = Annotated[
+    str | None, typer.Option("--t-end", metavar="S", help="End each run at this time, in s (default: the scene's).")
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
 
 

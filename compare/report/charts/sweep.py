@@ -4,14 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from reference import InputError
 from reference.precision import Array
 
 from .drawing import BLUE, RULE, picture, sheet
-from .score import write_picture
+from .score import check_target, write_picture
+
+if TYPE_CHECKING:
+    from reference import Swept
+    from reference.sweeps.request import Request
 
 LABELS = {
     "frequency_hz": "frequency of the transits in Hz",
@@ -32,6 +37,48 @@ UNITS = {
     "rad/s": ("rotation_rate",),
 }  # and the fields that have them
 _MARKED = 40  # values up to which a curve's points are marked
+
+
+def check(request: Request, path: Path) -> None:
+    """Refuse a picture that could not be drawn, before any work.
+
+    Raises:
+        InputError: a wrong path, other than one or two fields that are numbers, or neither quantity is wanted.
+    """
+    from reference.sweeps.axes import Grid
+
+    check_target(path)
+    shape = request.table.shape
+    if not isinstance(request.table, Grid) or len(shape) > 2 or not _numeric(request):
+        raise InputError(
+            "--plot", str(path), "one or two fields varied by --over, both numbers", "Or draw the columns."
+        )
+    if not _drawn(request):
+        raise InputError("--plot", str(path), "--want with frequency or precession")
+
+
+def draw(swept: Swept, path: Path) -> None:
+    """Draw frequency and precession of a sweep, those of them that were wanted, into a file."""
+    request = swept.request
+    keys = request.table.keys
+    columns = swept.columns([*keys, *_drawn(request)])
+    axes = []
+    for place, key in enumerate(keys):
+        grid = columns[key].reshape(request.table.shape)
+        axes.append((key, np.moveaxis(grid, place, 0).reshape(grid.shape[place], -1)[:, 0]))
+    title = f"{request.scene.id}, {float(request.scene.exact.t_end):g} s"
+    sweep_picture(title, axes, {name: columns[name] for name in _drawn(request)}, path)
+
+
+def _numeric(request: Request) -> bool:
+    from reference.sweeps.values import TEXTS
+
+    return not set(request.table.keys) & set(TEXTS)
+
+
+def _drawn(request: Request) -> list[str]:
+    names = [column.name for column in request.columns]
+    return [name for name in ("swing_hz", "precession_deg_per_h") if name in names]
 
 
 def sweep_picture(title: str, axes: Sequence[tuple[str, Array]], quantities: Mapping[str, Array], path: Path) -> None:

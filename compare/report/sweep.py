@@ -1,0 +1,104 @@
+"""A sweep as a JSON document, and as the text of a terminal."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from reference.status import Status
+
+if TYPE_CHECKING:
+    from reference import Swept
+    from reference.sweeps.request import Request
+
+ROWS_OF_JSON = 10_000  # with a folder, no more are printed
+SHOWN = {
+    "frequency_hz": "frequency (Hz)",
+    "precession_deg_per_h": "precession (°/h)",
+    "transits": "transits",
+    "max_angle_deg": "angle (°)",
+    "position_error_m": "error (m)",
+}  # columns of the table, and their heads
+WIDTH = 20  # of a column of the table
+
+
+def document(swept: Swept, out: Path | None, workers: int | None, cluster: str | None) -> dict[str, Any]:
+    """Return the JSON document of a sweep.
+
+    Args:
+        swept: the sweep.
+        out: its folder, if it has one: then the rows are left out where there are more than `ROWS_OF_JSON`.
+        workers: how many cores were asked for; None for all.
+        cluster: address of the scheduler that had the work done, if one had.
+    """
+    from reference.engines.registry import batches
+    from reference.sweeps.local import default_workers
+
+    request, tally = swept.request, swept.tally
+    plan, counts = request.document(), swept.counts
+    printed = out is None or len(swept) <= ROWS_OF_JSON
+    return {
+        "scene": request.scene.id,
+        "over": plan["over"],
+        "t_end": request.scene.run.t_end,
+        "out": str(out) if out else None,
+        "level": request.level,
+        "engine": request.engine,
+        "lanes": batches()[request.engine].lanes,
+        "workers": None if cluster else workers or default_workers(),
+        "cluster": cluster,
+        "rows_total": len(swept),
+        "rows_done": sum(tally.counts.values()),
+        "counts": counts,
+        "audit": swept.audit.document if swept.audit else None,
+        "cpu_s": tally.cpu_s + tally.store_s,
+        "compile_s": swept.compile_s,
+        "fold_s": tally.fold_s,
+        "wall_s": swept.wall_s,
+        "rows_per_core_s": sum(tally.counts.values()) / tally.cpu_s if tally.cpu_s else None,
+        "rows": [_row(request, number, row) for number, row in enumerate(swept.rows())] if printed else None,
+    }
+
+
+def _row(request: Request, number: int, row: dict[str, Any]) -> dict[str, Any]:
+    texts = request.table.texts(number)
+    state = [row.pop(name) for name in ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s") if name in row]
+    value = {"value": next(iter(texts.values()))} if len(texts) == 1 else {}
+    rest = {name: entry for name, entry in row.items() if name not in texts and name != "row"}
+    return {**value, "values": texts, **rest, "state": state if state and state[0] is not None else None}
+
+
+def text(swept: Swept, out: Path | None) -> str:
+    """Return the table of a sweep, or where its folder is; then what an audit found, statuses and costs."""
+    tally = swept.tally
+    total = f"{len(swept)} rows: " + ", ".join(f"{count} {Status(word).words}" for word, count in swept.counts.items())
+    cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s, compiling {swept.compile_s:.2f} s; {swept.request.engine}"
+    lines = []
+    if out is None:
+        names = [name for name in SHOWN if name in swept.names]
+        keys = list(swept.request.table.keys)
+        widths = [max(16, len(key) + 2) for key in keys]
+        head = [key.rjust(width) for key, width in zip(keys, widths, strict=True)]
+        lines.append("".join(head) + "".join(SHOWN[name].rjust(WIDTH) for name in names))
+        for number, row in enumerate(swept.rows()):
+            texts = swept.request.table.texts(number)
+            values = "".join(texts[key].rjust(width) for key, width in zip(keys, widths, strict=True))
+            ok = row["status"] == Status.OK.value
+            lines.append(
+                values
+                + ("".join(_cell(name, row[name]) for name in names) if ok else f"    {row['status']}: {row['reason']}")
+            )
+    else:
+        lines.append(f"{out}: {swept.request.parts} parts in Parquet")
+    if swept.audit is not None:
+        found = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
+        lines.append(f"{swept.audit.rows} rows solved again in 28 digits: {found}")
+    return "\n".join([*lines, total, cost])
+
+
+def _cell(name: str, value: Any) -> str:
+    if value is None:
+        return "–".rjust(WIDTH)
+    if isinstance(value, int):
+        return str(value).rjust(WIDTH)
+    return (f"{value:.1e}" if name.endswith("error_m") else f"{value:.12g}").rjust(WIDTH)
