@@ -3,8 +3,12 @@
 Both runs round differently everywhere, the constants included, so that their difference is of the size of the error.
 It may be smaller by chance: therefore the factor, and a least difference, what half an ulp in the constants may do.
 Where errors have grown to many ulps, or where the bob has the energy to rise to the pivot and they may grow, they point
-one way, and the two may cancel. There a third run is moved the other way, and the factor is larger. Of 3,500 random
-scenes none may have a larger error than estimated here (tests/campaigns/test_sweeps.py).
+one way, and the two may cancel. There a third run is moved the other way, and the factor is larger.
+
+tests/campaigns/test_sweeps.py holds 3,500 random rows of 600 s, 500 of them over the top or beyond the horizontal,
+against limbs at 110 bits. In octet and in heyoka no error was above its estimate; the largest came to 0.23 of it for a
+position, 0.61 for a velocity, 0.21 for a transit, 0.10 for a frequency, 0.06 for the swing's frequency and the largest
+angle, 0.01 for the precession.
 """
 
 from __future__ import annotations
@@ -94,28 +98,43 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
         frequency=np.where(run.transits > 1, frequency, np.nan),
         swing=swing,
         precession=precession,
-        angle=np.degrees(position / length),
+        # the height, which rounds to about an ulp, tells little of an angle next to the top
+        angle=np.degrees(position / length + factor * LEAST_ULPS * HALF_ULP * np.tan(run.largest_angle / 2)),
         undecided=_undecided(rows, run, velocity, speed),
     )
 
 
 def _of_constants(rows: Rows) -> Array:
     """Return how far constants that are off by half an ulp may turn a swing in the whole span, in m."""
-    n, V, pull, rate = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0], rows.rate
-    below = np.fmax(1 - (n * pull).sum(axis=1) / rate**2, 0.0)  # cosine of the angle at the release, from 1
-    reach = np.fmin(np.sqrt(2 * below) + np.linalg.norm(V, axis=1) / rate, 1.0)
+    rate = rows.rate
+    reach = np.fmin(_fastest(rows) / rate, 1.0)
     turned: Array = rows.length[:, 0] * reach * rate * rows.t_end[:, 0] * HALF_ULP
     return np.where(rate > 0, turned, 0.0)
 
 
+def _fastest(rows: Rows) -> Array:
+    """Return a speed over l, seen in axes that do not turn, that no row exceeds: all its energy at the lowest point."""
+    n, V, pull, rate = rows.n[..., 0], rows.V[..., 0], rows.pull[..., 0], rows.rate
+    above = np.fmax(1 - (n * pull).sum(axis=1) / rate**2, 0.0)  # of the release over the lowest point
+    fastest: Array = rate * np.sqrt(2 * above) + np.linalg.norm(V, axis=1)
+    return fastest
+
+
 def _of_swing(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> tuple[Array, Array]:
-    """Return the errors of the swing's frequency and of the precession."""
+    """Return the errors of the swing's frequency and of the precession.
+
+    With u the height of the bob over l, u' is wrong at a highest point by the velocity's error times sin θ, and where
+    the bob passes, by its speed times the position's error; that over u'' is how late the point is, and the bob turns
+    about the plumb line meanwhile. Over the top, sin θ may be next to nothing.
+    """
     length, rate = rows.length[:, 0], rows.rate
     shrunk = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)  # amplitude at the end, over the largest
-    reach = length * np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk
+    highest = np.sin(run.largest_angle)
+    sine = np.fmin(highest, np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk)
+    passing = (_fastest(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)) / highest  # about the plumb line, in rad/s
     span = run.apsis_last - run.apsis_first
-    late = velocity / (rate**2 * reach * run.least_bend) + np.spacing(run.apsis_last)
-    turned = position / reach * (1 + 1 / run.least_bend)
+    late = (velocity + passing * position) / (rate**2 * length * sine * run.least_bend) + np.spacing(run.apsis_last)
+    turned = position / (length * sine) + passing * late
     several = run.apsides > 1
     swing = np.where(several, (run.apsides - 1) * late / span**2, np.nan)
     drift = 2 * turned / span + np.abs(run.turn) * 2 * late / span**2

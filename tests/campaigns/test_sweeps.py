@@ -22,7 +22,12 @@ SMALL_PARTS = "import reference.sweeps.planning as planning; planning.PART_S = 0
 
 @pytest.mark.parametrize("engine", ["heyoka", "octet"])
 def test_no_transit_is_lost_and_no_error_is_larger_than_estimated(size, tally, engine):
-    found = compare(batches()[engine], list(random_kinds(20261122, size(20, 3500), kinds=KINDS)))
+    *common, over = KINDS
+    many = [
+        *random_kinds(20261122, size(16, 3000), kinds=tuple(common)),
+        *random_kinds(20261123, size(4, 500), kinds=(over,)),
+    ]
+    found = compare(batches()[engine], many)
     tally(f"sweeps, {engine}: {found}")
     assert not found.miscounted
     assert not found.underestimated

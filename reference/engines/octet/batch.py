@@ -73,7 +73,7 @@ class OctetBatch(Batch):
         return COMPILE_S - READ_S if kept else 0.0
 
 
-def _march(lanes: Any, wanted: Wanted, numbers: Array, results: Array, moments: Any, steps: int) -> bool:
+def _march(lanes: Any, wanted: Wanted, numbers: Array, results: Array, moments: Any, steps: int) -> Any:
     """Take steps; return whether all rows are done."""
     from .march import march
 

@@ -54,9 +54,9 @@ class March(NamedTuple):
 
 def empty_march() -> March:
     """Return lanes without rows."""
-    own, *rest = (aligned(size * LANES) for size in (rows.COLUMNS, 1, 1, 1, 1, 3))
+    own, time, low, length, last, top = (aligned(size * LANES) for size in (rows.COLUMNS, 1, 1, 1, 1, 3))
     working = empty_series(), empty_zeros(), empty_zeros(), empty_long_way()
-    return March(own, *working, *rest, np.zeros(ROW + LANES, dtype=np.int64))
+    return March(own, *working, time, low, length, last, top, np.zeros(ROW + LANES, dtype=np.int64))
 
 
 @compiled
