@@ -25,6 +25,7 @@ FLOORS = {
         ["solver"],
         ["engines", "enclosure"],
         ["model"],
+        ["pool"],
         ["scene", "table", "fixed_point", "process", "packing", "capture", "taylor_step"],
         ["toml_document"],
         ["double_double"],
@@ -135,8 +136,8 @@ PUBLIC = {
     "reference.capture": "captured",
     "reference.columns": "STATE",
     "reference.commands.progress": "progress",
-    "reference.commands.terminal": "AsJson Assignments EndTime SceneWord chosen completion emit refuse replacements "
-    "stoppable",
+    "reference.commands.terminal": "AsJson Assignments Cluster EndTime SceneWord Workers chosen completion emit refuse "
+    "replacements stoppable",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.engines.heyoka.model": "RoundedModel",
     "reference.engines.heyoka.numbers": "Numbers",
@@ -157,6 +158,7 @@ PUBLIC = {
     "reference.opening": "open_at_once",
     "reference.packages": "missing switched_off",
     "reference.plain_text": "finite plain plain_json plain_lines",
+    "reference.pool": "default_workers",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
     "reference.process": "Emit Worker alarm terminable",
@@ -167,9 +169,8 @@ PUBLIC = {
     "reference.solver.sensitivity": "sensitivity",
     "reference.status": "Status",
     "reference.sweeps.axes": "Grid",
-    "reference.sweeps.local": "default_workers",
     "reference.sweeps.request": "Request",
-    "reference.sweeps.sweep": "asked_for opened run",
+    "reference.sweeps.sweep": "asked_for opened parts_between run",
     "reference.sweeps.values": "TEXTS",
     "reference.table": "Table",
     "reference.workspace": "replace_file workspace",

@@ -12,7 +12,9 @@ from reference.commands.progress import progress
 from reference.commands.terminal import (
     AsJson,
     Assignments,
+    Cluster,
     EndTime,
+    Workers,
     completion,
     emit,
     refuse,
@@ -103,14 +105,14 @@ def command(
             "--out", metavar="DIR", help="Write the rows into this folder, in Parquet; the same command goes on."
         ),
     ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option("--workers", metavar="N", help="Number of cores of this machine to use (default: all)."),
-    ] = None,
-    cluster: Annotated[
+    rows_range: Annotated[
         str | None,
-        typer.Option("--cluster", metavar="ADDRESS", help="Use dask.distributed: tcp://HOST:PORT, or local:N."),
+        typer.Option(
+            "--rows-range", metavar="A:B", help="Only the parts that begin in these rows: several jobs fill one --out."
+        ),
     ] = None,
+    workers: Workers = None,
+    cluster: Cluster = None,
     plot: Annotated[
         Path | None,
         typer.Option("--plot", metavar="FILE", help="Draw frequency and precession: .svg, .png or .pdf."),
@@ -123,7 +125,7 @@ def command(
 
     foucault sweep paris --over site.latitude=-90:90:1 --t-end 12000
     """
-    from reference.sweeps.sweep import run
+    from reference.sweeps.sweep import parts_between, run
 
     from ..report.sweep import document, text
 
@@ -137,6 +139,9 @@ def command(
         refuse({"--workers": workers}, "together with --cluster")
     if workers is not None and workers < 1:
         raise InputError("--workers", workers, "a whole number from 1")
+    chosen = parts_between(request, out, rows_range)
+    if chosen is not None:
+        refuse({"--plot": plot}, "together with --rows-range")
     if plot is not None:
         from ..report.charts.sweep import check
 
@@ -151,7 +156,7 @@ def command(
             done[0] += count
             move(done[0])
 
-        swept = run(request, out, workers, cluster, report)
+        swept = run(request, out, workers, cluster, report, chosen)
     if plot is not None:
         from ..report.charts.sweep import draw
 
@@ -201,12 +206,13 @@ def _judge(swept: Swept) -> None:
         typer.Exit: other rows failed, or the audit found a wrong one.
     """
     counts = swept.counts
-    failed = len(swept) - counts.get(Status.OK.value, 0)
+    done = sum(counts.values())
+    failed = done - counts.get(Status.OK.value, 0)
     if failed:
         first = swept.first_bad
         words = ", ".join(f"{count} {Status(word).words}" for word, count in counts.items() if word != Status.OK.value)
         where = ", ".join(f"{key}={text}" for key, text in swept.request.table.texts(first).items())
-        typer.echo(f"foucault: {failed} of {len(swept)} rows failed: {words} (first: row {first}, {where})", err=True)
+        typer.echo(f"foucault: {failed} of {done} rows failed: {words} (first: row {first}, {where})", err=True)
     if swept.audit is not None and swept.audit.wrong:
         named = ", ".join(map(str, swept.audit.wrong))
         typer.echo(f"foucault: solved again, rows {named} lie outside of their errors", err=True)

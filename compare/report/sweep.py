@@ -32,11 +32,11 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
         cluster: address of the scheduler that had the work done, if one had.
     """
     from reference.engines.registry import batches
-    from reference.sweeps.local import default_workers
+    from reference.pool import default_workers
 
     request, tally = swept.request, swept.tally
     plan, counts = request.document(), swept.counts
-    printed = out is None or len(swept) <= ROWS_OF_JSON
+    printed = not swept.left and (out is None or len(swept) <= ROWS_OF_JSON)
     return {
         "scene": request.scene.id,
         "over": plan["over"],
@@ -70,8 +70,9 @@ def _row(request: Request, number: int, row: dict[str, Any]) -> dict[str, Any]:
 
 def text(swept: Swept, out: Path | None) -> str:
     """Return the table of a sweep, or where its folder is; then what an audit found, statuses and costs."""
-    tally = swept.tally
-    total = f"{len(swept)} rows: " + ", ".join(f"{count} {Status(word).words}" for word, count in swept.counts.items())
+    tally, counts = swept.tally, swept.counts
+    by_status = ", ".join(f"{count} {Status(word).words}" for word, count in counts.items())
+    total = f"{sum(counts.values())} rows: {by_status}"
     cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s, compiling {swept.compile_s:.2f} s; {swept.request.engine}"
     lines = []
     if out is None:
@@ -89,7 +90,10 @@ def text(swept: Swept, out: Path | None) -> str:
                 + ("".join(_cell(name, row[name]) for name in names) if ok else f"    {row['status']}: {row['reason']}")
             )
     else:
-        lines.append(f"{out}: {swept.request.parts} parts in Parquet")
+        parts = swept.request.parts
+        lines.append(f"{out}: {parts} parts in Parquet")
+        if swept.left:
+            lines[-1] = f"{out}: {parts - swept.left} of {parts} parts in Parquet; the others are not done yet"
     if swept.audit is not None:
         found = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
         lines.append(f"{swept.audit.rows} rows solved again in 28 digits: {found}")

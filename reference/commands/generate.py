@@ -12,20 +12,39 @@ from ..errors import InputError
 from ..nearest import in_words
 from ..scene import LEVELS, load_scene
 from ..shipped import scene_ids
+from .everything import generate_all
 from .progress import progress
-from .terminal import AsJson, Assignments, EndTime, SceneWord, chosen, completion, emit, replacements, stoppable
+from .terminal import (
+    AsJson,
+    Assignments,
+    Cluster,
+    EndTime,
+    Workers,
+    chosen,
+    completion,
+    emit,
+    refuse,
+    replacements,
+    stoppable,
+)
 
 ENGINES = (AUTO, *engine_names())
 
 
 def command(
-    scene_word: SceneWord,
+    scene_word: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[SCENE]", help="A scene's id, or the path of a TOML file.", autocompletion=completion(scene_ids)
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
             "--out",
             metavar="DIR",
-            help="Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout).",
+            help="Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout); "
+            "with --all the folder of all.",
         ),
     ] = None,
     t_end: EndTime = None,
@@ -64,29 +83,42 @@ def command(
         ),
     ] = False,
     set_: Assignments = None,
+    every: Annotated[
+        bool, typer.Option("--all", help="Make every dataset that ships and is missing or not sealed.")
+    ] = False,
+    workers: Workers = None,
+    cluster: Cluster = None,
     as_json: AsJson = False,
 ) -> None:
-    """Solve a scene and write its golden dataset."""
-    from ..columns import POSITION
-    from ..dataset.place import dataset_id, default_folder, ships
-    from ..dataset.sheets import column_bounds
-    from ..dataset.write import check_target, write
+    """Solve a scene and write its golden dataset.
 
+    foucault generate --all --workers 2 makes all that ship, each in a process of its own; what is there is left.
+    """
     options = {
         "--t-end": ("run.t_end", t_end),
         "--digits": ("run.digits", digits),
         "--level": ("run.level", level and chosen("--level", level, LEVELS)),
         "--no-transits": ("run.transits", "false" if no_transits else None),
     }
+    if every:
+        unused = {"SCENE": scene_word, "--no-transits": no_transits, "--audit": audit, "--set": set_}
+        refuse(unused | {"--engine": engine if engine != AUTO else None}, "with --all")
+        generate_all(replacements(None, options), out, workers, cluster, as_json)
+        return
+    refuse({"--workers": workers, "--cluster": cluster}, "without --all")
+    if scene_word is None:
+        raise InputError("SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them.")
+    from ..dataset.place import dataset_id, default_folder, ships
+    from ..dataset.shipping import summary
+    from ..dataset.write import check_target, write
+    from ..solver.solve import solve
+
     chosen("--engine", engine, ENGINES)
     scene = load_scene(scene_word, replacements(set_, options))
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
     check_target(folder)
     audit = audit or (scene.run.level == "enclosed" and ships(folder))
-    from ..solver.rounding import grid_decimals
-    from ..solver.solve import solve
-
     with stoppable("nothing was written"), progress() as show:
         solution = solve(scene, engine=engine, audit=audit, report=show(scene.id, float(scene.exact.t_end)))
     if engine not in (AUTO, solution.run.engine):
@@ -94,38 +126,20 @@ def command(
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
     with stoppable("nothing half was written"):
         write(solution, folder, name)
-    count = len(solution.directions)
-    bounds = column_bounds(solution.grid, grid_decimals(solution))
-    bound = max((bounds[column] for column in POSITION), key=float)
-    checks_s = sum(check.cpu_s for check in solution.checks) + sum(
-        (solution.proof.cpu_s if solution.proof else {}).values()
-    )
+    found = summary(solution, folder)
     if as_json:
-        emit(
-            {
-                "scene": scene.id,
-                "out": str(folder),
-                "level": solution.level,
-                "digits": scene.run.digits,
-                "engine": solution.run.engine,
-                "transits": count,
-                "bound_m": float(bound),
-                "cpu_s": solution.pilot_s + solution.run.cpu_s + checks_s,
-                "run_cpu_s": solution.run.cpu_s,
-                "check_cpu_s": checks_s,
-                "pilot_cpu_s": solution.pilot_s,
-                "compile_s": solution.run.compile_s,
-                "number": solution.run.number,
-                "steps": solution.run.steps,
-            }
-        )
+        emit(found)
         return
     source = solution.run
-    rows = f"{len(solution.times)} grid times, {count} transits"
+    rows = f"{len(solution.times)} grid times, {found['transits']} transits"
     typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}")
     if solution.not_checked:
         typer.echo(
             f"The proof finds all transits; no run with event detection confirms them: {solution.not_checked}", err=True
         )
-    typer.echo(f"every position within {bound} m; {source.formulation}, {source.number}, {source.steps} steps")
-    typer.echo(f"CPU: run {solution.run.cpu_s:.2f} s, check {checks_s:.2f} s, pilot {solution.pilot_s:.2f} s")
+    typer.echo(
+        f"every position within {found['bound_m']} m; {source.formulation}, {source.number}, {source.steps} steps"
+    )
+    typer.echo(
+        f"CPU: run {solution.run.cpu_s:.2f} s, check {found['check_cpu_s']:.2f} s, pilot {solution.pilot_s:.2f} s"
+    )

@@ -38,6 +38,13 @@ Assignments = Annotated[
 EndTime = Annotated[
     str | None, typer.Option("--t-end", metavar="S", help="End each run at this time, in s (default: the scene's).")
 ]
+Workers = Annotated[
+    int | None, typer.Option("--workers", metavar="N", help="Number of cores of this machine to use (default: all).")
+]
+Cluster = Annotated[
+    str | None,
+    typer.Option("--cluster", metavar="ADDRESS", help="Use dask.distributed: tcp://HOST:PORT, or local:N."),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -70,7 +70,13 @@ def write(solution: Solution, folder: str | Path, name: str | None = None) -> Pa
         raise InputError(
             "audit", "no audit", "an audited proof", "What ships in data/golden is proved by FLINT alone, too."
         )
-    texts = render(solution, name)
+    write_texts(render(solution, name), folder)
+    return folder
+
+
+def write_texts(texts: Mapping[str, str], folder: Path) -> None:
+    """Write the files of a dataset that was rendered, as `write` does."""
+    check_target(folder)
     with _place(folder) as (work, target):
         new = work / "new"
         new.mkdir()
@@ -85,7 +91,6 @@ def write(solution: Solution, folder: str | Path, name: str | None = None) -> Pa
         _put_in_place(new, target)
         if ships(target):
             keep_seal(target.name, json.loads(texts[MANIFEST])["seal"])
-    return folder
 
 
 def _put_in_place(new: Path, target: Path) -> None:

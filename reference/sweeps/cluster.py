@@ -10,6 +10,7 @@ import logging
 import threading
 from collections.abc import Callable
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from secrets import token_hex
 from types import TracebackType
@@ -19,7 +20,8 @@ import distributed
 from distributed.scheduler import KilledWorker
 
 from ..errors import FoucaultError, InputError
-from .driver import Piece, WorkerDied, work
+from ..pool import WorkerDied
+from .driver import Piece, work
 from .isolated import Isolated
 from .local import prepared
 from .request import Request
@@ -38,27 +40,23 @@ class ClusterError(FoucaultError):
     exit_status = 2
 
 
-class ClusterExecutor:
-    """The workers of a scheduler.
+class Scheduler:
+    """A scheduler and its workers, all with the versions that are here.
 
     Args:
-        request: the sweep.
-        folder: where parts are saved: by the workers if they see it, else here.
         address: tcp://HOST:PORT of a scheduler, or local:N for N processes of one thread on this machine.
+        versions: returns what has to be alike everywhere, as text.
 
     Raises:
         InputError: no scheduler answers there, it has no workers, or their versions differ from those here.
     """
 
-    def __init__(self, request: Request, folder: Path | None, address: str) -> None:
-        self._request, self._document = request, request.document()
+    def __init__(self, address: str, versions: Callable[[], str]) -> None:
         self._stack = ExitStack()
-        self.compile_s = 0.0
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # a lost scheduler is told in one line
         try:
             self._client = self._connected(address)
-            self.workers = self._check_workers(address)
-            self._folder = self._shared(folder)
+            self.workers = self._check_workers(address, versions)
         except BaseException:
             self._stack.close()
             raise
@@ -70,9 +68,9 @@ class ClusterExecutor:
         """Leave the scheduler; end one that was started here."""
         self._stack.close()
 
-    def submit(self, piece: Piece) -> Any:
-        """Begin a piece on some worker."""
-        return _Awaited(self._client.submit(compute, self._document, piece, self._folder, pure=False, retries=RETRIES))
+    def begin(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Begin a call on some worker; return its future."""
+        return _Awaited(self._client.submit(function, *arguments, pure=False, retries=RETRIES))
 
     def check(self) -> None:
         """Raise if the scheduler is lost.
@@ -101,7 +99,7 @@ class ClusterExecutor:
             advice = "Start one with `dask scheduler`, and workers with `dask worker ADDRESS`."
             raise InputError("--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice) from None
 
-    def _check_workers(self, address: str) -> int:
+    def _check_workers(self, address: str, versions: Callable[[], str]) -> int:
         """Return how many threads the workers have together, all with the versions that are here."""
         try:
             self._client.wait_for_workers(1, timeout=WAIT_S)
@@ -110,13 +108,36 @@ class ClusterExecutor:
             threads = {}
         if not threads:
             raise InputError("--cluster", address, "a scheduler with workers", "Start them: `dask worker ADDRESS`.")
-        here = versions(self._request.engine)
-        for worker, there in self._client.run(_versions_or_error, self._request.engine).items():
+        here = versions()
+        for worker, there in self._client.run(_versions_or_error, versions).items():
             if there != here:
                 advice = "Install the same versions everywhere."
                 raise InputError("--cluster", f"{there} on {worker}", f"{here}, as here", advice)
-        self.compile_s = max(self._client.run(_prepare, self._document).values())
         return sum(threads.values())
+
+
+class ClusterExecutor(Scheduler):
+    """The workers of a scheduler that compute pieces of a sweep.
+
+    Args:
+        request: the sweep.
+        folder: where parts are saved: by the workers if they see it, else here.
+        address: as of `Scheduler`, whose errors are raised.
+    """
+
+    def __init__(self, request: Request, folder: Path | None, address: str) -> None:
+        super().__init__(address, partial(versions, request.engine))
+        self._document = request.document()
+        try:
+            self.compile_s = max(self._client.run(_prepare, self._document).values())
+            self._folder = self._shared(folder)
+        except BaseException:
+            self._stack.close()
+            raise
+
+    def submit(self, piece: Piece) -> Any:
+        """Begin a piece on some worker."""
+        return self.begin(compute, self._document, piece, self._folder)
 
     def _shared(self, folder: Path | None) -> Path | None:
         """Return the folder if every worker sees it; a file of a random name tells."""
@@ -169,9 +190,22 @@ def versions(engine: str) -> str:
     return f"{batches()[engine].identity}{arrow}"
 
 
-def _versions_or_error(engine: str) -> str:
+def solving_versions() -> str:
+    """Return what has to be alike on all machines that solve scenes: this project and what it solves with."""
+    from importlib.metadata import PackageNotFoundError, version
+
+    found = []
+    for package in ("foucault-reference", "heyoka", "numba", "python-flint", "mpmath"):
+        try:
+            found.append(f"{package} {version(package)}")
+        except PackageNotFoundError:
+            found.append(f"no {package}")
+    return "; ".join(found)
+
+
+def _versions_or_error(versions: Callable[[], str]) -> str:
     try:
-        return versions(engine)
+        return versions()
     except Exception as error:  # whatever it lacks
         return f"{type(error).__name__}: {error}"
 

@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..pool import WorkerDied, next_done
 from ..status import Status
 from .part import Part, Promote, solve_part
 from .promote import promoted
@@ -22,13 +23,8 @@ from .row import empty
 
 BLOCKS = 16  # of a whole part, solved one after the other: Ctrl-C waits for one
 LEAST_BLOCK = 256  # rows
-CHECK_S = 5.0  # between two looks whether anything can still come
 PER_WORKER = 3  # pieces that wait or are computed for each worker
 DIED_REASON = "Its process died each time, alone as well"
-
-
-class WorkerDied(Exception):
-    """The process that computed a piece ended without a result; the text says how."""
 
 
 @dataclass
@@ -147,7 +143,7 @@ def drive(
         if not open_pieces:
             alone.add(suspects[-1].rows.start)
             begin(suspects.pop())
-        piece = open_pieces.pop(future := _next(done, executor))
+        piece = open_pieces.pop(future := next_done(done, executor))
         try:
             tally, solved = future.result()
         except WorkerDied as death:
@@ -171,15 +167,6 @@ def drive(
         for following in islice(waiting, 1):
             begin(following)
     return total
-
-
-def _next(done: queue.SimpleQueue[Any], executor: Executor) -> Any:
-    """Return the next future that is done."""
-    while True:
-        try:
-            return done.get(timeout=CHECK_S)
-        except queue.Empty:
-            executor.check()
 
 
 def crashed(request: Request, rows: range, reason: str) -> Part:

@@ -54,7 +54,7 @@ class Store:
                     "--out", str(folder), f"the sweep that is there, which differs in {names}", "Take another folder."
                 )
             return store
-        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
             raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
         folder.mkdir(parents=True, exist_ok=True)
         store = cls(folder, request)
@@ -154,6 +154,11 @@ class Store:
     def summarize(self, document: dict[str, Any]) -> None:
         """Write what became of the sweep."""
         _write_json(self.folder / SUMMARY, document)
+
+
+def _foreign(path: Path) -> bool:
+    """Return whether a file is none of those with which another job begins the same folder at this moment."""
+    return path.name not in (ROWS, TRANSITS, PLAN) and not path.name.startswith(f".{PLAN}.")
 
 
 def _write_json(path: Path, document: dict[str, Any]) -> None:

@@ -10,6 +10,7 @@ import poisoned_sweep
 import pytest
 
 from reference import InputError, load_scene, load_sweep
+from reference.engines.registry import batches
 from reference.sweeps.sweep import asked_for, run
 
 distributed = pytest.importorskip("distributed")
@@ -79,10 +80,8 @@ def test_a_row_that_kills_its_worker_crashes_alone(cluster, tmp_path, monkeypatc
 
 
 def test_other_versions_are_refused_before_any_work(cluster, tmp_path, monkeypatch):
-    from reference.sweeps import cluster as module
-
-    monkeypatch.setattr(module, "versions", lambda engine: "heyoka 1.0")
-    with pytest.raises(InputError, match=r"heyoka 1\.0, as here"):
+    monkeypatch.setattr(batches()["heyoka"].__class__, "identity", "heyoka 1.0")
+    with pytest.raises(InputError, match=r"heyoka 1\.0.*, as here"):
         run(asked(tmp_path / "out"), tmp_path / "out", cluster=cluster.scheduler_address)
     assert list((tmp_path / "out/rows").iterdir()) == []
 

@@ -13,7 +13,7 @@ import pytest
 from reference import InputError, load_scene, load_sweep, sweep
 from reference.sweeps import local
 from reference.sweeps.driver import Piece, WorkerDied, work
-from reference.sweeps.sweep import asked_for, run
+from reference.sweeps.sweep import asked_for, parts_between, run
 
 pytest.importorskip("pyarrow")
 OVER = ["site.latitude=-90:90:2"]
@@ -81,6 +81,30 @@ def test_each_column_says_what_it_means(whole):
 
     schema = pq.read_schema(whole / "rows/part-00000000.parquet")
     assert all(field.metadata[b"meaning"] for field in schema)
+
+
+def test_ranges_of_rows_fill_one_folder_with_the_same_bytes(whole, tmp_path):
+    folder = tmp_path / "shared"
+    request = asked(folder)
+    ranges = ["40:70", "70:91", "0:40"]  # in any order; parts have 16 rows
+    assert [parts_between(request, folder, words) for words in ranges] == [range(3, 5), range(5, 6), range(3)]
+    for i, words in enumerate(ranges):
+        (folder / f".plan.json.partial-{i}").mkdir(parents=True)  # as of a job that began it and died
+        swept = run(request, folder, workers=1, chosen=parts_between(request, folder, words))
+        assert bool(swept.left) == (i < 2) == (not (folder / "summary.json").exists())
+    assert swept.counts == {"ok": ROWS}
+    assert contents(folder) == contents(whole)
+
+
+@pytest.mark.parametrize("words", ["", "5", "5:5", "9:3", "-1:5", "91:99", "a:b", "1:2:3"])
+def test_a_range_of_rows_that_is_none_is_refused(words, tmp_path):
+    with pytest.raises(InputError, match="--rows-range"):
+        parts_between(asked(tmp_path), tmp_path, words)
+
+
+def test_a_range_of_rows_needs_a_folder(tmp_path):
+    with pytest.raises(InputError, match="--out DIR"):
+        parts_between(asked(tmp_path), None, "0:16")
 
 
 def test_another_sweep_or_other_files_are_left_alone(whole, tmp_path):

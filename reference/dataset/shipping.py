@@ -1,0 +1,137 @@
+"""Every dataset that ships, one a scene: which are missing or not sealed; one of them made, for others to write."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from ..columns import POSITION
+from ..errors import FoucaultError, IntegrationError, UnreachableError
+from ..process import Parent, Worker
+from ..scene import Scene, load_scene
+from ..shipped import scene_ids, seals
+from ..solver.rounding import grid_decimals
+from ..solver.solution import Solution
+from ..solver.solve import solve
+from ..status import Status
+from .files import read_files
+from .place import dataset_id, default_folder, ships
+from .render import render
+from .sheets import column_bounds, scene_inputs
+
+BINARY64 = ".binary64"
+
+
+@dataclass(frozen=True)
+class Job:
+    """A dataset to be made: its scene with replaced fields, its id and its folder."""
+
+    scene: str
+    replaced: tuple[str, ...]
+    name: str
+    folder: Path
+
+    def load(self) -> Scene:
+        """Return the scene."""
+        return load_scene(self.scene, list(self.replaced))
+
+
+@dataclass(frozen=True)
+class Made:
+    """A dataset's files as text, and what `generate --json` says of it; or why it could not be made."""
+
+    texts: dict[str, str] = field(default_factory=dict)
+    document: dict[str, Any] = field(default_factory=dict)
+    status: Status = Status.OK
+    reason: str = ""
+
+
+def jobs(replaced: Iterable[str], out: Path | None) -> list[Job]:
+    """Return all datasets that ship, those of the longest spans first: of each scene, and of sealed other readings.
+
+    Args:
+        replaced: fields of every scene, each as section.key=value.
+        out: the folder of all; by default each has that which `generate` writes it to.
+
+    Raises:
+        InputError: a replaced field is wrong.
+    """
+    readings = [name.removesuffix(BINARY64) for name in seals() if name.endswith(BINARY64)]
+    wanted = [(name, ()) for name in scene_ids()] + [(name, ("inputs=binary64",)) for name in readings]
+    found = []
+    for word, reading in wanted:
+        fields = (*reading, *replaced)
+        scene = load_scene(word, list(fields))
+        name = dataset_id(scene)
+        folder = out / name if out is not None else default_folder(scene, name)
+        found.append((-float(scene.exact.t_end), name, Job(word, fields, name, folder)))
+    return [job for *_, job in sorted(found, key=lambda one: one[:2])]
+
+
+def is_done(job: Job) -> bool:
+    """Return whether the dataset is there, sealed, of the same inputs; where it ships, under the seal in the index."""
+    try:
+        files = read_files(job.folder)
+    except FoucaultError:
+        return False
+    sealed = not ships(job.folder) or seals().get(job.name) == files.manifest.seal
+    scene = job.load()
+    same = scene_inputs(files.scene) == scene_inputs(scene) and files.scene.inputs == scene.inputs
+    return sealed and same and files.manifest.id == job.name
+
+
+def made(job: Job) -> Made:
+    """Solve a scene and return its dataset, or why there is none."""
+    try:
+        scene = job.load()
+        solution = solve(scene, audit=scene.run.level == "enclosed" and ships(job.folder))
+        return Made(render(solution, job.name), summary(solution, job.folder))
+    except UnreachableError as error:
+        status = Status.GAVE_UP if isinstance(error, IntegrationError) else Status.UNREACHABLE
+        return Made(status=status, reason=str(error))
+    except FoucaultError as error:
+        return Made(status=Status.INVALID, reason=str(error))
+
+
+def serve(parent: Parent) -> None:
+    """Make the datasets that the parent asks for, in a process of its own."""
+    for job in parent:
+        parent(made(job))
+
+
+def isolated(job: Job) -> Made:
+    """Make a dataset in a process that is started for it: the solver is not made for several threads."""
+    worker = Worker(serve)
+    try:
+        worker.send(job)
+        result: Made = worker.receive()
+    except (IntegrationError, OSError) as error:
+        return Made(status=Status.CRASHED, reason=str(error))
+    finally:
+        worker.stop()
+    return result
+
+
+def summary(solution: Solution, folder: Path) -> dict[str, Any]:
+    """Return what `generate --json` says of a dataset."""
+    bounds = column_bounds(solution.grid, grid_decimals(solution))
+    proof_s = sum((solution.proof.cpu_s if solution.proof else {}).values())
+    checks_s = sum(check.cpu_s for check in solution.checks) + proof_s
+    return {
+        "scene": solution.scene.id,
+        "out": str(folder),
+        "level": solution.level,
+        "digits": solution.scene.run.digits,
+        "engine": solution.run.engine,
+        "transits": len(solution.directions),
+        "bound_m": max(float(bounds[column]) for column in POSITION),
+        "cpu_s": solution.pilot_s + solution.run.cpu_s + checks_s,
+        "run_cpu_s": solution.run.cpu_s,
+        "check_cpu_s": checks_s,
+        "pilot_cpu_s": solution.pilot_s,
+        "compile_s": solution.run.compile_s,
+        "number": solution.run.number,
+        "steps": solution.run.steps,
+    }
