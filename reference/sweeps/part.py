@@ -30,7 +30,7 @@ class Part:
     Attributes:
         columns: arrays of shape (rows,) by name; words are objects, None where there is none.
         transits: columns row, t_s and direction of every transit, if wanted.
-        cpu_s: CPU seconds of the rows, in this thread.
+        cpu_s: CPU seconds of the rows, in this thread and in the process that solves some of them by themselves.
         fold_s: of these, those of constants and releases.
     """
 
@@ -81,7 +81,7 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
     part.fold_s = time.thread_time() - before
     if rows is not None:
         _solve(request, part, good, rows, promote)
-    part.cpu_s = time.thread_time() - started
+    part.cpu_s += time.thread_time() - started
     return part
 
 
@@ -108,6 +108,7 @@ def _solve(request: Request, part: Part, numbers: Any, rows: Rows, promote: Prom
             _fail(columns, place, Status.GAVE_UP, reason)
             continue
         result = promote(request, int(columns["row"][place]), doubtful=bool(reason))
+        part.cpu_s += result.cpu_s
         fill(columns, place, result, reason)
         if TIMES in request.want:
             part.list_transits(int(columns["row"][place]), *result.times)

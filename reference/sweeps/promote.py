@@ -25,11 +25,15 @@ DOUBTFUL_REASON = "The number of transits, or the error, is not decided in doubl
 
 @dataclass(frozen=True)
 class Promoted:
-    """A row as the solver gives it: its columns by name and its transits, or the reason why it could not."""
+    """A row as the solver gives it: its columns by name and its transits, or the reason why it could not.
+
+    `cpu_s` are the CPU seconds of another process that solved it, with those that it started.
+    """
 
     values: dict[str, Any]
     times: tuple[list[float], list[int]]
     failure: str = ""
+    cpu_s: float = 0.0
 
 
 def promoted(

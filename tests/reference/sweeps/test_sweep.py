@@ -220,3 +220,25 @@ def test_a_grid_has_the_shape_of_its_axes(paris):
 
 def test_more_than_memory_should_hold_needs_a_folder(paris, tmp_path):
     assert asked_for(paris, ["site.altitude=0:1e6:1"], None, tmp_path, audit=None).audit == 1000
+
+
+def test_rows_that_another_process_solves_cost_what_they_cost_there(paris, monkeypatch):
+    from reference.sweeps import isolated
+    from reference.sweeps.part import solve_part
+    from reference.sweeps.planning import request
+    from reference.sweeps.promote import Promoted
+
+    asked = request(paris.with_values(["run.t_end=30"]), ["site.latitude=10,20"], engine="heyoka", tolerance=1e-30)
+    part = solve_part(asked, range(2), lambda *_, **__: Promoted({}, ([], []), cpu_s=100.0))
+    assert 200.0 < part.cpu_s < 300.0
+
+    class Rows(list):
+        """The rows that a parent sends, and what it gets."""
+
+        def __call__(self, result):
+            got.append(result)
+
+    got = []
+    monkeypatch.setattr(isolated, "promoted", lambda *_, **__: Promoted({"x_m": sum(range(3 * 10**6))}, ([], [])))
+    isolated.serve(Rows([(0, True)]), asked.document())
+    assert got[0].cpu_s > 0
