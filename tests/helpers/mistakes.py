@@ -142,7 +142,7 @@ def _z(sign: float, from_lowest: bool, word: str):
 
 _KINDS = (
     ("gravity", "", _mistake("no_centrifugal", reading=1)),
-    ("gravity", "", _mistake("no_centrifugal", reading=2)),
+    ("gravity", "", _mistake("effective_gravity", reading=2)),
     ("gravity", "", _mistake("no_centrifugal", reading=1)),
     ("model", "linear", _model(1, "linear_g")),
     ("model", "linear", _model(1, "linear_g")),

@@ -16,6 +16,7 @@ from .programs import Program
 NAMED = 0.3  # decades by which a named cause has to lower what is left, to be believed
 RARE = 0.5  # one that is met less often
 FITTED = 0.7  # and a fitted number
+PUSHED = 0.2  # more, for a velocity where the scene releases at rest
 SOLAR_DAY = 86400.0
 SIDEREAL_DAYS = (86164.0, 86160.0, 86164.1, 86164.0905, 86164.09)
 MEAN_RADIUS = 6371000.0
@@ -47,20 +48,26 @@ class Cause:
     stage: str = "input"
 
 
-def causes(right: Program, kind: str) -> Iterator[Cause]:
+def causes(right: Program, kind: str, cord: float | None = None, released: bool = False) -> Iterator[Cause]:
     """Yield every cause that could make a difference to a scene.
 
     Args:
         right: what a right program computes with.
         kind: the family that was fitted: sphere, linear or angle.
+        cord: mean distance in m from the suspension, where rows do not keep it.
+        released: whether row 0 is the release to its last digit, so that neither its place nor its time is off.
     """
     yield from _gravity(right)
     if right.rate:
         yield from _rotation(right, kind)
         yield from _release(right)
     yield from _latitude(right)
-    yield from _inputs(right)
-    yield Cause("late", "clock", "writes its rows {value} late", lambda p: p, FITTED, "late", "clock")
+    yield from _inputs(right, released)
+    if cord is not None:
+        text = f"has a cord of {cord:.10g} m on average: a spring for a cord, or an integrator that leaves the sphere"
+        yield Cause("stretched_cord", "pendulum.length", text, _set(length=cord), NAMED)
+    if not released:
+        yield Cause("late", "clock", "writes its rows {value} late", lambda p: p, FITTED, "late", "clock")
     yield from _integrators()
 
 
@@ -224,10 +231,10 @@ def _release(right: Program) -> Iterator[Cause]:
     yield Cause("release_at_twice", "release", text, _set(released=-2.0), 0.4, stage="release")
 
 
-def _inputs(right: Program) -> Iterator[Cause]:
+def _inputs(right: Program, released: bool) -> Iterator[Cause]:
     if right.vx or right.vy:
         yield Cause("at_rest", "release", "releases the bob at rest", _set(vx=0.0, vy=0.0), stage="release")
-    if right.x != right.y:
+    if right.x != right.y and not released:
         swapped = _set(x=right.y, y=right.x, vx=right.vy, vy=right.vx)
         yield Cause("swapped", "start", "swaps x and y of the release", swapped, stage="release")
     if right.drag:
@@ -236,10 +243,12 @@ def _inputs(right: Program) -> Iterator[Cause]:
         yield Cause("drag_double", "drag", "takes twice the drag", _set(drag=2 * right.drag), 0.4)
     for name, word in (("g", "site.gravity"), ("length", "pendulum.length"), ("drag", "pendulum.drag")):
         yield Cause(word, word, f"takes {word} to be {{value}}", lambda p: p, FITTED, name)
-    for name in ("x", "y", "vx", "vy"):
+    for name in ("vx", "vy") if released else ("x", "y", "vx", "vy"):
         word = f"release.{name}"
         group = "start" if name in ("x", "y") else "release"
-        yield Cause(word, f"{group}.{name}", f"takes {word} to be {{value}}", lambda p: p, FITTED, name, "release")
+        # a push that the scene does not have is rarer than half a step of an integrator, which looks like one
+        cost = FITTED if name in ("x", "y") or right.vx or right.vy else FITTED + PUSHED
+        yield Cause(word, f"{group}.{name}", f"takes {word} to be {{value}}", lambda p: p, cost, name, "release")
 
 
 def _integrators() -> Iterator[Cause]:

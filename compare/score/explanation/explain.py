@@ -15,8 +15,9 @@ from .approximated import approximated
 from .causes import NAMED, causes
 from .conventions import made_right
 from .families import Family, families_of, positions_of
-from .findings import Explanation
-from .naming import model_of, sized, told_as_loose, trifling
+from .findings import Explanation, SizedCause
+from .formulas import slip_in_formula
+from .naming import CLEAN, LOOSE, WIDE, in_whole_steps, model_of, sized, told_as_loose, trifling
 from .pendulum import Pendulum
 from .programs import Program
 from .readings import Reader, Reading
@@ -30,6 +31,7 @@ TRIED = 6  # readings of a family that are run
 _FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
+EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 MODEL = 0.3  # decades by which a simpler family has to be better than the sphere
 NAMED_SHARE = 0.03  # of the error that may be left if causes are to be named
 FITTED_SHARE = 0.01  # and if one of them is a fitted number
@@ -66,6 +68,8 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
         if other.score < found.score:
             found = other
     vague = any(one.id == "integrator_loose" for one in found.causes)
+    if found.slip:
+        return found
     if vague or (not found.causes and found.corrected_m > max(allowed_m, 1.5 * read.noise)):
         told = slip(read.times, read.positions, scene)
         if told:  # one term of a formula, as no integrator changes it
@@ -90,6 +94,10 @@ def _of_rows(
     named = _of_families(rows, model, right, frequency, truth, allowed_m, floor)
     if named is not None and named.corrected_m <= max(allowed_m, 1.5 * rows.noise):
         return named
+    if named is None or any(cause.id == "integrator_loose" for cause in named.causes):
+        misprinted = _of_formula(rows, model, right, frequency, truth, floor)
+        if misprinted is not None:
+            return misprinted
     as_printed = approximated(scene, rows, truth)
     if as_printed is None or (named is not None and as_printed.model.exact_to_m > PLAINLY * named.corrected_m):
         return named or plain
@@ -115,13 +123,15 @@ def _of_families(
     if not families:
         return None
     least = min(family.fit.rest for family in families)
+    if least > max(NAMED_SHARE * error, 1.5 * rows.noise):
+        return None
     floor = max(floor, 1.2 * least)
     found: list[tuple[float, Family, Reading]] = []
     for family in families:
         if family.fit.rest > 3 * max(least, floor / 1.2):
             continue
         reader = Reader(replace(right, kind=family.kind), family.fit, floor)
-        known = list(causes(right, family.kind))
+        known = list(causes(right, family.kind, rows.cord, _released(rows, right)))
         extra = {"sphere": 0.0, "linear": MODEL, "angle": 2 * MODEL}[family.kind]
         likely = reader.readings(known)[:TRIED]
         likely += [reader.without(one, cause) for one in likely[:2] for cause in one.causes]
@@ -141,11 +151,18 @@ def _of_families(
     named = list(sized(best, reader, right, pendulum, rows, truth))
     left = rows.positions - positions_of(best.program, pendulum, rows)
     corrected = largest(left)
+    width = float(np.hypot(*rows.positions[:, :2].T).max()) / right.length if family.kind == "sphere" else 0.0
+    clean = max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
+    named = list(in_whole_steps(named, float(rows.times[1] - rows.times[0]), clean))
     named = [
         cause
-        for cause in told_as_loose(named, max(corrected - 5 * rows.noise, 0.0), frequency)
+        for cause in told_as_loose(named, max(corrected - 5 * rows.noise, 0.0), frequency, clean)
         if len(named) == 1 or not trifling(cause, allowed_m)
     ]
+    if corrected > allowed_m and best.rest > 2 * max(rows.noise, family.fit.rest):
+        known = list(causes(right, family.kind, rows.cord, _released(rows, right)))
+        if reader.like_a_step(best, known):
+            named.append(SizedCause("integrator_loose", LOOSE, corrected, "integrator"))
     simple = {cause.stage for cause in best.causes} <= {"gravity", "model"}
     result = None
     if simple and corrected <= allowed_m and all(one.id in HARMLESS for one in rows.conventions):
@@ -153,6 +170,26 @@ def _of_families(
     explained = 1 - rms(left) / error
     score = _score_of(corrected, allowed_m, rows) + sum(cause.cost for cause in best.causes)
     return Explanation(rows.conventions, tuple(named), result, corrected, explained=explained, score=score)
+
+
+def _released(rows: Rows, right: Program) -> bool:
+    """Return whether row 0 is the release to its last digit."""
+    off = np.abs(rows.positions[0, :2] - (right.x, right.y)).max()
+    return bool(rows.times[0] == 0 and off <= 2 * rows.noise + EXACT * right.length)
+
+
+def _of_formula(
+    rows: Rows, model: Variants, right: Program, frequency: float, truth: Array, floor: float
+) -> Explanation | None:
+    """Return what is known of rows that follow a closed formula with a slip; None if they do not."""
+    slipped = slip_in_formula(rows, right, floor, list(causes(right, "linear")))
+    if slipped is None:
+        return None
+    pendulum = Pendulum(model, right.radius, right.gradient_square, _FAST * (frequency + abs(right.rate)))
+    named = tuple(sized(slipped.reading, slipped.reader, right, pendulum, rows, truth))
+    left = slipped.formula.rest
+    explained = 1 - left / rms(rows.positions - truth)
+    return Explanation(rows.conventions, named, None, left, slip=slipped.text, explained=explained)
 
 
 def _score_of(left: float, allowed_m: float, rows: Rows) -> float:

@@ -7,6 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from reference.precision import Array
+
 from ...candidates.candidate import Convention
 from .rows import Rows
 
@@ -28,10 +30,11 @@ def heights(rows: Rows, length: float) -> Rows:
         if np.abs(column - on_sphere).max() > ALIKE * length:
             continue
         flat = float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere))
-        drift = float(np.ptp(np.sqrt(square + column * column)))
+        reach = np.sqrt(square + column * column)
+        drift = float(np.ptp(reach))
         if scale == 1 and order == (0, 1, 2) and signs[2] == 1 and shift == 0:
             kept = drift <= max(20 * rows.noise, 1e-7 * length)
-            return rows if kept and not flat else _without_height(rows, flat, drift)
+            return rows if kept and not flat else _without_height(rows, flat, reach)
         text = {
             (1, 0.0): "", (-1, 0.0): "counts z downwards", (1, length): "counts z from the lowest point",
             (-1, -length): "counts z from the lowest point, downwards", (-1, length): "counts z downwards",
@@ -44,12 +47,12 @@ def heights(rows: Rows, length: float) -> Rows:
             vertical = "xyz"[order[2]]
             found.append(Convention("vertical_is_not_z", f"calls the vertical {vertical}", length))
         if flat or drift > max(20 * rows.noise, 1e-7 * length):
-            return _without_height(replace(rows, conventions=(*rows.conventions, *found)), flat, drift)
+            return _without_height(replace(rows, conventions=(*rows.conventions, *found)), flat, reach)
         if scale != 1:
             continue
         right = np.column_stack([plane, column])
         return replace(rows, positions=right, conventions=(*rows.conventions, *found))
-    return _without_height(rows, False, 0.0)
+    return _without_height(rows, False)
 
 
 def _vertical(length: float) -> Iterator[tuple[float, tuple[int, int, int], tuple[int, int, int], float]]:
@@ -58,12 +61,13 @@ def _vertical(length: float) -> Iterator[tuple[float, tuple[int, int, int], tupl
             yield 1.0, order, (1, 1, sign), shift
 
 
-def _without_height(rows: Rows, flat: bool, drift: float) -> Rows:
+def _without_height(rows: Rows, flat: bool, reach: Array | None = None) -> Rows:
     """Leave the heights out of the explanation: they are not those of a bob on its cord."""
-    found = rows.conventions
+    found, cord = rows.conventions, None
     if flat:
         found = (*found, Convention("z_constant", "gives z a constant: its bob does not rise as it swings"))
-    elif drift:
+    elif reach is not None:
+        drift, cord = float(np.ptp(reach)), float(reach.mean())
         text = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
         found = (*found, Convention("off_the_sphere", text, drift))
-    return replace(rows, positions=np.ascontiguousarray(rows.positions[:, :2]), conventions=found)
+    return replace(rows, positions=np.ascontiguousarray(rows.positions[:, :2]), conventions=found, cord=cord)

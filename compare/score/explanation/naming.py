@@ -19,6 +19,8 @@ ORDER = ("gravity", "model", "input", "release", "frame", "clock", "integrator")
 LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
 STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
 CLEAN = 1e-3  # of what an integrator does: a named one leaves less
+WIDE = 2.0  # times the square of the swing: what the leading error of a step leaves of the whole one
+APART = 0.02  # of a step: how far a whole number of them may be from the spacing of the rows
 MODELS = {
     "linear": ("linear_g", "is the linear two-dimensional model: its period does not grow with the amplitude"),
     "angle": ("linear_in_angle", "is linear in the angle of the cord: its period does not grow with the amplitude"),
@@ -53,11 +55,40 @@ def sized(
         before = after
 
 
-def told_as_loose(named: list[SizedCause], left: float, frequency: float) -> Iterator[SizedCause]:
+def in_whole_steps(named: list[SizedCause], spacing: float, share: float) -> Iterator[SizedCause]:
+    """Yield the causes, a step that the rows' spacing holds a whole number of times put in place of the fitted one.
+
+    Args:
+        named: the causes.
+        spacing: of the rows in s.
+        share: of the step, within which it is known.
+    """
+    for cause in named:
+        many = round(spacing / cause.value) if cause.stage == "integrator" and cause.value else 0
+        if many and cause.value and cause.uncertainty is not None:
+            known = share * many
+            if known < 0.5 and abs(spacing / cause.value - many) <= max(known, APART):
+                step = spacing / many
+                text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
+                cause = replace(cause, value=step, shift=step, text=text)
+            else:
+                cause = replace(cause, uncertainty=max(cause.uncertainty, share * cause.value))
+        yield cause
+
+
+def told_as_loose(
+    named: list[SizedCause], left: float, frequency: float, clean: float = CLEAN
+) -> Iterator[SizedCause]:
     """Call an integrator by its name only where that leaves next to nothing; else say that its error is like it.
 
     An integrator with a variable step moves the frequency and the amplitude as no fixed step does: numbers that were
     fitted beside it and do less than it are part of the same error.
+
+    Args:
+        named: the causes.
+        left: the largest distance in m that they leave.
+        frequency: of the swing in rad/s.
+        clean: share of what an integrator does that it may leave.
     """
     fitted = {cause.id: cause for cause in named if cause.shift is not None}
     drag = fitted.get("pendulum.drag")
@@ -73,7 +104,7 @@ def told_as_loose(named: list[SizedCause], left: float, frequency: float) -> Ite
             yield from named
             return
     size = max((cause.size_m for cause in named if cause.stage == "integrator"), default=0.0)
-    loose = size > 0 and left > CLEAN * size
+    loose = size > 0 and left > clean * size
     for cause in named:
         if cause.id in ("site.gravity", "pendulum.length") and _like_a_step(cause) and left > CLEAN * cause.size_m:
             if not size:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -25,7 +26,8 @@ BEAM = 20  # combinations that are kept of each size
 MOST = 5  # causes at most
 SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
 PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error tells none
-BELOW = 0.2  # what a decade counts below the floor: of two explanations the closer one
+HALVED = 0.5  # of what is left: a cause that leaves more does not count
+BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
 NEWTON = 6  # steps that fit the free numbers of a combination
 
 
@@ -117,12 +119,23 @@ class Reader:
         if len(free) > 3:
             return None
         if program.method is not None and not program.step:
-            shown, own = self.fit.theta, reading.program.theta()
+            own = reading.program.theta()
             omega = math.sqrt(abs(own[5])) or 1.0
-            guesses = (program.method.first_step(-own[5], -shown[5], own[6], shown[6]), *(q / omega for q in PHASES))
+            square, drag = self._shown(reading.program)
+            guesses = (program.method.first_step(-own[5], square, own[6], drag), *(q / omega for q in PHASES))
             tried = [self._judged(together, program.with_input("step", step)) for step in guesses if step > 0]
             program = min(tried, key=lambda one: one.rest).program
         return self._fitted(together, program, free)
+
+    def _shown(self, program: Program) -> tuple[float, float]:
+        """Return ω² and the drag that the rows ask of a program, its release free: other numbers may stand for them."""
+        own, free = program.theta(), list(self.fit.free)
+        columns = [free.index(i) for i in (5, 6, 9, 10) if i in free]
+        slopes = self._triangle[:, columns]
+        scale = np.linalg.norm(slopes, axis=0)
+        scale[scale == 0] = 1.0
+        change = np.linalg.lstsq(slopes / scale, self._off(program), rcond=1e-12)[0] / scale
+        return -float(own[5] + change[0]), float(own[6] + change[1])
 
     def _fitted(self, together: tuple[Cause, ...], program: Program, free: list[str]) -> Reading | None:
         """Fit the free numbers by Gauss-Newton; None if they leave their domains."""
@@ -148,6 +161,22 @@ class Reader:
             if not program.sensible:
                 return None
         return self._judged(together, program)
+
+    def like_a_step(self, reading: Reading, known: Sequence[Cause]) -> bool:
+        """Return whether what a reading leaves is an integrator's: a drag or a step halves it, and no input does as well.
+
+        It leaves too little for a method to be named.
+        """
+        groups = {cause.group for cause in reading.causes}
+        if "integrator" in groups:
+            return False
+        least = {True: math.inf, False: math.inf}
+        for cause in known:
+            if cause.group not in groups and not _clash(reading.causes, cause):
+                found = self._with(reading, cause)
+                kind = cause.stage == "integrator" or cause.free == "drag"
+                least[kind] = min(least[kind], math.inf if found is None else found.rest)
+        return least[True] < min(HALVED * reading.rest, least[False])
 
     def uncertainty(self, reading: Reading, cause: Cause) -> float:
         """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
@@ -183,8 +212,14 @@ class Reader:
         """Return the vector whose length is the root mean square, in m, between a program and the fit."""
         with np.errstate(all="ignore"):
             change = self.fit.theta - program.theta()
-        found: Array = self.fit.slopes @ change[list(self.fit.free)]
+        found: Array = self._triangle @ change[list(self.fit.free)]
         return found
+
+    @cached_property
+    def _triangle(self) -> Array:
+        """The slopes with as many rows as there are numbers: products with it are as long as with them."""
+        slopes = self.fit.slopes
+        return np.asarray(np.linalg.qr(slopes, mode="r")) if np.isfinite(slopes).all() else slopes
 
 
 _SCALES = {

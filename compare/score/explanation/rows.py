@@ -24,6 +24,7 @@ class Rows:
         noise: rounding of the numbers, in m.
         conventions: what was changed.
         starts: whether row 0 is the release.
+        cord: mean distance from the suspension in m, where the rows do not keep it; else None.
     """
 
     times: Array
@@ -31,6 +32,7 @@ class Rows:
     noise: float
     conventions: tuple[Convention, ...] = ()
     starts: bool = True
+    cord: float | None = None
 
 
 def is_release(row: Array, release: Array, noise: float) -> bool:

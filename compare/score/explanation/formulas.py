@@ -1,0 +1,216 @@
+"""A slip in a closed formula: the two rates of a linear model, but products of cosines and sines that are not its own.
+
+A program that solves no equation but prints a formula keeps its rates whatever it does to its coefficients:
+
+    x, y = c1 cos ωt cos βt + c2 cos ωt sin βt + c3 sin ωt cos βt + c4 sin ωt sin βt + c5.
+
+ω and β are fitted to x and y together, the coefficients are linear. No truth is needed, nor rows that are close.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from reference.precision import Array
+
+from .causes import NAMED, Cause
+from .pendulum import NAMES, Fit
+from .programs import Program
+from .readings import Reader, Reading
+from .rows import Rows, rms
+
+PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
+LEAST = 24  # rows, twice the numbers that are fitted
+STEPS = 12  # Gauss-Newton steps in one window at most
+WINDOW = 4.0  # each window is so many times longer than the one before
+HELD = 1e-9  # of the amplitude: what holds a rate that a window does not show
+SAME = 1e-6  # of the amplitude: coefficients that differ by less are one
+MOST = 3  # coefficients that are off
+
+
+@dataclass(frozen=True)
+class Formula:
+    """Products of two rates: ω and β in rad/s, coefficients of x and y in m in the order of `PRODUCTS`, shape (5, 2).
+
+    Attributes:
+        omega: of the swing.
+        beta: of the plane.
+        coefficients: of the products.
+        rest: root mean square of what the formula leaves, in m.
+    """
+
+    omega: float
+    beta: float
+    coefficients: Array
+    rest: float
+
+    @property
+    def mirrored(self) -> Formula:
+        """The same formula with the other sign of β."""
+        return replace(self, beta=-self.beta, coefficients=self.coefficients * np.array([[1], [-1], [1], [-1], [1]]))
+
+    def fit(self, times: Array, right: Program) -> Fit:
+        """Return its rates as a fit of theta: β and ω² alone are told by it."""
+        theta = right.theta()
+        turn, pull = NAMES.index("turn_z"), NAMES.index("pull_z")
+        # γ1 γ2 = β² - ω² is the pull of the model whose phasors have these rates
+        theta[turn], theta[pull] = self.beta, self.beta**2 - self.omega**2
+        by_omega, by_beta = _slopes(times, self.omega, self.beta, self.coefficients)
+        pulled = -by_omega / (2 * self.omega)
+        turned = by_beta + by_omega * self.beta / self.omega
+        slopes = np.column_stack([turned.ravel(), pulled.ravel()]) / math.sqrt(len(times))
+        return Fit(theta, self.rest, (turn, pull), slopes)
+
+
+@dataclass(frozen=True)
+class Slipped:
+    """A closed formula with a slip.
+
+    Attributes:
+        reading: the causes that its rates and its release tell.
+        reader: holds them against its rates.
+        formula: the one that the rows follow.
+        slips: equation, product, its coefficient in m and the model's.
+    """
+
+    reading: Reading
+    reader: Reader
+    formula: Formula
+    slips: tuple[tuple[str, str, float, float], ...]
+
+    @property
+    def price(self) -> float:
+        """What the slips and causes cost, in decades: of two readings the cheaper one."""
+        return NAMED * len(self.slips) + sum(cause.cost for cause in self.reading.causes)
+
+    @property
+    def text(self) -> str:
+        """The slips in a sentence."""
+        told = (
+            f"in the formula of {which}, {product} has {self._number(value)} m where the model has {self._number(own)} m"
+            for which, product, value, own in self.slips
+        )
+        return f"It follows a closed formula with a slip: {'; '.join(told)}."
+
+    def _number(self, value: float) -> str:
+        size = float(np.abs(self.formula.coefficients).max())
+        return f"{value:.6g}" if abs(value) > SAME * size else "0"
+
+
+def fit_formula(rows: Rows, right: Program) -> Formula | None:
+    """Return the formula that leaves least, from the rates of the scene's own swing; None if the rows are too few."""
+    times, plane = rows.times, rows.positions[:, :2]
+    if len(times) < LEAST or not right.g or not right.length:
+        return None
+    best: Formula | None = None
+    beta = right.rate * math.sin(math.radians(right.latitude))
+    guesses = {(math.sqrt(right.g / right.length), sign * beta) for sign in (1, -1) if beta}
+    for guess in sorted(guesses):
+        found = _refined(times, plane, guess)
+        if found is not None and (best is None or found.rest < best.rest):
+            best = found
+    return best
+
+
+def slip_in_formula(rows: Rows, right: Program, floor: float, causes: Sequence[Cause]) -> Slipped | None:
+    """Return the slip in a closed formula that the rows show; None if they follow none, or one of too many slips.
+
+    Args:
+        rows: those of the file, conventions put right.
+        right: what a right program computes with.
+        floor: root mean square in m below which nothing more is asked.
+        causes: those that a linear model may have.
+    """
+    formula = fit_formula(rows, right)
+    if formula is None or formula.rest > floor:
+        return None
+    releases = [cause for cause in causes if cause.stage == "release" and not cause.free]
+    rates = [cause for cause in causes if cause.stage in ("gravity", "model", "input") and cause.group != "drag"]
+    best: Slipped | None = None
+    for turned in (formula, formula.mirrored):
+        reader = Reader(replace(right, kind="linear"), turned.fit(rows.times, right), floor)
+        reading = reader.readings(rates)[0]
+        if reading.rest > 2 * floor:
+            continue
+        for cause in (None, *releases):
+            program = cause.change(reading.program) if cause else reading.program
+            slips = _slips(turned, program, max(SAME * float(np.hypot(right.x, right.y)), 10 * rows.noise))
+            together = (*reading.causes, cause) if cause else reading.causes
+            found = Slipped(replace(reading, causes=together, program=program), reader, turned, slips)
+            if slips and len(slips) <= MOST and (best is None or found.price < best.price):
+                best = found
+    return best
+
+
+def _slips(formula: Formula, program: Program, same: float) -> tuple[tuple[str, str, float, float], ...]:
+    """Return equation, product, its coefficient and that of a linear model, for each coefficient that is not its own."""
+    own = _own(formula, program)
+    return tuple(
+        ("xy"[i], PRODUCTS[j], float(formula.coefficients[j, i]), float(own[j, i]))
+        for i in range(2)
+        for j in range(len(PRODUCTS))
+        if abs(formula.coefficients[j, i] - own[j, i]) > same
+    )
+
+
+def _own(formula: Formula, program: Program) -> Array:
+    """Return the coefficients of e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt)."""
+    theta = program.theta()
+    start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
+    push = (speed + 1j * formula.beta * start) / formula.omega
+    parts = [start, -1j * start, push, -1j * push, 0j]
+    return np.array([[part.real, part.imag] for part in parts])
+
+
+def _basis(times: Array, omega: float, beta: float) -> Array:
+    a, b = omega * times, beta * times
+    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
+    return np.column_stack([ca * cb, ca * sb, sa * cb, sa * sb, np.ones_like(times)])
+
+
+def _slopes(times: Array, omega: float, beta: float, coefficients: Array) -> Iterator[Array]:
+    """Yield d rows / d ω and d rows / d β, each of shape (rows, 2)."""
+    cc, cs, sc, ss, one = _basis(times, omega, beta).T
+    none = np.zeros_like(one)
+    for changed in ([-sc, -ss, cc, cs, none], [-cs, cc, -ss, sc, none]):
+        yield times[:, None] * (np.column_stack(changed) @ coefficients)
+
+
+def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula | None:
+    """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
+    rates, size = np.array(guess), float(np.abs(plane).max())
+    ends, span = [len(times)], float(times[-1])
+    while ends[-1] > LEAST and span > 0:
+        span /= WINDOW
+        ends.append(max(LEAST, int(np.searchsorted(times, span)) + 1))
+    best: Formula | None = None
+    for count in sorted(set(ends)):
+        t, p = times[:count], plane[:count]
+        best = None
+        for _ in range(STEPS):
+            basis = _basis(t, *rates)
+            coefficients = np.linalg.lstsq(basis, p, rcond=1e-12)[0]
+            left = p - basis @ coefficients
+            rest = rms(left)
+            if not math.isfinite(rest):
+                return None
+            if best is not None and rest > 0.9 * best.rest:
+                break
+            best = Formula(float(rates[0]), float(rates[1]), coefficients, rest)
+            moved = np.column_stack([slope.ravel() for slope in _slopes(t, *rates, coefficients)])
+            linear = np.kron(basis, np.eye(2))
+            matrix = np.column_stack([moved, linear])
+            scale = np.linalg.norm(matrix, axis=0)
+            scale[scale == 0] = 1.0
+            hold = HELD * size * math.sqrt(count) * np.eye(2, matrix.shape[1])
+            target = np.concatenate([left.ravel(), np.zeros(2)])
+            change = np.linalg.lstsq(np.vstack([matrix / scale, hold / scale]), target, rcond=1e-13)[0] / scale
+            rates = rates + change[:2]
+        if best is None:
+            return None
+        rates = np.array([best.omega, best.beta])
+    return best
