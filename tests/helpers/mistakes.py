@@ -11,7 +11,7 @@ from small_scenes import make_scene
 
 from reference import Scene
 
-ORDINARY = {"effective_gravity": "no_centrifugal"}  # one reading of g: they differ by its change along the swing
+OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is to be said
 
 
 @dataclass
@@ -30,6 +30,32 @@ class Case:
         text = subprocess.run([str(program), *words], check=True, capture_output=True, text=True).stdout
         table = np.loadtxt(text.splitlines(), delimiter=",", skiprows=1)
         return table[:, 0], {name: np.ascontiguousarray(table[:, i + 1]) for i, name in enumerate("xyz")}
+
+    def said(self, columns: dict[str, np.ndarray]) -> set[str]:
+        """Return the words that ought to be said of what the program wrote, programs with the same motion being one."""
+        words = one_word_for_one_motion(self.expected)
+        if max(np.abs(column).max() for column in columns.values()) > 1e12 * 0.5e-9:  # no double has such decimals
+            words = words - {"decimals"}
+        if "scale" in self.arguments:  # heights are made anew in another unit
+            return words
+        places = np.array([columns[name] for name in ("x", "y", "z")])
+        places[2] = (places[2] - self.arguments.get("zshift", 0.0)) * self.arguments.get("zsign", 1.0)
+        reach = np.linalg.norm(places, axis=0)
+        return words | ({"off_the_sphere"} if np.ptp(reach) > OFF * self.arguments["l"] else set())
+
+
+def one_word_for_one_motion(words: set[str]) -> set[str]:
+    """Return words with those replaced that no output can tell apart.
+
+    A motion in the plane knows only the sign of Ω's vertical part, and without any of the forces of rotation there is
+    no rotation.
+    """
+    found = set(words)
+    if found & {"linear_g", "linear_in_angle"} and "hemisphere" in found:
+        found = found ^ {"hemisphere", "coriolis_sign"}
+    if {"no_centrifugal", "no_coriolis"} <= found:
+        found = found - {"no_centrifugal", "no_coriolis"} | {"no_rotation"}
+    return found
 
 
 def case(number: int) -> Case:
@@ -128,6 +154,7 @@ def _euler(method: int, word: str, low: float, high: float):
         steps = max(1, round(made.arguments["out"] / (period / rng.uniform(low, high))))
         made.arguments |= {"method": method, "h": made.arguments["out"] / steps}
         made.expected.add(word)
+        made.values[word] = made.arguments["h"]
 
     return change
 

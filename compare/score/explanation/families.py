@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -114,10 +114,18 @@ def _phasors_of(theta: Array) -> Phasors:
     return Phasors.of(theta[2], square, theta[6], centre, complex(theta[7], theta[8]), complex(theta[9], theta[10]))
 
 
+def pendulum_of(program: Program, pendulum: Pendulum) -> tuple[Pendulum, Array]:
+    """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""
+    theta = program.theta()
+    theta[NAMES.index("gradient")] = program.gradient
+    return replace(pendulum, square=program.gradient_square), theta
+
+
 def positions_of(program: Program, pendulum: Pendulum, rows: Rows) -> Array:
     """Return what a program writes, in the rows' columns."""
     if program.kind == "sphere":
-        return pendulum.rows(program.theta(), rows.times, rows.positions.shape[1])
+        own, theta = pendulum_of(program, pendulum)
+        return own.rows(theta, rows.times, rows.positions.shape[1])
     plane = program.phasors().at(rows.times)
     if program.kind == "angle":
         angle = np.abs(plane) / program.length

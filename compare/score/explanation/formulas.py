@@ -91,8 +91,8 @@ class Slipped:
     def text(self) -> str:
         """The slips in a sentence."""
         told = (
-            f"in the formula of {which}, {product} has {self._number(value)} m where the model has {self._number(own)} m"
-            for which, product, value, own in self.slips
+            f"in the formula of {name}, {product} has {self._number(value)} m where the model has {self._number(own)} m"
+            for name, product, value, own in self.slips
         )
         return f"It follows a closed formula with a slip: {'; '.join(told)}."
 
@@ -147,7 +147,7 @@ def slip_in_formula(rows: Rows, right: Program, floor: float, causes: Sequence[C
 
 
 def _slips(formula: Formula, program: Program, same: float) -> tuple[tuple[str, str, float, float], ...]:
-    """Return equation, product, its coefficient and that of a linear model, for each coefficient that is not its own."""
+    """Return equation, product, its coefficient and the model's, for each coefficient that is not the model's."""
     own = _own(formula, program)
     return tuple(
         ("xy"[i], PRODUCTS[j], float(formula.coefficients[j, i]), float(own[j, i]))
@@ -182,7 +182,8 @@ def _slopes(times: Array, omega: float, beta: float, coefficients: Array) -> Ite
 
 def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula | None:
     """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
-    rates, size = np.array(guess), float(np.abs(plane).max())
+    omega, beta = guess
+    size = float(np.abs(plane).max())
     ends, span = [len(times)], float(times[-1])
     while ends[-1] > LEAST and span > 0:
         span /= WINDOW
@@ -192,16 +193,16 @@ def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula 
         t, p = times[:count], plane[:count]
         best = None
         for _ in range(STEPS):
-            basis = _basis(t, *rates)
-            coefficients = np.linalg.lstsq(basis, p, rcond=1e-12)[0]
+            basis = _basis(t, omega, beta)
+            coefficients = np.asarray(np.linalg.lstsq(basis, p, rcond=1e-12)[0], dtype=np.float64)
             left = p - basis @ coefficients
             rest = rms(left)
             if not math.isfinite(rest):
                 return None
             if best is not None and rest > 0.9 * best.rest:
                 break
-            best = Formula(float(rates[0]), float(rates[1]), coefficients, rest)
-            moved = np.column_stack([slope.ravel() for slope in _slopes(t, *rates, coefficients)])
+            best = Formula(omega, beta, coefficients, rest)
+            moved = np.column_stack([slope.ravel() for slope in _slopes(t, omega, beta, coefficients)])
             linear = np.kron(basis, np.eye(2))
             matrix = np.column_stack([moved, linear])
             scale = np.linalg.norm(matrix, axis=0)
@@ -209,8 +210,8 @@ def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula 
             hold = HELD * size * math.sqrt(count) * np.eye(2, matrix.shape[1])
             target = np.concatenate([left.ravel(), np.zeros(2)])
             change = np.linalg.lstsq(np.vstack([matrix / scale, hold / scale]), target, rcond=1e-13)[0] / scale
-            rates = rates + change[:2]
+            omega, beta = omega + float(change[0]), beta + float(change[1])
         if best is None:
             return None
-        rates = np.array([best.omega, best.beta])
+        omega, beta = best.omega, best.beta
     return best

@@ -12,6 +12,8 @@ from reference.precision import Array
 from ...candidates.candidate import Convention
 from .rows import Rows
 
+OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is said
+SLIGHT = 1e-9  # and by more than this, heights are left out
 ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
 
 
@@ -33,8 +35,11 @@ def heights(rows: Rows, length: float) -> Rows:
         reach = np.sqrt(square + column * column)
         drift = float(np.ptp(reach))
         if scale == 1 and order == (0, 1, 2) and signs[2] == 1 and shift == 0:
-            kept = drift <= max(20 * rows.noise, 1e-7 * length)
-            return rows if kept and not flat else _without_height(rows, flat, reach)
+            if flat or drift > max(20 * rows.noise, OFF * length):
+                return _without_height(rows, flat, reach)
+            if drift > max(20 * rows.noise, SLIGHT * length):  # no matter of its own, but no height to fit either
+                return replace(rows, positions=np.ascontiguousarray(p[:, :2]))
+            return rows
         text = {
             (1, 0.0): "", (-1, 0.0): "counts z downwards", (1, length): "counts z from the lowest point",
             (-1, -length): "counts z from the lowest point, downwards", (-1, length): "counts z downwards",
@@ -46,7 +51,7 @@ def heights(rows: Rows, length: float) -> Rows:
         if order != (0, 1, 2):
             vertical = "xyz"[order[2]]
             found.append(Convention("vertical_is_not_z", f"calls the vertical {vertical}", length))
-        if flat or drift > max(20 * rows.noise, 1e-7 * length):
+        if flat or drift > max(20 * rows.noise, OFF * length):
             return _without_height(replace(rows, conventions=(*rows.conventions, *found)), flat, reach)
         if scale != 1:
             continue

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from reference.precision import Array
@@ -64,21 +64,20 @@ def in_whole_steps(named: list[SizedCause], spacing: float, share: float) -> Ite
         share: of the step, within which it is known.
     """
     for cause in named:
-        many = round(spacing / cause.value) if cause.stage == "integrator" and cause.value else 0
-        if many and cause.value and cause.uncertainty is not None:
-            known = share * many
-            if known < 0.5 and abs(spacing / cause.value - many) <= max(known, APART):
-                step = spacing / many
-                text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
-                cause = replace(cause, value=step, shift=step, text=text)
-            else:
-                cause = replace(cause, uncertainty=max(cause.uncertainty, share * cause.value))
-        yield cause
+        if cause.stage != "integrator" or not cause.value or cause.uncertainty is None:
+            yield cause
+            continue
+        many = round(spacing / cause.value)
+        known = share * many
+        if many and known < 0.5 and abs(spacing / cause.value - many) <= max(known, APART):
+            step = spacing / many
+            text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
+            yield replace(cause, value=step, shift=step, text=text)
+        else:
+            yield replace(cause, uncertainty=max(cause.uncertainty, share * cause.value))
 
 
-def told_as_loose(
-    named: list[SizedCause], left: float, frequency: float, clean: float = CLEAN
-) -> Iterator[SizedCause]:
+def told_as_loose(named: list[SizedCause], left: float, frequency: float, clean: float = CLEAN) -> Iterator[SizedCause]:
     """Call an integrator by its name only where that leaves next to nothing; else say that its error is like it.
 
     An integrator with a variable step moves the frequency and the amplitude as no fixed step does: numbers that were
@@ -121,7 +120,9 @@ def _like_a_step(cause: SizedCause) -> bool:
 
 
 def trifling(cause: SizedCause, allowed_m: float) -> bool:
-    """Return whether a fitted number is the scene's own but for an error of the integrator."""
+    """Return whether a cause moves nothing that counts: a small step, or the scene's own number but for such a step."""
+    if cause.stage == "integrator":
+        return cause.size_m <= allowed_m
     if cause.value is None or cause.shift is None:
         return False
     return abs(cause.shift) < SAME * abs(cause.value) and cause.size_m < 10 * allowed_m
@@ -137,11 +138,11 @@ def _number(cause: Cause, value: float, right: Program) -> str:
     return f"{value:.10g} and not {getattr(right, cause.free):.10g}{unit}"
 
 
-def model_of(kind: str, best: Reading, exact: float, costs: float) -> Model | None:
-    """Return the model that a reading makes up; None if one of its causes is no simplification with a name."""
-    words = [cause.id for cause in best.causes]
+def model_of(kind: str, named: Sequence[SizedCause], exact: float, costs: float) -> Model | None:
+    """Return the model that causes make up; None if one of them is no simplification with a name."""
+    words = [cause.id for cause in named]
     if kind != "sphere":
-        words = [MODELS[kind][0], *words]
+        words = [MODELS[kind][0], *(word for word in words if word != MODELS[kind][0])]
     names = {
         "linear_g": "the linear two-dimensional model", "linear_in_angle": "the model linear in the angle",
         "no_centrifugal": "no centrifugal force (g effective)", "effective_gravity": "g effective",

@@ -46,31 +46,37 @@ class Pendulum:
 
     def rows(self, theta: Array, times: Array, columns: int) -> Array:
         """Return x, y (and z) in m, shape (times, columns); NaN where no such motion exists."""
-        turn, pull, drag = theta[0:3], theta[3:6], float(theta[6])
-        x, y, vx, vy = theta[7:11]
-        length, gradient, point = theta[11:14]
-        pointing = point * abs(pull[2]) * length / self.radius if self.radius else 0.0
-        own = [gradient * part for part in self.square]
-        k = Constants(
-            length=float(length),
-            turn=(float(turn[0]), float(turn[1]), float(turn[2])),
-            pull=(float(pull[0]), float(pull[1]), float(pull[2])),
-            centrifugal=(own[0] - pointing, own[1] - pointing, own[2], own[3] + 2 * pointing),
-            drag=drag,
-        )
-        below = length * length - x * x - y * y
-        rate = float(np.abs(turn).max()) + abs(drag) + math.sqrt(float(np.abs(pull).max()))
-        if not below > 0 or not np.isfinite(theta).all() or rate > self.fastest:
+        rate = float(np.abs(theta[0:3]).max()) + abs(theta[6]) + math.sqrt(float(np.abs(theta[3:6]).max()))
+        reached = theta[11] ** 2 > theta[7] ** 2 + theta[8] ** 2
+        if not reached or not np.isfinite(theta).all() or rate > self.fastest:
             return np.full((len(times), columns), np.nan)
-        z = -math.sqrt(below)
-        start = np.array([x, y, z, vx, vy, -(x * vx + y * vy) / z]) / length
         lead = times[0] != 0
         try:
-            states = self.model.run(start, np.concatenate([[0.0], times]) if lead else times, k)
+            span = np.concatenate([[0.0], times]) if lead else times
+            states = self.model.run(self.start(theta).tolist(), span, self.constants(theta))
         except (FoucaultError, ValueError, ArithmeticError):
             return np.full((len(times), columns), np.nan)
         found: Array = states[int(lead) :, :columns]
         return found
+
+    def constants(self, theta: Array) -> Constants:
+        """Return the constants of the force."""
+        length, gradient, point = theta[11:14]
+        pointing = point * abs(theta[5]) * length / self.radius if self.radius else 0.0
+        own = [gradient * part for part in self.square]
+        return Constants(
+            length=float(length),
+            turn=(float(theta[0]), float(theta[1]), float(theta[2])),
+            pull=(float(theta[3]), float(theta[4]), float(theta[5])),
+            centrifugal=(own[0] - pointing, own[1] - pointing, own[2], own[3] + 2 * pointing),
+            drag=float(theta[6]),
+        )
+
+    def start(self, theta: Array) -> Array:
+        """Return position and velocity of the release over the length, below the suspension and along the sphere."""
+        x, y, vx, vy = theta[7:11]
+        z = -math.sqrt(theta[11] ** 2 - x * x - y * y)
+        return np.asarray(np.array([x, y, z, vx, vy, -(x * vx + y * vy) / z]) / theta[11])
 
     def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:
         """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * columns, 14)."""

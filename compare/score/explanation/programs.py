@@ -101,6 +101,11 @@ class Program:
         )  # fmt: skip
 
     @property
+    def gradient(self) -> float:
+        """Share of the centrifugal force's change along the swing that it takes into account: 1 or 0."""
+        return float(self.gravity_reading in ("ellipsoid", "effective"))
+
+    @property
     def gradient_square(self) -> tuple[float, float, float, float]:
         """xx, yy, yz, zz of |Ω|² - Ω Ωᵀ, the centrifugal force's change along the swing, in 1/s²."""
         phi = math.radians(self.latitude)
@@ -115,14 +120,11 @@ class Program:
         north = self.rate * math.cos(turned) * self.coriolis[0] * self.coriolis[2]
         up = self.rate * math.sin(turned) * self.coriolis[1] * self.coriolis[2]
         outward = self.rate**2 * self.axis_distance
-        pull_y, pull_z, gradient = 0.0, -self.g, 0.0
+        pull_y, pull_z, gradient = 0.0, -self.g, self.gradient
         if self.gravity_reading in ("ellipsoid", "uniform"):
             pull_y, pull_z = -outward * sin, outward * cos - self.g
-            gradient = float(self.gravity_reading == "ellipsoid")
         elif self.gravity_reading == "no_tilt":
             pull_z = outward * cos - self.g
-        elif self.gravity_reading == "effective":
-            gradient = 1.0
         if self.nominal_rate:
             gradient *= (self.rate / self.nominal_rate) ** 2
         vx, vy = self.vx + self.released * up * self.y, self.vy - self.released * up * self.x

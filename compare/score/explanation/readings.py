@@ -23,6 +23,7 @@ from .programs import Program
 
 ENOUGH = 5000  # combinations that are tried
 BEAM = 20  # combinations that are kept of each size
+ASIDE = 5  # and beside them, of those that leave least
 MOST = 5  # causes at most
 SAME = 3e-6  # relative distance of a fitted number from a named one that no accident brings about
 PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error tells none
@@ -85,8 +86,9 @@ class Reader:
                         longer.append(found)
                         least = min(least, found.score)
             longer.sort(key=lambda one: one.score)
-            beam = longer[:BEAM]
-            best += beam
+            best += longer[:BEAM]
+            # of two mistakes as large as each other, neither lowers what is left by much: those that lower it at all
+            beam = [*longer[:BEAM], *sorted(longer[BEAM:], key=lambda one: one.rest)[:ASIDE]]
             if not beam:
                 break
         best.sort(key=lambda one: one.score)
@@ -163,9 +165,9 @@ class Reader:
         return self._judged(together, program)
 
     def like_a_step(self, reading: Reading, known: Sequence[Cause]) -> bool:
-        """Return whether what a reading leaves is an integrator's: a drag or a step halves it, and no input does as well.
+        """Return whether what a reading leaves is an integrator's, too little for its method to be named.
 
-        It leaves too little for a method to be named.
+        A drag or a step halves it then, and no input does as well.
         """
         groups = {cause.group for cause in reading.causes}
         if "integrator" in groups:

@@ -7,7 +7,9 @@ import re
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -15,7 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.linalg
-from mistakes import case
+from mistakes import case, one_word_for_one_motion
 from places import MISTAKEN_C, PENDULUM_C
 from small_scenes import make_scene
 from typer.testing import CliRunner
@@ -143,32 +145,43 @@ def test_a_simplification_is_a_grade_of_its_own(program: Path) -> None:
     assert scored(program, "solar_day", "--as-model")[0] == 1
 
 
-def table_case(program: Path, number: int) -> tuple[set[str], set[str]]:
-    """Return the ids that ought to be named of a case and those that are."""
+@dataclass(frozen=True)
+class Told:
+    """What ought to be said of a case, what is said, and whether its first cause and its numbers are right."""
+
+    expected: set[str]
+    said: set[str]
+    first: str | None
+    numbers: bool
+
+    @property
+    def right(self) -> bool:
+        return self.said == self.expected and self.numbers
+
+    @property
+    def wrong(self) -> bool:
+        return self.first is not None and self.first not in self.expected
+
+
+def table_case(program: Path, number: int) -> Told:
+    """Explain the output of a case; numbers are right within 1 % or the uncertainty that is stated."""
     made = case(number)
     times, columns = made.rows(program)
     position = made.scene.exact.position
     assert position is not None
     found = explain(times, columns, made.scene, 1e-6 * float(np.hypot(float(position[0]), float(position[1]))))
-    said = {EQUAL.get(one.id, one.id) for one in (*found.causes, *found.conventions)} - ASIDE
-    shifts = {one.id: one.shift for one in found.causes}
-    for word, value in made.values.items():
-        if word in said:
-            assert shifts[word] == pytest.approx(value, rel=1e-2)
-    expected = {EQUAL.get(word, word) for word in made.expected}
-    if {"linear_g", "linear_in_angle"} & expected and "hemisphere" in expected:
-        expected = expected - {"hemisphere"} | {"coriolis_sign"}
-    if {"no_centrifugal", "no_coriolis"} <= expected:  # one name for both: no rotation
-        expected = expected - {"no_centrifugal", "no_coriolis"} | {"no_rotation"}
-    if {"no_centrifugal", "no_coriolis"} <= said:
-        said = said - {"no_centrifugal", "no_coriolis"} | {"no_rotation"}
-    return expected, said
-
-
-# one reading of g; a wide swing's step error, whose method only its leading order tells
-EQUAL = {"effective_gravity": "no_centrifugal", "integrator_rk4": "a step", "integrator_loose": "a step",
-         "integrator_semi_implicit_euler": "a step"}  # fmt: skip
-ASIDE = {"off_the_sphere"}  # true of every program that leaves the sphere by its step
+    said = one_word_for_one_motion({one.id for one in (*found.causes, *found.conventions)})
+    numbers = all(
+        abs(one.shift - made.values[one.id]) <= max(0.01 * abs(made.values[one.id]), one.uncertainty or 0.0)
+        for one in found.causes
+        if one.shift is not None and one.id in made.values
+    )
+    expected = made.said(columns)
+    largest = max(found.causes, key=lambda one: one.size_m, default=None)
+    first = None if largest is None else largest.id
+    if first in ("no_centrifugal", "no_coriolis") and first not in said:
+        first = "no_rotation"
+    return Told(expected, said, first, numbers)
 
 
 @pytest.fixture(scope="session")
@@ -180,20 +193,21 @@ def mistaken(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return made
 
 
-def test_one_to_three_mistakes_drawn_at_random_are_named(mistaken: Path, size: Callable[[int, int], int]) -> None:
-    """In the long form 95 % are right and none is wrong."""
-    count = size(8, 60)
-    wrong, right = {}, 0
-    for number in range(count):
-        expected, said = table_case(mistaken, number)
-        right += said == expected
-        if said - expected:
-            wrong[number] = (expected, said)
-    assert not wrong
-    assert right >= SHARE * count
+def test_one_to_three_mistakes_drawn_at_random_are_named(
+    mistaken: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
+) -> None:
+    """Every word right and none besides in 95 %, and never a wrong one first."""
+    count = size(20, 60)
+    begun = time.process_time()
+    table = {number: table_case(mistaken, number) for number in range(count)}
+    missed = {number: one for number, one in table.items() if not one.right}
+    spent = time.process_time() - begun
+    tally(f"mistakes drawn at random: {count - len(missed)} of {count} right, {spent:.0f} CPU s")
+    assert not [one for one in table.values() if one.wrong]
+    assert len(missed) <= (1 - SHARE) * count, missed
 
 
-SHARE = 0.9
+SHARE = 0.95
 
 
 def test_nothing_is_named_where_nothing_is_known() -> None:

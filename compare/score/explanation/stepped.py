@@ -1,0 +1,154 @@
+"""Euler's methods on the sphere, run as a program would: the Cartesian equations at a fixed step that divides the rows.
+
+What the leading error of a step does to a wide swing is known; what Euler's first order does beside that, leaving the
+sphere on its way, is not. So the equations of a program are stepped in the same way, and what that does to the rows is
+taken from them before they are read.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from reference.model.constants import Constants
+from reference.model.force import acceleration
+from reference.precision import Array
+
+from .causes import FITTED, NAMED
+from .families import pendulum_of, positions_of
+from .findings import Explanation, SizedCause
+from .fitted import Case, best_of, told
+from .pendulum import Pendulum
+from .programs import Program
+from .rows import Rows, largest, rms
+
+TITLES = {
+    "semi_implicit_euler": "semi-implicit (symplectic) Euler",
+    "semi_implicit_euler_drift": "semi-implicit (symplectic) Euler, position first",
+    "explicit_euler": "explicit Euler",
+}
+IntArray = npt.NDArray[np.int64]
+LONGEST = 15_000  # steps that are run
+FINEST = 0.004  # ωh: the shortest step that is tried
+SWING = 1.5  # periods at the beginning that tell the step
+LIKELY = 3  # steps that are tried on all rows
+PLAIN = 0.3  # of what no step at all leaves of the first swing
+PASSES = 4  # by which the other causes are found
+STEP_LEFT = 1e-3  # of what the steps do that may be left
+
+
+@dataclass(frozen=True)
+class Steps:
+    """A method of Euler's and its number of steps from row to row, with the reading of g that it was found with."""
+
+    method: str
+    every: int
+    program: Program
+
+
+def of_steps(case: Case) -> Explanation | None:
+    """Return what is known of rows that a method of Euler's made on the sphere; None if none did.
+
+    The step's effect is that on a right program at first, then that on the program which the rest is read as.
+    """
+    rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.positions[:, :2]), cord=None)
+    for steps in likely_steps(rows, case.right, case.pendulum, case.frequency):
+        program, best, seen, before = steps.program, None, case, math.inf
+        for _ in range(PASSES):
+            moved = stepped(program, case.pendulum, steps, rows)
+            effect = moved - positions_of(program, case.pendulum, rows)
+            left = rms(rows.positions - moved)
+            enough = left <= max(case.floor, STEP_LEFT * rms(effect))
+            if not left < before or (enough and (best is not None or program == case.right)):
+                break
+            before = left
+            seen = replace(case, rows=replace(rows, positions=rows.positions - effect), truth=case.truth[:, :2])
+            best = best_of(seen, integrators=False, sure=False)
+            if best is None or best.family.kind != "sphere":
+                break
+            program = best.reading.program
+        if not enough or program.kind != "sphere":
+            continue
+        found = Explanation(rows.conventions) if best is None else told(seen, best)
+        step = float(rows.times[1]) / steps.every
+        text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
+        cause = SizedCause(f"integrator_{steps.method}", text, largest(effect), "integrator", step, step, 0.0)
+        corrected = largest(rows.positions - moved)
+        return replace(
+            found, causes=(*found.causes, cause), model=None, corrected_m=corrected, explained=1 - left / case.error,
+            score=case.score_of(corrected) + sum(NAMED for _ in found.causes) + FITTED,
+        )  # fmt: skip
+    return None
+
+
+def likely_steps(rows: Rows, right: Program, pendulum: Pendulum, frequency: float) -> list[Steps]:
+    """Return methods and steps that the first swing looks like, the likeliest first; none for rows not evenly spaced.
+
+    Args:
+        rows: of the file, conventions put right; the first of them evenly spaced from the release on.
+        right: what a right program computes with.
+        pendulum: of its scene.
+        frequency: of the swing in rad/s.
+    """
+    if len(rows.times) < 8 or rows.times[0] != 0 or not frequency:
+        return []
+    spacing = float(rows.times[1])
+    count = max(6, math.ceil(SWING * 2 * math.pi / frequency / spacing))
+    last = rows.times[-1] / spacing
+    even = np.abs(rows.times / spacing - np.round(rows.times / spacing)).max() < 1e-6 * last
+    most = min(int(spacing * frequency / FINEST), int(LONGEST / last))
+    if not even or most < 1 or len(rows.times) <= count or abs(rows.times[count] / spacing - count) > 1e-6:
+        return []
+    found: list[tuple[float, Steps]] = []
+    plain: list[float] = []
+    first = replace(rows, times=rows.times[: count + 1], positions=rows.positions[: count + 1, :2])
+    every = np.arange(1, most + 1, dtype=np.int64)
+    for gravity in dict.fromkeys((right.gravity_reading, "none")):
+        program = replace(right, gravity_reading=gravity)
+        exact = positions_of(program, pendulum, first)
+        plain.append(float(np.linalg.norm(exact - first.positions)))
+        for method in TITLES:
+            moved = _rows(program, pendulum, method, spacing, every, count)
+            apart = np.linalg.norm(moved - first.positions[:, :, None], axis=(0, 1))
+            best = int(np.argmin(np.where(np.isfinite(apart), apart, np.inf)))
+            near = every[max(best - 1, 0) : best + 2]
+            found += [(float(apart[i - 1]), Steps(method, int(i), program)) for i in near if np.isfinite(apart[i - 1])]
+    found.sort(key=lambda one: one[0])
+    return [steps for apart, steps in found[:LIKELY] if apart < PLAIN * min(plain)]
+
+
+def stepped(program: Program, pendulum: Pendulum, steps: Steps, rows: Rows) -> Array:
+    """Return x and y in m at the times of some rows, as steps of a program have them, shape (rows, 2)."""
+    spacing = float(rows.times[1])
+    at = np.round(rows.times / spacing).astype(int)
+    every = np.array([steps.every], dtype=np.int64)
+    whole = _rows(program, pendulum, steps.method, spacing, every, int(at[-1]))
+    found: Array = whole[at, :, 0]
+    return found
+
+
+def _rows(program: Program, pendulum: Pendulum, method: str, spacing: float, every: IntArray, count: int) -> Array:
+    """Return x and y of row 0, 1, … in m for several numbers of steps a row, shape (rows, 2, numbers)."""
+    own, theta = pendulum_of(program, pendulum)
+    k: Constants = own.constants(theta)
+    length, start = float(theta[11]), own.start(theta)
+    h = spacing / every if len(every) > 1 else float(spacing / every[0])  # a single one is faster without an array
+    place, speed = ([value + 0 * h for value in part] for part in (start[:3], start[3:]))
+    found = np.full((count + 1, 2, len(every)), np.nan)
+    found[0] = np.reshape(place[:2], (2, -1))
+    for done in range(1, count * int(every.max()) + 1):
+        if method == "semi_implicit_euler_drift":
+            place = [p + h * v for p, v in zip(place, speed, strict=True)]
+        rates = acceleration(tuple(place), tuple(speed), k)
+        before = speed
+        speed = [v + h * a for v, a in zip(speed, rates, strict=True)]
+        if method != "semi_implicit_euler_drift":
+            moved = before if method == "explicit_euler" else speed
+            place = [p + h * v for p, v in zip(place, moved, strict=True)]
+        row = np.flatnonzero((done % every == 0) & (done // every <= count))
+        if len(row):
+            found[done // every[row], :, row] = np.reshape(place[:2], (2, -1)).T[row]
+    return found * length
