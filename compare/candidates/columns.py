@@ -81,7 +81,7 @@ class ColumnReader:
 
     @property
     def conventions(self) -> tuple[Convention, ...]:
-        """What is not plain about the way in which it was read."""
+        """Return what is to be said of the way in which it was read."""
         said = () if self.layout is None else self.layout.conventions
         return (*said, DECIMAL_COMMA) if self.spelled.decimal_comma else said
 

@@ -22,7 +22,7 @@ UNNAMED = {3: ("t", "x", "y"), 4: ("t", "x", "y", "z"), 7: ("t", *COLUMNS), FOUC
 
 @dataclass(frozen=True)
 class Naming:
-    """What a user says of the columns of a file.
+    """Hold the names and units that a user gives to the columns of a file.
 
     Attributes:
         columns: their names in order, as in a header, `-` for one that is not read; empty if the file says it.

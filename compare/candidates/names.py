@@ -39,7 +39,7 @@ _AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_
 
 @dataclass(frozen=True)
 class Meaning:
-    """What a word of a header means.
+    """Say which column a word of a header names, and in which unit.
 
     Attributes:
         column: t, x, y, z, vx, vy or vz.

@@ -29,7 +29,7 @@ from .options import announce
 
 @dataclass(frozen=True)
 class Judging:
-    """What is the same for all candidates of a command.
+    """Judge every candidate of a command with the same options.
 
     Attributes:
         naming: what the user says of the columns of files.

@@ -1,4 +1,4 @@
-"""What the fit of a family of models tells of a file: its best reading, and the explanation that follows from it."""
+"""Find the best reading of a file among the families that fit it, and the explanation that follows from it."""
 
 from __future__ import annotations
 

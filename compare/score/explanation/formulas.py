@@ -84,7 +84,7 @@ class Slipped:
 
     @property
     def price(self) -> float:
-        """What the slips and causes cost, in decades: of two readings the cheaper one."""
+        """Return the cost of the slips and causes in decades: of two readings the cheaper one is meant."""
         return NAMED * len(self.slips) + sum(cause.cost for cause in self.reading.causes)
 
     @property

@@ -521,3 +521,21 @@ def test_ten_times_the_rows_of_a_day_take_as_many_steps_and_hardly_more_calls(tm
     few, many = work(10_000), work(100_000)
     assert many["steps"] == few["steps"] > 1440  # in each interval of the grid at least one
     assert many["calls"] < 1.1 * few["calls"]
+
+
+@pytest.mark.parametrize(
+    ("site", "warned"),
+    [
+        (["site.gravity=0.01"], True),  # RΩ² is 0.022 m/s² at Paris
+        (["site.gravity=0.03"], False),
+        (["site.rotation_rate=0.07"], True),  # a program that speeds the Earth up
+        (["site.rotation_rate=0.07", "site.gravity_is=effective"], False),
+        (["site.rotation_rate=0.07", "site.equatorial_radius=0"], False),
+    ],
+)
+def test_a_centrifugal_force_larger_than_g_is_warned_of(tmp_path, site, warned):
+    scene = load_scene("paris", [*site, "run.t_end=2", "run.grid_step=1", "run.level=self_consistent", "run.digits=10"])
+    path = write_csv(tmp_path / "at_rest.csv", [0.0, 1.0], [[0.3, 0.4]] * 2, "xy")
+    notes = [note for note in judge(path, scene, explain=False).notes if "larger than g" in note]
+    assert bool(notes) is warned
+    assert all("site.gravity_is=effective" in note for note in notes)

@@ -113,12 +113,24 @@ def test_transits_can_be_left_out_and_are_not_looked_for_where_xdot_is_zero(pari
         {"site": {"latitude": "-33.9"}},
         {"site": {"rotation_rate": "0"}},
         {"site": {"rotation_rate": "0.001"}},
+        {"site": {"rotation_rate": "0.001", "gravity_is": "effective"}},
         {"pendulum": {"drag": "0.01"}},
         {"site": {"gravity": "0", "rotation_rate": "0"}, "release": {"x": "1", "y": "1", "vx": "1", "vy": "0"}},
         {"release": {"x": "0", "y": "0"}},
         {"release": {"x": "1e-9", "y": "0"}},
     ],
-    ids=["pole", "equator", "south", "no rotation", "fast Earth", "drag", "no force", "straight down", "tiny"],
+    ids=[
+        "pole",
+        "equator",
+        "south",
+        "no rotation",
+        "fast Earth",
+        "fast Earth, effective",
+        "drag",
+        "no force",
+        "straight down",
+        "tiny",
+    ],
 )
 def test_every_kind_of_scene_is_confirmed_to_thirty_digits(sections):
     scene = make_scene(**sections, run={"t_end": "120", "digits": 30})
