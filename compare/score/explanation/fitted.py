@@ -20,6 +20,8 @@ from .rows import Rows, largest, rms
 
 HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
 TRIED = 6  # readings of a family that are run
+POLISHED = 3  # steps by which fitted numbers are moved
+BETTER = 0.9  # of what was left, for a step that is taken
 EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}  # decades by which a simpler family has to be better
 CONVENTION = 0.3  # decades that a convention has to explain
@@ -112,10 +114,38 @@ def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Best | N
                 run = reader.scored(one.causes, one.program, leaves)
                 if run.score + EXTRA[family.kind] < lowest:
                     best, lowest = Best(family, reader, run), run.score + EXTRA[family.kind]
+    if best is not None:
+        best = replace(best, reading=_polished(case, best))
     if best is None or not sure:
         return best
     share = FITTED_SHARE if any(cause.free for cause in best.reading.causes) else NAMED_SHARE
     return best if best.reading.rest <= max(share * case.error, 1.5 * rows.noise) else None
+
+
+def _polished(case: Case, best: Best) -> Reading:
+    """Return the best reading with its fitted numbers moved to where its program, run, leaves least.
+
+    The numbers of a reading are linear in those of the fit, which a number that is far off is not.
+    """
+    rows, pendulum, reading = case.rows, case.pendulum, best.reading
+    names = [cause.free for cause in reading.causes if cause.free]
+    for _ in range(POLISHED if names else 0):
+        program = reading.program
+        base = positions_of(program, pendulum, rows)
+        slopes, nudges = [], [best.reader.nudge(program, name) for name in names]
+        for name, nudge in zip(names, nudges, strict=True):
+            ahead = program.with_input(name, float(getattr(program, name)) + nudge)
+            slopes.append((positions_of(ahead, pendulum, rows) - base).ravel())
+        if not np.isfinite(slopes).all():
+            break
+        change = np.linalg.lstsq(np.column_stack(slopes), (rows.positions - base).ravel(), rcond=1e-12)[0]
+        for name, nudge, share in zip(names, nudges, change, strict=True):
+            program = program.with_input(name, float(getattr(program, name) + share * nudge))
+        rest = rms(rows.positions - positions_of(program, pendulum, rows)) if program.sensible else math.inf
+        if not rest < BETTER * reading.rest:
+            break
+        reading = best.reader.scored(reading.causes, program, rest)
+    return reading
 
 
 def told(case: Case, best: Best) -> Explanation:

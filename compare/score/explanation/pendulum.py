@@ -21,7 +21,8 @@ NAMES = (
     "turn_x", "turn_y", "turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy", "length", "gradient",
     "point_mass",
 )  # fmt: skip
-STEPS = 8  # Gauss-Newton steps in one window at most
+STEPS = 16  # Gauss-Newton steps in one window at most
+DAMPING = (0.0, 1e-7, 1e-5, 1e-3)  # of steps, after each that fails
 SEEN = 1e-6  # of the amplitude: how far a nudge moves the rows, for differences that are linear and not noise
 WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)  # in scales: how far a number may be off
 HOPELESS = 0.05  # of the amplitude: what leaves more in a window is not followed to the next
@@ -141,39 +142,46 @@ def _in_window(
     noise: float,
     nudges: Array,
 ) -> Fit:
-    """Return the best fit of a window."""
+    """Return the best fit of a window: slopes are kept while they serve, a step that fails is tried again, damped."""
     columns, root = rows.shape[1], math.sqrt(len(times))
-    slopes, fresh = None, False
+    slopes, fresh, damping = None, False, list(DAMPING)
     best, least = theta, math.inf
+    kept = np.zeros(rows.size)
     for _ in range(STEPS):
         left = (rows - pendulum.rows(theta, times, columns)).ravel()
         size = float(np.linalg.norm(left)) / root
-        before = least
+        stuck = not size < 0.5 * least
         if size < least:
-            best, least = theta, size
-        stuck = not size < 0.5 * before
-        if size < noise or (stuck and fresh):
+            best, least, kept = theta, size, left
+        if least < noise:
             break
-        if slopes is None or stuck:
-            theta = best
-            left = (rows - pendulum.rows(theta, times, columns)).ravel() if stuck and slopes is not None else left
-            slopes, fresh = pendulum.slopes(theta, times, columns, scales, nudges), True
+        if stuck and fresh:
+            if len(damping) == 1:
+                break
+            damping.pop(0)
+        elif slopes is None or stuck:
+            slopes, fresh = pendulum.slopes(best, times, columns, scales, nudges), True
         else:
             fresh = False
         if not np.isfinite(slopes).all():
             least = math.inf
             break
-        theta = theta + scales * _step(slopes, left, (theta - guess) / scales, max(noise, 1e-3 * least) * root)
+        hold = max(noise, 1e-3 * least) * root
+        theta = best + scales * _step(slopes, kept, (best - guess) / scales, hold, damping[0])
     if slopes is None:
         slopes = pendulum.slopes(best, times, columns, scales, nudges)
     return Fit(best, least, tuple(range(len(NAMES))), slopes / scales / root)
 
 
-def _step(slopes: Array, left: Array, off: Array, noise: float) -> Array:
-    """Return the change of theta in scales that least squares ask for, each number held near its guess."""
+def _step(slopes: Array, left: Array, off: Array, noise: float, damping: float) -> Array:
+    """Return the change of theta in scales that least squares ask for, each number held near its guess.
+
+    Damping holds back what the rows hardly tell: directions whose slope is less than it, of slopes made 1 each.
+    """
     holds = noise / WIDTHS
     matrix = np.vstack([slopes, np.diag(holds)])
-    target = np.concatenate([left, -holds * off])
     norms = np.linalg.norm(matrix, axis=0)
-    found: Array = np.linalg.lstsq(matrix / norms, target, rcond=1e-14)[0] / norms
+    matrix = np.vstack([matrix / norms, damping * np.eye(len(norms))])
+    target = np.concatenate([left, -holds * off, np.zeros(len(norms))])
+    found: Array = np.linalg.lstsq(matrix, target, rcond=1e-14)[0] / norms
     return found

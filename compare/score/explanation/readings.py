@@ -151,7 +151,7 @@ class Reader:
             slopes, scales = [], []
             for name in free:
                 value = getattr(program, name)
-                nudge = 1e-6 * max(abs(value), _SCALES.get(name, 1e-3))
+                nudge = self.nudge(program, name)
                 slopes.append((self._off(program.with_input(name, value + nudge)) - off) / nudge)
                 scales.append(nudge)
             matrix = np.column_stack(slopes) * np.array(scales)
@@ -183,10 +183,15 @@ class Reader:
     def uncertainty(self, reading: Reading, cause: Cause) -> float:
         """Return by how much a fitted number may be off: what is left, over how the rows answer to it."""
         value = reading.value(cause)
-        nudge = 1e-6 * max(abs(value), _SCALES.get(cause.free, 1e-3))
+        nudge = self.nudge(reading.program, cause.free)
         moved = self._off(reading.program.with_input(cause.free, value + nudge)) - self._off(reading.program)
         answer = float(np.linalg.norm(moved)) / nudge
         return max(reading.rest, 1e-15) / answer if answer else math.inf
+
+    @staticmethod
+    def nudge(program: Program, name: str) -> float:
+        """Return a change of a number that is small for it."""
+        return 1e-6 * max(abs(float(getattr(program, name))), _SCALES.get(name, 1e-3))
 
     def _judged(self, together: tuple[Cause, ...], program: Program) -> Reading:
         off = float(np.linalg.norm(self._off(program)))
