@@ -129,7 +129,10 @@ def slip_in_formula(rows: Rows, right: Program, floor: float, causes: Sequence[C
     if formula is None or formula.rest > floor:
         return None
     releases = [cause for cause in causes if cause.stage == "release" and not cause.free]
-    rates = [cause for cause in causes if cause.stage in ("gravity", "model", "input") and cause.group != "drag"]
+    # rates that have to be fitted are those of equations with a slip, not of a formula
+    rates = [
+        one for one in causes if one.stage in ("gravity", "model", "input") and one.group != "drag" and not one.free
+    ]
     best: Slipped | None = None
     for turned in (formula, formula.mirrored):
         reader = Reader(replace(right, kind="linear"), turned.fit(rows.times, right), floor)

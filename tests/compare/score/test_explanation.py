@@ -119,7 +119,8 @@ def synthetic(scene: Scene, name: str, value: str, decimals: int = 17, rows: int
     ("name", "value", "decimals", "rows"),
     [
         ("site.gravity", "9.80667", 4, 1441),  # the first minutes show nothing but the rounding of the output
-        ("site.latitude", "30", 17, 400),  # of as many rows as the others have, none is explained
+        ("site.latitude", "30", 17, 1441),
+        ("pendulum.length", "70", 17, 400),
         ("pendulum.drag", "1e-6", 17, 1441),
         ("pendulum.length", "67.05", 17, 1441),
     ],
