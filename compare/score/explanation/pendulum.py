@@ -155,14 +155,14 @@ def _in_window(
             best, least, kept = theta, size, left
         if least < noise:
             break
-        if stuck and fresh:
-            if len(damping) == 1:
-                break
-            damping.pop(0)
-        elif slopes is None or stuck:
+        if slopes is None or (stuck and not fresh):
             slopes, fresh = pendulum.slopes(best, times, columns, scales, nudges), True
-        else:
+        elif not stuck:
             fresh = False
+        elif len(damping) == 1:
+            break
+        else:
+            damping.pop(0)
         if not np.isfinite(slopes).all():
             least = math.inf
             break
