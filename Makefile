@@ -1,13 +1,14 @@
 # Two commands on a fresh machine with python3 (3.11 or newer) and make:
 #   make golden   makes .venv of what solving needs (requirements.lock), then data/golden/paris
 #   make test     adds what tests need (requirements-test.lock), then runs lint, types and tests
+# And `make peers` runs the tests of the methods that want a Fortran compiler, JAX or the GPL, in an environment of its own.
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
 PYTEST := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
-.PHONY: golden test campaign coverage mutants studies lint lock clean
+.PHONY: golden test peers campaign coverage mutants studies lint lock clean
 
 golden: .venv/solving
 	@echo "Solving 24 h of the pendulum in Paris, twice, to compare: half a minute to two minutes"
@@ -27,6 +28,12 @@ campaign: .venv/testing
 # The same tests, nearly twice as long: which lines and branches does none of them run?
 coverage: .venv/testing
 	$(PYTEST) --cov --cov-report=term-missing:skip-covered --cov-fail-under=95
+
+# The methods that `make test` skips: numbalsoda, diffrax, rebound and native Boost, which requirements-peers.lock brings;
+# GSL and SUNDIALS in C where the system has their headers. No skip counts as a pass for what the lock brings.
+peers: .venv-peers/ready
+	@echo "Running the tests of all methods: some minutes"
+	$(subst .venv,.venv-peers,$(PYTEST)) --peers tests/compare/methods
 
 # Do the tests notice a wrong source? Other draws: tests/mutants.py --seed 2, --module precision
 mutants: .venv/testing
@@ -62,12 +69,23 @@ lint: .venv/testing
 	@$(INSTALL) --require-hashes -r requirements-test.lock
 	@touch $@
 
-# For maintainers: pin again (needs uv). The second lock contains the first.
+.venv-peers/ready: requirements-peers.lock pyproject.toml
+	@command -v gfortran >/dev/null && command -v cmake >/dev/null && command -v g++ >/dev/null || { echo "numbalsoda and \
+	  the native methods are compiled. On Debian and Ubuntu: apt install gfortran g++ cmake libgsl-dev libsundials-dev" >&2; exit 2; }
+	@echo "Downloading and installing $(call packages,requirements-peers.lock) packages into .venv-peers"
+	@$(PYTHON) -m venv --clear .venv-peers
+	@$(subst .venv,.venv-peers,$(INSTALL)) --require-hashes -r requirements-peers.lock
+	@$(subst .venv,.venv-peers,$(INSTALL)) --no-build-isolation --no-deps -e .
+	@touch $@
+
+# For maintainers: pin again (needs uv). Each lock contains the one before.
 PIN := uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
   --no-emit-index-url --no-header --no-annotate -q --extra fast --extra build
 lock:
 	$(PIN) -o requirements.lock
 	$(PIN) -c requirements.lock --extra enclose --extra methods --extra plot --extra test -o requirements-test.lock
+	$(PIN) -c requirements-test.lock --extra enclose --extra methods --extra plot --extra test --extra methods-fortran \
+	  --extra methods-gpl --extra methods-jax --extra methods-native -o requirements-peers.lock
 
 clean:
-	rm -rf .venv build dist .coverage .coverage.* .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf .venv .venv-peers build dist .coverage .coverage.* .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -30,6 +30,7 @@ __all__ = ["make_scene"]
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--long", action="store_true", help="run the campaigns at full size, as `make campaign` does")
+    parser.addoption("--peers", action="store_true", help="fail where a method that an extra brings is missing")
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -50,7 +50,7 @@ FLOORS = {
         ["report"],
         ["studies", "foucpend", "score"],
         ["methods"],
-        ["runge_kutta"],
+        ["native", "runge_kutta"],
         ["approximations", "rhs"],
         ["candidates", "truth", "observed", "position_error"],
         ["cache", "power_law", "registry"],

@@ -17,6 +17,7 @@ from reference.packages import missing, switched_off
 from reference.status import Status
 from reference.table import Table
 
+from ..native.library import Library
 from ..rhs.problem import Array, Problem
 from ..runge_kutta.fixed_step import steps_through
 from ..runge_kutta.steps import Step
@@ -39,7 +40,7 @@ class Family(StrEnum):
     MANY_DIGITS = "many digits"
     HEYOKA = "heyoka, Taylor"
     SCIPY = "SciPy"
-    COMPILED = "numbalsoda and CVODE"
+    COMPILED = "compiled: C, C++, Fortran"
     REBOUND = "rebound"
     OTHERS = "others"
 
@@ -99,6 +100,7 @@ class Method:
         stiff: whether it is meant for stiff problems.
         dense: whether output at many times costs little; other methods shorten their steps to end on output times.
         requires: modules that must be installed.
+        native: the library of C or C++ whose headers must be here.
         extra: the extra of `pip install 'foucault-reference[…]'` that installs them; None if nothing is needed.
         longest_s: simulated time in s beyond which a run would take unreasonably long.
         order: where it is fixed, proved by the tableau of this project's methods; None where the method chooses it.
@@ -122,6 +124,7 @@ class Method:
     stiff: bool = False
     dense: bool = True
     requires: tuple[str, ...] = ()
+    native: Library | None = None
     extra: str | None = None
     longest_s: float | None = None
     order: int | None = None
@@ -161,7 +164,7 @@ def available(method: Method) -> str | None:
         return f"{variable} is set: unset it"
     absent = missing(method.requires)
     if not absent:
-        return None
+        return None if method.native is None else method.native.missing
     advice = f": pip install 'foucault-reference[{method.extra}]'" if method.extra else ""
     return f"not installed ({', '.join(absent)}){advice}"
 

@@ -39,6 +39,8 @@ def machine() -> dict[str, str]:
             description[name] = version(name)
         except PackageNotFoundError:
             description[name] = "not installed"
+    for library in {method.native.name: method.native for method in METHODS.values() if method.native}.values():
+        description[library.name] = library.version or "not installed"
     return description
 
 

@@ -32,11 +32,8 @@ def run(name, scene, setting=None):
 
 
 @pytest.fixture(params=list(METHODS))
-def name(request):
-    missing = available(METHODS[request.param])
-    if missing:
-        pytest.skip(missing)
-    return request.param
+def name(request, installed):
+    return installed(request.param).id
 
 
 @pytest.mark.parametrize("scene", ["paris", "steep"])
@@ -87,9 +84,8 @@ def test_a_declaration_is_complete(name):
 
 
 @pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.number != "double"])
-def test_exact_states_show_errors_far_below_a_doubles(name):
-    if available(METHODS[name]):
-        pytest.skip("not installed")
+def test_exact_states_show_errors_far_below_a_doubles(name, installed):
+    installed(name)
     setting = {"heyoka_real": 160, "mpmath_odefun": 113}.get(name)
     problem, outcome = run(name, "paris", setting)
     grid = case("paris").solution.grid
@@ -110,17 +106,14 @@ def test_fixed_steps_are_counted_by_the_step():
             assert (outcome.steps, outcome.rhs_evaluations) == (600, 600 * stages)
 
 
-def test_steps_end_on_output_times_that_they_do_not_divide():
-    if available(METHODS["rk4"]):
-        pytest.skip("not installed")
+def test_steps_end_on_output_times_that_they_do_not_divide(installed):
     problem = case("paris").problem("rk4")
-    assert METHODS["rk4"].prepare(problem, 3.0)().steps == 6 * 4  # 10 s in four steps
+    assert installed("rk4").prepare(problem, 3.0)().steps == 6 * 4  # 10 s in four steps
 
 
 @pytest.mark.parametrize("name", [name for name, method in METHODS.items() if method.family is Family.SCIPY])
-def test_scipy_reports_every_call_of_the_right_hand_side(name):
-    if available(METHODS[name]):
-        pytest.skip("not installed")
+def test_scipy_reports_every_call_of_the_right_hand_side(name, installed):
+    installed(name)
     problem, calls = case("steep").problem(name), []
     inner = problem.rhs
     problem.__dict__["rhs"] = lambda t, y: calls.append(t) or inner(t, y)
@@ -130,9 +123,8 @@ def test_scipy_reports_every_call_of_the_right_hand_side(name):
 
 
 @pytest.mark.parametrize("name", ["cvode_adams", "cvode_bdf"])
-def test_cvode_reports_every_call_of_the_right_hand_side(name):
-    if available(METHODS[name]):
-        pytest.skip("not installed")
+def test_cvode_reports_every_call_of_the_right_hand_side(name, installed):
+    installed(name)
     from types import SimpleNamespace
 
     problem, calls = case("steep").problem(name), []
@@ -141,10 +133,8 @@ def test_cvode_reports_every_call_of_the_right_hand_side(name):
     assert METHODS[name].prepare(problem, 1e-6)().rhs_evaluations == len(calls)
 
 
-def test_dop853_needs_about_the_same_calls_in_scipy_and_compiled():
-    names = ["scipy_dop853", "numbalsoda_dop853"]
-    if any(available(METHODS[name]) for name in names):
-        pytest.skip("not installed")
+def test_dop853_needs_about_the_same_calls_in_scipy_and_compiled(installed):
+    names = [installed(name).id for name in ("scipy_dop853", "numbalsoda_dop853")]
     first, second = (run(name, "steep", 1e-9)[1].rhs_evaluations for name in names)
     assert abs(first - second) < 0.3 * first
 
@@ -155,6 +145,9 @@ def test_the_registry_knows_every_id_of_the_issue():
     )
     assert {"scipy_rk45", "scipy_dop853", "scipy_radau", "scipy_bdf", "scipy_lsoda", "mpmath_odefun"} <= set(METHODS)
     assert {"numbalsoda_dop853", "numbalsoda_lsoda", "cvode_adams", "cvode_bdf", "rebound_bs"} <= set(METHODS)
+    assert {"odeint_rkf78", "odeint_bulirsch_stoer", "gsl_rk8pd", "cvode_c_adams", "cvode_c_bdf", "arkode_erk8"} <= set(
+        METHODS
+    )
     assert {"rebound_ias15", "diffrax_dopri8", "gauss_legendre", "rkmk4", "limbs"} <= set(METHODS)
     assert len(METHODS) == len(list(METHODS))
 

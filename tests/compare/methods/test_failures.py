@@ -9,7 +9,7 @@ import pytest
 from method_cases import case
 from small_scenes import make_scene
 
-from compare.methods import METHODS, Problem, available, external
+from compare.methods import METHODS, Problem, external
 from reference import InputError
 
 
@@ -23,19 +23,14 @@ def over_the_horizontal():
     )
 
 
-def checked(name):
-    if available(METHODS[name]):
-        pytest.skip("not installed")
-    return METHODS[name]
-
-
 FIXED = [name for name, method in METHODS.items() if method.setting == "step" and "plane" in method.formulations]
+EXPLICIT = [name for name, method in METHODS.items() if method.native and not name.startswith("cvode")]
 
 
-@pytest.mark.parametrize("name", [*FIXED, "scipy_lsoda", "numbalsoda_lsoda", "rebound_bs"])
-def test_a_formulation_that_ends_at_the_horizontal_ends_the_run(name):
+@pytest.mark.parametrize("name", [*FIXED, "scipy_lsoda", "numbalsoda_lsoda", "rebound_bs", *EXPLICIT])
+def test_a_formulation_that_ends_at_the_horizontal_ends_the_run(name, installed):
     problem = Problem.of(over_the_horizontal(), "plane")
-    outcome = checked(name).prepare(problem, METHODS[name].settings(problem.scene)[1])()
+    outcome = installed(name).prepare(problem, METHODS[name].settings(problem.scene)[1])()
     assert outcome.status in ("gave_up", "not_finite")
     assert outcome.reason
     assert outcome.reached_t < problem.times[-1]
@@ -43,32 +38,32 @@ def test_a_formulation_that_ends_at_the_horizontal_ends_the_run(name):
     assert np.isfinite(outcome.states).all()
 
 
-def test_a_tolerance_that_scipy_raises_is_said():
+def test_a_tolerance_that_scipy_raises_is_said(installed):
     problem = Problem.of(case("steep").scene, "momentum", [0.0, 1.0])
-    outcome = checked("scipy_dop853").prepare(problem, 1e-17)()
+    outcome = installed("scipy_dop853").prepare(problem, 1e-17)()
     assert outcome.status == "ok"
     assert "rtol" in outcome.reason
 
 
-def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd):
+def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd, installed):
     problem = Problem.of(case("steep").scene, "momentum")
-    outcome = checked("numbalsoda_lsoda").prepare(problem, 1e-17)()
+    outcome = installed("numbalsoda_lsoda").prepare(problem, 1e-17)()
     assert outcome.status == "gave_up"
     assert outcome.reason
     assert capfd.readouterr() == ("", "")
 
 
-def test_a_step_too_long_for_the_implicit_equations_is_said():
+def test_a_step_too_long_for_the_implicit_equations_is_said(installed):
     problem = Problem.of(case("steep").scene, "momentum")
-    outcome = checked("gauss_legendre").prepare(problem, 2.0)()
+    outcome = installed("gauss_legendre").prepare(problem, 2.0)()
     assert outcome.status == "gave_up"
     assert "shorten the step" in outcome.reason
     assert outcome.reached_t == 0
 
 
-def test_an_unstable_step_ends_in_numbers_that_are_not_finite():
+def test_an_unstable_step_ends_in_numbers_that_are_not_finite(installed):
     scene = make_scene(pendulum={"length": "1", "drag": "1000"}, run={"t_end": "10", "grid_step": "1"})
-    outcome = checked("rk4").prepare(Problem.of(scene, "momentum"), 0.01)()
+    outcome = installed("rk4").prepare(Problem.of(scene, "momentum"), 0.01)()
     assert outcome.status == "not_finite"
     assert outcome.reached_t < 10
 
