@@ -56,6 +56,18 @@ def command(
     ] = False,
     run: Commands = None,
     name: Names = None,
+    candidates: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--candidates", metavar="FILE", help="Put a file of somebody's output beside the methods. May be repeated."
+        ),
+    ] = None,
+    cpu: Annotated[
+        str | None,
+        typer.Option(
+            "--cpu", metavar="S,-,…", help="CPU seconds that each file of --candidates took; - where nobody knows."
+        ),
+    ] = None,
     settings: Annotated[
         str | None,
         typer.Option("--settings", metavar="S,S,…", help=f"Values of {{setting}} in --run (default: {SETTINGS})."),
@@ -90,6 +102,8 @@ def command(
                 "--precisions": precisions,
                 "--run": run,
                 "--name": name,
+                "--candidates": candidates,
+                "--cpu": cpu,
                 "--settings": settings,
                 "--limit": limit,
                 "--no-formulations": no_formulations,
@@ -100,10 +114,13 @@ def command(
         return
     if not run:
         refuse({"--settings": settings, "--name": name}, "without --run")
+    if not candidates:
+        refuse({"--cpu": cpu}, "without --candidates")
     check_limit(LIMIT_S if limit is None else limit)
     from ..candidates.external import arguments
     from ..methods import SETTING, named_programs
     from ..report.study import REPORT
+    from ..studies.program import files_of
     from ..studies.study import plan
     from ..studies.study import study as measure
 
@@ -118,13 +135,14 @@ def command(
         bits = bits_of(precisions)
         items = precision_items(bits, requested)
         problem, digits = precision_scene(scene, bits, whole=t_end is not None)
-    if not run:
+    if not (run or candidates):
         check_installed(method for method, _, _ in items)
     for program in run or ():
         arguments(program.replace(SETTING, "0.1"), problem)  # refuses one that cannot be run before any work
     programs = named_programs(run or (), name or ())
     if not any(SETTING in program for program in programs.values()):
         refuse({"--settings": settings}, f"with a --run that has no {SETTING}")
+    files = files_of(candidates or (), cpu, programs)
     steps = numbers(SETTINGS if settings is None else settings, "--settings")
     for program, words in programs.items():
         items += [(program, "momentum", step) for step in (steps if SETTING in words else steps[:1])]
@@ -133,6 +151,7 @@ def command(
             problem,
             items=items,
             programs=programs,
+            candidates=files,
             limit_s=LIMIT_S if limit is None else limit,
             journal_path=inside(out, "rows.jsonl"),
             digits=digits,

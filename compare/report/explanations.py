@@ -50,6 +50,12 @@ ROWS = (
     "by their median. Compile: CPU seconds of imports and compilation, which are not part of the cost. <: the error "
     "of transits is not resolved, because it is measured from the doubles next to their true times; it is below this."
 )
+ORDERS = (
+    "Order: as the method declares it; – where it chooses its order itself. Observed: the power with which its error "
+    "falls as it takes more steps (evaluations where it does not tell steps), fitted to at least three settings, with "
+    "the standard error of the fit; – where that is above 0.25, because too few settings lie between a step that is "
+    "too long and rounding."
+)
 FAILED = "Failed rows keep their place in the tables: nothing is left out. A failed row is never on the Pareto front."
 NO_PICTURES = "The pictures need matplotlib: pip install 'foucault-reference[plot]'."
 
@@ -62,12 +68,8 @@ def overview(rows: Sequence[Row]) -> str:
         "was run. Crosses along the top: failed runs, at their cost. Errors below those of the methods of fixed "
         "precision have a panel of their own, with its own scale; the grey band is the bound of the reference."
     )
-    hidden = [one.label for one in curves(rows) if any(not row.measured and not row.cpu_s for row in one.rows)]
-    return (
-        f"{caption} Failed without a cost, and therefore not in the picture: {', '.join(hidden)}."
-        if hidden
-        else caption
-    )
+    hidden = [one.label for one in curves(rows) if any(not row.cpu_s for row in one.rows)]
+    return f"{caption} Without a cost, and therefore not in the picture: {', '.join(hidden)}." if hidden else caption
 
 
 def measured(limit_s: float | None) -> list[str]:

@@ -19,6 +19,7 @@ def page_text(document: dict[str, Any]) -> str:
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
     conclusions = sentences(document)
     failed, lost = tables.failures(rows), {row.status for row in rows if not row.measured}
+    programs, files = document.get("programs", {}), document.get("candidates", ())
     parts = [
         section(
             "Main results",
@@ -30,7 +31,7 @@ def page_text(document: dict[str, Any]) -> str:
         section("Every row", tables.every_row(rows, bound_m)),
         *([section("What failed, and why", failed, tables.words(lost))] if failed else []),
         section("How it was measured", *map(paragraph, explanations.measured(document.get("limit_s")))),
-        section("The methods", tables.methods(rows, document.get("programs", {}))),
+        section("The methods", tables.methods(rows, bound_m, programs, files)),
     ]
     return page(f"Error against run time: {document.get('title') or document['scene']}", parts, lead=_lead(document))
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from textwrap import wrap
 from typing import Any
 
 from reference.shortened import shortened
 from reference.status import Status
 
 from ..methods import METHODS
+from ..studies.observed_order import Order, orders
+from ..studies.program import FILE
 from ..studies.row import Row
 from ..studies.stability import Cell
 from . import explanations
@@ -17,7 +20,7 @@ from .busy import busy
 from .page import Column, Html, TableRow, strong, table
 from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
 
-FRONT_MARK, PART_MARK = "●", "~"
+FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
 SMALL = 1.5e-3  # settings below this are written with an exponent
 
@@ -117,15 +120,44 @@ def advice(statuses: Collection[Status]) -> list[str]:
     return [f"{one.words}: {one.advice}" for one in Status if one in statuses and one.advice]
 
 
-def methods(rows: Sequence[Row], programs: Mapping[str, str]) -> Html:
-    """Return titles, sources and licences of the methods, and the commands of the user's programs."""
+def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], files: Sequence[str] = ()) -> Html:
+    """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
     known = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
-    columns = [Column("method"), Column("", "prose"), Column("source", "prose"), Column("licence"), Column("extra")]
-    body = [TableRow([one.id, one.title, one.source, one.licence, one.extra or ""]) for one in known]
-    yours = [
-        TableRow([name, shortened(command, LONGEST_COMMAND), "--run", "", ""]) for name, command in programs.items()
-    ]
-    return table(columns, [*body, *yours])
+    found: dict[str, Order] = {}
+    for one in orders(rows, bound_m):
+        found.setdefault(one.method, one)  # the first formulation is the method's own
+    columns = [
+        Column("method"), Column("", "prose"), Column("order"), Column("observed"),
+        Column("source", "prose"), Column("licence"), Column("extra"),
+    ]  # fmt: skip
+    body = [
+        TableRow([one.id, one.title, str(one.order or ABSENT), observed(found.get(one.id)), one.source, one.licence,
+                  one.extra or ""])
+        for one in known
+    ]  # fmt: skip
+    yours = {name: (shortened(command, LONGEST_COMMAND), "--run") for name, command in programs.items()}
+    yours |= dict.fromkeys(files, ("", "--candidates"))
+    rest = [TableRow([name, command, "", "", source, "", ""]) for name, (command, source) in yours.items()]
+    return table(columns, [*body, *rest], explanations.ORDERS)
+
+
+def observed(order: Order | None) -> str:
+    """Return the order that runs show, with its standard error; a dash where they do not."""
+    if order is None or order.observed is None:
+        return ABSENT
+    return f"{order.observed:.2f} ± {order.standard_error:.2f}"
+
+
+def _orders_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
+    """Return declared and observed orders as lines of text."""
+    found = orders(rows, bound_m)
+    own = {one.method: one.formulation for one in reversed(found)}
+    words = "; ".join(
+        f"{one.method}{'' if own[one.method] == one.formulation else f' ({one.formulation})'} {one.declared}: "
+        f"{observed(one)}"
+        for one in found
+    )
+    return ["", *wrap(f"Order, declared: observed. {words}", 100)] if found else []
 
 
 def text_table(document: dict[str, Any]) -> str:
@@ -162,7 +194,7 @@ def text_table(document: dict[str, Any]) -> str:
     ]
     lost = {row.status for row in rows if not row.measured}
     lines += ["", "Failed:", *failed, "", *advice(lost)] if failed else []
-    return "\n".join([*lines, "", *sentences(document)]) + "\n"
+    return "\n".join([*lines, *_orders_as_text(rows, bound_m), "", *sentences(document)]) + "\n"
 
 
 def _why(row: Row) -> str:
@@ -172,9 +204,11 @@ def _why(row: Row) -> str:
 
 
 def setting(row: Row | Cell) -> str:
-    """Return a row's setting with its unit; empty for None."""
+    """Return a row's setting with its unit; a dash for a file, which has none; empty for None."""
     if row.setting is None:
         return ""
+    if row.kind == FILE:
+        return ABSENT
     return tidy(row.setting) + {"step": " s", "precision": " bits"}.get(row.kind, "")
 
 

@@ -111,7 +111,7 @@ class Bench:
 
         It is repeated while that is cheap, and if it came to its end.
         """
-        started = time.process_time()
+        started = _spent_s()
         work = method.prepare(self._problem(base, times), base.setting)
         base = replace(base, compile_s=(base.compile_s or 0.0) + _spent_s() - started)
         outcome, cpu_s = timed(work)

@@ -1,22 +1,29 @@
-"""A user's program on one scene: its output, at whatever times it prints, against the truth there.
+"""A user's program or file on one scene: its output, at whatever times it has, against the truth there.
 
-Unlike `methods.external`, which has a study time a program at the golden grid times, this asks only where it breaks.
+Unlike `methods.external`, which has a study time a program at the golden grid times, this asks only where it breaks, or
+how far a file is off.
 """
 
 from __future__ import annotations
 
+import math
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from reference import Golden, InputError, Scene
+from reference.plain_text import plain
 from reference.precision import Array
+from reference.shortened import shortened
 from reference.status import Status
 
 from ..candidates.candidate import Candidate, NotFiniteError
 from ..candidates.external import FailedError, OutOfTimeError, arguments, run_program
-from ..candidates.read import read_stream
-from ..methods.external import SETTING
+from ..candidates.read import read, read_stream
+from ..methods import METHODS
+from ..methods.external import LONGEST_NAME, SETTING
 from ..position_error import difference, distance
 from ..truth import truth_at
 from .machine import load_per_core
@@ -26,6 +33,8 @@ STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks
 DIGITS = 6.0  # that a program is asked for: the millionth of the amplitude that `foucault score` allows
 PATIENCE = 3  # wall-clock seconds for each CPU second that is allowed
 NUMBER = "program"  # what stands for a program's number type
+FILE = "file"  # kind of the row of a file, which has no setting; in place of its formulation
+STATED = "the CPU seconds are those that were stated"
 
 
 @dataclass(frozen=True)
@@ -80,7 +89,57 @@ def measured(name: str, command: str, setting: float, scene: Scene, golden: Gold
         return failed(Status.GAVE_UP, error)
 
 
-def _against(base: Row, candidate: Candidate, cpu_s: float, scene: Scene, golden: Golden) -> Measured:
+def files_of(
+    paths: Sequence[str], cpu: str | None, taken: Collection[str]
+) -> dict[str, tuple[Candidate, float | None]]:
+    """Read files of somebody's output; return each, with the CPU seconds that are stated, by the name of its row.
+
+    Args:
+        paths: of the files; the name of a row is that of its file, shortened.
+        cpu: CPU seconds of each, separated by commas, - where nobody knows; None for all of them.
+        taken: names that other rows have, beside those of the methods.
+
+    Raises:
+        InputError: a file cannot be read or has no positions, two have the same name, or the seconds are not as many.
+    """
+    words = ["-"] * len(paths) if cpu is None else cpu.split(",")
+    try:
+        seconds = [None if word.strip() == "-" else float(word) for word in words]
+    except ValueError:
+        seconds = []
+    if len(seconds) != len(paths) or not all(value is None or 0 < value < math.inf for value in seconds):
+        raise InputError("--cpu", cpu, f"{len(paths)} positive numbers of seconds, or - where nobody knows")
+    files: dict[str, tuple[Candidate, float | None]] = {}
+    for path, cpu_s in zip(paths, seconds, strict=True):
+        name = shortened(plain(Path(path).name), LONGEST_NAME)
+        if name in files or name in taken or name in METHODS:
+            raise InputError("--candidates", path, "a file whose name no other row has", "Rename the file.")
+        candidate = read(path)
+        if not candidate.positions:
+            raise InputError("--candidates", path, "a file with positions", "It has times of transits alone.")
+        files[name] = candidate, cpu_s
+    return files
+
+
+def file_row(name: str, candidate: Candidate, cpu_s: float | None, scene: Scene, golden: Golden) -> Row:
+    """Return the row of a file: its error against the truth at its own times.
+
+    Args:
+        name: its name in the row.
+        candidate: its content.
+        cpu_s: CPU seconds that somebody says it took; None if nobody does.
+        scene: that it is of.
+        golden: its truth.
+    """
+    base = Row(name, FILE, 0.0, FILE, scene.inputs, Status.OK, "" if cpu_s is None else STATED)
+    try:
+        row = _against(base, candidate, cpu_s, scene, golden).row
+    except InputError as error:
+        return replace(base, status=Status.GAVE_UP, reason=str(error))
+    return replace(row, reason=row.reason or base.reason)
+
+
+def _against(base: Row, candidate: Candidate, cpu_s: float | None, scene: Scene, golden: Golden) -> Measured:
     end, step = float(scene.exact.t_end), float(scene.exact.grid_step)
     kept = candidate.t <= end + step / 2
     t = candidate.t[kept]

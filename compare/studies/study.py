@@ -15,6 +15,7 @@ from typing import Any
 from reference import Golden, Scene, load_scene
 from reference.status import Status
 
+from ..candidates.candidate import Candidate
 from ..methods import METHODS
 from ..rhs.swing import suited
 from ..truth import Report, golden_of
@@ -22,6 +23,8 @@ from .campaign import Counted, campaign, check_usable
 from .grid import on_doubles
 from .machine import machine
 from .measure import ladder
+from .observed_order import orders
+from .program import file_row
 from .row import Row
 
 LIMIT_S = 8.0  # CPU seconds of one run; a longer one is extrapolated from a part of the span
@@ -30,6 +33,7 @@ FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
 FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared
 
 Item = tuple[str, str, float]  # method, formulation, setting
+Files = Mapping[str, tuple[Candidate, float | None]]  # by name: what a file holds, and the CPU seconds that are stated
 
 
 @dataclass(frozen=True)
@@ -44,6 +48,7 @@ class Study:
         rows: every method at every setting, failed ones included.
         programs: commands of the user's programs, by the names that the rows call them by.
         machine: processor, system and versions of libraries.
+        candidates: names of the rows that are files.
     """
 
     scene: Scene
@@ -53,10 +58,11 @@ class Study:
     rows: list[Row]
     machine: dict[str, str]
     programs: Mapping[str, str] = field(default_factory=dict)
+    candidates: Sequence[str] = ()
 
     def __repr__(self) -> str:
         """Return the scene, the span, and how many rows have a cost and an error."""
-        measured = sum(row.measured for row in self.rows)
+        measured = sum(row.measured and row.cpu_s is not None for row in self.rows)
         return f"Study({self.scene.id}, {self.t_end:g} s: {measured} of {len(self.rows)} rows measured)"
 
     def document(self) -> dict[str, Any]:
@@ -73,6 +79,8 @@ class Study:
             },
             "machine": self.machine,
             "programs": dict(self.programs),
+            "candidates": list(self.candidates),
+            "orders": [asdict(one) for one in orders(self.rows, float(self.golden.manifest.bounds.position_m))],
             "rows": [asdict(row) for row in self.rows],
         }
 
@@ -109,6 +117,7 @@ def study(
     formulations: bool = True,
     items: Sequence[Item] | None = None,
     programs: Mapping[str, str] | None = None,
+    candidates: Files | None = None,
     limit_s: float = LIMIT_S,
     digits: int | None = None,
     journal_path: Path | None = None,
@@ -126,6 +135,7 @@ def study(
         formulations: whether to compare the formulations of the equations in one method as well.
         items: the runs, if others are wanted than `plan` lists from `methods` and `formulations`.
         programs: commands of programs of your own, by the names that `items` call them by.
+        candidates: files of somebody's output, by the names of their rows.
         limit_s: CPU seconds for one run; a longer one is extrapolated from a part of the span.
         digits: of the truth if it has to be solved for; the scene's own if None.
         journal_path: a file to which rows are appended, and whose rows are not measured again.
@@ -159,4 +169,6 @@ def study(
         journal_path=journal_path,
         report=report,
     )
-    return Study(problem, float(problem.exact.t_end), limit_s, golden, rows, machine(), commands)
+    files = [file_row(name, *file, problem, golden) for name, file in (candidates or {}).items()]
+    names = tuple(candidates or ())
+    return Study(problem, float(problem.exact.t_end), limit_s, golden, [*rows, *files], machine(), commands, names)

@@ -54,7 +54,7 @@ def ladders(
 
     Args:
         curves: methods over their settings.
-        x_of: horizontal coordinate of a measured row; a row without one, or with zero, is left out.
+        x_of: horizontal coordinate of a measured row; a row without one, or with zero or infinity, is left out.
         y_of: vertical coordinate, likewise.
         name: name of a curve's line.
     """
@@ -62,7 +62,9 @@ def ladders(
     lines = []
     for curve in curves:
         points = [
-            (x, y, row.status == Status.EXTRAPOLATED) for row in curve.measured if (x := x_of(row)) and (y := y_of(row))
+            (x, y, row.status == Status.EXTRAPOLATED)
+            for row in curve.measured
+            if (x := x_of(row)) and (y := y_of(row)) and math.isfinite(x + y)
         ]
         if points:
             family = family_of(curve.method)

@@ -287,3 +287,16 @@ def test_neither_the_report_nor_its_parts_load_matplotlib():
     code = f"import {modules}, sys; print('matplotlib' in sys.modules)"
     process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert process.stdout.strip() == "False"
+
+
+def test_the_declared_order_stands_beside_the_observed_one():
+    rows = [
+        row("rk4", 0.1 / 2**i, 1e-3 / 16**i, 0.1, formulation="plane", kind="step", steps=100 * 2**i) for i in range(5)
+    ]
+    document = study_document([*rows, row("scipy_dop853", 1e-6, 1e-5, 4.0), row("heyoka_double", 1e-8, 2e-7, 0.01)])
+    read = Reader(report.page_text(document))
+    head, *body = table_of(read, "order", "observed")
+    place = {title: i for i, title in enumerate(head[1])}
+    found = {cells[0]: (cells[place["order"]], cells[place["observed"]]) for _, cells in body}
+    assert found == {"rk4": ("4", "4.00 ± 0.00"), "scipy_dop853": ("8", "–"), "heyoka_double": ("–", "–")}
+    assert "rk4 4: 4.00 ± 0.00; scipy_dop853 8: –" in report.REPORT.text(document)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import doctest
 import itertools
 import json
+import re
 from importlib import import_module
 from pathlib import Path
 
@@ -16,6 +17,7 @@ import compare.studies.measure as measure
 from compare.methods import METHODS, Problem
 from compare.report.pareto import front
 from compare.report.tables import transit_error
+from compare.studies import program
 from compare.studies.measure import Bench
 from compare.studies.method_errors import GridTruth
 from compare.studies.precisions import bits_of, precision_items, precision_scene
@@ -23,7 +25,7 @@ from compare.studies.row import Row
 from compare.studies.study import plan, study
 from compare.truth import golden_of
 from foucault import commands
-from reference import InputError, Scene, load_scene
+from reference import InputError, Scene, load_scene, trajectory
 from reference.engines.registry import engines
 from reference.errors import Stopped
 
@@ -204,6 +206,78 @@ def test_somebody_elses_program_is_a_row_of_the_study(tmp_path: Path) -> None:
     (row,) = (row for row in json.loads(result.stdout)["rows"] if row["method"] != "rkmk4")  # it has no {setting}
     assert row["method"] == "still.py"
     assert row["error_m"] > 0.5
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> tuple[Path, Path]:
+    """The truth to 1e-9 m at times of its own, and the bob at rest."""
+    t = np.linspace(0, 120, 33)
+    x, y = (trajectory(load_scene("paris", ["inputs=binary64"]), t)[:, :2] + 1e-9).T
+    good, still = tmp_path / "good.csv", tmp_path / "still.csv"
+    good.write_text(
+        "t,x,y\n" + "".join(f"{a!r},{b!r},{c!r}\n" for a, b, c in zip(t.tolist(), x.tolist(), y.tolist(), strict=True))
+    )
+    still.write_text("t,x,y\n0,0.3,0.4\n120,0.3,0.4\n")
+    return good, still
+
+
+def test_somebodys_files_are_rows_of_the_study_with_the_time_that_is_stated(
+    files: tuple[Path, Path], tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    words = ["study", "paris", "--methods", "rkmk4", "--t-end", "120", "--out", str(out), "--cpu", "0.25,-"]
+    result = CliRunner().invoke(commands(), [*words, *(word for file in files for word in ("--candidates", str(file)))])
+    assert result.exit_code == 0, result.output
+    (good,) = (line for line in result.stdout.splitlines() if "good.csv" in line)
+    (still,) = (line for line in result.stdout.splitlines() if "still.csv" in line)
+    assert re.search(r"good\.csv +– +1\.41e-09 +0\.250", good)
+    assert re.search(r"still\.csv +– +\d\.\d\de-01$", still.rstrip())
+    document = json.loads((out / "study.json").read_text())
+    stated, unknown = document["rows"][-2:]
+    assert (stated["kind"], stated["cpu_s"], stated["reason"]) == ("file", 0.25, program.STATED)
+    assert (unknown["status"], unknown["cpu_s"]) == ("ok", None)
+    assert document["candidates"] == ["good.csv", "still.csv"]
+    page = (out / "index.html").read_text()
+    assert "--candidates" in page and "still.csv" in page
+
+
+def test_a_file_that_ends_early_or_has_nothing_after_the_start_is_a_row_with_its_reason(
+    files: tuple[Path, Path],
+) -> None:
+    scene = load_scene("paris", ["inputs=binary64", "run.t_end=600"])
+    golden, (candidate, _) = golden_of(scene), program.files_of([str(files[0])], None, ())["good.csv"]
+    row = program.file_row("short", candidate, 1.0, scene, golden)
+    assert (row.status, row.reached_t) == ("gave_up", 120)
+    assert "ends at t = 120 s of 600 s" in row.reason
+    files[1].write_text("t,x,y\n0,0.3,0.4\n")
+    (candidate, _) = program.files_of([str(files[1])], None, ())["still.csv"]
+    assert "no row after t = 0" in program.file_row("short", candidate, None, scene, golden).reason
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (["--cpu", "1"], "2 positive numbers"),
+        (["--cpu", "1,0"], "2 positive numbers"),
+        (["--cpu", "1,x"], "2 positive numbers"),
+        (["--candidates", "GOOD"], "whose name no other row has"),
+        (["--candidates", "missing.csv"], "No such file"),
+        (["--approximations"], "--approximations"),
+    ],
+)
+def test_files_that_cannot_be_rows_are_refused_before_any_work(
+    files: tuple[Path, Path], more: list[str], message: str
+) -> None:
+    good, still = map(str, files)
+    more = [word.replace("GOOD", good) for word in more]
+    result = CliRunner().invoke(commands(), ["study", "paris", "--candidates", good, "--candidates", still, *more])
+    assert isinstance(result.exception, InputError)
+    assert message in str(result.exception)
+
+
+def test_the_seconds_of_files_need_files() -> None:
+    result = CliRunner().invoke(commands(), ["study", "paris", "--cpu", "1"])
+    assert isinstance(result.exception, InputError)
 
 
 def test_a_truth_that_has_to_be_solved_for_tells_how_far_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
