@@ -73,7 +73,7 @@ def test_the_readme_counts_nothing_that_a_new_file_would_change():
     assert counted == []
 
 
-PAGES = ("README.md", "CONTRIBUTING.md", "docs/architecture.md", "docs/physics.md", "docs/studies.md", "CHANGELOG.md")
+PAGES = ("README.md", "CONTRIBUTING.md", "docs/architecture.md", "docs/physics.md", "docs/studies.md", "docs/native.md", "CHANGELOG.md")
 
 
 @pytest.mark.parametrize("page", PAGES)
