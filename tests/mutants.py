@@ -40,7 +40,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "compare/score: verdict": f"{SCORE}verdict.py",
     "compare/score: judge scored": f"{SCORE}judge.py",
     "reference: precision": f"tests/reference/test_precision.py tests/reference/test_table.py {BITS}",
-    "reference/solver: rounding": f"{FILES} {SOLVER}solve.py",
+    "reference/solver: rounding": f"{SOLVER}rounding.py {FILES} {SOLVER}solve.py",
     "reference/solver: agreement transit_errors": f"{SOLVER}agreement.py {SOLVER}solve.py",
     "reference/solver: solve": f"{BITS} {SOLVER}solve.py",
 }

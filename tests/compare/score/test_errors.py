@@ -10,8 +10,8 @@ import pytest
 from small_scenes import make_scene
 
 from compare.candidates.candidate import COLUMNS, Candidate, candidate_of
-from compare.score.errors import drifts, trajectory_errors
-from reference import load, trajectory
+from compare.score.errors import drifts, swing_rate, trajectory_errors
+from reference import load, load_scene, trajectory
 from reference.dataset.dense import dense
 from reference.precision import LONG_DOUBLE
 
@@ -170,3 +170,9 @@ def test_drifts_need_the_columns_and_no_drag():
     rows = {name: np.ones(2) for name in COLUMNS}
     assert drifts(Candidate.of("a", np.array([0.0, 1.0]), {"x": rows["x"], "y": rows["y"]}), scene) == {}
     assert set(drifts(Candidate.of("a", np.array([0.0, 1.0]), rows), scene)) == {"length_m"}
+
+
+def test_an_error_of_vx_becomes_one_of_position_at_the_rate_of_a_swing_or_of_a_faster_bob():
+    scene = load_scene("paris")
+    assert swing_rate(scene, 0.0) == pytest.approx(math.sqrt(9.80665 / 67), rel=5e-3)  # less the centrifugal force
+    assert swing_rate(scene, 67.0) == pytest.approx(1.0)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from compare.candidates.read import read
+from compare.score.explanation.findings import Explanation, Model
 from compare.score.judge import judge
 from reference import InputError, load, load_scene, trajectory
 from reference.engines.heyoka.numbers import Numbers
@@ -539,3 +540,25 @@ def test_a_centrifugal_force_larger_than_g_is_warned_of(tmp_path, site, warned):
     notes = [note for note in judge(path, scene, explain=False).notes if "larger than g" in note]
     assert bool(notes) is warned
     assert all("site.gravity_is=effective" in note for note in notes)
+
+
+def test_a_file_that_ends_a_rounding_before_the_end_covers_all_of_it(tmp_path, golden, states):
+    path = write_csv(tmp_path / "short.csv", np.append(golden.t[-3:-1], 86400 * (1 - 1e-13)), states[-3:])
+    assert judge(path, "paris").covered == 1.0
+
+
+def test_a_transit_at_the_end_asked_for_is_judged(golden):
+    zeros = golden.transits["t"]
+    score = judge(None, "paris", transits=zeros, t_end=zeros[10])
+    assert (score.transits.matched, score.transits.missed, score.transits.extra) == (11, [], [])
+
+
+@pytest.mark.parametrize("as_model", [True, False])
+def test_a_named_model_passes_where_that_is_asked_for(tmp_path, golden, states, as_model):
+    path = off_by(tmp_path, golden, states, "x", 1e-3)
+    wrong = replace(judge(path, "paris"), as_model=as_model, explanation=Explanation())
+    assert not wrong.passes
+    assert wrong.grade == "disagrees"
+    modelled = replace(wrong, explanation=Explanation(model=Model("still", "still air", 1e-9, 1e-3)))
+    assert modelled.passes is as_model
+    assert modelled.grade == "agrees as the model: still air"

@@ -7,7 +7,7 @@ from types import SimpleNamespace as Made
 
 import numpy as np
 
-from compare.score.explanation.findings import Explanation, SizedCause
+from compare.score.explanation.findings import Explanation, Model, SizedCause
 from compare.score.transits import TransitErrors
 from compare.score.verdict import lines
 
@@ -95,3 +95,10 @@ Reading: t is in ms."""
     assert "tolerance 5e-07 m; the inputs are doubles as they stand" in none[1]
     no_delay = list(lines(score(swing=Made(largest_turn=1.0, largest_delay=None))))
     assert not any("swing plane" in line for line in no_delay)
+
+
+def test_a_model_is_said_with_how_exact_it_is_and_what_it_costs():
+    model = Explanation(causes=WIND.causes, model=Model("still", "still air", 1e-9, 0.25))
+    said = list(lines(score(explanation=model)))
+    assert "As that model it is exact to 1e-09 m; against the full Lagrangian it is 0.25 m off:" in said
+    assert not any(line.startswith("As that model") for line in lines(score()))

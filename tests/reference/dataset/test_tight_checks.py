@@ -123,3 +123,14 @@ def test_the_bound_of_a_time_is_at_most_twice_the_error_of_xdot_over_ax(files, p
     wide = with_change(files, "transits", "bound", late - old)
     problems = list(tables._bound_column(wide, wide.tables["transits.csv"]))
     assert any("transit 4: bound" in problem and "leave open" in problem for problem in problems) is found
+
+
+@pytest.mark.parametrize(("part", "found"), [(Fraction("1.9"), False), (Fraction("2.3"), True)])
+def test_the_bound_of_a_time_may_be_twice_the_difference_of_the_runs(files, part, found):
+    apart = Fraction(1, 1000)
+    check = files.manifest.cross_checks[0].model_copy(update={"transit_s": "0.001"})
+    manifest = files.manifest.model_copy(update={"cross_checks": [check]})
+    (old,) = list(files.tables["transits.csv"].numbers(("bound",)))[ROW]
+    wide = with_change(replace(files, manifest=manifest), "transits", "bound", part * apart - old)
+    problems = list(tables._bound_column(wide, wide.tables["transits.csv"]))
+    assert any("transit 4: bound" in problem and "leave open" in problem for problem in problems) is found

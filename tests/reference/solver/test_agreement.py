@@ -15,7 +15,7 @@ from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.precision import DOUBLE, real
 from reference.solver import solve as solver
-from reference.solver.agreement import _bits_lacking
+from reference.solver.agreement import Agreement, _bits_lacking
 from reference.solver.pilot import MARGIN_BITS
 from reference.solver.transit_errors import with_transit_errors
 
@@ -133,3 +133,11 @@ def test_runs_agree_to_a_quarter_of_the_last_digit_and_else_lack_the_bits_of_the
     gap = Fraction(units) / 10**5
     found = _bits_lacking({"x": Fraction(0), "y": gap}, {"x": 9, "y": 5})
     assert found == (lacking + MARGIN_BITS if gap > Fraction(1, 4) / 10**5 else 0)
+
+
+def test_the_error_of_a_column_is_twice_the_difference_of_two_runs(paris):
+    times = (Fraction(0), Fraction(30), Fraction(60))
+    one, other = (run(Plan(paris.exact, "spin", number, times, transits=True)) for number in (DOUBLE, real(120)))
+    found = Agreement.between(one, other, 12)
+    gaps = one.grid.only(GRID).distance(other.grid).largest()
+    assert found.errors == {name: 2 * gap for name, gap in gaps.items()}

@@ -1,0 +1,43 @@
+"""Digits after the point of grid and transits, and numbers that an error leaves undecided."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+import reference
+from reference.columns import GRID, TRANSITS
+from reference.solver.rounding import UndecidedRounding, check_decided, grid_decimals, transit_decimals
+
+SURE, OPEN = Fraction(1, 10**12), Fraction(1)
+
+
+@pytest.fixture(scope="module")
+def solution():
+    solved = reference.solve(reference.load_scene("paris"), t_end="60", digits=6, level="computed")
+    return replace(
+        solved,
+        grid=solved.grid.with_errors(dict.fromkeys(GRID, SURE)),
+        transits=solved.transits.with_errors(dict.fromkeys(TRANSITS, SURE)),
+    )
+
+
+def test_transits_have_the_decimals_of_the_grid_and_their_own_for_time_and_acceleration(solution):
+    grid, transits = grid_decimals(solution), transit_decimals(solution)
+    assert {name: transits[name] for name in ("x", "y", "z", "vy")} == {
+        name: grid[name] for name in ("x", "y", "z", "vy")
+    }
+    assert (transits["t"], transits["ax"]) == (4, 7)  # 57 s and 0.04 m/s² with six digits
+    assert transit_decimals(replace(solution, transits=None)) == {}
+
+
+@pytest.mark.parametrize("kind", ["grid", "transits"])
+def test_a_number_whose_error_leaves_a_digit_open_is_refused_in_grid_and_transits(solution, kind):
+    check_decided(solution)
+    check_decided(replace(solution, transits=None))
+    table = getattr(solution, kind)
+    errors = dict.fromkeys(GRID if kind == "grid" else TRANSITS, SURE) | {"y": OPEN}
+    with pytest.raises(UndecidedRounding, match="of y = "):
+        check_decided(replace(solution, **{kind: table.with_errors(errors)}))
