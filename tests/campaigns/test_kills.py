@@ -22,7 +22,7 @@ Tally = Callable[[str], None]
 
 ORPHANS_END_S = 10.0
 GENERATE = ["generate", "paris", "--t-end", "120", "--digits"]
-TIMES = ("cpu_s", "compile_s")  # measured, and not the same twice
+TIMES = ("cpu_s", "compile_s", "load")  # measured, and not the same twice
 
 
 @pytest.fixture(autouse=True)

@@ -43,7 +43,7 @@ HEYOKA = [
     "--json",
     "--out",
 ]
-MEASURED = ("cpu_s", "compile_s", "run_cpu_s", "check_cpu_s", "pilot_cpu_s", "out")
+MEASURED = ("cpu_s", "compile_s", "load", "cpu_spread", "run_cpu_s", "check_cpu_s", "pilot_cpu_s", "out")
 
 
 def run(words: list[str], **environment: Path) -> tuple[str, str]:

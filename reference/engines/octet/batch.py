@@ -11,10 +11,9 @@ import numpy as np
 
 from ...precision import Array
 from ..batch import Batch, Outcomes, Rows, Wanted
-from .rows import COLUMNS, RESULTS, TOLERANCE, outcomes, packed
+from .rows import COLUMNS, COMPILE_S, READ_S, RESULTS, TOLERANCE, outcomes, packed
 
 ORDER, MOVED_ORDER = 24, 22  # of a run, and of the run that tells the error
-COMPILE_S, READ_S = 15.0, 1.2  # CPU seconds of numba and the kernel: cold, and kept on disk
 SWING_S = 2.4e-6  # of a default row over the period of a small swing
 STEPS_PER_CALL = 20_000  # then an interrupt is heard
 ROOM = 1 << 16  # times that one call may find

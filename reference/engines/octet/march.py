@@ -19,7 +19,6 @@ from .long_way import DOUBT, MOST_ZEROS, LongWay, all_zeros, empty_long_way
 from .series import Series, empty_series, step_length, sum_series, taylor_coefficients, udot_of, xdot_of
 from .zeros import CONVERGED, Zeros, empty_zeros, refine, seek
 
-COMPILE_S = 15  # what compiling takes, about, of which users are told
 SHORTEST = 2.0**-40  # of a row's unit of time: a step that is shorter stops the row
 NEXT, DONE, ROW = range(3)  # in `March.counts`
 
@@ -199,7 +198,7 @@ def _entry(sources: str) -> Any:
     def march(m: March, order: int, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
         return _march(m, order, numbers, results, moments, steps) if sources else False
 
-    return entry(march, "steps of eight rows at once", COMPILE_S, nogil=True)
+    return entry(march, "steps of eight rows at once", rows.COMPILE_S, nogil=True)
 
 
 march = _entry(SOURCES + hashed(Path(__file__).parent))
