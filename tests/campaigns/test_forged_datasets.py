@@ -32,9 +32,10 @@ SCENES = {
 
 
 @pytest.fixture(scope="module")
-def datasets(tmp_path_factory):
+def datasets(tmp_path_factory, pytestconfig):
     folder = tmp_path_factory.mktemp("golden")
-    scenes = {name: reference.load_scene("paris", changes) for name, changes in SCENES.items()}
+    chosen = SCENES if pytestconfig.getoption("--long") else {name: SCENES[name] for name in ("swing", "drag")}
+    scenes = {name: reference.load_scene("paris", changes) for name, changes in chosen.items()}
     return [write(reference.solve(scene), folder / name) for name, scene in scenes.items()]
 
 

@@ -99,7 +99,7 @@ def test_between_any_two_steps_of_its_putting_in_place_a_dataset_is_whole(
 
 
 CAMPAIGNS = {
-    "study": ["study", "paris", "--t-end", "60", "--methods", "rk4,scipy_dop853", "--no-formulations"],
+    "study": ["study", "paris", "--t-end", "60", "--methods", "heyoka_double,rk4", "--no-formulations"],
     "stability": ["stability", "--scenes", "hard", "--methods", "rk4,scipy_dop853"],
 }
 
@@ -108,6 +108,8 @@ CAMPAIGNS = {
 def test_a_campaign_goes_on_where_it_was_killed(name: str, tmp_path: Path, size: Size, tally: Tally) -> None:
     pytest.importorskip("numba")
     pytest.importorskip("scipy")
+    if name == "stability" and size(1, 0):
+        pytest.skip("only at full size")
     words = CAMPAIGNS[name]
     whole = undisturbed([*words, "--json", "--out", tmp_path / "whole"])
     assert whole.status == 0

@@ -113,7 +113,7 @@ class Draft:
             numbers = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
         equations = self.document["equations"]
         with contextlib.suppress(FoucaultError):
-            equations = equations_of(named, "inertial").model_dump()
+            equations = equations_of(named, "inertial", self.document["run"]["number"]).model_dump()
         places = {name: min(1000, digits) for name in GRID}
         decimals = {"t": min(1000, exact_decimals(tuple(times))), **places}
         state = [fixed_decimal(value, places[name]) for name, value in zip(GRID, numbers, strict=True)]

@@ -67,6 +67,9 @@ def test_the_full_equations_agree_and_need_no_diagnosis(program: Path) -> None:
     assert said["timing"]["cpu_s"] > 0
 
 
+OFTEN = ("swapped", "vertical_only", "linear", "geocentric")  # in every run; all are in the table of drawn mistakes
+
+
 @pytest.mark.parametrize(
     ("fault", "found"),
     [
@@ -84,7 +87,9 @@ def test_the_full_equations_agree_and_need_no_diagnosis(program: Path) -> None:
         ("inertial_rest", "inertial_rest"),
     ],
 )
-def test_a_named_mistake_is_recognised(program: Path, fault: str, found: str) -> None:
+def test_a_named_mistake_is_recognised(program: Path, fault: str, found: str, size: Callable[[int, int], int]) -> None:
+    if fault not in OFTEN and size(1, 0):
+        pytest.skip("only at full size")
     status, said = scored(program, fault)
     assert (status, said["verdict"]) == (1, "disagrees")
     assert said["diagnosis"]["id"] == found

@@ -62,7 +62,7 @@ def test_show_equations_says_what_was_left_out_and_why(foucault):
         (("run.level=computed", "run.digits=6"), "extended precision: double serves 6 digits."),
         (("run.level=computed", "run.digits=10"), "precision beyond long double: it serves 10 digits."),
         (("run.level=computed", "run.digits=30"), None),
-        (("run.level=confirmed", "run.digits=6"), None),
+        (("run.level=confirmed", "run.digits=6"), "precision beyond long double: it serves 6 digits."),
         (("run.level=enclosed", "run.digits=12"), None),
     ],
     ids=lambda one: one[0] + one[1] if isinstance(one, tuple) else "",
