@@ -18,7 +18,7 @@ golden: .venv/solving
 
 # Each worker takes whole files: what a file prepares is prepared once.
 test: lint
-	@echo "Running the tests: some ten minutes on two cores"
+	@echo "Running the tests: a quarter of an hour on two cores"
 	$(PYTEST)
 
 # Tests by the thousand (damaged files, forgeries, fuzzed inputs, kills): `make test` runs a short form of each.

@@ -67,7 +67,7 @@ def test_the_full_equations_agree_and_need_no_diagnosis(program: Path) -> None:
     assert said["timing"]["cpu_s"] > 0
 
 
-OFTEN = ("swapped", "vertical_only", "linear", "geocentric")  # in every run; all are in the table of drawn mistakes
+OFTEN = ("swapped", "vertical_only", "mean_sphere", "geocentric")  # the table of drawn mistakes has the others
 
 
 @pytest.mark.parametrize(
