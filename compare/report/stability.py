@@ -166,6 +166,8 @@ def _short(precision: str) -> str:
 
 
 def _reasons(cells: Sequence[Cell]) -> Html:
+    if not cells:
+        return paragraph("None.")
     columns = [Column("scene"), Column("method"), Column("precision"), Column("setting"), Column("status")]
     columns += [Column("digits", "number"), Column("asked for", "number"), Column("reason", "prose")]
     rows = [

@@ -204,7 +204,10 @@ def test_the_command_reports_rows_and_a_page(tmp_path: Path) -> None:
     assert result.exit_code == 0, result.output
     rows = json.loads(result.stdout)["rows"]
     assert {"scene", "method", "precision", "status", "digits", "cpu_s", "reason"} <= rows[0].keys()
-    assert "<svg" in (tmp_path / "index.html").read_text()
+    page = (tmp_path / "index.html").read_text()
+    assert "<svg" in page
+    wrong = any(row["status"] == Status.SILENTLY_WRONG for row in rows)
+    assert ("<p>None.</p>" in page.partition("<h2>Silently wrong</h2>")[2].partition("</section>")[0]) is not wrong
 
 
 def test_a_method_without_declared_runs_is_refused() -> None:
