@@ -57,7 +57,7 @@ class _Budget:
             now = time.process_time()
             self.left -= now - (now if last is None else last)
             last = now
-            if self.left < 0:
+            if self.left <= 0:
                 raise _TooLong
             report(t)
 
