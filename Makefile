@@ -1,6 +1,7 @@
 # Two commands on a fresh machine with python3 (3.11 or newer) and make:
 #   make golden   makes .venv of what solving needs (requirements.lock), then data/golden/paris
 #   make test     adds what tests need (requirements-test.lock), then runs lint, types and tests
+#   make atlas    makes every dataset that ships and is missing, and a page over all
 # And `make peers` runs the tests of the methods that want a Fortran compiler, JAX or the GPL, in an environment of its own.
 PYTHON ?= python3
 BIN := .venv/bin
@@ -8,10 +9,10 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 PYTEST := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
-.PHONY: golden test peers campaign coverage mutants studies lint lock clean
+.PHONY: golden test atlas docs peers campaign coverage mutants studies lint lock clean
 
 golden: .venv/solving
-	@echo "Solving 24 h of the pendulum in Paris, twice, to compare: half a minute to two minutes"
+	@echo "Proving 24 h of the pendulum in Paris, and confirming the proof by a second run: one to two minutes"
 	$(BIN)/foucault generate paris
 	@echo "Checking what was written"
 	$(BIN)/foucault verify paris
@@ -20,6 +21,12 @@ golden: .venv/solving
 test: lint
 	@echo "Running the tests: a quarter of an hour on two cores"
 	$(PYTEST)
+
+# Every dataset that ships and is missing, then atlas/index.html over all; what was stopped goes on where it was
+atlas: .venv/testing
+	@echo "Making the golden datasets that are missing: minutes to hours on both cores"
+	$(BIN)/foucault generate --all
+	$(BIN)/foucault atlas --out atlas
 
 # Tests by the thousand (damaged files, forgeries, fuzzed inputs, kills): `make test` runs a short form of each.
 campaign: .venv/testing
@@ -35,6 +42,10 @@ peers: .venv-peers/ready
 	@echo "Running the tests of all methods: some minutes"
 	$(subst .venv,.venv-peers,$(PYTEST)) --peers tests/compare/methods
 
+# All pages and the public docstrings as a site, build/docs/index.html; a broken link is an error
+docs: .venv/testing
+	$(BIN)/python -m sphinx --quiet --fail-on-warning --keep-going -c docs . build/docs
+
 # Do the tests notice a wrong source? Other draws: tests/mutants.py --seed 2, --module precision
 mutants: .venv/testing
 	@echo "Changing the source in 60 places, one at a time, and running its tests"
@@ -42,7 +53,7 @@ mutants: .venv/testing
 
 # docs/studies.md again, from new runs; what was stopped goes on where it was
 studies: .venv/testing
-	@echo "Measuring what docs/studies.md says: some ten CPU minutes, best on an idle machine"
+	@echo "Measuring what docs/studies.md says: most of an hour, best on an idle machine"
 	$(BIN)/python tests/bench/studies.py
 
 lint: .venv/testing
@@ -80,12 +91,12 @@ lint: .venv/testing
 
 # For maintainers: pin again (needs uv). Each lock contains the one before.
 PIN := uv pip compile pyproject.toml --universal --python-version 3.11 --generate-hashes \
-  --no-emit-index-url --no-header --no-annotate -q --extra fast --extra build
+  --no-emit-index-url --no-header --no-annotate -q --extra fast --extra enclose --extra build
 lock:
 	$(PIN) -o requirements.lock
-	$(PIN) -c requirements.lock --extra enclose --extra methods --extra plot --extra test -o requirements-test.lock
-	$(PIN) -c requirements-test.lock --extra enclose --extra methods --extra plot --extra test --extra methods-fortran \
-	  --extra methods-gpl --extra methods-jax --extra methods-native -o requirements-peers.lock
+	$(PIN) -c requirements.lock --extra methods --extra plot --extra test --extra docs -o requirements-test.lock
+	$(PIN) -c requirements-test.lock --extra methods --extra plot --extra test --extra docs \
+	  --extra methods-fortran --extra methods-gpl --extra methods-jax --extra methods-native -o requirements-peers.lock
 
 clean:
 	rm -rf .venv .venv-peers build dist .coverage .coverage.* .mypy_cache .pytest_cache .ruff_cache .hypothesis

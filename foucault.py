@@ -28,7 +28,9 @@ def commands() -> typer.Typer:
     app.add_typer(computing)
     app.add_typer(comparing)
 
-    asked = typer.Option(False, "--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    asked = typer.Option(
+        False, "--version", callback=_version, is_eager=True, help="Print the versions of code and data and exit."
+    )
 
     def front(_: bool = asked) -> None:
         """Compute reference solutions of the Foucault pendulum, and judge other programs by them.
@@ -43,16 +45,19 @@ def commands() -> typer.Typer:
 
 
 def _version(asked: bool) -> None:
-    """Print the version, if asked for it, and end."""
+    """Print the versions of the code and of the data, if asked for them, and end."""
     import typer
 
     if asked:
         from importlib.metadata import PackageNotFoundError, version
 
+        from reference.shipped import DATA_VERSION
+
         try:
-            typer.echo(f"foucault {version('foucault-reference')}")
+            code = f"foucault {version('foucault-reference')}"
         except PackageNotFoundError:
-            typer.echo("foucault, not installed")
+            code = "foucault, not installed"
+        typer.echo(f"{code}, data {DATA_VERSION}")
         raise typer.Exit
 
 

@@ -4,7 +4,7 @@
 >>> paris = reference.load_scene("paris")
 >>> solution = reference.solve(paris, t_end="60", digits=20)
 >>> solution
-Solution(paris: confirmed, 20 digits, 2 grid times, 7 transits)
+Solution(paris: enclosed, 20 digits, 2 grid times, 7 transits)
 >>> round(float(solution.transits["t"][0]), 6)
 8.217792
 """

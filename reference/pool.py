@@ -22,7 +22,7 @@ class WorkerDied(Exception):
 
 
 class Checked(Protocol):
-    """What is at work elsewhere, and may be lost."""
+    """Workers elsewhere, which may be lost."""
 
     def check(self) -> None:
         """Raise if nothing will come any more."""

@@ -7,6 +7,7 @@ import tomllib
 from pathlib import Path
 
 INDEX = "index.json"
+DATA_VERSION = "1.0"  # of what datasets hold, apart from the code's: docs/format.md says when it is raised
 
 
 def data_root() -> Path:

@@ -8,6 +8,7 @@ import signal
 import sys
 from collections import Counter
 from collections.abc import Callable, Generator
+from functools import cache
 from typing import Any
 
 import pytest
@@ -33,11 +34,14 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--peers", action="store_true", help="fail where a method that an extra brings is missing")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark campaigns."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Mark campaigns; skip what is only a part of them."""
     for item in items:
-        if "size" in getattr(item, "fixturenames", []) or "campaigns" in item.path.parts:
+        long = item.get_closest_marker("long")
+        if long or "size" in getattr(item, "fixturenames", []) or "campaigns" in item.path.parts:
             item.add_marker("campaign")
+        if long and not config.getoption("--long"):
+            item.add_marker(pytest.mark.skip(reason="under --long"))
 
 
 @pytest.fixture
@@ -91,6 +95,16 @@ def paris() -> Scene:
     return load_scene("paris")
 
 
+@cache
+def command_line() -> Any:
+    """Return what `main` runs, built once for all calls in this process."""
+    from typer.main import get_command
+
+    from foucault import commands
+
+    return get_command(commands())
+
+
 @pytest.fixture
 def foucault(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> Callable[..., tuple[int, str, str]]:
     """Run a command in this process; return exit status, stdout, stderr."""
@@ -98,6 +112,8 @@ def foucault(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str])
     def call(*words: object, stdin: bytes = b"") -> tuple[int, str, str]:
         from foucault import main
 
+        built = command_line()
+        monkeypatch.setattr("foucault.commands", lambda: built)
         monkeypatch.setattr(sys, "argv", ["foucault", *map(str, words)])
         monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(stdin)))
         status = 0

@@ -22,17 +22,17 @@ DIRECTIONS = {
     "upward": ("z", 1), "upwards": ("z", 1), "vertical": ("z", 1), "down": ("z", -1), "downward": ("z", -1),
     "downwards": ("z", -1), "ost": ("x", 1), "est": ("x", 1), "ouest": ("x", -1), "nord": ("y", 1), "sud": ("y", -1),
 }  # fmt: skip
-_AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | DIRECTIONS
-_AXIS = "|".join(sorted(_AXES, key=len, reverse=True))
+AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | DIRECTIONS
+_AXIS = "|".join(sorted(AXES, key=len, reverse=True))
 _PLACE = "position|pos|coordinate|coord|displacement|disp|location|loc"
 _SPEED = "velocity|vel|speed"
-_POSITION = re.compile(rf"(?:{_PLACE}|bob|r)?([xyz])?({_AXIS})(?:{_PLACE}|axis)?")
-_VELOCITY = re.compile(rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_SPEED}|dot|prime)|d()({_AXIS})dt")
-_TIME = {
+POSITION = re.compile(rf"(?:{_PLACE}|bob|r)?([xyz])?({_AXIS})(?:{_PLACE}|axis)?")
+VELOCITY = re.compile(rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_SPEED}|dot|prime)|d()({_AXIS})dt")
+TIME = {
     "t", "time", "times", "zeit", "temps", "tiempo", "tempo", "elapsed", "elapsedtime", "timeelapsed", "simtime",
     "simulationtime", "timestamp", "tsim",
 }  # fmt: skip
-_TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")  # a column that is called so
+TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")  # a column that is called so
 _BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
 _AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
 
@@ -102,7 +102,7 @@ def _parts(text: str) -> list[tuple[str, str]]:
     if brackets:
         return [(brackets[1], brackets[2])]
     ways = [(text, "")]
-    if _TIME_UNITS.fullmatch(text.lower()):
+    if TIME_UNITS.fullmatch(text.lower()):
         ways.append(("t", text))
     after = _AFTER.fullmatch(text)
     if after:
@@ -119,13 +119,13 @@ def _column(name: str) -> tuple[str, int, int] | None:
     plain = unicodedata.normalize("NFD", name.lower()).replace("\u0307", "dot")
     plain = re.sub(r"['’′]$", "prime", plain)
     plain = "".join(letter for letter in plain if letter.isalnum())
-    if plain in _TIME:
+    if plain in TIME:
         return "t", 1, 2
-    for pattern, speed in ((_POSITION, ""), (_VELOCITY, "v")):
+    for pattern, speed in ((POSITION, ""), (VELOCITY, "v")):
         match = pattern.fullmatch(plain)
         if match:
             given = [group for group in match.groups() if group]
-            axis, sign = _AXES[given[-1]]
+            axis, sign = AXES[given[-1]]
             if len(given) > 1 and given[-1] not in DIRECTIONS:
                 return None
             return f"{speed}{axis}", sign, 2

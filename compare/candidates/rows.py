@@ -10,6 +10,7 @@ from .lines import is_number
 COMMENTS = ("#", "%", "!", "//")  # a line that begins with one of these is a comment
 MARKS = {mark[0] for mark in COMMENTS}
 _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
+_HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
 _APART = re.compile(r"\s{2,}|\t")
 _BEFORE_BRACKET = re.compile(r"\s+(?=[(\[{])")
 
@@ -60,7 +61,8 @@ def spelling(line: str) -> Spelling | None:
                 continue
             one = Spelling(separator, comma, fortran, quoted)
             fields = [text.strip() for text in one.fields(line)]
-            share = sum(map(is_number, fields)) / max(1, len(fields) - (fields[-1] == ""))
+            numbers = sum(is_number(text) or _HEXFLOAT.fullmatch(text) is not None for text in fields)
+            share = numbers / max(1, len(fields) - (fields[-1] == ""))
             if share > best.share:
                 best = Spelling(separator, comma, fortran, quoted, share)
     return best if best.share > 0.5 else None

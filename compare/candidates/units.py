@@ -15,7 +15,7 @@ LENGTHS = {
     "m": Fraction(1), "dm": Fraction(1, 10), "cm": Fraction(1, 100), "mm": Fraction(1, 1000), "um": Fraction(1, 10**6),
     "km": Fraction(1000), "in": Fraction("0.0254"), "ft": Fraction("0.3048"),
 }  # fmt: skip
-_OTHER_WORDS = {
+OTHER_WORDS = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "msecs": "ms", "millisecond": "ms",
     "milliseconds": "ms", "usec": "us", "microsecond": "us", "microseconds": "us", "nanoseconds": "ns", "mins": "min",
     "minute": "min", "minutes": "min", "hr": "h", "hrs": "h", "hour": "h", "hours": "h", "day": "d", "days": "d",
@@ -25,13 +25,13 @@ _OTHER_WORDS = {
     "inches": "in", "foot": "ft", "feet": "ft",
 }  # fmt: skip
 _PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
-_SHORT_SPEEDS = {"mps": "m/s", "cmps": "cm/s", "mmps": "mm/s", "kmh": "km/h", "kph": "km/h"}
+SHORT_SPEEDS = {"mps": "m/s", "cmps": "cm/s", "mmps": "mm/s", "kmh": "km/h", "kph": "km/h"}
 
 
 def plain_unit(word: str) -> str:
     """Return the usual word for a unit of time or length: `s` for seconds; other words come back in lower case."""
     word = word.strip().lower().replace("µ", "u").replace("μ", "u").strip(".")
-    return _OTHER_WORDS.get(word, word)
+    return OTHER_WORDS.get(word, word)
 
 
 def size_of(unit: str, column: str) -> Fraction | None:
@@ -44,7 +44,7 @@ def size_of(unit: str, column: str) -> Fraction | None:
     if column in ("x", "y", "z"):
         return LENGTHS.get(plain_unit(unit))
     word = unit.strip().lower()
-    word = "m/s" if word == "ms" else _SHORT_SPEEDS.get(word, word)
+    word = "m/s" if word == "ms" else SHORT_SPEEDS.get(word, word)
     parts = _PER.fullmatch(word)
     if parts is None:
         return None

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..rhs.problem import Problem
-from .method import SPACE_FIRST, Method, Outcome, Work, outcome
+from .method import HIGH_ORDER, SPACE_FIRST, Method, Outcome, Work, outcome
 
 ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 
@@ -70,7 +70,7 @@ METHODS = (
         id="diffrax_dopri8",
         title="Dormand-Prince 8(7), diffrax on JAX",
         setting="tolerance",
-        ladder=(1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
+        ladder=HIGH_ORDER,
         source="P. Kidger, On Neural Differential Equations (2021); P. J. Prince and J. R. Dormand (1981)",
         licence="Apache-2.0",
         prepare=prepare,

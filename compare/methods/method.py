@@ -27,6 +27,7 @@ Setting = Literal["step", "tolerance", "precision"]
 PARIS = Fraction("67") / Fraction("9.80665")  # l/g in s² of the pendulum for which ladders of steps are written
 TRACEABLE = ("momentum", "space", "spin", "plane", "angles")  # formulations that can be traced to straight-line code
 SPACE_FIRST = ("space", "momentum", "spin", "plane", "angles")  # the same, for methods that do best in `space`
+HIGH_ORDER = (1e-6, 1e-8, 1e-10, 1e-12, 1e-14)  # ladder of tolerances of an explicit method of order 8 or so
 NINE_DIGITS = ((None, 1e-9),)  # the run in `Method.stability` of a method that has a tolerance
 TWO_HUNDRED_STEPS = ((None, 1 / 200),)  # the same of one whose step is fixed: steps in a swing
 UNITS: dict[Setting, str] = {"step": "s", "tolerance": "relative", "precision": "bits"}

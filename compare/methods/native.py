@@ -16,7 +16,7 @@ from reference import InputError
 from ..native.library import BOOST, GSL, SUNDIALS, Library
 from ..native.program import prepared
 from ..rhs.problem import Problem
-from .method import SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
+from .method import HIGH_ORDER, SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
 
 DENSE = ("sundials_nvecserial", "sundials_sunmatrixdense", "sundials_sunlinsoldense")
 
@@ -49,7 +49,13 @@ def prepare(
 
 _native = partial(Method, setting="tolerance", family=Family.COMPILED)
 _odeint = partial(
-    _native, native=BOOST, extra="methods-native", licence="BSL-1.0", formulations=SPACE_FIRST, dense=False
+    _native,
+    ladder=HIGH_ORDER,
+    native=BOOST,
+    extra="methods-native",
+    licence="BSL-1.0",
+    formulations=SPACE_FIRST,
+    dense=False,
 )
 _sundials = partial(
     _native,
@@ -58,12 +64,12 @@ _sundials = partial(
     source="A. C. Hindmarsh et al., ACM Trans. Math. Softw. 31 (2005) 363",
 )
 _cvode = partial(_sundials, ladder=(1e-8, 1e-10, 1e-12, 1e-14))
+_multistep = partial(prepare, library=SUNDIALS, parts=("sundials.hpp", "cvode.cpp"), link=("sundials_cvode", *DENSE))
 
 METHODS = (
     _odeint(
         id="odeint_rkf78",
         title="Fehlberg 8(7), Boost odeint in C++",
-        ladder=(1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
         source="E. Fehlberg, NASA TR R-287 (1968); K. Ahnert and M. Mulansky, AIP Conf. Proc. 1389 (2011) 1586",
         prepare=partial(prepare, library=BOOST, parts=("odeint.cpp",)),
         order=8,
@@ -71,14 +77,13 @@ METHODS = (
     _odeint(
         id="odeint_bulirsch_stoer",
         title="Bulirsch-Stoer extrapolation, Boost odeint in C++",
-        ladder=(1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
         source="R. Bulirsch and J. Stoer, Numer. Math. 8 (1966) 1; K. Ahnert and M. Mulansky (2011)",
         prepare=partial(prepare, library=BOOST, parts=("odeint.cpp",), defines=("BULIRSCH_STOER",)),
     ),
     _native(
         id="gsl_rk8pd",
         title="Prince-Dormand 8(9), GSL in C",
-        ladder=(1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
+        ladder=HIGH_ORDER,
         source="P. J. Prince and J. R. Dormand, J. Comput. Appl. Math. 7 (1981) 67; GSL odeiv2",
         licence="GPL-3.0-or-later",
         native=GSL,
@@ -90,30 +95,18 @@ METHODS = (
     _cvode(
         id="cvode_c_adams",
         title="Adams, orders 1 to 12, CVODE in C",
-        prepare=partial(
-            prepare,
-            library=SUNDIALS,
-            parts=("sundials.hpp", "cvode.cpp"),
-            defines=("MULTISTEP=CV_ADAMS",),
-            link=("sundials_cvode", *DENSE),
-        ),
+        prepare=partial(_multistep, defines=("MULTISTEP=CV_ADAMS",)),
     ),
     _cvode(
         id="cvode_c_bdf",
         title="backward differentiation, orders 1 to 5, CVODE in C",
-        prepare=partial(
-            prepare,
-            library=SUNDIALS,
-            parts=("sundials.hpp", "cvode.cpp"),
-            defines=("MULTISTEP=CV_BDF",),
-            link=("sundials_cvode", *DENSE),
-        ),
+        prepare=partial(_multistep, defines=("MULTISTEP=CV_BDF",)),
         stiff=True,
     ),
     _sundials(
         id="arkode_erk8",
         title="Fehlberg 8(7), ARKODE in C",
-        ladder=(1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
+        ladder=HIGH_ORDER,
         prepare=partial(
             prepare,
             library=SUNDIALS,

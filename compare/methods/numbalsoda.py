@@ -16,7 +16,7 @@ import numpy as np
 from reference.capture import captured
 
 from ..rhs.problem import Problem
-from .method import NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
+from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
 
@@ -82,7 +82,7 @@ METHODS = (
     _numbalsoda(
         id="numbalsoda_dop853",
         title="Dormand-Prince 8(5,3), numbalsoda",
-        ladder=(1e-6, 1e-8, 1e-10, 1e-12, 1e-14),
+        ladder=HIGH_ORDER,
         source="E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I",
         licence="MIT and BSD",
         prepare=partial(prepare, code="dop853"),

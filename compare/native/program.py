@@ -29,7 +29,7 @@ HEAD = 4  # numbers before the states: CPU seconds, steps, calls of the right-ha
 
 @dataclass(frozen=True)
 class Answer:
-    """What a program found.
+    """The results of a program: states, counts and cost.
 
     Attributes:
         states: of the problem's variables at the times that were reached, shape (rows, variables).

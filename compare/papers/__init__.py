@@ -1,13 +1,12 @@
 """The three source papers, one folder each: every formula and printed number recomputed, judged, and shown on a page.
 
 The papers are Mathar's (`mathar/`), Gastebois's (`gastebois/`) and a third one, which solves the linear pendulum by
-three methods (`three_methods/`). A module holds a few sections; its function `checks` declares one row for
+three methods (`three_methods/`). A module of theirs holds a few sections; its function `checks` declares one row for
 every printed formula, number or sentence, with the computation to compare it with. Verdicts are computed from these.
 
 - `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a misprint);
-- `section.py`: what the rows of a section share, and the list of all sections, in the order of print;
 - `points.py`: random points at which formulas are evaluated, and the numbers of the Paris pendulum;
-- `first_principles.py`: the yardstick of formulas, from the Lagrangian; `linear.py`: the same for the linear pendulum;
+- `first_principles.py`: the yardstick of formulas, from the Lagrangian and its linear limit;
 - `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
 - `runs.py`: runs of the reference that numbers and sentences rest on;
 - `figures.py`: the first paper's figures, drawn again, and their captions;
@@ -24,22 +23,41 @@ every printed formula, number or sentence, with the computation to compare it wi
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from .checks import JudgedRow
+    from .checks import Check, JudgedRow
 
-__all__ = ["build", "rows"]
+__all__ = ["build", "declared", "rows"]
 
+PAPERS = ("mathar", "gastebois", "three_methods")  # each lists its SECTIONS in the order of print
 Report = Callable[[str, int, int], None]
 
 
-def rows(report: Report | None = None) -> list[JudgedRow]:
-    """Judge every row; `report` is called with a row's place, the number of rows judged so far, and of all rows."""
-    from .section import rows as judged
+def declared() -> list[Check]:
+    """Return every declared row, in the order of print."""
+    modules = [f".{paper}.{name}" for paper in PAPERS for name in import_module(f".{paper}", __name__).SECTIONS]
+    return [check for module in modules for check in import_module(module, __name__).checks()]
 
-    return judged(report)
+
+def rows(report: Report | None = None) -> list[JudgedRow]:
+    """Judge every declared row.
+
+    Args:
+        report: called with a row's place, the number of rows judged so far, and of all rows.
+
+    Raises:
+        UnexplainedError: a printed line does not hold, and no declared correction does.
+    """
+    lines = declared()
+    judged = []
+    for count, line in enumerate(lines, 1):
+        judged.append(line.row())
+        if report is not None:
+            report(judged[-1].place, count, len(lines))
+    return judged
 
 
 def build(out: Path, report: Report | None = None) -> list[JudgedRow]:

@@ -12,9 +12,10 @@ raises `UnexplainedError`. So nothing can be listed as wrong, or as right, by ha
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 from reference.precision import fixed_decimal, to_fraction
 
@@ -60,19 +61,29 @@ class UnexplainedError(ValueError):
         super().__init__(f"{row}: {why}")
 
 
-class Check(Protocol):
-    """A declared row."""
+@dataclass(frozen=True)
+class Check(ABC):
+    """A declared row.
 
-    @property
-    def id(self) -> str:
-        """Paper and place in one word; in a declaration its end."""
+    Attributes:
+        id: paper and place in one word; as declared in a section its end.
+        place: paper, section, equation; as declared in a section its end.
+        printed: as printed, short.
+    """
 
-    @property
-    def place(self) -> str:
-        """Paper, section, equation; in a declaration its end."""
+    id: str
+    place: str
+    printed: str
 
+    @abstractmethod
     def row(self) -> JudgedRow:
         """Judge the printed line."""
+
+
+def section(prefix: str, place: str, *rows: Check) -> list[Check]:
+    """Return rows with their whole ids and places, declared with the end of each: "13" at "(13)", or at ""."""
+    spaces = ("" if row.place[:1] in ("", ",") else " " for row in rows)
+    return [replace(row, id=prefix + row.id, place=place + s + row.place) for row, s in zip(rows, spaces, strict=True)]
 
 
 def largest_gap(values: Sequence[Value], others: Sequence[Value]) -> Any:
@@ -87,12 +98,9 @@ def component(function: Callable[[Point], Value], i: int) -> Callable[[Point], A
 
 
 @dataclass(frozen=True)
-class Identity:
+class Identity(Check):
     """Printed with an equals sign: `formula` as printed, `truth` derived, `corrected` where the print fails."""
 
-    id: str
-    place: str
-    printed: str
     formula: Callable[[Point], Value]
     truth: Callable[[Point], Value]
     correction: str = ""
@@ -121,15 +129,12 @@ class Identity:
 
 
 @dataclass(frozen=True)
-class Approximate:
+class Approximate(Check):
     """Printed with "≈": `pair(s)` gives print and truth with the small parameter s times the paper's own.
 
     The error must shrink as s**order. `unit` is that of the error, which is relative if there is none.
     """
 
-    id: str
-    place: str
-    printed: str
     pair: Callable[[Any], tuple[Value, Value]]
     order: int
     small: str
@@ -160,16 +165,13 @@ class Approximate:
 
 
 @dataclass(frozen=True)
-class PrintedNumber:
+class PrintedNumber(Check):
     """A number in print (`numeral`: the same in ASCII); `value` recomputes it.
 
     `about`: the print says "about" or "near", and this is the scale it speaks of. `from_inputs`: the value from the
     rounded inputs that the paper itself states (`inputs`), tried where the exact inputs do not give the print.
     """
 
-    id: str
-    place: str
-    printed: str
     numeral: str
     value: Callable[[], Any]
     about: Callable[[], Any] | None = None
@@ -233,12 +235,9 @@ class Finding:
 
 
 @dataclass(frozen=True)
-class Statement:
+class Statement(Check):
     """A sentence, and a computation that can refute it. `by_run`: it rests on a run and not on an identity."""
 
-    id: str
-    place: str
-    printed: str
     test: Callable[[], Finding]
     correction: str = ""
     corrected: Callable[[], bool] | None = None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,14 +23,12 @@ from .digits import degrees, mpf
 from .first_principles import rest_angle
 from .mathar.paris import estimate
 from .points import paris
-from .runs import frequency, paris_path, paris_swing_plane, solved, window
+from .runs import frequencies, paris_path, paris_swing_plane, window
 
 BLUE, RED, GREEN, PINK, *_, BLACK = COLOURS
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (6, 2, 1, 2)))
 WINDOWS = (0, 7000, 12000)  # s
 FIXED_STEP = {"rk4": "-R 4", "rkng56": "-R 5", "rkng67": "-R 6"}
-LATITUDES = tuple(range(-90, 91, 10))
-SPAN = "600"  # s of a run that measures a frequency
 DAY: dict[str, Any] = {"x": "t in h", "xlim": (0, 24), "xticks": range(0, 25, 6)}
 EAST_WEST: dict[str, Any] = {"x": "geodetic latitude in °", "xticks": range(-90, 91, 45)}
 
@@ -181,13 +178,6 @@ def _three_orders() -> list[Panel]:
 
 def _zero(begin: float, end: float) -> Line:
     return Line("", [begin, end], [0, 0], GUIDE)
-
-
-@cache
-def frequencies() -> dict[float, float]:
-    """Return the frequency in Hz by latitude in degrees, from runs of the reference."""
-    latitudes = [*map(str, LATITUDES), "48.846111"]
-    return {float(text): float(frequency(solved([f"site.latitude={text}"], SPAN, 12))) for text in latitudes}
 
 
 def estimate_at(latitude: float) -> float:

@@ -19,6 +19,7 @@ MEANING = {
 NOT_JUDGED = (
     ("Mathar II, after (19)", "the substitution that leads from [6, (22)] to (17)-(19)", "needs the text of [6]"),
     ("Mathar V, after (50)", "compatible with footnote 5 in [17]", "needs the text of [17]; (47) and (50) are judged"),
+    ("Mathar, Fig. 3, 8 and 9", "what the figures show", "they claim nothing that a number could refute; drawn above"),
     ("Mathar, Fig. 9", "the main results were obtained with steps of 0.01 s", "what was done, not what is so"),
     (
         "Mathar, appendix A",

@@ -74,6 +74,13 @@ def frequency(solution: Solution) -> Any:
     return mpf(halves) / 2 / mpf(last)
 
 
+@cache
+def frequencies() -> dict[float, float]:
+    """Return the frequency in Hz by latitude in degrees, from runs of ten minutes."""
+    latitudes = [*map(str, range(-90, 91, 10)), "48.846111"]
+    return {float(text): float(frequency(solved([f"site.latitude={text}"], "600", 12))) for text in latitudes}
+
+
 def swing_plane(scene: Scene, states: Array) -> Array:
     """Return the azimuth of the swing plane in rad, east to north, without jumps."""
     return np.unwrap(Gauge.of(scene).swing_plane(states), period=np.pi)

@@ -14,6 +14,10 @@ from functools import cache
 from importlib.resources import files
 
 MARK = '<meta name="generator" content="foucault">'  # in every page; shows that a folder was written by us
+_POLICY = (
+    "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
+    "script-src 'unsafe-inline'; img-src data:\">"
+)
 
 
 class Html(str):
@@ -111,17 +115,21 @@ def choices(kinds: Mapping[str, str]) -> Html:
 
 
 def table(columns: Sequence[Column], rows: Iterable[TableRow], caption: str = "") -> Html:
-    """Return a table, which scrolls where it is wider than the screen."""
+    """Return a table, which scrolls where it is wider than the screen; one with prose becomes cards on a telephone."""
+    cards = any(one.kind in ("prose", "wrapped", "line") for one in columns)
     head = "".join(f'<th scope="col"{_class(one)}>{text(one.title)}</th>' for one in columns)
     body = []
     for row in rows:
-        cells = "".join(f"<td{_class(one)}>{text(cell)}</td>" for one, cell in zip(columns, row.cells, strict=True))
+        cells = "".join(
+            f"<td{_class(one)}{_name(one) if cards and i else ''}>{text(cell)}</td>"
+            for i, (one, cell) in enumerate(zip(columns, row.cells, strict=True))
+        )
         kind = f' class="{row.kind}"' if row.kind else ""
         named = f' id="{text(row.anchor)}"' if row.anchor else ""
         body.append(f"<tr{kind}{named}>{cells}</tr>")
     title = [f"<figcaption>{text(caption)}</figcaption>"] if caption else []
     inside = [f"<thead><tr>{head}</tr></thead>", "<tbody>", *body, "</tbody>"]
-    around = "whole" if all(one.kind == "wrapped" for one in columns) else "wide"
+    around = ("whole" if all(one.kind == "wrapped" for one in columns) else "wide") + (" cards" if cards else "")
     return Html(
         "\n".join(
             ["<figure>", *title, f'<div class="{around}">', "<table>", *inside, "</table>", "</div>", "</figure>"]
@@ -139,26 +147,33 @@ def anchor(heading: str) -> str:
     return re.sub(r"[^a-z0-9]+", "-", heading.lower()).strip("-")
 
 
-def page(title: str, sections: Sequence[str], *, lead: str = "") -> str:
+def page(title: str, sections: Sequence[str], *, lead: str = "", script: str = "", styles: str = "") -> str:
     """Return a whole page.
 
     Args:
         title: title of the page.
         sections: results of `section`; the page links to their headings at the top.
         lead: introduction below the title.
+        script: elements with data and scripts; a page that has any may load nothing from anywhere.
+        styles: further styles.
     """
     headings = re.findall(r'<section id="([^"]+)">\n<h2>(.*?)</h2>', "\n".join(sections))
-    links = "\n".join(f'<a href="#{target}">{heading}</a>' for target, heading in headings)
+    links = "\n".join(f'<a href="#{target}">{heading}</a>' for target, heading in headings if len(headings) > 1)
+    policy = f"{_POLICY}\n" if script else ""
     return (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n'
-        f"<title>{text(title)}</title>\n<style>\n{_styles()}</style>\n</head>\n<body>\n<header>\n<h1>{text(title)}</h1>\n"
-        f"{text(lead)}\n</header>\n<nav>\n{links}\n</nav>\n<main>\n{join(sections)}\n</main>\n</body>\n</html>\n"
+        f'<meta name="viewport" content="width=device-width, initial-scale=1">\n{MARK}\n{policy}'
+        f"<title>{text(title)}</title>\n<style>\n{_styles()}{styles}</style>\n</head>\n<body>\n<header>\n<h1>{text(title)}</h1>\n"
+        f"{text(lead)}\n</header>\n<nav>\n{links}\n</nav>\n<main>\n{join(sections)}\n</main>\n{script}</body>\n</html>\n"
     )
 
 
 def _class(column: Column) -> str:
     return "" if column.kind == "text" else f' class="{column.kind}"'
+
+
+def _name(column: Column) -> str:
+    return f' data-name="{text(column.title)}"'
 
 
 @cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from statistics import median
 from typing import Any
@@ -47,7 +47,7 @@ def headlines(cells: Sequence[Cell]) -> list[str]:
     """Return the main results as sentences: the methods' own failures first, then what no method could have kept."""
     wrong = [cell for cell in cells if cell.status == Status.SILENTLY_WRONG]
     tried = [cell for cell in cells if cell.status not in NOT_TRIED]
-    methods = Counter(cell.method for cell in wrong)
+    runs = Counter(map(_named(cells), wrong))
     sentences = [
         *_programs_broken(cells),
         f"{len(wrong)} of {len(tried)} runs are silently wrong: they report success, but the error is over {WRONG} "
@@ -61,10 +61,16 @@ def headlines(cells: Sequence[Cell]) -> list[str]:
             f"{len(magnified)} more are as far off because the motion itself magnifies what was asked by more than "
             f"the error: {scenes}."
         )
-    if methods:
-        worst = ", ".join(f"{name} ({count})" for name, count in methods.most_common(6))
+    if runs:
+        worst = ", ".join(f"{name} ({count})" for name, count in runs.most_common(6))
         sentences.append(f"Silently wrong most often: {worst}.")
     return sentences + list(_stiffness(cells))
+
+
+def _named(cells: Sequence[Cell]) -> Callable[[Cell], str]:
+    """Return a function that names a cell's run: its method, with the formulation where that method has several."""
+    several = Counter(method for method, _ in {(cell.method, cell.precision) for cell in cells})
+    return lambda cell: f"{cell.method}{f', {cell.precision}' if several[cell.method] > 1 else ''}"
 
 
 def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
@@ -84,7 +90,7 @@ def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
 def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
     """Yield for each pair a sentence: is the implicit method cheaper on stiff scenes, and more expensive on others?"""
     by_key = {(cell.scene, cell.method): cell for cell in cells if cell.cpu_s is not None}
-    stiff = {cell.scene for cell in cells if "stiff" in load_scene(cell.scene).flags}
+    stiff = {scene for scene in {cell.scene for cell in cells} if "stiff" in load_scene(scene).flags}
     for implicit, explicit in PAIRS:
         ratios: dict[bool, list[float]] = {True: [], False: []}
         for (scene, method), cell in by_key.items():
@@ -100,7 +106,8 @@ def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
 
 
 def _times(gain: float) -> str:
-    return f"{gain:.2g} times cheaper" if gain >= 1 else f"{1 / gain:.2g} times more expensive"
+    factor = f"{float(f'{max(gain, 1 / gain):.2g}'):g}"
+    return f"{factor} times {'cheaper' if gain >= 1 else 'more expensive'}"
 
 
 def _parsed(document: dict[str, Any]) -> tuple[list[Cell], list[LongRun]]:

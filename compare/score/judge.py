@@ -90,7 +90,7 @@ def judge(
     golden = golden_of(problem, digits, announce, report, float(candidate.t[-1]))
     errors = trajectory_errors(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
     allowed = TOLERANCE * errors.amplitude_m if tolerance is None else tolerance
-    unjudged = None if times is None else _unjudged(golden)
+    unjudged = None if times is None else unjudged_transits(golden)
     if unjudged and not candidate.positions:
         raise InputError("transits", unjudged, "a trajectory as well", "Print t,x,y.")
     result = Score(
@@ -157,8 +157,8 @@ def _flung_off(scene: Scene) -> tuple[str, ...]:
     return (f"the centrifugal force at the suspension, {outward:.3g} m/s², is larger than g: {advice}",)
 
 
-def _unjudged(golden: Golden) -> str | None:
-    """Return the reason why the candidate's transits cannot be judged, or None."""
+def unjudged_transits(golden: Golden) -> str | None:
+    """Return the reason why a candidate's transits cannot be judged, or None."""
     transits = golden.manifest.transits
     if transits == "not asked for":
         return "the scene asks for no transits (run.transits): the candidate's were not judged"

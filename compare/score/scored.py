@@ -41,7 +41,7 @@ class Score:
         errors: at the candidate's times.
         tolerance_m: largest position error allowed, in m.
         swing: turn of the swing plane and delay.
-        drifts: of h and of |r| - l, if the candidate has the columns.
+        drifts: of h and of `|r| - l`, if the candidate has the columns.
         transits: errors of its transits, or None.
         timing: run time of the program, or None.
         explanation: the likely reasons for the error; None if they were not looked for.
@@ -105,7 +105,7 @@ class Score:
 
     @property
     def allowed_m(self) -> float:
-        """Tolerance plus the reference's own bound, in m: nothing is judged more finely than the reference is known."""
+        """Tolerance in m plus the reference's own bound; nothing is judged more finely than the reference is known."""
         return self.tolerance_m + self.errors.bound_m
 
     @property

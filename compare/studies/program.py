@@ -52,7 +52,7 @@ class Measured:
     errors: Array
 
     def breaks_at(self, above_m: float) -> float | None:
-        """Return the first time in s at which the error is above so many metres; None if it never is."""
+        """Return the first time in s at which the error exceeds `above_m`; None if it never does."""
         beyond = self.errors > above_m
         return float(self.t[np.argmax(beyond)]) if beyond.any() else None
 

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Sequence
 from html import escape
 
-from reference.shipped import seals
+from reference.shipped import DATA_VERSION
 
 from .outcome import Outcome
 
@@ -16,11 +14,6 @@ LABEL = "Foucault pendulum"
 GOOD, BAD = "#2f7d32", "#b3261e"  # white text on them has a contrast above 5 to 1
 _WIDTH = 6.2  # px of a letter of 11 px, about; textLength makes it exact
 _MARGIN = 8
-
-
-def data_version() -> str:
-    """Return the version of the data that ship: the first seven figures of the hash of all their seals."""
-    return hashlib.sha256(json.dumps(seals(), sort_keys=True).encode()).hexdigest()[:7]
 
 
 def fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
@@ -35,7 +28,7 @@ def message(outcomes: Sequence[Outcome]) -> str:
     scenes = f"{agree} of {len(outcomes)} {'scene' if len(outcomes) == 1 else 'scenes'}"
     digits = fewest_digits(outcomes)
     middle = "" if digits is None else f" · {digits:.1f} digits"
-    return f"{scenes}{middle} · data {data_version()}"
+    return f"{scenes}{middle} · data {DATA_VERSION}"
 
 
 def badge(outcomes: Sequence[Outcome]) -> str:

@@ -20,7 +20,7 @@ ORDER = ("agrees", "disagrees", REFUSED)  # from best to worst
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of judging a candidate.
+    """The result of judging one candidate: a score, or the reason why there is none.
 
     Attributes:
         name: of the candidate.
@@ -48,7 +48,7 @@ class Outcome:
 
     @property
     def lines(self) -> list[str]:
-        """What people read, the verdict first."""
+        """The lines for people, the verdict first."""
         if self.score is not None:
             return list(lines(self.score))
         return [f"{self.name} was not judged by {self.scene}: {self.error}"]
@@ -69,11 +69,6 @@ def outcome(name: str, scene: str, judged: Callable[[], Score]) -> Outcome:
     except FoucaultError as error:
         return Outcome(name, scene, error=error)
     return Outcome(score.candidate.name, score.scene.id, score)
-
-
-def worst_status(outcomes: Sequence[Outcome]) -> int:
-    """Return the exit status of all together: the largest."""
-    return max((one.exit_status for one in outcomes), default=0)
 
 
 def worst_verdict(outcomes: Sequence[Outcome]) -> str:

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from reference.shipped import DATA_VERSION
+
 from ..report.folder import check_folder, csv_text, json_text, write_files
 from ..report.page import Column, Html, TableRow, findings, page, paragraph, section, table, text
 from ..score.verdict import percent
-from .badge import badge, data_version, fewest_digits, message
+from .badge import badge, fewest_digits, message
 from .outcome import Outcome, worst_verdict
 
 JSON, CSV, PAGE, BADGE = "suite.json", "rows.csv", "index.html", "badge.svg"
@@ -24,7 +26,7 @@ def suite_document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "scenes": scenes,
         "agree": sum(one.verdict == "agrees" for one in outcomes),
         "digits": fewest_digits(outcomes),
-        "data": data_version(),
+        "data": DATA_VERSION,
         "verdict": worst_verdict(outcomes),
         "rows": [one.document() for one in outcomes],
     }

@@ -82,6 +82,12 @@ def command(
             help="At the level enclosed, prove it again by FLINT alone: the same digits; always for what ships.",
         ),
     ] = False,
+    no_confirm: Annotated[
+        bool,
+        typer.Option(
+            "--no-confirm", help="At the level enclosed, leave out heyoka's run that confirms every digit of the proof."
+        ),
+    ] = False,
     set_: Assignments = None,
     every: Annotated[
         bool, typer.Option("--all", help="Make every dataset that ships and is missing or not sealed.")
@@ -101,8 +107,9 @@ def command(
         "--no-transits": ("run.transits", "false" if no_transits else None),
     }
     if every:
-        unused = {"SCENE": scene_word, "--no-transits": no_transits, "--audit": audit, "--set": set_}
-        refuse(unused | {"--engine": engine if engine != AUTO else None}, "with --all")
+        unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, "--audit": audit}
+        unused |= {"--no-confirm": no_confirm, "--set": set_, "--engine": engine if engine != AUTO else None}
+        refuse(unused, "with --all")
         generate_all(replacements(None, options), out, workers, cluster, as_json)
         return
     refuse({"--workers": workers, "--cluster": cluster}, "without --all")
@@ -118,9 +125,12 @@ def command(
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
     check_target(folder)
-    audit = audit or (scene.run.level == "enclosed" and ships(folder))
+    proving = scene.run.level == "enclosed"
+    refuse({"--no-confirm": no_confirm and not proving}, "without --level enclosed")
+    audit, confirm = audit or (proving and ships(folder)), proving and not no_confirm
     with stoppable("nothing was written"), progress() as show:
-        solution = solve(scene, engine=engine, audit=audit, report=show(scene.id, float(scene.exact.t_end)))
+        report = show(scene.id, float(scene.exact.t_end))
+        solution = solve(scene, engine=engine, audit=audit, confirm=confirm, report=report)
     if engine not in (AUTO, solution.run.engine):
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)

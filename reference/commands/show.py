@@ -80,10 +80,12 @@ def _compiled(scene: Scene) -> dict[str, Any]:
     """
     from ..engines.equations import lines_and_left_out
     from ..solver.choice import first_plan
-    from ..solver.pilot import run_pilot
+    from ..solver.pilot import begun_pilot, run_pilot
 
     times = tuple(scene.exact.grid)
-    plan = first_plan(scene, times, run_pilot(scene.exact, times))
+    one_run = scene.run.level in ("computed", "enclosed")
+    pilot = begun_pilot(scene.exact, times)[0] if one_run else run_pilot(scene.exact, times)
+    plan = first_plan(scene, times, pilot)
     number = str(plan.number)
     lines, left_out = lines_and_left_out(scene, plan.formulation, number)
     run = {"engine": plan.engine, "formulation": plan.formulation, "number": number}

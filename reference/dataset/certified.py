@@ -6,7 +6,7 @@ from ..scene import LEVELS
 from .manifest import Manifest
 from .sheets import GRID_HEADER, Sheet
 
-_MEANING = dict(
+MEANING = dict(
     zip(
         LEVELS,
         (
@@ -40,7 +40,7 @@ def _inputs(manifest: Manifest) -> list[str]:
         manifest.title,
         *([f"Source: {manifest.source}"] if manifest.source else []),
         "",
-        f"Level: {manifest.level}. {_MEANING[manifest.level]}",
+        f"Level: {manifest.level}. {MEANING[manifest.level]}",
         f"Inputs are read as: {manifest.inputs}",
         *(["Why it is hard:"] if manifest.flags else []),
         *(f"  {flag}: {manifest.notes[flag]}" for flag in manifest.flags),

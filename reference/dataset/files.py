@@ -94,6 +94,17 @@ def read_files(folder: Path) -> Files:
     return Files(folder, manifest, scene, texts, tables, foreign)
 
 
+def read_manifest(folder: Path) -> Manifest:
+    """Read a dataset's manifest alone and check its seal.
+
+    Raises:
+        InputError: there is no dataset, or it cannot be read.
+        DatasetError: the manifest is missing or malformed, or breaks its schema or its seal.
+    """
+    with _opened(folder) as directory:
+        return _manifest(folder, directory)
+
+
 def scene_of(manifest: Manifest) -> Scene:
     """Return the scene that a manifest describes.
 

@@ -8,7 +8,7 @@ from ..solver.solve import solve
 from .checks.motion import Progress
 from .files import read_files
 from .manifest import MANIFEST
-from .record import AUDIT
+from .record import AUDIT, NO_CONFIRM
 from .render import render
 
 
@@ -23,8 +23,11 @@ def recompute(folder: Path, report: Progress | None = None) -> list[str]:
     manifest = files.manifest
     engine = manifest.command.partition("--engine ")[2].partition(" ")[0]
     end = float(files.scene.exact.t_end)
-    audit = AUDIT in manifest.command.split()
-    solution = solve(files.scene, engine=engine, audit=audit, report=report and (lambda t: report(t, end)))
+    words = manifest.command.split()
+    confirm = manifest.level == "enclosed" and NO_CONFIRM not in words
+    solution = solve(
+        files.scene, engine=engine, audit=AUDIT in words, confirm=confirm, report=report and (lambda t: report(t, end))
+    )
     texts = render(solution, manifest.id)
     found = {MANIFEST: manifest.text(), **files.texts}
     return [

@@ -10,7 +10,7 @@ from ..columns import POSITION, UNITS, VELOCITY
 from ..engines.equations import lines_and_left_out
 from ..precision import outward, rounded_up
 from ..scene import Scene
-from ..shipped import flag_meanings, scene_ids
+from ..shipped import DATA_VERSION, flag_meanings, scene_ids
 from ..solver.solution import Proof, Solution
 from .invariant import invariant_drift
 from .manifest import (
@@ -33,7 +33,8 @@ _UP = {
 }
 UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
 AUDIT = "--audit"  # in a dataset's command, it says that FLINT alone proved the same digits
-PACKAGES = ("foucault-reference", "heyoka", "mpmath")
+NO_CONFIRM = "--no-confirm"  # there, that a proof stands without heyoka's confirmation
+PACKAGES = ("heyoka", "mpmath")
 
 
 def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | None = None) -> Manifest:
@@ -80,7 +81,7 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
         ],
         enclosure=None if solution.proof is None else _enclosure(solution.proof),
         generator=generator(),
-        command=command(scene, run.engine, name, solution.proof is not None and solution.proof.audited),
+        command=command(scene, run.engine, name, *_wishes(solution.proof)),
         files={},
     )
 
@@ -104,8 +105,11 @@ def equations_of(scene: Scene, formulation: str, number: str) -> Equations:
 
 
 def generator() -> dict[str, str]:
-    """Return the versions of this project and of the libraries that its numbers depend on."""
-    return {name: _version(name) for name in PACKAGES}
+    """Return the version of the data, and those of the libraries that the numbers depend on.
+
+    The version of the code is not among them: a release that changes no digit changes no dataset.
+    """
+    return {"foucault-data": DATA_VERSION, **{name: _version(name) for name in PACKAGES}}
 
 
 def _version(package: str) -> str:
@@ -115,16 +119,22 @@ def _version(package: str) -> str:
         return "unknown"
 
 
-def command(scene: Scene, engine: str, name: str, audited: bool = False) -> str:
+def _wishes(proof: Proof | None) -> tuple[bool, bool]:
+    """Return whether a proof was audited, and whether it was confirmed."""
+    return (False, False) if proof is None else (proof.audited, proof.confirmed)
+
+
+def command(scene: Scene, engine: str, name: str, audited: bool = False, confirmed: bool = False) -> str:
     """Return the command that makes a dataset: of a shipped scene, or of the scene's own file, with what was changed.
 
-    `name` is the dataset's id, which names the changes; `audited` says that its proof was audited.
+    `name` is the dataset's id, which names the changes; `audited` and `confirmed` say that its proof was.
     """
     run = scene.run
     parts = ["foucault", "generate", scene.id if scene.id in scene_ids() else f"{scene.id}.toml"]
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
     parts += ["--engine", engine]
     parts += [AUDIT] if audited else []
+    parts += [NO_CONFIRM] if run.level == "enclosed" and not confirmed else []
     parts += [] if run.transits else ["--no-transits"]
     own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=")
     shipped = shipped_scene(scene)

@@ -12,15 +12,19 @@ from .record import manifest_of
 from .sheets import Sheet, binary64_sheet, grid_sheet, nearest_doubles, transits_sheet
 from .vectors import vectors
 
+MOST_DOUBLES = 1000  # transits; more are written as decimals alone, which read as the same doubles
+
 
 def render(solution: Solution, name: str | None = None) -> dict[str, str]:
     """Return the text of every file of a dataset, by file name; `name` is its id, by default the scene's own."""
     grid, transits = grid_sheet(solution), transits_sheet(solution)
     tables = {"grid.csv": grid, "grid.binary64.csv": binary64_sheet(grid, _grid_doubles(solution, grid))}
     if solution.scene.run.transits:
-        none: dict[str, list[float]] = {name: [] for name in TRANSITS}
-        doubles = nearest_doubles(solution.transits, transits) if solution.transits is not None else none
-        tables |= {"transits.csv": transits, "transits.binary64.csv": binary64_sheet(transits, doubles)}
+        tables["transits.csv"] = transits
+        if len(transits.rows) <= MOST_DOUBLES:
+            none: dict[str, list[float]] = {name: [] for name in TRANSITS}
+            doubles = nearest_doubles(solution.transits, transits) if solution.transits is not None else none
+            tables["transits.binary64.csv"] = binary64_sheet(transits, doubles)
     record = manifest_of(solution, grid, transits, name)
     texts = {name: sheet.csv() for name, sheet in tables.items()} | derived_texts(record, tables)
     _check_against_proof(solution, record, texts)
@@ -45,8 +49,7 @@ def _check_against_proof(solution: Solution, record: Manifest, texts: dict[str, 
 def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str]:
     """Return the files that follow from the manifest and the tables: the page for people, and the vectors."""
     page = {"certified.txt": certified_page(manifest, tables["grid.csv"], tables.get("transits.csv"))}
-    with_doubles = {f"{name.partition('.')[0]}.binary64.csv" for name in tables} <= set(tables)
-    return page | ({"vectors.json": vectors(manifest, tables).text()} if with_doubles else {})
+    return page | ({"vectors.json": vectors(manifest, tables).text()} if "grid.binary64.csv" in tables else {})
 
 
 def file_record(text: str) -> FileRecord:

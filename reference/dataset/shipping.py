@@ -86,13 +86,25 @@ def made(job: Job) -> Made:
     """Solve a scene and return its dataset, or why there is none."""
     try:
         scene = job.load()
-        solution = solve(scene, audit=scene.run.level == "enclosed" and ships(job.folder))
+        solution = _solved(scene, job.folder)
         return Made(render(solution, job.name), summary(solution, job.folder))
     except UnreachableError as error:
         status = Status.GAVE_UP if isinstance(error, IntegrationError) else Status.UNREACHABLE
         return Made(status=status, reason=str(error))
     except FoucaultError as error:
         return Made(status=Status.INVALID, reason=str(error))
+
+
+def _solved(scene: Scene, folder: Path) -> Solution:
+    """Solve a scene; a proof is audited if it ships, and confirmed by heyoka unless that is out of reach."""
+    if scene.run.level != "enclosed":
+        return solve(scene)
+    try:
+        return solve(scene, audit=ships(folder), confirm=True)
+    except IntegrationError:
+        raise
+    except UnreachableError:
+        return solve(scene, audit=ships(folder))
 
 
 def serve(parent: Parent) -> None:

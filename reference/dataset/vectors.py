@@ -10,7 +10,7 @@ from ..columns import KINDS, UNITS
 from .manifest import FORMAT, Decimal, Manifest, Name, Part, Text
 from .sheets import NUMBERS, Sheet
 
-MOST = 64  # states, and transits
+MOST = 16  # states, and as many transits
 NOTES = {
     "release": "The exact release: an error here is one of reading the inputs.",
     "end": "The last of the run, where the error of an integrator is usually largest.",
@@ -119,9 +119,11 @@ def _closest_pair(transits: Sheet) -> list[int]:
 
 def _values(manifest: Manifest, tables: Mapping[str, Sheet], kind: Any, i: int) -> dict[str, Value]:
     """Return the numbers of a row; the bound on a transit's time is its own, the others are those of their columns."""
-    plain, doubles = tables[f"{kind}.csv"], tables[f"{kind}.binary64.csv"]
+    plain, doubles = tables[f"{kind}.csv"], tables.get(f"{kind}.binary64.csv")
     row = dict(zip(plain.header, plain.rows[i], strict=True))
-    hexfloats = dict(zip(doubles.header, doubles.rows[i], strict=True))
+    hexfloats = {f"{name}_hex": float(row[name]).hex() for name in NUMBERS[kind]}
+    if doubles is not None:
+        hexfloats = dict(zip(doubles.header, doubles.rows[i], strict=True))
     bounds = {"t": row.get("bound", "0"), **{k: b for k, b in getattr(manifest.bounds, kind).items() if k != "t"}}
     return {
         name: Value(decimal=row[name], hexfloat=hexfloats[f"{name}_hex"], bound=bounds[name]) for name in NUMBERS[kind]

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from flint import arb, fmpz
 
-Measured = list[tuple[list[Any], int]]  # as `Piece.measured` returns
 
-
-def compare(measured: Measured, digits: Any) -> None:
-    """Raise ArithmeticError unless exact sums of digits are FLINT's integers, and shortened ones bound them."""
-    rows = zip(measured, digits.norms(digits.count - 1), digits.norms(), strict=True)
-    for (derivatives, bits), exact, bounds in rows:
-        for f, x, bound in zip(derivatives, exact, bounds, strict=True):
-            own = arb((sum(map(abs, f.coeffs()), fmpz(0)), fmpz(-bits)))
-            if not (x == own and bound >= own):
-                raise ArithmeticError("audit: the sums of digits are not FLINT's")
+def compare(piece: Any, norms: Callable[..., list[arb]]) -> None:
+    """Raise ArithmeticError unless a piece's exact sums are FLINT's integers and shortened ones bound them."""
+    table, whole = piece.rows.table, piece.k.whole
+    rows = zip(piece.measured(), norms(table, whole, table.shape[1] - 1), norms(table, whole), strict=True)
+    for f, exact, bound in rows:
+        own = arb((sum(map(abs, f.coeffs()), fmpz(0)), fmpz(-2 * piece.step.bits)))
+        if not (exact == own and bound >= own):
+            raise ArithmeticError("audit: the sums of digits are not FLINT's")

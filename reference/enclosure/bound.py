@@ -5,7 +5,7 @@ Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, 
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -16,8 +16,6 @@ from ..taylor_step import TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, dot, fixed, interval, norm, size, times, upper
 from .shapes import Covered, Interval, Sizes, Tube
 
-TINY = arb(2) ** -SHORT  # a wider ball needs the polynomials themselves
-
 
 class World:
     """The scene's constants and release as balls at `prec` bits, from its exact inputs alone; exact zeros stay exact.
@@ -25,7 +23,7 @@ class World:
     Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z.
     """
 
-    audit: Any = None  # called with FLINT's polynomials and with the digits, where the first are to be taken
+    audit: Any = None  # called with a piece and the sums of digits, where FLINT's polynomials are to be taken
 
     def __init__(self, inputs: Any, prec: int) -> None:
         if inputs.drag < 0 or inputs.length <= 0:
@@ -100,83 +98,57 @@ class Piece:
             raise ArithmeticError("a step must lie in -1 <= s <= 1, where its sizes hold")
         self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)
         self.unit, self.rows = fmpz(1) << step.bits, step.coefficients
-        self.digits = None
-        if isinstance(self.rows, Digits):
-            from .digits import DigitRows
-
-            self.digits = DigitRows(self.rows.table, self.k.whole)
-            if world.audit:
-                world.audit(self.measured(), self.digits)
-                self.digits = None
+        self.p = polynomials(self.rows, slice(3))
+        self.v = [f.derivative() for f in self.p]
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
-    @cached_property
-    def p(self) -> Vector:
-        """The polynomials of p."""
-        return [polynomial(self.rows, i) for i in range(3)]
-
-    @cached_property
-    def v(self) -> Vector:
-        """Those of p'."""
-        return [f.derivative() for f in self.p]
-
-    @cached_property
-    def xdot(self) -> fmpz_poly:
-        """The polynomial of xdot."""
-        return polynomial(self.rows, 0).derivative()
-
     def values(self, s: arb) -> tuple[Vector, Vector]:
-        """Return balls of p(s) and p'(s); a small part of `s` may lie beyond [-1, 1], where nothing is asked."""
-        if self.digits is None or s.rad() > TINY:
-            return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v]
-        (n, e), off = s.mid().man_exp(), s.rad()
-        point = max(Fraction(-1), min(Fraction(int(n)) * Fraction(2) ** int(e), Fraction(1)))
-        _, rates, bends = zip(*self.norms[4:], strict=True)
-        return self.digits.values(point, off, rates, 0), self.digits.values(point, off, bends, 1)
-
-    @cached_property
-    def norms(self) -> list[list[arb]]:
-        """The norms of d, τ, x, m, w and of their first two derivatives."""
-        if self.digits:
-            return self.digits.norms()
-        return [[norm(g, bits) for g in derivatives] for derivatives, bits in self.measured()]
+        """Return balls of p(s) and p'(s)."""
+        return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v]
 
     @cached_property
     def sizes(self) -> Sizes:
         """The defects and norms, from integers but for the radii of the constants (section 6)."""
-        k = self.k
+        k, bits = self.k, self.step.bits
         with ctx.workprec(SHORT):
-            *d, (t, t1, t2), x, m, w = self.norms
-            v1, v2 = (size([f[n] for f in (x, m, w)]) for n in (1, 2))
+            *d, t, t1, t2 = self.defects()
+            v1, v2 = (size([norm(f, bits) for f in part]) for part in (self.v, [f.derivative() for f in self.v]))
             size_p = upper((1 + t).sqrt())
-            defect = size_p * (size([f[0] for f in d]) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
+            defect = size_p * (size(d) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
             speed, rate = v1 + k.omega_size * size_p, v2 + k.omega_size * v1
             first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + t2 * size_p / 2
             return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
 
-    def measured(self) -> list[tuple[list[fmpz_poly], int]]:
-        """Return d, τ, x, m, w with their first two derivatives, over 2 to the power that follows."""
-        k, p, v, unit, bits = self.k, self.p, self.v, self.unit, self.step.bits
-        tension = polynomial(self.rows, 3)
+    def defects(self) -> list[arb]:
+        """Return the norms of d (three components), τ, τ', τ'': by sums of digits, or by FLINT's polynomials."""
+        if isinstance(self.rows, Digits):
+            from .digits import norms
+
+            if not self.world.audit:
+                return norms(self.rows.table, self.k.whole)
+            self.world.audit(self, norms)
+        return [norm(f, 2 * self.step.bits) for f in self.measured()]
+
+    def measured(self) -> list[fmpz_poly]:
+        """Return d (three components), τ, τ', τ'' over 2^(2 bits)."""
+        k, p, v, unit = self.k, self.p, self.v, self.unit
+        (tension,) = polynomials(self.rows, slice(3, 4))
         (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], tension - k.whole[1]
         d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, tension), p, strict=True)]
         d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
-        d, tau = add(d, times(drag, v)) if drag else d, dot(p, p) - unit * unit
-        rows = [*((f, 2 * bits) for f in (*d, tau)), *((f, bits) for f in p)]
-        return [([f, f.derivative(), f.derivative().derivative()], n) for f, n in rows]
+        tau = dot(p, p) - unit * unit
+        return [*add(d, times(drag, v)), tau, tau.derivative(), tau.derivative().derivative()]
 
 
-def polynomial(rows: Sequence[Any], i: int) -> fmpz_poly:
-    """Return a row of coefficients as a polynomial."""
+def polynomials(rows: Sequence[Any], part: slice) -> list[fmpz_poly]:
+    """Return a part of the rows of coefficients as polynomials."""
     if not isinstance(rows, Digits):
-        return fmpz_poly(rows[i])
-    out, unit = fmpz_poly(), fmpz(1) << 2 * DIGIT_BITS
-    table = rows.table[i].astype(int)
-    if len(table) % 2:
-        table = np.concatenate((np.zeros_like(table[:1]), table))
-    for pair in ((table[::2] << DIGIT_BITS) + table[1::2]).tolist():
-        out = out * unit + fmpz_poly(pair)
-    return out
+        return [fmpz_poly(row) for row in rows[part]]
+    (several, count, orders), unit = rows.table[part].shape, fmpz(1) << 2 * DIGIT_BITS
+    table = np.zeros((several, count + count % 2, orders), np.int64)
+    table[:, count % 2 :] = rows.table[part]
+    pairs = ((table[:, ::2] << DIGIT_BITS) + table[:, 1::2]).tolist()
+    return [reduce(lambda f, pair: f * unit + fmpz_poly(pair), row, fmpz_poly()) for row in pairs]
 
 
 def error_rate(k: Scaled, size_p: arb) -> arb:

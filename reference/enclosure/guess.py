@@ -1,4 +1,4 @@
-"""Where a zero may be: a point to begin interval Newton at. Untrusted: whatever it is, the step from it is proved."""
+"""Where a zero may be: times on both sides of it, close by. Untrusted: the signs of xdot at both are proved."""
 
 from __future__ import annotations
 
@@ -7,17 +7,24 @@ from flint import arb, ctx
 from .balls import SHORT
 from .shapes import Leaf
 
-POLISH = 6  # steps of Newton's method from the middle of a leaf to a zero
+POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
+NEAR = arb(2) ** -40  # a last one so short has come near
+MARGIN = 1 + arb(2) ** -8  # farther from the zero than xdot is uncertain
 
 
-def near_zero(leaf: Leaf) -> arb:
-    """Return the time of a zero of p'_x, about: a proposal, which proves nothing."""
-    (f, _), (g, _) = leaf.slope.forms
-    full, s = ctx.prec, ((leaf.low + leaf.high) / 2).mid()
+def around_zero(leaves: list[Leaf]) -> tuple[arb, arb]:
+    """Return exact times between which p'_x has a zero, about: proposals, which prove nothing."""
+    leaf = leaves[len(leaves) // 2]
+    slope, full, s = leaf.slope, ctx.prec, ((leaf.low + leaf.high) / 2).mid()
+    (f, off), (g, _) = slope.forms
     with ctx.workprec(SHORT):
         for _ in range(POLISH):
-            s = (s - f(s) / (rate := g(s))).mid()
-    for _ in range(-(-full // SHORT)):
-        s = (s - f(s) / rate.mid()).mid()
-    time: arb = (leaf.slope.centre + s * leaf.slope.piece.k.h).mid()
-    return time
+            before, s = s, (s - f(s) / g(s)).mid()
+            if abs(s - before) < NEAR:
+                break
+    rate = g(s).mid()
+    for _ in range(full // SHORT):
+        s = (s - f(s) / rate).mid()
+    away = MARGIN * (off.rad() * slope.piece.unit + abs(f(s))) / abs(rate)
+    low, high = (slope.centre + (s + way * away) * slope.piece.k.h for way in (-1, 1))
+    return low.mid(), high.mid()

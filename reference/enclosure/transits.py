@@ -2,14 +2,16 @@
 
 from fractions import Fraction
 from functools import reduce
+from itertools import pairwise
 
 from flint import arb, arb_poly, ctx
 
 from .balls import SHORT, add, ball, dot, interval, times
 from .bound import World, state
-from .guess import near_zero
+from .guess import around_zero
 from .shapes import Covered, EnclosedTransit, Interval, Leaf
 
+PARTS = 4  # that a step is cut into at once, as by halves of halves
 MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible transit
 
 
@@ -24,7 +26,7 @@ class Slope:
     def __init__(self, covered: Covered) -> None:
         self.covered, (piece, tube) = covered, covered
         self.piece, self.tube, self.centre = piece, tube, ball(piece.step.centre)
-        self.forms = ((piece.xdot, arb(0, tube.u)), (piece.xdot.derivative(), arb(0, tube.a)))
+        self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
     def at(self, n: int, s: arb) -> arb:
         """Return a ball that contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
@@ -62,7 +64,9 @@ class Scan:
             slope, low, high = Slope(covered), ball(piece.step.low), ball(piece.step.high)
             self.end, self.time, self.leaves = (slope, high), piece.end, 0
             self.left = self.left if self.begun else sign(slope.at(0, low))
-            self._sort(slope, low, high, 0)
+            ends = [low, *((low + (high - low) * k / PARTS).mid() for k in range(1, PARTS)), high]
+            for part in pairwise(ends):
+                self._sort(slope, *part, 2)
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
         self.leaves += 1
@@ -100,21 +104,18 @@ class Scan:
         return self.found
 
     def _close(self, right: int) -> None:
-        leaves, product, self.cluster, self.left = self.cluster, self.left * right, [], right
-        steady = {leaf.bend for leaf in leaves} in ({1}, {-1})
+        leaves, sides, self.cluster, self.left = self.cluster, (self.left, right), [], right
+        steady, product = {leaf.bend for leaf in leaves} in ({1}, {-1}), sides[0] * right
         if not leaves and product < 0:
             raise ArithmeticError("two enclosures contradict each other")
         if not leaves or (steady and product > 0):
             return
-        ends = ((leaves[0].slope.piece, leaves[0].low), (leaves[-1].slope.piece, leaves[-1].high))
-        begin, end = (ball(piece.step.centre) + s * piece.k.h for piece, s in ends)
-        inner = contract(leaves, begin, end) if steady else begin.union(end)
-        if inner is not None:
-            parity = "one" if steady and product < 0 else {-1: "odd", 0: "unknown", 1: "even"}[product]
-            way = leaves[0].bend if steady else right if product < 0 else 0
-            self.found.append(EnclosedTransit(parity, way, interval(inner), *self._values(leaves, inner)))
-        elif product < 0:
-            raise ArithmeticError("two enclosures contradict each other")
+        ends = ((leaves[0].slope, leaves[0].low), (leaves[-1].slope, leaves[-1].high))
+        begin, end = (slope.centre + s * slope.piece.k.h for slope, s in ends)
+        t = narrowed(leaves, begin, end, sides) if steady else begin.union(end)
+        parity = "one" if steady and product < 0 else {-1: "odd", 0: "unknown", 1: "even"}[product]
+        way = leaves[0].bend if steady else right if product < 0 else 0
+        self.found.append(EnclosedTransit(parity, way, interval(t), *self._values(leaves, t)))
 
     def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:
         rows = []
@@ -130,17 +131,11 @@ def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:
     return [(slope, s.intersection(whole)) for slope, s, whole in parts if s.overlaps(whole)]
 
 
-def contract(leaves: list[Leaf], begin: arb, end: arb) -> arb | None:
-    """Narrow a zero by interval Newton where xddot keeps its sign; None if it proves that there is no zero."""
-    t, middle, shrinks = begin.union(end), near_zero(leaves[len(leaves) // 2]).mid(), True
-    middle = middle if begin < middle < end else t.mid()
-    while shrinks and begin < middle < end:  # outside the leaves nothing is known
-        speed = reduce(arb.union, (f.at(0, s) / f.piece.k.h for f, s in touched(leaves, middle)))
-        with ctx.workprec(SHORT):
-            rate = reduce(arb.union, (f.rate(s) / f.piece.k.h**2 for f, s in touched(leaves, t)))
-        new = middle - speed / rate if sign(rate) else t
-        if not new.overlaps(t):
-            return None
-        before, t = t, new.intersection(t)
-        shrinks, middle = bool(t.rad() < before.rad() * 3 / 4), t.mid()
-    return t
+def narrowed(leaves: list[Leaf], begin: arb, end: arb, sides: tuple[int, int]) -> arb:
+    """Return where a monotone xdot may be 0: between proposed times, if it has its sides' signs there still."""
+    ends = [begin, end]
+    for n, t in enumerate(around_zero(leaves)):
+        # outside the leaves nothing is known
+        if begin < t < end and {sign(f.at(0, s)) for f, s in touched(leaves, t)} == {sides[n]} != {0}:
+            ends[n] = t
+    return ends[0].union(ends[1])

@@ -90,7 +90,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class Wanted:
-    """What is wanted of each row beside its state at the end.
+    """Results wanted of each row beside its state at the end.
 
     Attributes:
         transits: count the zeros of xdot in 0 < t <= t_end, all of them located, and judge them.
@@ -108,7 +108,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Outcomes:
-    """What became of n rows, in SI units. What was not wanted, or is not there, is 0 where counted and NaN elsewhere.
+    """Results of n rows, in SI units. A result that was not wanted, or is not there, is 0 if a count and NaN otherwise.
 
     Attributes:
         fate: OK, DOUBTFUL (a transit or a highest point is undecided in double) or STOPPED (the step became too short
@@ -217,7 +217,7 @@ class Batch(ABC):
     @property
     @abstractmethod
     def identity(self) -> str:
-        """What decides the digits, as one line: name, orders, tolerance, versions."""
+        """All that decides the digits, as one line: name, orders, tolerance, versions."""
 
     @abstractmethod
     def prepare(self, wanted: Wanted, drag: bool) -> float:
@@ -229,7 +229,7 @@ class Batch(ABC):
 
     @abstractmethod
     def expected_s(self, swings: float) -> float:
-        """Return the CPU seconds of all that a default row needs over so many swings, summed over rows; when cold."""
+        """Return the CPU seconds that default rows need from a cold start; `swings` is the sum over rows."""
 
     @property
     def saved_s(self) -> float:

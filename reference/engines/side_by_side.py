@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 from ..errors import FoucaultError
@@ -28,25 +30,53 @@ def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None
     """
     first_s, second_s = (engines()[plan.engine].expected_s(steps, plan.number.prec) for plan in (first, second))
     worth = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= COMPILATION_S
-    if (os.cpu_count() or 1) < 2 or not worth:
-        first_run = run(first, report and (lambda t: report(t / 2)))
-        end = float(first.times[-1])
-        return first_run, run(second, report and (lambda t: report((end + t) / 2)))
-    worker = Worker(_run_in_child, second)
-    messages: list[Any] = [0.0]
+    end = float(first.times[-1])
+    with beside(second, worth) as other:
+        first_run = run(first, report and (lambda t: report((t + other.reached) / 2)))
+        return first_run, other.result(report and (lambda t: report((end + t) / 2)))
+
+
+@contextmanager
+def beside(plan: Plan, worth: bool = True) -> Iterator[Beside]:
+    """Do a run meanwhile in a child process, where that is worth it and the machine has two cores; else afterwards."""
+    worker = Worker(_run_in_child, plan) if worth and (os.cpu_count() or 1) >= 2 else None
     try:
-        reader = threading.Thread(target=_collect, args=(worker, messages), daemon=True)
-        reader.start()
-        first_run = run(first, report and (lambda t: report((t + _time_reached(messages)) / 2)))
-        while reader.is_alive():
-            reader.join(0.2)
-            if report is not None:
-                report((float(first.times[-1]) + _time_reached(messages)) / 2)
+        yield Beside(plan, worker)
     finally:
-        worker.stop()
-    if not isinstance(messages[-1], Run):
-        raise messages[-1]
-    return first_run, messages[-1]
+        if worker is not None:
+            worker.stop()
+
+
+class Beside:
+    """A run that is done in a child process, or by this one once its result is wanted."""
+
+    def __init__(self, plan: Plan, worker: Worker | None) -> None:
+        self._plan, self._messages, self._reader = plan, list[Any](), None
+        if worker is not None:
+            self._reader = threading.Thread(target=_collect, args=(worker, self._messages), daemon=True)
+            self._reader.start()
+
+    @property
+    def reached(self) -> float:
+        """Simulated time in s that the child has reached."""
+        return next((item for item in reversed(self._messages) if isinstance(item, float)), 0.0)
+
+    def result(self, report: Report | None = None) -> Run:
+        """Wait for the run and return it; `report` is called with the simulated time meanwhile.
+
+        Raises:
+            FoucaultError: the run failed, as it would have done here.
+        """
+        if self._reader is None:
+            return run(self._plan, report)
+        while self._reader.is_alive():
+            self._reader.join(0.2)
+            if report is not None:
+                report(self.reached)
+        if not isinstance(self._messages[-1], Run):
+            raise self._messages[-1]
+        found: Run = self._messages[-1]
+        return found
 
 
 def _collect(worker: Worker, messages: list[Any]) -> None:
@@ -56,10 +86,6 @@ def _collect(worker: Worker, messages: list[Any]) -> None:
             messages.append(item)
     except (FoucaultError, OSError, ValueError) as error:  # the last two: the pipe was closed by an interrupt
         messages.append(error)
-
-
-def _time_reached(messages: list[Any]) -> float:
-    return next((item for item in reversed(messages) if isinstance(item, float)), 0.0)
 
 
 def _run_in_child(emit: Emit, plan: Plan) -> None:

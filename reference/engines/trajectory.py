@@ -56,8 +56,8 @@ def integrate(
     from .heyoka.propagator import Propagator
 
     propagator = Propagator(variables, derivatives, number, tolerance=tolerance)
-    of = propagator.numbers.of
-    states = propagator.from_zero([of(v) for v in start], [of(t) for t in times], max_steps=max_steps)
+    numbers = propagator.numbers
+    states = propagator.from_zero(numbers.all_of(start), numbers.all_of(times), max_steps=max_steps)
     return np.asarray(states.astype(float))
 
 
@@ -94,7 +94,7 @@ def trajectory(
 
     try:
         model = RoundedModel(carried(FORMULATIONS[formulation], start, Numbers(number).of), start.k, number)
-        moments, state = [model.numbers.of(t) for t in times], model.release(start)
+        moments, state = model.numbers.all_of(times), model.release(start)
     except OverflowError:
         raise BeyondDoublesError from None
     most = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * _fastest_rate(start) * float(moments[-1]))

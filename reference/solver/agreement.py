@@ -46,7 +46,7 @@ class Agreement:
         finest = _resolution(published, witness)
         errors = {name: 2 * gap or finest[name] for name, gap in gaps.items()}
         decimals = decimals_of(resolved(states.largest(), gaps), digits)
-        missing = _bits_lacking(gaps, decimals)
+        missing = bits_lacking(gaps, decimals)
         if published.transits is None or witness.transits is None:
             return cls(missing, gaps, None, errors)
         if published.directions != witness.directions:
@@ -56,7 +56,7 @@ class Agreement:
         decimals = decimals_of(transits.largest(), digits) | {
             name: places for name, places in decimals.items() if name in TRANSITS
         }
-        return cls(max(missing, _bits_lacking(apart.largest(), decimals)), gaps, apart, errors)
+        return cls(max(missing, bits_lacking(apart.largest(), decimals)), gaps, apart, errors)
 
 
 def _check_independent(states: Table, gaps: Mapping[str, Fraction]) -> None:
@@ -85,7 +85,7 @@ def _resolution(published: Run, witness: Run) -> dict[str, Fraction]:
     return {name: size / 2**witness.plan.number.prec for name, size in sizes.items()}
 
 
-def _bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> int:
+def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> int:
     """Return the bits by which a gap exceeds one unit of its last digit, and a margin; 0 if all keep to `AGREEMENT`."""
     lacking = 0
     for name, gap in gaps.items():

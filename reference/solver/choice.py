@@ -11,7 +11,7 @@ from ..columns import POSITION, VELOCITY
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
-from ..precision import DOUBLE, LONG_DOUBLE
+from ..precision import DOUBLE, LONG_DOUBLE, real
 from ..scene import Scene
 from .approximant import COEFFICIENT_BITS
 from .pilot import Pilot
@@ -59,6 +59,17 @@ def published_plan(scene: Scene, times: tuple[Fraction, ...], prec: int, engine:
     finer = LONG_DOUBLE.prec if prec == DOUBLE.prec else prec + FINER_BITS
     bits = prec if scene.run.level == "computed" else finer
     return fastest(bits, engine).plan(scene.exact, bits, times, scene.run.transits)
+
+
+def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int) -> Plan:
+    """Return heyoka's run that confirms another one: in another formulation, of `prec` bits."""
+    number = DOUBLE if prec == DOUBLE.prec else real(prec)
+    return Plan(scene.exact, confirming_formulation(pilot), number, times, scene.run.transits)
+
+
+def confirming_formulation(pilot: Pilot) -> str:
+    """Return `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod is pushed."""
+    return "space" if pilot.tension > 0 else "spin"
 
 
 def rounded_prec(prec: int) -> int:

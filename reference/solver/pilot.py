@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
 from typing import TYPE_CHECKING
@@ -32,6 +32,8 @@ LEAST_ULPS = 4  # and that error is never taken below this many units in the las
 LEAST_TIMES = 64  # the pilot runs are compared at more times than this, so that no error is small by luck
 LOST = Fraction(1, 1 << 12)  # an error above this part of the largest position or speed leaves no digit
 PILOT_GAP_BITS = 64  # bits between the two pilot runs in `real`
+FIRST_PART = 16  # of a long run that is compared later itself, the finer pilot run computes this part
+GROWTH = FIRST_PART**2  # until then errors are taken to grow like the square of the time
 ZERO_PREC = 512  # bits from which a position or velocity that shrinks with the precision is taken for zero
 
 
@@ -72,6 +74,11 @@ class Pilot:
     def estimates(self, prec: int) -> dict[str, Fraction]:
         """Return the errors to state for a single run at a precision."""
         return {name: error * Fraction(2) ** (self.prec - prec) for name, error in self.cautious.items()}
+
+    def compared(self, rough: Table, fine: Table, length: Fraction) -> Pilot | None:
+        """Return the pilot with the errors of its coarser run against a better one; None if that keeps no digit."""
+        errors, largest = fine.distance(rough).largest(), fine.largest()
+        return None if _lost(errors, largest, length, self.prec) else replace(self, errors=errors, largest=largest)
 
     def decimals(self, digits: int) -> dict[str, int]:
         """Return the decimals of each column with which its largest number has `digits` significant digits."""
@@ -132,6 +139,34 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...]) -> Pilot:
         f"to the end it takes about {pair[0].prec} bits, which is out of reach.",
         "Ask for a shorter run: run.t_end.",
     )
+
+
+def begun_pilot(inputs: Inputs, times: tuple[Fraction, ...]) -> tuple[Pilot, Table | None]:
+    """Measure rounding errors over the first part of a long run alone, and take them to grow with the time.
+
+    Returns:
+        The pilot, and the states of the run in double at `times`, by which `Pilot.compared` measures the errors of all
+        of it when a better run is there. They are None, and the pilot that of `run_pilot`, if there are few times, or
+        if double keeps no digit.
+
+    Raises:
+        UnreachableError: as `run_pilot`.
+    """
+    part = len(times) // FIRST_PART
+    if part <= LEAST_TIMES:
+        return run_pilot(inputs, times), None
+    begun = run_pilot(inputs, times[: part + 1])
+    errors = {name: GROWTH * error for name, error in begun.errors.items()}
+    if begun.prec > DOUBLE.prec or _lost(errors, begun.largest, inputs.length, begun.prec):
+        return run_pilot(inputs, times), None
+    plan = Plan(inputs, "momentum", DOUBLE, times, transits=False)
+    try:
+        rough = run(plan, look_ahead=partial(check_pace, inputs, times[-1]))
+    except OverflowError:
+        raise BeyondDoublesError from None
+    grid = rough.grid.only(GRID)
+    cpu_s = begun.cpu_s + rough.cpu_s
+    return Pilot(DOUBLE.prec, errors, grid.largest(), rough.tension, cpu_s, rough.steps), grid
 
 
 def _lost(errors: dict[str, Fraction], largest: dict[str, Fraction], length: Fraction, prec: int) -> bool:

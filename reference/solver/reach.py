@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from ..engines.heyoka.stepper import Stepper
 
 MAX_PREC = 8192  # bits; a run that needs more is refused
+MAX_RAISES = 6  # of the precision, before giving up
 MAX_STEPS = 1 << 24  # at 160 bits or less: a year of Paris, three CPU hours
 PACE_STEPS = 1 << 16  # steps over which the pace is measured, once or, with drag, again and again
 SETTLED = 10  # with drag γ the pace may change until t = SETTLED/γ
@@ -26,6 +27,24 @@ def effort(steps: int, prec: int) -> int:
     That is cautious, for a limit: at a few hundred bits it grows more like the square (`Engine.expected_s`).
     """
     return steps * max(1, prec // 32) ** 3 // 125
+
+
+def out_of_reach(steps: int, prec: int) -> bool:
+    """Return whether a run of `steps` steps in `prec` bits costs more than the solver begins."""
+    return prec > MAX_PREC or effort(steps, prec) > MAX_STEPS
+
+
+def check_reach(steps: int, prec: int, digits: int, advice: str = "") -> None:
+    """Refuse a run that is out of reach.
+
+    Raises:
+        UnreachableError: it would take too many bits or steps.
+    """
+    if out_of_reach(steps, prec):
+        raise UnreachableError(
+            f"{digits} digits take {prec} bits over about {steps} steps, which is out of reach.",
+            advice or "Ask for fewer digits (run.digits) or a shorter run (run.t_end).",
+        )
 
 
 def check_pace(inputs: Inputs, end: Fraction, stepper: Stepper) -> None:

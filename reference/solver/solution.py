@@ -68,7 +68,8 @@ class Source:
 class Proof:
     """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
 
-    `enclosed` is what was proved, which printed decimals are compared with; `audited`: FLINT alone proves it too.
+    `enclosed` is what was proved, which printed decimals are compared with; `audited`: FLINT alone proves it too;
+    `confirmed`: heyoka's run in another formulation agrees to every printed digit.
     """
 
     method: str
@@ -82,6 +83,7 @@ class Proof:
     cpu_s: dict[str, float]
     enclosed: Any = field(default=None, repr=False)
     audited: bool = False
+    confirmed: bool = False
 
 
 @dataclass(frozen=True, repr=False)
@@ -120,7 +122,7 @@ class Solution:
 
     @property
     def level(self) -> Level:
-        """Level of trust in the numbers: one of `scene.LEVELS`."""
+        """Level of trust in the numbers, one of `scene.LEVELS`."""
         return self.scene.run.level
 
     @property

@@ -16,22 +16,15 @@ from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
 from ..engines.side_by_side import run_both
 from ..errors import InputError, UnreachableError
-from ..precision import DOUBLE, LONG_DOUBLE, real
+from ..precision import LONG_DOUBLE
 from ..scene import Scene
 from ..table import Table
 from .agreement import Agreement
-from .choice import first_prec, published_plan, rounded_prec
-from .pilot import Pilot, run_pilot
-from .reach import MAX_PREC, MAX_STEPS, effort
+from .choice import confirming_plan, first_prec, published_plan, rounded_prec
+from .pilot import Pilot, begun_pilot, run_pilot
+from .reach import MAX_PREC, MAX_RAISES, check_reach, out_of_reach
 from .solution import CrossCheck, Solution, Source
 from .transit_errors import with_transit_errors
-
-MAX_RAISES = 6  # pairs of runs before giving up
-
-
-def confirming_formulation(pilot: Pilot) -> str:
-    """Return `space` if the cord always pulls; `spin`, neutral off the sphere at every angle, if a rod is pushed."""
-    return "space" if pilot.tension > 0 else "spin"
 
 
 def solve(
@@ -43,6 +36,7 @@ def solve(
     transits: bool | None = None,
     engine: str | None = None,
     audit: bool = False,
+    confirm: bool = False,
     report: Report | None = None,
 ) -> Solution:
     """Solve a scene to the digits and the level asked for (the scene's own by default).
@@ -56,6 +50,8 @@ def solve(
         engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that is installed. At
             the level confirmed the run that confirms is always heyoka's.
         audit: at the level enclosed, prove the same run again by FLINT alone, and require the same digits.
+        confirm: at the level enclosed, have heyoka confirm every digit as well, as at the level confirmed; on a second
+            core.
         report: called with the simulated time reached, in s.
 
     Returns:
@@ -70,37 +66,47 @@ def solve(
     inputs, settings = scene.exact, scene.run
     times = tuple(inputs.grid)
     engine = checked(engine)
-    if audit and settings.level != "enclosed":
-        raise InputError("audit", settings.level, "the level enclosed", "Nothing else has a proof to audit.")
+    for wish, asked in (("audit", audit), ("confirm", confirm)):
+        if asked and settings.level != "enclosed":
+            raise InputError(wish, settings.level, "the level enclosed", f"Nothing else has a proof to {wish}.")
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
 
-        return solve_enclosed(scene, times, engine, report, audit)
-    pilot = run_pilot(inputs, times)
+        return solve_enclosed(scene, times, engine, report, audit, confirm)
     if settings.level == "computed":
-        return _computed(scene, times, pilot, engine, report)
-    return _agreed(scene, times, pilot, engine, report)
+        return _computed(scene, times, engine, report)
+    return _agreed(scene, times, run_pilot(inputs, times), engine, report)
 
 
-def _computed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
-    """Solve by a single run, whose errors are estimated from the pilot's."""
+def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:
+    """Solve by a single run, whose errors are estimated from the pilot's; that is made again if it has too few bits."""
+
+    def single(prec: int) -> Run:
+        check_reach(pilot.steps, prec, scene.run.digits)
+        return run(published_plan(scene, times, prec, engine), report)
+
+    pilot, rough = begun_pilot(scene.exact, times)
     prec = first_prec(scene, pilot, engine)
-    _check_reach(pilot, prec, scene.run.digits)
-    single = run(published_plan(scene, times, prec, engine), report)
-    return _assemble(scene, times, single, pilot.estimates(single.plan.number.prec), None, (), pilot)
+    published = single(prec)
+    if rough is not None:
+        compared = pilot.compared(rough, published.grid.only(GRID), scene.exact.length)
+        pilot = compared or run_pilot(scene.exact, times)
+        needed = first_prec(scene, pilot, engine)
+        if needed > prec:
+            published = single(needed)
+    return _assemble(scene, times, published, pilot.estimates(published.plan.number.prec), None, (), pilot)
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
     """Solve by two runs, at a precision that is raised until they agree."""
-    inputs, transits, digits = scene.exact, scene.run.transits, scene.run.digits
+    digits = scene.run.digits
     prec = first_prec(scene, pilot, engine)
-    _check_reach(pilot, prec, digits)
+    check_reach(pilot.steps, prec, digits)
     last_gap: Fraction | None = None
     for _ in range(MAX_RAISES):
         fine = published_plan(scene, times, prec, engine)
         if scene.run.level == "confirmed":
-            number = DOUBLE if prec == DOUBLE.prec else real(prec)
-            coarse = Plan(inputs, confirming_formulation(pilot), number, times, transits)
+            coarse = confirming_plan(scene, times, pilot, prec)
         else:
             coarse = _witness(fine, prec, engine)
         published, witness = run_both(fine, coarse, pilot.steps, report)
@@ -116,7 +122,7 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
                 raise UnreachableError("Two runs disagree, and a higher precision does not bring them together.")
             engine = last_resort
         last_gap, next_prec = largest, max(LONG_DOUBLE.prec, rounded_prec(prec + gap.missing_bits))
-        if _out_of_reach(pilot, next_prec):
+        if out_of_reach(pilot.steps, next_prec):
             break
         prec = next_prec
     raise UnreachableError(
@@ -131,18 +137,6 @@ def _witness(fine: Plan, prec: int, engine: str) -> Plan:
     if coarse.name == fine.engine:
         return coarse.witness(fine, prec)
     return coarse.plan(fine.inputs, prec, fine.times, fine.transits)
-
-
-def _out_of_reach(pilot: Pilot, prec: int) -> bool:
-    return prec > MAX_PREC or effort(pilot.steps, prec) > MAX_STEPS
-
-
-def _check_reach(pilot: Pilot, prec: int, digits: int) -> None:
-    if _out_of_reach(pilot, prec):
-        raise UnreachableError(
-            f"{digits} digits take {prec} bits over about {pilot.steps} steps, which is out of reach.",
-            "Ask for fewer digits (run.digits) or a shorter run (run.t_end).",
-        )
 
 
 def _assemble(

@@ -19,7 +19,7 @@ DIGITS = 28  # at about 110 bits
 
 @dataclass(frozen=True)
 class Audit:
-    """What an audit found: rows solved again, those that were wrong, the largest error over its estimate."""
+    """Findings of an audit: rows solved again, those that were wrong, the largest error over its estimate."""
 
     rows: int
     wrong: tuple[int, ...]

@@ -16,6 +16,7 @@ from secrets import token_hex
 from types import TracebackType
 from typing import Any, Self
 
+import dask
 import distributed
 from distributed.scheduler import KilledWorker
 
@@ -29,6 +30,7 @@ from .request import Request
 LOCAL = "local:"
 SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
 WAIT_S = 10.0  # for an answer of the scheduler
+FOREVER_S = 1e7
 RETRIES = 3  # of a piece that raised an error which is none of this project's
 LOST = "the scheduler was lost; what is done stays, and the same command goes on."
 _NONCE = ".seen-by-workers"
@@ -86,6 +88,8 @@ class Scheduler:
             count = address[len(LOCAL) :]
             if not count.isdigit() or not int(count):
                 raise InputError("--cluster", address, "local:N with a number of workers from 1")
+            # dask gives a local worker up that is being started again some seconds after its death: the last one, too
+            self._stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": FOREVER_S}))
             cluster = distributed.LocalCluster(
                 n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
             )
@@ -163,13 +167,13 @@ class _Awaited:
         self._future.add_done_callback(lambda _: call(self))
 
     def result(self) -> Any:
-        """Return what was computed.
+        """Return what was computed; if it was lost with its worker meanwhile, wait until dask has it again.
 
         Raises:
             WorkerDied: the piece killed its workers.
             ClusterError: the scheduler was lost.
         """
-        if self._future.status in ("cancelled", "lost"):
+        if self._future.status == "cancelled":
             raise ClusterError(LOST)
         try:
             return self._future.result()

@@ -29,7 +29,7 @@ DIED_REASON = "Its process died each time, alone as well"
 
 @dataclass
 class Tally:
-    """What became of rows, in numbers: counts by status, the first row that is not ok, costs."""
+    """Counts of rows by status, the first row that is not ok, and costs."""
 
     counts: Counter[str] = field(default_factory=Counter)
     first_bad: int | None = None

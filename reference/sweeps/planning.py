@@ -21,7 +21,7 @@ from .row import TIMES, WANTS
 
 ALL = "all"
 PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
-LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000  # rows; one in so many
+LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000  # audited rows: at least, at most, else one in AUDITED
 
 
 def request(

@@ -61,7 +61,7 @@ class Request:
 
     @property
     def wanted(self) -> Wanted:
-        """What is wanted of the engine."""
+        """The results wanted of the engine."""
         want = set(self.want)
         return Wanted(
             transits=bool(want & {TRANSITS, FREQUENCY, TIMES}),

@@ -51,7 +51,7 @@ class Swept:
 
     @cached_property
     def counts(self) -> dict[str, int]:
-        """How many rows there are of each status: of those computed now, where parts are left to others."""
+        """How many rows there are of each status, counting those computed now where parts are left to others."""
         if self.left:
             return dict(sorted(self.tally.counts.items()))
         words, counts = np.unique(self["status"].astype(str), return_counts=True)

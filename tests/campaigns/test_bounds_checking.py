@@ -12,9 +12,8 @@ from places import ROOT
 pytest.importorskip("numba")
 
 
-def test_no_index_of_the_sums_of_digits_is_out_of_range(size, tmp_path):
-    if not size(0, 1):
-        pytest.skip("compiles for half a minute: in the long form")
+@pytest.mark.long
+def test_no_index_of_the_sums_of_digits_is_out_of_range(tmp_path):
     environment = {**os.environ, "NUMBA_BOUNDSCHECK": "1", "NUMBA_CACHE_DIR": str(tmp_path)}
     words = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "tests/reference/enclosure/test_digits.py"]
     command = [sys.executable, *words]

@@ -224,7 +224,7 @@ FORGERIES = [
 
 
 def test_what_exceeds_thirty_bounds_is_found_although_every_hash_and_the_seal_fit(datasets, tmp_path, size, tally):
-    draw, missed, tried = random.Random(11), [], size(20, 300)
+    draw, missed, tried = random.Random(11), [], size(10, 300)
     for i in range(tried):
         source, forgery = draw.choice(datasets), FORGERIES[i % len(FORGERIES)]
         copy = Path(shutil.copytree(source, tmp_path / str(i)))
@@ -237,12 +237,11 @@ def test_what_exceeds_thirty_bounds_is_found_although_every_hash_and_the_seal_fi
     assert not missed
 
 
-def test_no_forgery_of_a_dataset_that_ships_has_the_seal_of_the_index(tmp_path, size, tally, monkeypatch):
+def test_no_forgery_of_a_dataset_that_ships_has_the_seal_of_the_index(tmp_path, size, tally):
     """Words that nothing can prove are changed: a title, a source, a count of steps."""
-    monkeypatch.setattr("reference.dataset.checks.motion.problems", lambda *_: ([], []))  # of a day finds none of it
     draw, found, tried = random.Random(12), 0, size(2, 40)
     for i in range(tried):
-        name = draw.choice(["paris", "paris.binary64"])
+        name = draw.choice(["separatrix", "creeping", "overdamped"])
         copy = Path(shutil.copytree(reference.load(name).path, tmp_path / str(i)))
         key = draw.choice(["title", "source", "run", "generator"])
 

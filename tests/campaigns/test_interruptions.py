@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from interruption import gone_within
-from moments import chosen, ended_at, event_times
+from moments import chosen, ended_at, undisturbed
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
 
@@ -37,7 +37,10 @@ def running(word: str) -> bool:
     return False
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize(
+    "name",
+    [name if name in ("scenes", "generate") else pytest.param(name, marks=pytest.mark.long) for name in COMMANDS],
+)
 def test_a_command_ends_with_one_line_and_nothing_half(
     name: str,
     tmp_path: Path,
@@ -46,8 +49,6 @@ def test_a_command_ends_with_one_line_and_nothing_half(
     tally: Callable[[str], None],
 ) -> None:
     pytest.importorskip("numba")
-    if name not in ("scenes", "generate") and size(1, 0):
-        pytest.skip("only at full size")
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))
     words, advice = COMMANDS[name]
     place = tmp_path / "place"
@@ -57,7 +58,7 @@ def test_a_command_ends_with_one_line_and_nothing_half(
     words = [program if word == "PROGRAM" else word for word in words]
     ended_at(-1, signal.SIGINT, words)  # what is compiled once is compiled
     shutil.rmtree(place / "out", ignore_errors=True)
-    times = event_times(tmp_path / "note", words)
+    _, times = undisturbed(tmp_path / "note", words)
     hits = said = 0
     for i, event in enumerate(chosen(times, size(1, 12), 4)):
         numbers = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]

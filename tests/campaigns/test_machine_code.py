@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -29,53 +30,38 @@ solution = reference.solve(reference.load_scene("paris"), t_end="60", digits=25,
 print(solution.grid.exact("x"), solution.transits.exact("t"))
 """
 STUDY = ["-m", "foucault", "study", "paris", "--t-end", "60", "--methods", "rk4", "--no-formulations", "--json"]
-HEYOKA = [
-    "-m",
-    "foucault",
-    "generate",
-    "paris",
-    "--t-end",
-    "60",
-    "--digits",
-    "10",
-    "--engine",
-    "heyoka",
-    "--json",
-    "--out",
-]
+HEYOKA = ["-m", "foucault", "generate", "paris", "--t-end", "60", "--digits", "10", "--level", "computed"]
+HEYOKA += ["--engine", "heyoka", "--json", "--out"]
+NOTICE = re.compile(r": about .* after \d+ s$")  # what `progress` writes of a run that takes long, as on a busy machine
 MEASURED = ("cpu_s", "compile_s", "load", "cpu_spread", "run_cpu_s", "check_cpu_s", "pilot_cpu_s", "out")
 
 
 def run(words: list[str], **environment: Path) -> tuple[str, str]:
-    """Run Python with these words; return its stdout, without what is measured, and stderr."""
+    """Run Python with these words; return its stdout, without what is measured, and stderr, without what takes long."""
     caches = {name: str(path) for name, path in environment.items()}
     command = [sys.executable, *words]
     done = subprocess.run(command, cwd=ROOT, env=os.environ | caches, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+    said = "".join(line for line in done.stderr.splitlines(True) if not NOTICE.search(line))
     if not done.stdout.startswith("{"):
-        return done.stdout, done.stderr
+        return done.stdout, said
     document = json.loads(done.stdout)
     parts = [document, *document.get("rows", [])]
-    return str([{key: part[key] for key in part if key not in (*MEASURED, "rows")} for part in parts]), done.stderr
+    return str([{key: part[key] for key in part if key not in (*MEASURED, "rows")} for part in parts]), said
 
 
-@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+@pytest.mark.parametrize("suffix", [pytest.param("nbi", marks=pytest.mark.long), "nbc"])
 def test_what_numba_kept_of_a_method(
     suffix: str, tmp_path: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
 ) -> None:
-    if suffix == "nbi" and size(1, 0):
-        pytest.skip("only at full size")
     place = {"FOUCAULT_CACHE": tmp_path / "cache"}
     good = run(STUDY, **place)
     names = list(DAMAGES)[size(3, 0) : size(4, 5)]
     tally(f"numba's {suffix} of rk4: {damaged(STUDY, names, suffix, good, place)}")
 
 
-def test_what_numba_kept_of_limbs(
-    tmp_path: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
-) -> None:
-    if size(1, 0):
-        pytest.skip("only at full size: compiling limbs takes a minute")
+@pytest.mark.long
+def test_what_numba_kept_of_limbs(tmp_path: Path, tally: Callable[[str], None]) -> None:
     place = {"NUMBA_CACHE_DIR": tmp_path / "cache"}
     good = run(["-c", LIMBS], **place)
     tally(f"numba's nbc of limbs: {damaged(['-c', LIMBS], ['garbage within'], 'nbc', good, place)}")
@@ -93,11 +79,8 @@ def damaged(words: list[str], names: list[str], suffix: str, good: tuple[str, st
     return f"{len(files)} files, {len(names)} ways of damage, same result"
 
 
-def test_what_numba_kept_whole_is_used_again_and_a_swapped_file_is_not(
-    tmp_path: Path, size: Callable[[int, int], int]
-) -> None:
-    if size(1, 0):
-        pytest.skip("only at full size")
+@pytest.mark.long
+def test_what_numba_kept_whole_is_used_again_and_a_swapped_file_is_not(tmp_path: Path) -> None:
     place = {"FOUCAULT_CACHE": tmp_path / "cache"}
     good = run(STUDY, **place)
     files = {path: path.read_bytes() for path in (tmp_path / "cache").rglob("*.nb?")}

@@ -1,4 +1,4 @@
-"""The page is built once for all tests: every row judged, every figure drawn."""
+"""Every row of the papers judged once; the page of some of them built once, with every figure drawn."""
 
 from __future__ import annotations
 
@@ -6,8 +6,16 @@ from pathlib import Path
 
 import pytest
 
-from compare.papers import build
+from compare import papers
 from compare.papers.checks import JudgedRow
+
+EACH = 9  # of so many rows the page shows one
+
+
+@pytest.fixture(scope="session")
+def judged() -> dict[str, JudgedRow]:
+    pytest.importorskip("numba")
+    return {row.id: row for row in papers.rows()}
 
 
 @pytest.fixture(scope="session")
@@ -15,9 +23,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[JudgedRo
     pytest.importorskip("matplotlib")
     pytest.importorskip("numba")
     folder = tmp_path_factory.mktemp("paper") / "page"
-    return folder, build(folder)
-
-
-@pytest.fixture(scope="session")
-def judged(built: tuple[Path, list[JudgedRow]]) -> dict[str, JudgedRow]:
-    return {row.id: row for row in built[1]}
+    some = papers.declared()[::EACH]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(papers, "declared", lambda: some)
+        return folder, papers.build(folder)

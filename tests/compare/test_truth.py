@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,22 @@ def own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))
     monkeypatch.setenv("FOUCAULT_SPARE_CACHE", "")
     return tmp_path / "cache"
+
+
+@pytest.fixture(scope="module")
+def solved(tmp_path_factory):
+    """A cache that holds the solution of one scene, made once for all tests."""
+    folder = tmp_path_factory.mktemp("solved")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FOUCAULT_CACHE", str(folder))
+        golden_of(make_scene("mine", pendulum={"length": "5"}, run=RUN))
+    return folder
+
+
+@pytest.fixture
+def kept(solved, own_cache):
+    """Have the solution in this test's own cache."""
+    shutil.copytree(solved, own_cache)
 
 
 def swap(a: Path, b: Path) -> None:
@@ -66,6 +83,7 @@ def test_a_scene_of_the_users_own_is_solved_once_and_kept(own_cache):
     assert renamed.path == first.path
 
 
+@pytest.mark.usefixtures("kept")
 def test_a_damaged_entry_is_solved_again():
     scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
     path = golden_of(scene).path
@@ -77,6 +95,7 @@ def test_a_damaged_entry_is_solved_again():
     load(path)
 
 
+@pytest.mark.usefixtures("kept")
 def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched(monkeypatch):
     scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
     golden = golden_of(scene)
@@ -95,6 +114,7 @@ def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched(monke
     assert len(said) == 1  # damaged, so it was solved again
 
 
+@pytest.mark.usefixtures("kept")
 def test_two_entries_that_were_swapped_are_solved_again():
     scenes = [make_scene("mine", pendulum={"length": length}, run=RUN) for length in ("5", "6")]
     first, second = (golden_of(scene).path for scene in scenes)
@@ -105,6 +125,7 @@ def test_two_entries_that_were_swapped_are_solved_again():
     assert len(said) == 2
 
 
+@pytest.mark.usefixtures("kept")
 @pytest.mark.parametrize(
     "change", ["run.digits=21", "run.level=computed", "run.transits=false", "run.t_end=10", "run.grid_step=2"]
 )
@@ -118,6 +139,7 @@ def test_an_entry_that_holds_less_or_other_rows_than_its_name_says_is_solved_aga
     assert (golden.path, golden.scene.run) == (path, scene.run)
 
 
+@pytest.mark.usefixtures("kept")
 @pytest.mark.parametrize("kind", ["file", "folder", "full folder", "link to nothing"])
 def test_whatever_is_in_the_way_of_an_entry_is_removed(kind, own_cache):
     scene, times = make_scene("mine", pendulum={"length": "5"}, run=RUN), np.array([0.0, 1.5])

@@ -63,20 +63,22 @@ def _text(document: dict[str, Any]) -> str:
 
 def _change_table(tables: dict[str, Sheet], kind: str, change: Change) -> None:
     """Change the rows of a table, and the doubles of every number that is new."""
-    sheet, doubles = tables[f"{kind}.csv"], tables[f"{kind}.binary64.csv"]
+    sheet, doubles = tables[f"{kind}.csv"], tables.get(f"{kind}.binary64.csv")
     width = len(sheet.header)
     known = {
         (name, row[sheet.header.index(name)]): float.fromhex(other[width + i])
-        for row, other in zip(sheet.rows, doubles.rows, strict=True)
+        for row, other in zip(sheet.rows, doubles.rows if doubles else [], strict=doubles is not None)
         for i, name in enumerate(NUMBERS[kind])
     }
     rows = [list(row) for row in sheet.rows]
     change(rows, list(sheet.header))
     forged = Sheet(sheet.header, [tuple(row) for row in rows], sheet.decimals)
-    columns = {
-        name: [_double(known, name, row[sheet.header.index(name)]) for row in forged.rows] for name in NUMBERS[kind]
-    }
-    tables[f"{kind}.csv"], tables[f"{kind}.binary64.csv"] = forged, binary64_sheet(forged, columns)
+    tables[f"{kind}.csv"] = forged
+    if doubles is not None:
+        columns = {
+            name: [_double(known, name, row[sheet.header.index(name)]) for row in forged.rows] for name in NUMBERS[kind]
+        }
+        tables[f"{kind}.binary64.csv"] = binary64_sheet(forged, columns)
 
 
 def _double(known: dict[tuple[str, str], float], name: str, text: str) -> float:

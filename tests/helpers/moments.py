@@ -39,12 +39,11 @@ def ended_at(
     return _run([str(event), str(int(number)), "-"], words, environment)
 
 
-def event_times(note: Path, words: Sequence[object], environment: dict[str, str] | None = None) -> list[float]:
-    """Return the time of each event of an undisturbed `foucault words`, in s."""
-    undisturbed = _run(["-1", "0", str(note)], words, environment)
-    assert undisturbed.status in (0, 1), undisturbed.err
-    times: list[float] = json.loads(note.read_text())
-    return times
+def undisturbed(note: Path, words: Sequence[object]) -> tuple[Ended, list[float]]:
+    """Run `foucault words` to its end; return it, and the time of each of its events in s."""
+    ended = _run(["-1", "0", str(note)], words, None)
+    assert ended.status in (0, 1), ended.err
+    return ended, json.loads(note.read_text())
 
 
 def chosen(times: list[float], count: int, seed: int) -> list[int]:

@@ -1,1 +1,3 @@
-"""G. Gastebois on the Foucault pendulum, judged section by section."""
+"""G. Gastebois, Le pendule de Foucault: its sections in the order of print."""
+
+SECTIONS = ("rotation", "small", "swings", "lagrangian")

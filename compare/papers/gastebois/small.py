@@ -7,9 +7,9 @@ from typing import Any
 from reference.model.force import tension
 
 from ...approximations.gastebois_small import constants_of
-from ..checks import Approximate, Check, Finding, Identity, Statement, component
+from ..checks import Approximate, Check, Finding, Identity, Statement, component, section
 from ..digits import MP, Vector, add, cos, dot, j, mpf, scale, shown, sin
-from ..linear import (
+from ..first_principles import (
     acceleration_of,
     coupled_at,
     linearised,
@@ -20,9 +20,7 @@ from ..linear import (
     uniform_acceleration,
 )
 from ..points import Point, points
-from ..section import Section
 
-G = Section("gastebois_", "Gastebois")
 CONSTANTS = (
     ("c1", "c1 = ((ω-Ω_z) x0 - v_y0) / 2ω"),
     ("c1p", "c1' = ((ω-Ω_z) y0 + v_x0) / 2ω"),
@@ -65,7 +63,7 @@ def _with_tension(p: Point) -> Vector:
     )
 
 
-def _forces(p: Point) -> tuple[Vector, Vector]:
+def forces(p: Point) -> tuple[Vector, Vector]:
     """Return the acceleration of the reference's model, and m g_a + T + 2 m v × Ω."""
     n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
     pull = p.length * tension(n, v, p.uniform)
@@ -145,48 +143,45 @@ def _rates(p: Point) -> Any:
 
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
-    return [
-        *G.rows(
-            Identity("5_newton", "5", "a = m g_a + T + 2 m v × Ω",
-                lambda p: _forces(p)[0], lambda p: _forces(p)[1], "m a = m g_a + T + 2 m v × Ω",
-                lambda p: scale(p.mass, _forces(p)[0])),
-            Identity("5_energy", "5", "v²/L0 = 2 g_a (cosθ - cosθm): conservation of energy",
-                lambda p: _energy(p)[0], lambda p: _energy(p)[1], remark="as rates: v · a = -g_a z'"),
-            Approximate("5_flat", "5", "z = -l, z' = 0", _flat, 2, "amplitude", remark="z and z' at a random point"),
-            Approximate("5_square", "5", "2 g_a (cosθ - cosθm) = g_a (θm² - θ²)",
-                _swung, 2, "θm", remark="θm = 0.3, θ = 0.15"),
-            Approximate("5_tension", "5", "T = m g_a", _tension, 2, "amplitude", remark="at a random point"),
-            Identity("5_long", "5", "x'' = -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, y'' = -T/m y/L0 - 2x'Ω sinλ_a",
-                _with_tension, uniform_acceleration, remark="truth: reference.model.force with gravity alone"),
-            Identity("5_small", "5", "x'' = -ω0² x + 2y'Ω sinλ_a, y'' = -ω0² y - 2x'Ω sinλ_a",
-                coupled_at, linearised, remark="truth: reference.model.force with gravity alone, linear"),
-            Statement("6_1_part", "6.1", "x is the 'partie entière' (whole part) of Z",
-                _whole_part, "partie réelle: x is the real part", _real_part),
-            Identity("6_1_z", "6.1", "Z'' = -ω0² Z - 2 j Z' Ω sinλ_a",
-                lambda p: -p.gravity / p.length * MP.mpc(p.x, p.y) - 2 * j * MP.mpc(p.vx, p.vy) * rate_up(p),
-                lambda p: MP.mpc(*linearised(p))),
-            Identity("6_1_alpha", "6.1", "-α² = -ω0² + 2αΩ sinλ_a for Z = c exp(jαt)",
-                lambda p: tuple(-(a**2) for a in _rates(p)),
-                lambda p: tuple(-p.gravity / p.length + 2 * a * rate_up(p) for a in _rates(p)),
-                remark="at α = -Ω sinλ_a ± sqrt(ω0² + Ω² sin²λ_a)"),
-            Identity("6_1_roots", "6.1", "α = -Ω sinλ_a ± ω",
-                lambda p: MP.mpc(*sorted(_rates(p))), lambda p: MP.mpc(*turning_rates(p)),
-                remark="truth: eigenvalues of the linear system"),
-            Identity("6_1_omegas", "6.1", "ω1 = ω + Ω_z, ω2 = ω - Ω_z",
-                lambda p: (swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p)),
-                lambda p: (-turning_rates(p)[0], turning_rates(p)[1]),
-                remark="truth: eigenvalues of the linear system"),
-            Identity("6_1_solution", "6.1", "Z = C1 exp(-jω1 t) + C2 exp(jω2 t)",
-                lambda p: _complex(p, p.t), lambda p: MP.mpc(*motion(p, _as_released(p), p.t)[:2]),
-                remark="truth: exponential of the linear system's matrix"),
-            Identity("6_1_xy", "6.1", "x = c1 cos(ω+Ω_z)t + …, y = c1' cos(ω+Ω_z)t - …",
-                lambda p: printed_xy(p, p.t), lambda p: motion(p, _as_released(p), p.t)[:2]),
-            Identity("6_1_vx", "6.1", "v_x = … - c2' (ω-Ω_z) sin(ω-Ω_z)t",
-                lambda p: _velocity(p, p.t, 3)[0], lambda p: motion(p, _as_released(p), p.t)[2],
-                "the last term has cos: - c2' (ω-Ω_z) cos(ω-Ω_z)t", lambda p: _velocity(p, p.t, 2)[0]),
-            Identity("6_1_vy", "6.1", "v_y = -c1' (ω+Ω_z) sin(ω+Ω_z)t - … + c2 (ω-Ω_z) cos(ω-Ω_z)t",
-                lambda p: _velocity(p, p.t, 3)[1], lambda p: motion(p, _as_released(p), p.t)[3]),
-            *(Identity(f"6_1_{name}", "6.1", text, component(_constants, i), component(fitted_constants, i),
-                remark="truth: solved from x, y, vx, vy at t = 0") for i, (name, text) in enumerate(CONSTANTS)),
-        ),
-    ]  # fmt: skip
+    return section("gastebois_", "Gastebois",
+        Identity("5_newton", "5", "a = m g_a + T + 2 m v × Ω",
+            lambda p: forces(p)[0], lambda p: forces(p)[1], "m a = m g_a + T + 2 m v × Ω",
+            lambda p: scale(p.mass, forces(p)[0])),
+        Identity("5_energy", "5", "v²/L0 = 2 g_a (cosθ - cosθm): conservation of energy",
+            lambda p: _energy(p)[0], lambda p: _energy(p)[1], remark="as rates: v · a = -g_a z'"),
+        Approximate("5_flat", "5", "z = -l, z' = 0", _flat, 2, "amplitude", remark="z and z' at a random point"),
+        Approximate("5_square", "5", "2 g_a (cosθ - cosθm) = g_a (θm² - θ²)",
+            _swung, 2, "θm", remark="θm = 0.3, θ = 0.15"),
+        Approximate("5_tension", "5", "T = m g_a", _tension, 2, "amplitude", remark="at a random point"),
+        Identity("5_long", "5", "x'' = -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, y'' = -T/m y/L0 - 2x'Ω sinλ_a",
+            _with_tension, uniform_acceleration, remark="truth: reference.model.force with gravity alone"),
+        Identity("5_small", "5", "x'' = -ω0² x + 2y'Ω sinλ_a, y'' = -ω0² y - 2x'Ω sinλ_a",
+            coupled_at, linearised, remark="truth: reference.model.force with gravity alone, linear"),
+        Statement("6_1_part", "6.1", "x is the 'partie entière' (whole part) of Z",
+            _whole_part, "partie réelle: x is the real part", _real_part),
+        Identity("6_1_z", "6.1", "Z'' = -ω0² Z - 2 j Z' Ω sinλ_a",
+            lambda p: -p.gravity / p.length * MP.mpc(p.x, p.y) - 2 * j * MP.mpc(p.vx, p.vy) * rate_up(p),
+            lambda p: MP.mpc(*linearised(p))),
+        Identity("6_1_alpha", "6.1", "-α² = -ω0² + 2αΩ sinλ_a for Z = c exp(jαt)",
+            lambda p: tuple(-(a**2) for a in _rates(p)),
+            lambda p: tuple(-p.gravity / p.length + 2 * a * rate_up(p) for a in _rates(p)),
+            remark="at α = -Ω sinλ_a ± sqrt(ω0² + Ω² sin²λ_a)"),
+        Identity("6_1_roots", "6.1", "α = -Ω sinλ_a ± ω",
+            lambda p: MP.mpc(*sorted(_rates(p))), lambda p: MP.mpc(*turning_rates(p)),
+            remark="truth: eigenvalues of the linear system"),
+        Identity("6_1_omegas", "6.1", "ω1 = ω + Ω_z, ω2 = ω - Ω_z",
+            lambda p: (swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p)),
+            lambda p: (-turning_rates(p)[0], turning_rates(p)[1]), remark="truth: eigenvalues of the linear system"),
+        Identity("6_1_solution", "6.1", "Z = C1 exp(-jω1 t) + C2 exp(jω2 t)",
+            lambda p: _complex(p, p.t), lambda p: MP.mpc(*motion(p, _as_released(p), p.t)[:2]),
+            remark="truth: exponential of the linear system's matrix"),
+        Identity("6_1_xy", "6.1", "x = c1 cos(ω+Ω_z)t + …, y = c1' cos(ω+Ω_z)t - …",
+            lambda p: printed_xy(p, p.t), lambda p: motion(p, _as_released(p), p.t)[:2]),
+        Identity("6_1_vx", "6.1", "v_x = … - c2' (ω-Ω_z) sin(ω-Ω_z)t",
+            lambda p: _velocity(p, p.t, 3)[0], lambda p: motion(p, _as_released(p), p.t)[2],
+            "the last term has cos: - c2' (ω-Ω_z) cos(ω-Ω_z)t", lambda p: _velocity(p, p.t, 2)[0]),
+        Identity("6_1_vy", "6.1", "v_y = -c1' (ω+Ω_z) sin(ω+Ω_z)t - … + c2 (ω-Ω_z) cos(ω-Ω_z)t",
+            lambda p: _velocity(p, p.t, 3)[1], lambda p: motion(p, _as_released(p), p.t)[3]),
+        *(Identity(f"6_1_{name}", "6.1", text, component(_constants, i), component(fitted_constants, i),
+            remark="truth: solved from x, y, vx, vy at t = 0") for i, (name, text) in enumerate(CONSTANTS)),
+    )  # fmt: skip

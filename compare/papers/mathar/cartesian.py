@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import Check, Finding, Identity, Statement
+from ..checks import Check, Finding, Identity, Statement, section
 from ..digits import MP, Vector, cos, shown, sin
 from ..first_principles import by_plane, euler_lagrange, horizontal_acceleration, in_rate
 from ..points import Point, points
-from ..section import Section
-
-IV = Section("mathar_", "Mathar IV")
 
 
 def _shared(p: Point) -> Any:
@@ -99,44 +96,39 @@ def _east_unbiased() -> Finding:
 
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
-    return [
-        *IV.rows(
-            Identity("32_text", ", before (32)", "multiply the result with z²",
-                lambda p: p.z**2 * _equation(0)(p), _printed_32, "multiply with z⁴; (32), (36), (38) are printed so",
-                lambda p: p.z**4 * _equation(0)(p)),
-            Identity("32", "(31), (32)", "(l⁴+y⁴-2y²l²+y²x²-l²x²) x'' + (-x³y+xyl²-xy³) y'' + Σβ_x Ω^i = 0",
-                _printed_32, lambda p: p.z**4 * _equation(0)(p)),
-            Identity("33", "(33)", "β_x0 = x [l² (x'² + y'²) - (xy' - yx')²] + x g |z|³",
-                lambda p: beta_x(p)[0], _coefficient(0, 0)),
-            Identity("34", "(34)", "β_x1 = -2z⁴ sinϕ y' + 2y y' cosϕ |z|³", lambda p: beta_x(p)[1], _coefficient(0, 1)),
-            Identity("35", "(35)", "β_x2 = -x z⁴ sin²ϕ + x cosϕ (y sinϕ - R) |z|³",
-                lambda p: beta_x(p)[2], _coefficient(0, 2)),
-            Identity("36", "(36)", "z²(x²+z²) x'' + z²yx y'' + Σβ_x Ω^i = 0",
-                lambda p: matrix_times(p, (p.ax, p.ay))[0] + in_powers(p, beta_x(p)),
-                lambda p: p.z**4 * _equation(0)(p)),
-            Identity("38", "(37), (38)", "z²yx x'' + z²(y²+z²) y'' + Σβ_y Ω^i = 0",
-                lambda p: matrix_times(p, (p.ax, p.ay))[1] + in_powers(p, beta_y(p)),
-                lambda p: p.z**4 * _equation(1)(p)),
-            Identity("39", "(39)", "β_y0 = y [l² (x'² + y'²) - (xy' - yx')²] + y g |z|³",
-                lambda p: beta_y(p)[0], _coefficient(1, 0)),
-            Identity("40", "(40)", "β_y1 = 2z⁴ sinϕ x' - 2y x' cosϕ |z|³", lambda p: beta_y(p)[1], _coefficient(1, 1)),
-            Identity("41", "(41)", "β_y2 = z⁴ (-y + R sinϕ + 2y cos²ϕ) - |z|³ cosϕ [Ry + (z² - y²) sinϕ]",
-                lambda p: beta_y(p)[2], _coefficient(1, 2)),
-            Identity("39_text", ", after (39)", "β_y0 is β_x0 with the roles of x and y flipped",
-                lambda p: beta_x(_swapped(p))[0], lambda p: beta_y(p)[0]),
-            Statement("39_bias", ", after (39)", "Ω → 0: no bias with respect to the compass directions",
-                _east_unbiased),
-            Identity("40_text", ", after (40)", "β_y1 is β_x1 with the roles of x and y flipped and the sign switched",
-                lambda p: -beta_x(_swapped(p))[1], lambda p: beta_y(p)[1],
-                "only the velocities change roles: -2 y xdot cosϕ |z|³ as printed in (40)",
-                lambda p: -beta_x(p.but(vx=p.vy, vy=p.vx))[1]),
-            Identity("42", "(42)", "matrix · (x'', y'') = (-Σβ_x Ω^i, -Σβ_y Ω^i)",
-                lambda p: matrix_times(p, horizontal_acceleration(p)),
-                lambda p: (-in_powers(p, beta_x(p)), -in_powers(p, beta_y(p))),
-                remark="with the accelerations of reference.model.force"),
-            Identity("43_inverse", "(43)", "the inverse matrix / (z⁴ l²)",
-                lambda p: inverse_times(p, matrix_times(p, (p.ax, p.ay))), lambda p: (p.ax, p.ay)),
-            Identity("43", "(43)", "(x'', y'') = inverse · (-Σβ_x Ω^i, -Σβ_y Ω^i) / (z⁴ l²)",
-                solved, horizontal_acceleration, remark="truth: reference.model.force"),
-        ),
-    ]  # fmt: skip
+    return section("mathar_", "Mathar IV",
+        Identity("32_text", ", before (32)", "multiply the result with z²",
+            lambda p: p.z**2 * _equation(0)(p), _printed_32, "multiply with z⁴; (32), (36), (38) are printed so",
+            lambda p: p.z**4 * _equation(0)(p)),
+        Identity("32", "(31), (32)", "(l⁴+y⁴-2y²l²+y²x²-l²x²) x'' + (-x³y+xyl²-xy³) y'' + Σβ_x Ω^i = 0",
+            _printed_32, lambda p: p.z**4 * _equation(0)(p)),
+        Identity("33", "(33)", "β_x0 = x [l² (x'² + y'²) - (xy' - yx')²] + x g |z|³",
+            lambda p: beta_x(p)[0], _coefficient(0, 0)),
+        Identity("34", "(34)", "β_x1 = -2z⁴ sinϕ y' + 2y y' cosϕ |z|³", lambda p: beta_x(p)[1], _coefficient(0, 1)),
+        Identity("35", "(35)", "β_x2 = -x z⁴ sin²ϕ + x cosϕ (y sinϕ - R) |z|³",
+            lambda p: beta_x(p)[2], _coefficient(0, 2)),
+        Identity("36", "(36)", "z²(x²+z²) x'' + z²yx y'' + Σβ_x Ω^i = 0",
+            lambda p: matrix_times(p, (p.ax, p.ay))[0] + in_powers(p, beta_x(p)), lambda p: p.z**4 * _equation(0)(p)),
+        Identity("38", "(37), (38)", "z²yx x'' + z²(y²+z²) y'' + Σβ_y Ω^i = 0",
+            lambda p: matrix_times(p, (p.ax, p.ay))[1] + in_powers(p, beta_y(p)), lambda p: p.z**4 * _equation(1)(p)),
+        Identity("39", "(39)", "β_y0 = y [l² (x'² + y'²) - (xy' - yx')²] + y g |z|³",
+            lambda p: beta_y(p)[0], _coefficient(1, 0)),
+        Identity("40", "(40)", "β_y1 = 2z⁴ sinϕ x' - 2y x' cosϕ |z|³", lambda p: beta_y(p)[1], _coefficient(1, 1)),
+        Identity("41", "(41)", "β_y2 = z⁴ (-y + R sinϕ + 2y cos²ϕ) - |z|³ cosϕ [Ry + (z² - y²) sinϕ]",
+            lambda p: beta_y(p)[2], _coefficient(1, 2)),
+        Identity("39_text", ", after (39)", "β_y0 is β_x0 with the roles of x and y flipped",
+            lambda p: beta_x(_swapped(p))[0], lambda p: beta_y(p)[0]),
+        Statement("39_bias", ", after (39)", "Ω → 0: no bias with respect to the compass directions", _east_unbiased),
+        Identity("40_text", ", after (40)", "β_y1 is β_x1 with the roles of x and y flipped and the sign switched",
+            lambda p: -beta_x(_swapped(p))[1], lambda p: beta_y(p)[1],
+            "only the velocities change roles: -2 y xdot cosϕ |z|³ as printed in (40)",
+            lambda p: -beta_x(p.but(vx=p.vy, vy=p.vx))[1]),
+        Identity("42", "(42)", "matrix · (x'', y'') = (-Σβ_x Ω^i, -Σβ_y Ω^i)",
+            lambda p: matrix_times(p, horizontal_acceleration(p)),
+            lambda p: (-in_powers(p, beta_x(p)), -in_powers(p, beta_y(p))),
+            remark="with the accelerations of reference.model.force"),
+        Identity("43_inverse", "(43)", "the inverse matrix / (z⁴ l²)",
+            lambda p: inverse_times(p, matrix_times(p, (p.ax, p.ay))), lambda p: (p.ax, p.ay)),
+        Identity("43", "(43)", "(x'', y'') = inverse · (-Σβ_x Ω^i, -Σβ_y Ω^i) / (z⁴ l²)",
+            solved, horizontal_acceleration, remark="truth: reference.model.force"),
+    )  # fmt: skip

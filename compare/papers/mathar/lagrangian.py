@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import Check, Finding, Identity, Statement
+from ..checks import Check, Finding, Identity, Statement, section
 from ..digits import MP, Vector, cos, derivative, shown, sin, sqrt
 from ..first_principles import (
+    angle_state,
     by_angles,
     by_plane,
     euler_lagrange,
@@ -19,19 +20,7 @@ from ..first_principles import (
 )
 from ..points import Point, points
 from ..runs import paris_passage
-from ..section import Section
 from .kinematics import alpha_0, alpha_1, alpha_2
-
-III = Section("mathar_", "Mathar III")
-
-
-def angle_state(p: Point) -> tuple[Vector, Vector, Vector]:
-    """Return the angles, their rates and their accelerations."""
-    return (
-        (p.cord, p.azimuth),
-        (p.cord_rate, p.azimuth_rate),
-        (p.cord_second, p.azimuth_second),
-    )
 
 
 def _symbols(p: Point) -> tuple[Any, ...]:
@@ -143,38 +132,33 @@ def _azimuth_is_fast() -> Finding:
 
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
-    return [
-        *III.rows(
-            Identity("20", "(20)", "K = m (α0 + α1 Ω + α2 Ω²) / 2",
-                lambda p: p.mass / 2 * (alpha_0(p) + alpha_1(p) * p.rate + alpha_2(p) * p.rate**2),
-                lambda p: p.mass * square_speed(p, by_angles, (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate)) / 2),
-            Identity("21", "(21)", "V = m g z = -m g l cosφ",
-                lambda p: -p.mass * p.gravity * p.length * cos(p.cord),
-                lambda p: p.mass * p.gravity * by_angles(p, p.cord, p.azimuth)[2]),
-            Identity("21_text", ", after (21)", "Ω → 0: the two equations are those of the spherical pendulum",
-                lambda p: (cord_equation(p.but(rate=MP.zero)), azimuth_equation(p.but(rate=MP.zero))), _spherical),
-            Identity("22", "(22)", "∂L/∂λ = (m/2) ([…] Ω + […] Ω²)",
-                _slope_in_azimuth,
-                lambda p: derivative(lambda s: lagrangian(p, by_angles, (p.cord, p.azimuth + s), (p.cord_rate,
-                    p.azimuth_rate)))),
-            Identity("24", "(23), (24)", "φ'' + R̂Ω² (sinϕ cosφ sinλ - cosϕ sinφ) + … + (g/l) sinφ = 0",
-                cord_equation, _equation(0)),
-            Identity("26", "(25), (26)", "sinφ λ'' + 2 cosφ φ' λ' + R̂Ω² sinϕ cosλ + … = 0",
-                azimuth_equation, lambda p: _equation(1)(p) / sin(p.cord)),
-            Identity("27", "(27)", "R̂ = (N+h) cosϕ / l",
-                lambda p: (p.N + p.altitude) * cos(p.phi) / p.length, lambda p: p.k.axis_distance,
-                remark="truth: reference.model.constants"),
-            Statement("27_l", ", after (27)", "the Lagrangian does not explicitly depend on time",
-                _no_time_in_the_lagrangian),
-            Statement("27_e", ", after (27)", "E = K + V in the inertial frame is not conserved",
-                _energy_in_the_inertial_frame_changes,
-                remark="conserved is v²/2 + g z - Ω²/2 (x² + q²), q the distance from the axis"),
-            Identity("28", "(28)", "α0 = [2xyx'y' + (l²-y²)x'² + (l²-x²)y'²] / (l²-x²-y²)",
-                plane_alpha_0, _plane_alpha(0)),
-            Identity("29", "(29)", "α1 = [12 terms] / (l²-x²-y²)", plane_alpha_1, _plane_alpha(1)),
-            Identity("30", "(30)", "α2 = [19 terms] / (l²-x²-y²)", plane_alpha_2, _plane_alpha(2)),
-            Statement("30_fast", ", after (30)",
-                "the sine in (26) induces quick changes of λ if the pendulum approaches small φ",
-                _azimuth_is_fast, by_run=True),
-        ),
-    ]  # fmt: skip
+    return section("mathar_", "Mathar III",
+        Identity("20", "(20)", "K = m (α0 + α1 Ω + α2 Ω²) / 2",
+            lambda p: p.mass / 2 * (alpha_0(p) + alpha_1(p) * p.rate + alpha_2(p) * p.rate**2),
+            lambda p: p.mass * square_speed(p, by_angles, (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate)) / 2),
+        Identity("21", "(21)", "V = m g z = -m g l cosφ", lambda p: -p.mass * p.gravity * p.length * cos(p.cord),
+            lambda p: p.mass * p.gravity * by_angles(p, p.cord, p.azimuth)[2]),
+        Identity("21_text", ", after (21)", "Ω → 0: the two equations are those of the spherical pendulum",
+            lambda p: (cord_equation(p.but(rate=MP.zero)), azimuth_equation(p.but(rate=MP.zero))), _spherical),
+        Identity("22", "(22)", "∂L/∂λ = (m/2) ([…] Ω + […] Ω²)", _slope_in_azimuth,
+            lambda p: derivative(lambda s: lagrangian(p, by_angles, (p.cord, p.azimuth + s), (p.cord_rate,
+                p.azimuth_rate)))),
+        Identity("24", "(23), (24)", "φ'' + R̂Ω² (sinϕ cosφ sinλ - cosϕ sinφ) + … + (g/l) sinφ = 0",
+            cord_equation, _equation(0)),
+        Identity("26", "(25), (26)", "sinφ λ'' + 2 cosφ φ' λ' + R̂Ω² sinϕ cosλ + … = 0",
+            azimuth_equation, lambda p: _equation(1)(p) / sin(p.cord)),
+        Identity("27", "(27)", "R̂ = (N+h) cosϕ / l",
+            lambda p: (p.N + p.altitude) * cos(p.phi) / p.length, lambda p: p.k.axis_distance,
+            remark="truth: reference.model.constants"),
+        Statement("27_l", ", after (27)", "the Lagrangian does not explicitly depend on time",
+            _no_time_in_the_lagrangian),
+        Statement("27_e", ", after (27)", "E = K + V in the inertial frame is not conserved",
+            _energy_in_the_inertial_frame_changes,
+            remark="conserved is v²/2 + g z - Ω²/2 (x² + q²), q the distance from the axis"),
+        Identity("28", "(28)", "α0 = [2xyx'y' + (l²-y²)x'² + (l²-x²)y'²] / (l²-x²-y²)", plane_alpha_0, _plane_alpha(0)),
+        Identity("29", "(29)", "α1 = [12 terms] / (l²-x²-y²)", plane_alpha_1, _plane_alpha(1)),
+        Identity("30", "(30)", "α2 = [19 terms] / (l²-x²-y²)", plane_alpha_2, _plane_alpha(2)),
+        Statement("30_fast", ", after (30)",
+            "the sine in (26) induces quick changes of λ if the pendulum approaches small φ",
+            _azimuth_is_fast, by_run=True),
+    )  # fmt: skip

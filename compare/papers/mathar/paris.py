@@ -13,7 +13,7 @@ from ...approximations import APPROXIMATIONS, Motion
 from ...approximations.frequency import harmonic, planar
 from ...approximations.gastebois_small import turntable_frequency
 from ...approximations.mathar_linear import slow_down
-from ..checks import Check, Finding, PrintedNumber, Statement
+from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, Vector, acos, add, asin, degrees, dot, mpf, norm, pi, shown, sin, sqrt
 from ..first_principles import rest
 from ..points import Point, paris
@@ -29,9 +29,7 @@ from ..runs import (
     transit_times,
     window,
 )
-from ..section import Section
 
-VII = Section("mathar_", "Mathar VII")
 STILL = ["site.rotation_rate=0"]
 
 
@@ -198,63 +196,56 @@ def _slowed(by: Any) -> Finding:
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     p = paris()
-    return [
-        *VII.rows(
-            PrintedNumber("vii_l", "", "l = 67 m", "67", lambda: mpf(load_scene("paris").exact.length)),
-            PrintedNumber("vii_lat", "", "ϕ = 48.846111°",
-                "48.846111", lambda: mpf(load_scene("paris").exact.latitude)),
-            PrintedNumber("vii_above", "", "roughly 2 mm above the lowest point",
-                "0.002", lambda: paris().length + released()[2], remark="m"),
-            Statement("vii_higher", "", "the first swing ends a few millimetres higher than the release",
-                _higher_after_half_a_swing, by_run=True),
-            Statement("vii_energy", "", "the centrifugal force injects the energy",
-                _work_of_the_centrifugal_force, by_run=True,
-                remark="g Δz + Δv²/2 = Ω² Δ(x² + q²)/2 over the first half swing"),
-            Statement("vii_middle", "", "the centre of the motion is the point of rest, further south",
-                _middle_of_the_first_swing, by_run=True),
-            Statement("vii_vertical", "", "never moves through the vertical x = y = 0 if started at rest",
-                _never_vertical, by_run=True),
-            Statement("fig4", ", Fig. 4", "the plane of the motion turns around the rest position",
-                _about_the_rest_position, by_run=True, remark="swings from 0, 7000 and 12000 s"),
-            PrintedNumber("fig5_start", ", Fig. 5", "point of release near -66.98",
-                "-66.98", lambda: released()[2], about=_frame_5, decimals=3,
-                remark="m; judged against the height of the figure, 4 mm"),
-            PrintedNumber("fig5_opposite", ", Fig. 5", "opposite points near -66.9965",
-                "-66.9965", lambda: _transit("z")[0], about=_frame_5, remark="m"),
-            Statement("fig5_clouds", ", Fig. 5", "one cloud goes up in time, the other down",
-                _clouds_move, by_run=True),
-            Statement("fig5_plane", ", Fig. 5", "from NE-SW to more E-W", _north_east_to_east, by_run=True),
-            Statement("fig6", ", Fig. 6", "the rotation of the mean azimuth is very linear", _linear, by_run=True),
-            Statement("fig7_ahead", ", Fig. 7", "without the outer-diagonal terms: a little bit ahead in time",
-                _coupling_is_ahead, by_run=True),
-            PrintedNumber("fig7_foucault", ", Fig. 7", "≈ 0.06084 Hz", "0.06084", day_frequency),
-            PrintedNumber("fig7_planar", ", Fig. 7", "≈ 0.06089 Hz",
-                "0.06089", lambda: frequency(solved(STILL, "600"))),
-            PrintedNumber("fig7_half", ", Fig. 7", "after 12 thousand seconds detuned by approximately half a cycle",
-                "0.5", lambda: 12000 * (1 / planar_period() - day_frequency()), about=lambda: MP.one),
-            PrintedNumber("vii_harmonic", ", item 1", "sqrt(g/l)/2π = 0.0608895 Hz",
-                "0.0608895", lambda: harmonic(p.case)),
-            PrintedNumber("vii_phi0", ", item 2", "φ(0) ≈ 0.00746276 rad", "0.00746276", planar_amplitude),
-            PrintedNumber("vii_period", ", item 2", "4 sqrt(l/g) K(sin(φ0/2)) ≈ 16.423225 s",
-                "16.423225", planar_period),
-            Statement("vii_formula", ", item 2", "period = 4 sqrt(l/g) K(sin(φ0/2))", _planar_run),
-            PrintedNumber("vii_planar", ", item 2", "0.06088938 Hz", "0.06088938", lambda: 1 / planar_period()),
-            PrintedNumber("vii_51", ", item 3", "sqrt(ĝ + (Ω sinϕ)²) ≈ 0.06088959 Hz",
-                "0.06088959", lambda: harmonic_frequency(p, p.gravity)),
-            PrintedNumber("vii_g", ", item 4", "g' = 9.79195 m/s²", "9.79195", lambda: p.case.apparent_gravity),
-            PrintedNumber("vii_g_hz", ", item 4", "≈ 0.060843935 Hz",
-                "0.060843935", lambda: harmonic_frequency(p, p.case.apparent_gravity)),
-            Statement("vii_slow", ", item 5", "a slow-down with the factor 4K(sin(φ0/2))",
-                lambda: _slowed(2 * pi), "the factor is 4K/2π = 2K/π", lambda: _slowed(MP.one).holds),
-            PrintedNumber("vii_z", ", item 5", "release at z = -66.9981 m", "-66.9981", lambda: released()[2]),
-            PrintedNumber("vii_rest_y", ", item 5", "equilibrium y = -0.115202 m",
-                "-0.115202", lambda: rest(p)[1], remark="the rest position of (46) with the paper's own inputs"),
-            PrintedNumber("vii_rest_z", ", item 5", "equilibrium z = -66.999 m", "-66.999", lambda: rest(p)[2]),
-            PrintedNumber("vii_amplitude", ", item 5", "φ(0) = 0.008898355 rad", "0.008898355", amplitude),
-            PrintedNumber("vii_estimate", ", item 5", "0.060843634 Hz", "0.060843634", lambda: estimate(p)),
-            PrintedNumber("vii_frequency", ", item 6", "the actual Foucault pendulum: 0.060843633 Hz",
-                "0.060843633", first_period_frequency,
-                remark=f"first period; swings of the day {shown(day_frequency(), 12)} Hz, which is the paper's digits "
-                    f"cut off; n/(2 t_n) over the day {shown(transit_frequency(), 12)} Hz"),
-        ),
-    ]  # fmt: skip
+    return section("mathar_", "Mathar VII",
+        PrintedNumber("vii_l", "", "l = 67 m", "67", lambda: mpf(load_scene("paris").exact.length)),
+        PrintedNumber("vii_lat", "", "ϕ = 48.846111°", "48.846111", lambda: mpf(load_scene("paris").exact.latitude)),
+        PrintedNumber("vii_above", "", "roughly 2 mm above the lowest point",
+            "0.002", lambda: paris().length + released()[2], remark="m"),
+        Statement("vii_higher", "", "the first swing ends a few millimetres higher than the release",
+            _higher_after_half_a_swing, by_run=True),
+        Statement("vii_energy", "", "the centrifugal force injects the energy",
+            _work_of_the_centrifugal_force, by_run=True,
+            remark="g Δz + Δv²/2 = Ω² Δ(x² + q²)/2 over the first half swing"),
+        Statement("vii_middle", "", "the centre of the motion is the point of rest, further south",
+            _middle_of_the_first_swing, by_run=True),
+        Statement("vii_vertical", "", "never moves through the vertical x = y = 0 if started at rest",
+            _never_vertical, by_run=True),
+        Statement("fig4", ", Fig. 4", "the plane of the motion turns around the rest position",
+            _about_the_rest_position, by_run=True, remark="swings from 0, 7000 and 12000 s"),
+        PrintedNumber("fig5_start", ", Fig. 5", "point of release near -66.98",
+            "-66.98", lambda: released()[2], about=_frame_5, decimals=3,
+            remark="m; judged against the height of the figure, 4 mm"),
+        PrintedNumber("fig5_opposite", ", Fig. 5", "opposite points near -66.9965",
+            "-66.9965", lambda: _transit("z")[0], about=_frame_5, remark="m"),
+        Statement("fig5_clouds", ", Fig. 5", "one cloud goes up in time, the other down", _clouds_move, by_run=True),
+        Statement("fig5_plane", ", Fig. 5", "from NE-SW to more E-W", _north_east_to_east, by_run=True),
+        Statement("fig6", ", Fig. 6", "the rotation of the mean azimuth is very linear", _linear, by_run=True),
+        Statement("fig7_ahead", ", Fig. 7", "without the outer-diagonal terms: a little bit ahead in time",
+            _coupling_is_ahead, by_run=True),
+        PrintedNumber("fig7_foucault", ", Fig. 7", "≈ 0.06084 Hz", "0.06084", day_frequency),
+        PrintedNumber("fig7_planar", ", Fig. 7", "≈ 0.06089 Hz", "0.06089", lambda: frequency(solved(STILL, "600"))),
+        PrintedNumber("fig7_half", ", Fig. 7", "after 12 thousand seconds detuned by approximately half a cycle",
+            "0.5", lambda: 12000 * (1 / planar_period() - day_frequency()), about=lambda: MP.one),
+        PrintedNumber("vii_harmonic", ", item 1", "sqrt(g/l)/2π = 0.0608895 Hz", "0.0608895", lambda: harmonic(p.case)),
+        PrintedNumber("vii_phi0", ", item 2", "φ(0) ≈ 0.00746276 rad", "0.00746276", planar_amplitude),
+        PrintedNumber("vii_period", ", item 2", "4 sqrt(l/g) K(sin(φ0/2)) ≈ 16.423225 s", "16.423225", planar_period),
+        Statement("vii_formula", ", item 2", "period = 4 sqrt(l/g) K(sin(φ0/2))", _planar_run),
+        PrintedNumber("vii_planar", ", item 2", "0.06088938 Hz", "0.06088938", lambda: 1 / planar_period()),
+        PrintedNumber("vii_51", ", item 3", "sqrt(ĝ + (Ω sinϕ)²) ≈ 0.06088959 Hz",
+            "0.06088959", lambda: harmonic_frequency(p, p.gravity)),
+        PrintedNumber("vii_g", ", item 4", "g' = 9.79195 m/s²", "9.79195", lambda: p.case.apparent_gravity),
+        PrintedNumber("vii_g_hz", ", item 4", "≈ 0.060843935 Hz",
+            "0.060843935", lambda: harmonic_frequency(p, p.case.apparent_gravity)),
+        Statement("vii_slow", ", item 5", "a slow-down with the factor 4K(sin(φ0/2))",
+            lambda: _slowed(2 * pi), "the factor is 4K/2π = 2K/π", lambda: _slowed(MP.one).holds),
+        PrintedNumber("vii_z", ", item 5", "release at z = -66.9981 m", "-66.9981", lambda: released()[2]),
+        PrintedNumber("vii_rest_y", ", item 5", "equilibrium y = -0.115202 m",
+            "-0.115202", lambda: rest(p)[1], remark="the rest position of (46) with the paper's own inputs"),
+        PrintedNumber("vii_rest_z", ", item 5", "equilibrium z = -66.999 m", "-66.999", lambda: rest(p)[2]),
+        PrintedNumber("vii_amplitude", ", item 5", "φ(0) = 0.008898355 rad", "0.008898355", amplitude),
+        PrintedNumber("vii_estimate", ", item 5", "0.060843634 Hz", "0.060843634", lambda: estimate(p)),
+        PrintedNumber("vii_frequency", ", item 6", "the actual Foucault pendulum: 0.060843633 Hz",
+            "0.060843633", first_period_frequency,
+            remark=f"first period; swings of the day {shown(day_frequency(), 12)} Hz, which is the paper's digits "
+                f"cut off; n/(2 t_n) over the day {shown(transit_frequency(), 12)} Hz"),
+    )  # fmt: skip

@@ -12,15 +12,12 @@ from reference import load_scene
 from ...foucpend.zeros import Transits
 from ...methods import rk4, rkng56, rkng67
 from ...runge_kutta.tableau import NystromTableau, Tableau, TableauError
-from ..checks import Check, Finding, PrintedNumber, Statement
+from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, mpf, pi, shown
 from ..points import paris
 from ..runs import path_in, transit_times
-from ..section import Section
 from .paris import swings_surplus
 
-VIII = Section("mathar_", "Mathar VIII")
-A = Section("mathar_", "Mathar, appendix A")
 WGS84_INVERSE_FLATTENING = "298.257223563"  # NIMA TR8350.2, table 3.1: defining parameter
 WGS84_RATE = "7.292115e-5"  # rad/s, NIMA TR8350.2, table 3.1: defining parameter
 WGS84_RADIUS = "6378137.0"  # m, NIMA TR8350.2, table 3.1: defining parameter
@@ -94,13 +91,13 @@ def _effect_of_the_digit() -> Any:
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return [
-        *VIII.rows(
+        *section("mathar_", "Mathar VIII",
             Statement("viii_steps", "", "a program with variable Runge-Kutta-Nyström orders of the step control",
                 _step_control, "of the scheme: “Step size control is not implemented” (appendix A)",
                 lambda: not _step_control().holds,
                 remark="the classical scheme of -R 4 has no second formula that could control its step"),
         ),
-        *A.rows(
+        *section("mathar_", "Mathar, appendix A",
             PrintedNumber("a_day", ", -T", "24 × 3600 s is approximately 4 minutes longer than a sidereal day",
                 "4", lambda: (86400 - 2 * pi / paris().rate) / 60, remark="minutes"),
             PrintedNumber("a_g", ", -g", "9.80665 m/s²", "9.80665", lambda: mpf(STANDARD_GRAVITY)),

@@ -7,14 +7,12 @@ from functools import cache
 from typing import Any
 
 from ...approximations.rest_angle import series
-from ..checks import Approximate, Check, Finding, Identity, Statement
+from ..checks import Approximate, Check, Finding, Identity, Statement, section
 from ..digits import MP, Vector, asin, cos, degrees, derivative, scale, shown, sin, sqrt
 from ..first_principles import horizontal_acceleration, pull_at_rest, rest, rest_angle
 from ..points import Point, paris, points
-from ..section import Section
 from .cartesian import beta_x, beta_y
 
-V = Section("mathar_", "Mathar V")
 SERIES = (
     (2, "²", "/ 2g"),
     (4, "⁴", "[(N+h) (1+cos2ϕ)/2 - l cos2ϕ] / 2g²"),
@@ -162,49 +160,46 @@ def _vector_sum(p: Point) -> Vector:
 
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
-    return [
-        *V.rows(
-            Statement("44_x", ", before (44)", "at rest x = 0: on the meridian", _on_the_meridian),
-            Identity("44_text", ", before (44)", "β_x0 and β_x1 are both proportional to x (vanish at x = 0)",
-                lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[1]), lambda p: (MP.zero, MP.zero),
-                "β_x0 and β_x2 are", lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[2]),
-                "β_x1 vanishes at rest for any x; what must vanish with x is β_x2; at x = 0 with a moving bob"),
-            Identity("44", "(44)", "y'' = z² (-β_y0 - β_y2 Ω²) / (z⁴ l²) at x = 0, at rest",
-                lambda p: _forty_four(_at_rest(p, x=MP.zero)),
-                lambda p: horizontal_acceleration(_at_rest(p, x=MP.zero))[1]),
-            Identity("45", "(45)", "y² = sqrt(l²-y²) (y - R sinϕ - 2y cos²ϕ) Ω²/g + cosϕ [Ry + (l²-2y²) sinϕ] Ω²/g",
-                lambda p: _hanging(p).y ** 2, lambda p: _right_side_of_45(_hanging(p)), "the left side is y",
-                lambda p: _hanging(p).y, remark="at the rest position of the reference"),
-            Statement("45_degree", "(45)", "a quartic equation for y", _degree_of_45),
-            Statement("45_text", ", after (45)", "deviations from the vertical < 0.1°", _below_a_tenth),
-            Statement("fig1", ", Fig. 1", "l = 1, 10, 100 m indistinguishable", _one_curve),
-            Identity("46_a", "(46), first line", "R̂Ω² (±sinϕ cosφ - cosϕ sinφ) + Ω² (…)(…) + (g/l) sinφ",
-                lambda p: tuple(_first_line_of_46(p, sign, p.cord) for sign in (1, -1)),
-                lambda p: tuple(_restoring(p, sign, p.cord) for sign in (1, -1))),
-            Identity("46_b", "(46), second line", "±R̂Ω² sin(ϕ∓φ) ∓ Ω² cos(ϕ∓φ) sin(ϕ∓φ) + (g/l) sinφ = 0",
-                lambda p: tuple(_second_line_of_46(p, sign, p.cord) for sign in (1, -1)),
-                lambda p: tuple(_restoring(p, sign, p.cord) for sign in (1, -1))),
-            Identity("46_root", "(46)", "its root is the rest position",
-                lambda p: _second_line_of_46(p, -1, rest_angle(p)), lambda p: MP.zero,
-                remark="root: reference.model.force.rest_position"),
-            *(Identity(f"47_{power}", f"(47), Ω{mark}", f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}",
-                *series_term(i),
-                remark="truth: Taylor series of the rest position") for i, (power, mark, printed) in enumerate(SERIES)),
-            Statement("47_text", ", after (47)", "the sign of λ is opposite to that of ϕ", _south_in_the_north),
-            Approximate("48", "(48)", "g' = sqrt(g² + (RΩ²)² - 2 g RΩ² cosϕ)",
-                lambda s: (_shorter(s).case.apparent_gravity, pull_at_rest(_shorter(s))), 1, "l", "m/s²",
-                "N+h stands for the distance of the bob, N+h-l"),
-            Identity("49", "(49)", "RΩ² / sinφ = g' / sinϕ",
-                lambda p: p.R * p.rate**2 / sin(p.case.tilt), lambda p: p.case.apparent_gravity / sin(p.phi),
-                remark="the sine rule of the triangle of (48), its angle by atan2"),
-            Identity("fig2", ", Fig. 2", "g' is the vector sum of g and RΩ², which is parallel to the equatorial plane",
-                _vector_sum, lambda p: scale(p.length, p.k.pull),
-                remark="on east, north, up; truth: reference.model.constants"),
-            Approximate("50", "(50)", "sinφ = RΩ² sinϕ / sqrt(g² + (RΩ²)² - 2gRΩ² cosϕ)",
-                lambda s: (triangle_angle(_shorter(s)), rest_angle(_shorter(s))), 1, "l", "rad"),
-            Approximate("50_two", ", after (50)", "sinφ ≈ (sinϕ/g) RΩ² + (cosϕ sinϕ/g²) (RΩ²)² + O((RΩ²)³)",
-                lambda s: (_two_terms(_slower(s)), sin(triangle_angle(_slower(s)))), 3, "RΩ²", "rad"),
-            Approximate("50_one", ", after (50)", "sinφ ≈ (1/2) (sin2ϕ/g) (N+h) Ω² + O((RΩ²)²)",
-                lambda s: (_one_term(_slower(s)), sin(triangle_angle(_slower(s)))), 2, "RΩ²", "rad"),
-        ),
-    ]  # fmt: skip
+    return section("mathar_", "Mathar V",
+        Statement("44_x", ", before (44)", "at rest x = 0: on the meridian", _on_the_meridian),
+        Identity("44_text", ", before (44)", "β_x0 and β_x1 are both proportional to x (vanish at x = 0)",
+            lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[1]), lambda p: (MP.zero, MP.zero),
+            "β_x0 and β_x2 are", lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[2]),
+            "β_x1 vanishes at rest for any x; what must vanish with x is β_x2; at x = 0 with a moving bob"),
+        Identity("44", "(44)", "y'' = z² (-β_y0 - β_y2 Ω²) / (z⁴ l²) at x = 0, at rest",
+            lambda p: _forty_four(_at_rest(p, x=MP.zero)),
+            lambda p: horizontal_acceleration(_at_rest(p, x=MP.zero))[1]),
+        Identity("45", "(45)", "y² = sqrt(l²-y²) (y - R sinϕ - 2y cos²ϕ) Ω²/g + cosϕ [Ry + (l²-2y²) sinϕ] Ω²/g",
+            lambda p: _hanging(p).y ** 2, lambda p: _right_side_of_45(_hanging(p)), "the left side is y",
+            lambda p: _hanging(p).y, remark="at the rest position of the reference"),
+        Statement("45_degree", "(45)", "a quartic equation for y", _degree_of_45),
+        Statement("45_text", ", after (45)", "deviations from the vertical < 0.1°", _below_a_tenth),
+        Statement("fig1", ", Fig. 1", "l = 1, 10, 100 m indistinguishable", _one_curve),
+        Identity("46_a", "(46), first line", "R̂Ω² (±sinϕ cosφ - cosϕ sinφ) + Ω² (…)(…) + (g/l) sinφ",
+            lambda p: tuple(_first_line_of_46(p, sign, p.cord) for sign in (1, -1)),
+            lambda p: tuple(_restoring(p, sign, p.cord) for sign in (1, -1))),
+        Identity("46_b", "(46), second line", "±R̂Ω² sin(ϕ∓φ) ∓ Ω² cos(ϕ∓φ) sin(ϕ∓φ) + (g/l) sinφ = 0",
+            lambda p: tuple(_second_line_of_46(p, sign, p.cord) for sign in (1, -1)),
+            lambda p: tuple(_restoring(p, sign, p.cord) for sign in (1, -1))),
+        Identity("46_root", "(46)", "its root is the rest position",
+            lambda p: _second_line_of_46(p, -1, rest_angle(p)), lambda p: MP.zero,
+            remark="root: reference.model.force.rest_position"),
+        *(Identity(f"47_{power}", f"(47), Ω{mark}", f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}", *series_term(i),
+            remark="truth: Taylor series of the rest position") for i, (power, mark, printed) in enumerate(SERIES)),
+        Statement("47_text", ", after (47)", "the sign of λ is opposite to that of ϕ", _south_in_the_north),
+        Approximate("48", "(48)", "g' = sqrt(g² + (RΩ²)² - 2 g RΩ² cosϕ)",
+            lambda s: (_shorter(s).case.apparent_gravity, pull_at_rest(_shorter(s))), 1, "l", "m/s²",
+            "N+h stands for the distance of the bob, N+h-l"),
+        Identity("49", "(49)", "RΩ² / sinφ = g' / sinϕ",
+            lambda p: p.R * p.rate**2 / sin(p.case.tilt), lambda p: p.case.apparent_gravity / sin(p.phi),
+            remark="the sine rule of the triangle of (48), its angle by atan2"),
+        Identity("fig2", ", Fig. 2", "g' is the vector sum of g and RΩ², which is parallel to the equatorial plane",
+            _vector_sum, lambda p: scale(p.length, p.k.pull),
+            remark="on east, north, up; truth: reference.model.constants"),
+        Approximate("50", "(50)", "sinφ = RΩ² sinϕ / sqrt(g² + (RΩ²)² - 2gRΩ² cosϕ)",
+            lambda s: (triangle_angle(_shorter(s)), rest_angle(_shorter(s))), 1, "l", "rad"),
+        Approximate("50_two", ", after (50)", "sinφ ≈ (sinϕ/g) RΩ² + (cosϕ sinϕ/g²) (RΩ²)² + O((RΩ²)³)",
+            lambda s: (_two_terms(_slower(s)), sin(triangle_angle(_slower(s)))), 3, "RΩ²", "rad"),
+        Approximate("50_one", ", after (50)", "sinφ ≈ (1/2) (sin2ϕ/g) (N+h) Ω² + O((RΩ²)²)",
+            lambda s: (_one_term(_slower(s)), sin(triangle_angle(_slower(s)))), 2, "RΩ²", "rad"),
+    )  # fmt: skip

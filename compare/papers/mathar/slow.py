@@ -6,15 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 from ...approximations.mathar_items import derivatives, truncated
-from ..checks import Approximate, Check, Identity, PrintedNumber
+from ..checks import Approximate, Check, Identity, PrintedNumber, section
 from ..digits import MP, Vector, cos, scale, shown, sin, sqrt
-from ..first_principles import in_rate, pull_at_rest
-from ..linear import coupled_at, linearised, uniform_acceleration
+from ..first_principles import coupled_at, in_rate, linearised, pull_at_rest, uniform_acceleration
 from ..points import Point, paris
-from ..section import Section
 from .cartesian import solved
-
-VI = Section("mathar_", "Mathar VI")
 
 
 def _swinging(s: Any, rate: Any = None) -> Point:
@@ -101,33 +97,31 @@ def _pulled(p: Point) -> Vector:
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     place = "s × the amplitude of Paris, half way through a swing"
-    return [
-        *VI.rows(
-            PrintedNumber("vi_1_size", "item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2),
-            Approximate("vi_1", "item 1", "the terms with Ω² are neglected, being of the order of 5 × 10⁻⁹",
-                _no_centrifugal_force, 1, "Ω²", "m/s²",
-                f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(_share(), 3)} of g, not Ω²"),
-            Approximate("vi_1_order", "item 1", "β_x2 = β_y2 = 0",
-                _sizes_at_rate, 2, "Ω", "m/s²", "accelerations half way through a swing; bit 2 of the program's -a"),
-            Approximate("vi_1_variant", "item 1, variant", "g - RΩ² cosϕ is the first order Taylor expansion of (48)",
-                _printed_gravity, 2, "RΩ²", "m/s²"),
-            Approximate("vi_2", "item 2", "-yx in (43) set to zero",
-                _dropped(without(2)), 2, "amplitude", remark=f"{place}; bit 1 of the program's -a"),
-            Approximate("vi_3", "item 3", "only the terms with g in (33), (39)",
-                _dropped(without(3)), 2, "amplitude", remark=place),
-            Approximate("vi_4", "item 4", "only the terms with sinϕ in (34), (40)",
-                _cosine, 1, "amplitude", remark=f"of the Coriolis acceleration; {place}"),
-            Approximate("vi_5", "item 5", "z replaced by l",
-                lambda s: (_depth_is_length(_swinging(s)), _pulled(_swinging(s))), 2, "amplitude", remark=place),
-            Identity("51", "(51)", "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
-                lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
-                lambda p: linearised(p)[0], "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
-                lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy /
-                    p.length), "truth: reference.model.force without centrifugal force, linear"),
-            Identity("52", "(52)", "ŷ'' = -ŷ ĝ - 2Ω sinϕ x̂'",
-                lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
-                lambda p: linearised(p)[1] / p.length, remark="the text at hand has every hat and dot of this line"),
-            Approximate("51_52", "(51), (52)", "an approximation of (43)",
-                _whole, 1, "amplitude", remark=f"against gravity alone, all of items 2-5; {place}"),
-        ),
-    ]  # fmt: skip
+    return section("mathar_", "Mathar VI",
+        PrintedNumber("vi_1_size", "item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2),
+        Approximate("vi_1", "item 1", "the terms with Ω² are neglected, being of the order of 5 × 10⁻⁹",
+            _no_centrifugal_force, 1, "Ω²", "m/s²",
+            f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(_share(), 3)} of g, not Ω²"),
+        Approximate("vi_1_order", "item 1", "β_x2 = β_y2 = 0",
+            _sizes_at_rate, 2, "Ω", "m/s²", "accelerations half way through a swing; bit 2 of the program's -a"),
+        Approximate("vi_1_variant", "item 1, variant", "g - RΩ² cosϕ is the first order Taylor expansion of (48)",
+            _printed_gravity, 2, "RΩ²", "m/s²"),
+        Approximate("vi_2", "item 2", "-yx in (43) set to zero",
+            _dropped(without(2)), 2, "amplitude", remark=f"{place}; bit 1 of the program's -a"),
+        Approximate("vi_3", "item 3", "only the terms with g in (33), (39)",
+            _dropped(without(3)), 2, "amplitude", remark=place),
+        Approximate("vi_4", "item 4", "only the terms with sinϕ in (34), (40)",
+            _cosine, 1, "amplitude", remark=f"of the Coriolis acceleration; {place}"),
+        Approximate("vi_5", "item 5", "z replaced by l",
+            lambda s: (_depth_is_length(_swinging(s)), _pulled(_swinging(s))), 2, "amplitude", remark=place),
+        Identity("51", "(51)", "x'' = -x̂ ĝ + 2Ω sinϕ ŷ   (x̂ = x/l, ŷ = y/l, ĝ = g/l)",
+            lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
+            lambda p: linearised(p)[0], "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
+            lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy /
+                p.length), "truth: reference.model.force without centrifugal force, linear"),
+        Identity("52", "(52)", "ŷ'' = -ŷ ĝ - 2Ω sinϕ x̂'",
+            lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
+            lambda p: linearised(p)[1] / p.length, remark="the text at hand has every hat and dot of this line"),
+        Approximate("51_52", "(51), (52)", "an approximation of (43)",
+            _whole, 1, "amplitude", remark=f"against gravity alone, all of items 2-5; {place}"),
+    )  # fmt: skip

@@ -1,1 +1,3 @@
-"""The third source paper, three methods for the Foucault pendulum, judged method by method."""
+"""The third source paper, which solves the linear pendulum by three methods: its sections in the order of print."""
+
+SECTIONS = ("setting", "methods")

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import Approximate, Check, Finding, Identity, Statement
+from ..checks import Approximate, Check, Finding, Identity, Statement, section
 from ..digits import MP, Vector, add, cos, cross, dot, mpf, norm, scale, shown, sin, sqrt, unit, vector_derivative
-from ..linear import acceleration_of, coupled, coupled_at, linearised, rate_up, turning, uniform_acceleration
+from ..first_principles import acceleration_of, coupled, coupled_at, linearised, rate_up, turning, uniform_acceleration
 from ..points import Point, points
-from ..section import Section
 
-D = Section("methods_", "Three methods")
 Path = Callable[[Any], Vector]
 
 
@@ -98,31 +96,27 @@ def _horizontal(s: Any) -> Point:
 
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
-    return [
-        *D.rows(
-            Identity("newton", "", "T - mgk - 2m ω × v = m a",
-                lambda p: add(_cord(p), scale(p.mass, (MP.zero, MP.zero, -p.gravity)), scale(-2 * p.mass,
-                    cross(turning(p), p.velocity))), lambda p: scale(p.mass, acceleration_of(p)),
-                remark="truth: reference.model.force with gravity alone; T along the cord"),
-            Identity("centrifugal", "", "|ω × (ω × r)| = ω² r cosα",
-                lambda p: p.rate**2 * p.radius * cos(p.phi),
-                lambda p: norm(cross(turning(p), cross(turning(p), (MP.zero, MP.zero, p.radius))))),
-            Statement("away", "", "with direction away from the axis of rotation", _away_from_axis),
-            Approximate("sine", "", "mg sinθ ≈ mgθ",
-                lambda s: (points()[0].cord * s, sin(points()[0].cord * s)), 2, "θ", remark="at a random θ of 0.9 rad"),
-            Approximate("hooke", "", "T - mgk ≈ -(mg/L) ρ (i cosφ + j sinφ)",
-                lambda s: (scale(-_horizontal(s).gravity / _horizontal(s).length, (_horizontal(s).x, _horizontal(s).y)),
-                    uniform_acceleration(_horizontal(s))), 2, "amplitude", remark="horizontal part, at a random point"),
-            Identity("omega", "", "ω = ω (j cosα + k sinα)",
-                lambda p: (MP.zero, p.rate * cos(p.phi), p.rate * sin(p.phi)), lambda p: p.k.turn),
-            Identity("cross", "", "-2ω × v = 2ω xdot k cosα - 2ω xdot j sinα + 2ω ydot i sinα",
-                lambda p: (2 * p.rate * p.vy * sin(p.phi), -2 * p.rate * p.vx * sin(p.phi), 2 * p.rate * p.vx *
-                    cos(p.phi)), lambda p: scale(-2, cross(p.k.turn, (p.vx, p.vy, MP.zero)))),
-            Approximate("z", "", "2ω xdot cosα = zddot (and ignored)",
-                lambda s: (2 * rising(s).rate * rising(s).vx * cos(rising(s).phi), acceleration_of(rising(s))[2]), 1,
-                "amplitude", "m/s²", "at a random point; the cord's vertical pull differs from mg by as much"),
-            Identity("pair", "", "xddot + (g/L) x = 2ω sinα ydot, yddot + (g/L) y = -2ω sinα xdot",
-                coupled_at, linearised,
-                remark="truth: reference.model.force with gravity alone, linear"),
-        ),
-    ]  # fmt: skip
+    return section("methods_", "Three methods",
+        Identity("newton", "", "T - mgk - 2m ω × v = m a",
+            lambda p: add(_cord(p), scale(p.mass, (MP.zero, MP.zero, -p.gravity)), scale(-2 * p.mass,
+                cross(turning(p), p.velocity))), lambda p: scale(p.mass, acceleration_of(p)),
+            remark="truth: reference.model.force with gravity alone; T along the cord"),
+        Identity("centrifugal", "", "|ω × (ω × r)| = ω² r cosα", lambda p: p.rate**2 * p.radius * cos(p.phi),
+            lambda p: norm(cross(turning(p), cross(turning(p), (MP.zero, MP.zero, p.radius))))),
+        Statement("away", "", "with direction away from the axis of rotation", _away_from_axis),
+        Approximate("sine", "", "mg sinθ ≈ mgθ",
+            lambda s: (points()[0].cord * s, sin(points()[0].cord * s)), 2, "θ", remark="at a random θ of 0.9 rad"),
+        Approximate("hooke", "", "T - mgk ≈ -(mg/L) ρ (i cosφ + j sinφ)",
+            lambda s: (scale(-_horizontal(s).gravity / _horizontal(s).length, (_horizontal(s).x, _horizontal(s).y)),
+                uniform_acceleration(_horizontal(s))), 2, "amplitude", remark="horizontal part, at a random point"),
+        Identity("omega", "", "ω = ω (j cosα + k sinα)",
+            lambda p: (MP.zero, p.rate * cos(p.phi), p.rate * sin(p.phi)), lambda p: p.k.turn),
+        Identity("cross", "", "-2ω × v = 2ω xdot k cosα - 2ω xdot j sinα + 2ω ydot i sinα",
+            lambda p: (2 * p.rate * p.vy * sin(p.phi), -2 * p.rate * p.vx * sin(p.phi), 2 * p.rate * p.vx *
+                cos(p.phi)), lambda p: scale(-2, cross(p.k.turn, (p.vx, p.vy, MP.zero)))),
+        Approximate("z", "", "2ω xdot cosα = zddot (and ignored)",
+            lambda s: (2 * rising(s).rate * rising(s).vx * cos(rising(s).phi), acceleration_of(rising(s))[2]), 1,
+            "amplitude", "m/s²", "at a random point; the cord's vertical pull differs from mg by as much"),
+        Identity("pair", "", "xddot + (g/L) x = 2ω sinα ydot, yddot + (g/L) y = -2ω sinα xdot", coupled_at, linearised,
+            remark="truth: reference.model.force with gravity alone, linear"),
+    )  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from operator import itemgetter
 
 import numpy as np
@@ -18,9 +18,11 @@ from .ladders import band
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
 _POINTS = 240  # points of a line
-_APART = 1e3  # lines whose errors are closer than this factor where guide lines begin share one fan of them
+_APART = 1e6  # lines whose errors are closer than this factor where guide lines begin share one fan of them
 _FAN, _BEFORE = 50.0, 5.0  # length of the guide lines, and how far before the line's end they end, as factors of time
-_ABOVE = 4.0  # distance of the fan from the lines, as a factor of error
+_ABOVE = 0.045  # distance of the fan from the lines, as a power of the span of errors: room for its names
+_OVER = 20.0  # room above the lines, as a factor of error
+_BELOW = 1e3  # room below the bound of the reference, for its name, as a factor of error
 
 
 @dataclass(frozen=True)
@@ -66,13 +68,16 @@ def error_growth(histories: Sequence[ErrorHistory], bound_m: float) -> str:
     with sheet((9.5, 6.0)) as figure:
         axes = figure.subplots()
         logarithmic(axes, "x", min(line.x[0] for line in lines), max(line.x[-1] for line in lines))
-        lowest = min(line.y[0] for line in lines)
-        logarithmic(axes, "y", lowest / 5, 5 * max(line.y[-1] for line in (*lines, *guides)), 16)
+        lowest = min(line.y[0] for line in lines) / 5
+        lowest = min(lowest, bound_m / _BELOW) if bound_m > lowest else lowest
+        logarithmic(axes, "y", lowest, _OVER * max(line.y[-1] for line in (*lines, *guides)), 16)
         band(axes, bound_m)
         draw(axes, [*lines, *guides])
         axes.set(xlabel="time in s", ylabel="largest error of position so far in m")
         place(axes, lines, margin=True)
-        place(axes, [replace(one, x=one.x[-1:], y=one.y[-1:]) for one in guides], [*lines, *guides])
+        slopes = "\n".join(name for _, name in reversed(SLOPES))
+        middle = guides[1 :: len(SLOPES)]  # of each fan
+        place(axes, [Line(slopes, one.x[-1:], one.y[-1:], GUIDE) for one in middle], [*lines, *guides])
         names = ", ".join(one.label for one in histories)
         return svg_text(figure, "growth", f"Error over time, log-log: {names}.")
 
@@ -86,9 +91,10 @@ def _guides(lines: Sequence[Line]) -> list[Line]:
         else:
             groups.append([(low, line)])
     guides = []
+    above = max(4.0, (max(one.y[-1] for one in lines) / min(one.y[0] for one in lines)) ** _ABOVE)
     for group in groups:
         last = max(line.x[-1] for _, line in group)
-        end, low = last / _BEFORE, _ABOVE * max(_error_at(line, last) for _, line in group)
+        end, low = last / _BEFORE, above * max(_error_at(line, last) for _, line in group)
         guides += [Line(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES]
     return guides
 

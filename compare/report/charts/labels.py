@@ -1,9 +1,13 @@
-"""Lines of a chart and the placement of their names: beside the line, covering neither other names nor lines."""
+"""Lines of a chart and the placement of their names, which cover neither other names nor lines.
+
+A name stands beside its line; where that is crowded farther away, joined to it by a thin rule; or in the margin.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -16,6 +20,8 @@ _MOST = 0.45  # of the figure's width, for names in the margin
 _MARKER = 2.5  # half the size of a marker, in points: names keep this distance from lines
 _EVERY = 3.0  # spacing, in points, of the samples that represent a line
 _OUTSIDE, _ON_NAME, _ON_LINE, _AWAY, _CROSSED = 1e6, 1e4, 40.0, 8.0, 1e3  # penalties of a place
+_REACHES = (14.0, 24.0, 36.0, 50.0, 66.0, 84.0, 104.0, 130.0)  # of names farther away, in points
+_FAR, _TURNS = 60.0, 16  # penalty of not standing beside the line; directions
 _FAINT = 0.35  # opacity of faint markers
 _SIDES = (
     (1.0, 0.0), (1.0, 0.8), (1.0, -0.8), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (-1.0, 0.8), (-1.0, -0.8),
@@ -44,11 +50,19 @@ class Line:
 
 @dataclass(frozen=True)
 class _Place:
-    """A place for a name: the box (x0, y0, x1, y1), the penalty for its distance from the line, and its side."""
+    """A place for a name.
+
+    Attributes:
+        box: x0, y0, x1, y1 in points.
+        away: penalty for the distance from the line.
+        side: of the line, -1 to 1.
+        rule: both ends of what joins the name to its line, shape (2, 2) in points; None if it stands beside it.
+    """
 
     box: Any
     away: float
     side: float = 1.0
+    rule: Any = None
 
 
 def draw(axes: Any, lines: Sequence[Line]) -> None:
@@ -92,13 +106,19 @@ def place(
     for line, path in named:
         options = list((_in_margin if margin else _beside)(path, _size(line, size), frame, placed))
         if options:
-            best = min(options, key=lambda one: _penalty(one, placed, samples, frame))
+            boxes = np.array([box for _, box in placed]).reshape(-1, 4)
+            penalty = partial(_penalty, boxes=boxes, samples=samples, frame=frame)
+            best = min(options, key=penalty)
+            if not margin and penalty(best) > _FAR:
+                best = min([best, *_apart(path, _size(line, size), frame)], key=penalty)
             placed.append((path[-1, 1], best.box))
             _write(axes, line, best, scale, size)
-            if margin:
-                rule = np.array([path[-1], [best.box[0] - _GAP, (best.box[1] + best.box[3]) / 2]]) / scale
+            if best.rule is not None:
+                samples = np.vstack([samples, _sampled(best.rule)])
                 style = {"color": line.style["color"], "linewidth": 0.6, "clip_on": False}
-                axes.plot(*axes.transData.inverted().transform(rule).T, **style, scalex=False, scaley=False)
+                axes.plot(
+                    *axes.transData.inverted().transform(best.rule / scale).T, **style, scalex=False, scaley=False
+                )
 
 
 def _write(axes: Any, line: Line, where: _Place, scale: float, size: float) -> None:
@@ -146,6 +166,23 @@ def _beside(path: Any, size: tuple[float, float], frame: Any, _: Sequence[tuple[
             yield _Place(box, _AWAY * rank + turn + _OUTSIDE * outside, side)
 
 
+def _apart(path: Any, size: tuple[float, float], frame: Any) -> Iterator[_Place]:
+    """Yield places farther away from the end, the start and the middle of a line."""
+    half = np.array(size) / 2
+    for rank, index in enumerate(dict.fromkeys((len(path) - 1, 0, len(path) // 2))):
+        point = path[index]
+        if not ((frame[:2] <= point) & (point <= frame[2:])).all():
+            continue
+        for reach in _REACHES:
+            for turn in range(_TURNS):
+                angle = 2 * np.pi * turn / _TURNS
+                middle = point + (reach + half) * (np.cos(angle), np.sin(angle))
+                box = np.concatenate([middle - half, middle + half])
+                outside = box[0] < frame[0] or box[2] > frame[2]
+                rule = np.array([point, point.clip(box[:2], box[2:])])
+                yield _Place(box, _FAR + reach + _AWAY * rank + _OUTSIDE * outside, 0.0, rule)
+
+
 def _in_margin(
     path: Any, size: tuple[float, float], frame: Any, placed: Sequence[tuple[float, Any]]
 ) -> Iterator[_Place]:
@@ -154,14 +191,23 @@ def _in_margin(
     for middle in (end, *(y for _, box in placed for y in (box[1] - tall / 2, box[3] + tall / 2))):
         crossed = sum((height - end) * ((box[1] + box[3]) / 2 - middle) < 0 for height, box in placed)
         box = np.array([left, middle - tall / 2, left + wide, middle + tall / 2])
-        yield _Place(box, abs(middle - end) + _CROSSED * crossed)
+        yield _Place(box, abs(middle - end) + _CROSSED * crossed, 1.0, np.array([path[-1], [left - _GAP, middle]]))
 
 
-def _penalty(option: _Place, placed: Sequence[tuple[float, Any]], samples: Any, frame: Any) -> float:
+def _penalty(option: _Place, boxes: Any, samples: Any, frame: Any) -> float:
     """Return the penalty of a place: outside the axes, on other names, on lines, and far from the line's end."""
     box = option.box
     outside = box[1] < frame[1] or box[3] > frame[3]
-    shared = [np.minimum(box[2:], other[2:]) - np.maximum(box[:2], other[:2]) for _, other in placed]
-    covered = sum(np.prod(sides.clip(0)) for sides in shared)
-    inside = ((samples > box[:2] - _MARKER) & (samples < box[2:] + _MARKER)).all(axis=1)
-    return float(_OUTSIDE * outside + _ON_NAME * covered + _ON_LINE * inside.sum() + option.away)
+    shared = (np.minimum(box[2:], boxes[:, 2:]) - np.maximum(box[:2], boxes[:, :2])).clip(0)
+    covered = sum((shared[:, 0] * shared[:, 1]).tolist())
+    inside = _inside(samples, box)
+    struck = 0 if option.rule is None else _inside(_sampled(option.rule), boxes)
+    return float(_OUTSIDE * outside + _ON_NAME * covered + _ON_LINE * (inside + struck) + option.away)
+
+
+def _inside(points: Any, boxes: Any) -> int:
+    """Count the points within a box or boxes, of shape (4,) or (boxes, 4), or nearer to them than half a marker."""
+    x0, y0, x1, y1 = (boxes[..., i, None] for i in range(4))
+    x, y = points[:, 0], points[:, 1]
+    within = (x > x0 - _MARKER) & (x < x1 + _MARKER) & (y > y0 - _MARKER) & (y < y1 + _MARKER)
+    return int(np.count_nonzero(within))

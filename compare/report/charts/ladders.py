@@ -87,6 +87,6 @@ def band(axes: Any, bound_m: float) -> None:
         axes.axhspan(low, bound_m, color=BAND, linewidth=0, zorder=0)
         inside = math.log(bound_m / low) > _NARROW * math.log(high / low)
         axes.text(
-            0.005, bound_m, f"bound of the reference, {bound_m:.1e} m",
-            transform=axes.get_yaxis_transform(), va="top" if inside else "bottom", color=FAINT, fontsize=8,
+            0.005, low if inside else bound_m, f"bound of the reference, {bound_m:.1e} m",
+            transform=axes.get_yaxis_transform(), va="bottom", color=FAINT, fontsize=8,
         )  # fmt: skip

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import cost_of, curves, error_of, front
 from .drawing import BAND, FAINT, RULE, limits, logarithmic, sheet, svg_text
-from .labels import draw, place
+from .labels import Line, draw, place
 from .ladders import CPU, ERROR, FAMILY_COLOURS, Ladder, band, error_above, family_of, ladders
 
 FINEST_M = 1e-20  # m: the upper panel shows the methods of fixed precision, but no errors below this
@@ -30,7 +32,7 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
     lines = ladders(shown, cost_of, error_above(bound_m))
     if not lines:
         return None
-    scales = _scales(lines, bound_m)
+    scales, staircase = _scales(lines, bound_m), _staircase(best, bound_m)
     with sheet((9.5, 8.6 if len(scales) > 1 else 6.6)) as figure:
         grid = figure.subplots(len(scales), sharex=True, height_ratios=(3.4, 1.2)[: len(scales)], squeeze=False)
         panels = list(zip(grid[:, 0], scales, (18, 8), strict=False))
@@ -39,14 +41,14 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
             logarithmic(axes, "x", *x_limits, 12)
             logarithmic(axes, "y", *scale, labels)
             band(axes, bound_m)
-            _front_line(axes, best, bound_m)
+            axes.plot(staircase.x, staircase.y, **staircase.style, zorder=2)
             draw(axes, lines)
         _failed(grid[0, 0], rows)
         grid[-1, 0].set_xlabel(CPU)
         figure.supylabel(ERROR, fontsize=9)
         for axes, (low, high), _ in panels:
             ending = [one for one in lines if low <= one.y[-1] < high]
-            place(axes, ending, [one for one in lines if one not in ending])
+            place(axes, ending, [*(one for one in lines if one not in ending), staircase])
         names = ", ".join(one.name for one in lines)
         return svg_text(figure, "overview", f"Largest position error against CPU seconds, log-log, of {names}.")
 
@@ -97,9 +99,11 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
         return svg_text(figure, "families", f"Error against CPU seconds in small multiples: {', '.join(families)}.")
 
 
-def _front_line(axes: Any, best: Sequence[Row], bound_m: float) -> None:
+def _staircase(best: Sequence[Row], bound_m: float) -> Line:
+    """Return the Pareto front as a broad line: across at the error of each row, then down to that of the next."""
     x, y = [cost_of(row) for row in best], [error_of(row, bound_m) for row in best]
-    axes.plot(x, y, drawstyle="steps-post", color=RULE, linewidth=7, solid_joinstyle="miter", zorder=2)
+    style = {"color": RULE, "linewidth": 7, "solid_joinstyle": "miter"}
+    return Line("", np.repeat(x, 2)[1:].tolist(), np.repeat(y, 2)[:-1].tolist(), style)
 
 
 def _failed(axes: Any, rows: Sequence[Row]) -> None:

@@ -22,17 +22,21 @@ LONGEST_NAME = 32  # characters of a file's name beside its line
 SUFFIXES = (".svg", ".png", ".pdf")
 
 
-def check_target(path: Path) -> None:
+def check_target(path: Path, field: str = "--plot") -> None:
     """Check, before anything is computed, that the picture can be written.
+
+    Args:
+        path: of the picture.
+        field: the option that names it, for the message.
 
     Raises:
         InputError: matplotlib is missing, the suffix is no picture's, or there is no such folder.
     """
-    check_matplotlib("--plot")
+    check_matplotlib(field)
     if path.suffix.lower() not in SUFFIXES:
-        raise InputError("--plot", str(path), f"a path that ends in {', '.join(SUFFIXES)}")
+        raise InputError(field, str(path), f"a path that ends in {', '.join(SUFFIXES)}")
     if path.is_dir() or not path.absolute().parent.is_dir():
-        raise InputError("--plot", str(path), "a file in a folder that exists")
+        raise InputError(field, str(path), "a file in a folder that exists")
 
 
 def error_picture(scores: Sequence[Score], path: Path) -> None:
@@ -43,7 +47,7 @@ def error_picture(scores: Sequence[Score], path: Path) -> None:
     write_picture(path, content)
 
 
-def write_picture(path: Path, content: bytes) -> None:
+def write_picture(path: Path, content: bytes, field: str = "--plot") -> None:
     """Write a picture file, whole or not at all.
 
     Raises:
@@ -52,7 +56,7 @@ def write_picture(path: Path, content: bytes) -> None:
     try:
         replace_file(path, lambda stream: stream.write(content))
     except OSError as error:
-        raise InputError("--plot", str(path), "a file that can be written", f"{error.strerror}.") from None
+        raise InputError(field, str(path), "a file that can be written", f"{error.strerror}.") from None
 
 
 def _draw(axes: Any, scores: Sequence[Score]) -> None:

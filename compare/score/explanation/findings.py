@@ -69,7 +69,7 @@ class Model:
 
 @dataclass(frozen=True)
 class Explanation:
-    """What is known of the reasons for an error.
+    """Reasons for an error, and how much of it they explain.
 
     Attributes:
         conventions: of the rows.

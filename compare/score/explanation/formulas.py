@@ -26,7 +26,7 @@ from .rows import Rows, rms
 PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
 LEAST = 24  # rows, twice the numbers that are fitted
 STEPS = 12  # Gauss-Newton steps in one window at most
-WINDOW = 4.0  # each window is so many times longer than the one before
+WINDOW = 4.0  # ratio of the lengths of one window and the one before
 HELD = 1e-9  # of the amplitude: what holds a rate that a window does not show
 SAME = 1e-6  # of the amplitude: coefficients that differ by less are one
 MOST = 3  # coefficients that are off

@@ -26,7 +26,7 @@ DAMPING = (0.0, 1e-7, 1e-5, 1e-3)  # of steps, after each that fails
 SEEN = 1e-6  # of the amplitude: how far a nudge moves the rows, for differences that are linear and not noise
 WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)  # in scales: how far a number may be off
 HOPELESS = 0.05  # of the amplitude: what leaves more in a window is not followed to the next
-WINDOWS = 8.0  # each window is so many times longer than the one before
+WINDOWS = 8.0  # ratio of the lengths of one window and the one before
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -249,8 +249,3 @@ def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
     if "no_rotation" in words:
         return bool(groups & {"latitude", "frame", "coriolis"})
     return "no_coriolis" in words and "frame" in groups
-
-
-def with_kind(program: Program, kind: str) -> Program:
-    """Return the program as a member of a family."""
-    return replace(program, kind=kind)

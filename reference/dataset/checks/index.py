@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ...errors import FoucaultError
 from ...shipped import golden_root, seals
-from ..files import Files, read_files
+from ..files import Files, read_manifest
 from ..manifest import MANIFEST, Manifest
 from ..record import AUDIT, generator
 
@@ -29,7 +29,7 @@ def problems(files: Files) -> Iterator[str]:
 def _is_copy(manifest: Manifest, ships: Path) -> bool:
     """Return whether a dataset must be that which ships: the same scene, not made here with other versions."""
     try:
-        shipped = read_files(ships).manifest
+        shipped = read_manifest(ships)
     except FoucaultError:
         return False
     made_otherwise = shipped.generator != manifest.generator == generator()

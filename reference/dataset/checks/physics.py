@@ -24,6 +24,7 @@ from ..invariant import INVARIANT_BITS
 from ..sheets import Sheet
 from .completion import deep, depth, vertical_velocity
 
+NEAR = 64  # a nudge of z is at most its size over this
 NUDGE = 1e-5  # of a column's size: differences over it are right to four digits, which is plenty
 SLACK = Fraction(21, 20)
 
@@ -123,8 +124,9 @@ class _Moments:
     def with_another_invariant(self, release: _Moments) -> Iterator[str]:
         """Check that h is that of the release."""
         (first,), (allowed_first,) = release.values(_invariant), release.allowed(_invariant)
-        for name, h, allowed in zip(self.names, self.values(_invariant), self.allowed(_invariant), strict=True):
-            if abs(h - first) > allowed + allowed_first:
+        rows = zip(self.names, self.values(_invariant), self.allowed(_invariant), self._whole, strict=True)
+        for name, h, allowed, whole in rows:
+            if whole and abs(h - first) > allowed + allowed_first:
                 yield f"{name}: the invariant h differs by {float(h - first):.2g} m²/s² from that of the first row"
 
     def with_another_acceleration(self) -> Iterator[str]:
@@ -132,9 +134,9 @@ class _Moments:
         assert self.transits is not None
         (printed,), unit = self.transits.integers(("ax",))
         bound = self.files.manifest.bound("transits", "ax")
-        rows = zip(self.names, self.values(_xddot), self.allowed(_xddot), printed, strict=True)
-        for name, value, allowed, ax in rows:
-            if abs(value - Fraction(ax, unit)) > allowed + bound:
+        rows = zip(self.names, self.values(_xddot), self.allowed(_xddot), printed, self._whole, strict=True)
+        for name, value, allowed, ax, whole in rows:
+            if whole and abs(value - Fraction(ax, unit)) > allowed + bound:
                 yield f"{name}: ax = {ax / unit:.17g}, the equations of motion give {float(value):.17g}"
 
     def values(self, quantity: Quantity) -> list[Fraction]:
@@ -173,7 +175,10 @@ class _Moments:
         for j, bound in enumerate(bounds):
             if not bound:
                 continue
-            step = max(NUDGE * (k.length if j < 3 else fastest or k.length), float(bound))
+            step = np.full(len(value), NUDGE * (k.length if j < 3 else fastest or k.length))
+            if j == 2:  # what follows by dividing by z bends within |z|
+                step = np.where(columns[2], np.minimum(step, np.abs(columns[2]) / NEAR), step)
+            step = np.maximum(step, float(bound))
             ends = (of([*columns[:j], columns[j] + side * step, *columns[j + 1 :]]) for side in (1, -1))
             slopes = np.max([np.abs(end - value) for end in ends], axis=0) / step
             if not np.isfinite(slopes).all():
@@ -183,7 +188,7 @@ class _Moments:
 
     @property
     def _bits(self) -> int:
-        """What the smallest bound needs, up to twice the digits if it is absurdly small, and room for rounding."""
+        """Bits that the smallest bound needs, up to twice the digits if it is absurdly small, and room for rounding."""
         smallest = min((bound for bound in self.bounds if bound), default=self.unit)
         digits = bits_of(self.files.manifest.digits)
         return max(0, min(bits_in(Fraction(self.unit, smallest)), digits)) + digits + INVARIANT_BITS
@@ -192,6 +197,12 @@ class _Moments:
     def _deep(self) -> Array:
         """Whether z follows well from x and y, for each state."""
         return np.asarray(deep(self.columns[2], self.length), dtype=bool)
+
+    @property
+    def _whole(self) -> Array:
+        """Whether all of each state is known: at a transit with a level cord nothing tells vz."""
+        level = abs(self.columns[2]) <= self.bounds[2]
+        return ~np.asarray(level & (self.transits is not None), dtype=bool)
 
     @property
     def _follows(self) -> Array:

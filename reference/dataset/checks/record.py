@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from itertools import product
 
 from ...columns import POSITION, VELOCITY
 from ...engines import engine_names
@@ -14,7 +15,7 @@ from ..files import Files
 from ..invariant import invariant_drift
 from ..manifest import MANIFEST, CrossCheckRecord, Manifest
 from ..place import changes_in, dataset_id, shipped_scene
-from ..record import UNIT_OF, command, equations_of, frame_of, notes_of
+from ..record import NO_CONFIRM, UNIT_OF, command, equations_of, frame_of, notes_of
 from ..render import derived_texts
 from ..sheets import scene_inputs
 
@@ -43,9 +44,10 @@ def problems(files: Files) -> Iterator[str]:
             yield f"{MANIFEST}: {name} does not follow from the scene"
     if not _is_its_id(files):
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
-    audits = (False, True) if manifest.level == "enclosed" else (False,)
+    wishes = (False, True) if manifest.level == "enclosed" else (False,)
     if manifest.command not in {
-        command(scene, engine, manifest.id, audited) for engine in engine_names() for audited in audits
+        command(scene, engine, manifest.id, audited, confirmed)
+        for engine, audited, confirmed in product(engine_names(), wishes, wishes)
     }:
         yield f"{MANIFEST}: command does not follow from the scene"
     vanishes = xdot_vanishes(Start.of(scene.exact, PREC))
@@ -107,13 +109,15 @@ def _evidence(manifest: Manifest) -> Iterator[str]:
         yield f"{MANIFEST}: level = confirmed, and no cross-check is in another formulation"
     if manifest.level == "self_consistent" and all(_same_run(check, manifest) for check in checks):
         yield f"{MANIFEST}: level = self_consistent, and no cross-check differs from the run"
+    others = [check for check in checks if check.formulation != run.formulation]
+    to_confirm = manifest.enclosure is not None and NO_CONFIRM not in manifest.command.split()
+    if to_confirm and all(any(_too_far(check, manifest)) for check in others):
+        yield f"{MANIFEST}: no cross-check confirms the proof, and the command does not say {NO_CONFIRM}"
     for check in checks:
         if check.formulation not in FORMULATIONS:
             yield f"{MANIFEST}: cross_checks: {check.formulation} is no formulation"
-        apart = {"position_m": check.position_m, "velocity_m_s": check.velocity_m_s, "transit_s": check.transit_s}
-        for name, gap in apart.items() if manifest.enclosure is None else ():  # a proof needs no close second run
-            if gap is not None and (bound := getattr(bounds, name)) and Fraction(gap) > Fraction(bound):
-                yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"
+        if manifest.enclosure is None:  # a proof needs no close second run
+            yield from _too_far(check, manifest)
     proof = manifest.enclosure
     if proof is not None:
         radii = {
@@ -124,6 +128,14 @@ def _evidence(manifest: Manifest) -> Iterator[str]:
         for name, radius in radii.items():
             if radius is not None and (bound := getattr(bounds, name)) and Fraction(radius) > SLACK * Fraction(bound):
                 yield f"{MANIFEST}: enclosure: the radius {radius} is more than bounds.{name} = {bound}"
+
+
+def _too_far(check: CrossCheckRecord, manifest: Manifest) -> Iterator[str]:
+    """Yield where a run is further from the published one than the bounds allow."""
+    for name in ("position_m", "velocity_m_s", "transit_s"):
+        gap, bound = getattr(check, name), getattr(manifest.bounds, name)
+        if gap is not None and bound and Fraction(gap) > Fraction(bound):
+            yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"
 
 
 def _same_run(check: CrossCheckRecord, manifest: Manifest) -> bool:

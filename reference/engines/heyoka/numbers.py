@@ -14,7 +14,7 @@ import heyoka as hy
 import numpy as np
 
 from ...errors import IntegrationError
-from ...precision import DOUBLE, LONG_DOUBLE, NumberType
+from ...precision import DOUBLE, LONG_DOUBLE, Array, NumberType
 
 hy.install_custom_numpy_mem_handler()
 
@@ -51,6 +51,12 @@ class Numbers:
             return hy.real(rounded, self.number.prec) * hy.real(2, self.number.prec) ** shift
         high = rounded >> 32 << 32
         return np.ldexp(np.longdouble(high) + np.longdouble(rounded - high), shift)
+
+    def all_of(self, values: Sequence[Any] | Array) -> Any:
+        """Return each value as a number of the type; doubles that are wanted as doubles are taken as they are."""
+        if self.number == DOUBLE and getattr(values, "dtype", None) == np.float64 and np.isfinite(values).all():
+            return values
+        return [self.of(value) for value in values]
 
     def power_of_two(self, exponent: int) -> Any:
         """Return 2**exponent, exactly."""

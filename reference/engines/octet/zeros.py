@@ -19,7 +19,7 @@ CONVERGED = 2.0**-27  # of a step: a larger last correction leaves digits to be 
 
 
 class Zeros(NamedTuple):
-    """What is known of a rate's zeros, lane by lane.
+    """Knowledge of a rate's zeros, lane by lane.
 
     Attributes:
         before, after: the rate at the step's start and end; the former's sign alone counts.

@@ -450,8 +450,8 @@ print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) // 1024)
         (b"t,x,y\n", b"0,0,0\n", "t = 0 after 0"),
         (b"0 0 0 0\n", b"0 0 0 0\n", "t = 0 after 0"),
         (b"t,x,y\n", b"\n", "more than 4000000 lines"),
-        (b"t,x,y\n", b"# all is well\n", "more than 4000000 lines"),
-        (b"PK\x03\x04", b"\0", "more than 1073741824 bytes"),
+        pytest.param(b"t,x,y\n", b"# all is well\n", "more than 4000000 lines", marks=pytest.mark.long),
+        pytest.param(b"PK\x03\x04", b"\0", "more than 1073741824 bytes", marks=pytest.mark.long),
     ],
 )
 def test_a_gigabyte_of_nothing_is_refused_in_bounded_memory(head, piece, said):

@@ -101,7 +101,7 @@ def test_a_picture_stays_as_it_was(disk, foucault, candidate):
     assert sorted(os.listdir(disk)) == ["filler", "picture.svg"]
 
 
-@pytest.mark.parametrize("tried_first", [True, False])
+@pytest.mark.parametrize("tried_first", [pytest.param(True, marks=pytest.mark.long), False])
 def test_a_score_stands_when_its_cache_is_full(tried_first, disk, foucault, candidate, tmp_path, monkeypatch):
     if not tried_first:  # it is found out in the middle of an entry
         monkeypatch.setattr("compare.cache._ROOM", b"")
@@ -118,6 +118,7 @@ def test_a_score_stands_when_its_cache_is_full(tried_first, disk, foucault, cand
     assert "No space left on device" in warned
 
 
+@pytest.mark.long  # without a cache all is compiled again
 def test_a_study_on_a_full_cache_says_so_once(disk, tmp_path):
     """Its children would each find out for themselves."""
     pytest.importorskip("numba")
@@ -134,7 +135,7 @@ def test_a_study_on_a_full_cache_says_so_once(disk, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["disk"]
 
 
-@pytest.mark.parametrize("words", ["scenes", "pend -T 10", "show paris --json"])
+@pytest.mark.parametrize("words", ["scenes", pytest.param("pend -T 10", marks=pytest.mark.long)])
 def test_stdout_on_a_full_disk_is_a_message(words):
     with Path("/dev/full").open("w") as full:
         command = [sys.executable, "-m", "foucault", *words.split()]

@@ -49,7 +49,7 @@ def test_a_long_command_breaks_neither_table_nor_page(foucault, tmp_path):
     command = " ".join(
         [shlex.quote(sys.executable), str(path), "{setting} {t_end} {grid_step} {length} {gravity}", "x" * 3000]
     )
-    words = ["study", "paris", "--t-end", "600", "--methods", "rk4", "--settings", "0.1", "--out", tmp_path / "out"]
+    words = ["study", "paris", "--t-end", "60", "--methods", "rk4", "--settings", "0.1", "--out", tmp_path / "out"]
     status, out, _ = foucault(*words, "--run", command, "--run", f"{command} y", "--name", "mine", "--name", "<other>")
     assert status == 0
     head, row, other = (next(line for line in out.splitlines() if word in line) for word in ("setting", "mine", "<oth"))

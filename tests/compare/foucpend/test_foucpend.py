@@ -140,7 +140,7 @@ def test_a_transit_stands_between_the_snapshots_around_it_and_gives_n_over_two_t
             assert float(hertz) == pytest.approx(int(count) / (2 * float(t)), rel=1e-15)
 
 
-@pytest.mark.parametrize("block", [1, 7, 300, 599, 600])
+@pytest.mark.parametrize("block", [pytest.param(1, marks=pytest.mark.long), 7, 300, 599, 600])
 def test_the_length_of_a_block_changes_no_line(monkeypatch: pytest.MonkeyPatch, block: int) -> None:
     from compare.foucpend import march
 

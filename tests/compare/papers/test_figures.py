@@ -18,7 +18,7 @@ def test_a_window_shows_the_golden_states() -> None:
 
 
 def test_frequencies_are_lowest_at_the_equator_and_follow_the_estimate_within_a_nanohertz() -> None:
-    frequencies = figures.frequencies()
+    frequencies = runs.frequencies()
     assert min(frequencies, key=lambda latitude: frequencies[latitude]) == 0
     for latitude, hertz in frequencies.items():
         assert abs(hertz - figures.estimate_at(latitude)) < 2e-9

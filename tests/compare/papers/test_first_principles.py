@@ -9,13 +9,13 @@ from compare.papers.first_principles import (
     euler_lagrange,
     horizontal_acceleration,
     in_rate,
+    motion,
     place,
     rest,
     rotated,
     suspension,
 )
 from compare.papers.gastebois.rotation import plane_period, swing_period
-from compare.papers.linear import motion
 from compare.papers.points import paris, points
 
 TINY = MP.mpf("1e-50")

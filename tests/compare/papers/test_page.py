@@ -55,6 +55,7 @@ def test_a_box_hides_the_lines_of_its_verdict(built: Built) -> None:
     text = (built[0] / "index.html").read_text(encoding="utf-8")
     for verdict in VERDICTS:
         count = sum(row.verdict == verdict for row in built[1])
+        assert count
         assert f'<input type="checkbox" id="show-{verdict}" checked> {verdict} ({count})' in text
         assert f"body:has(#show-{verdict}:not(:checked)) .whole tr.{verdict}" in text
         assert text.count(f'<tr class="{verdict}" id=') == count

@@ -251,6 +251,16 @@ def test_names_in_the_margin_stand_in_the_order_of_their_lines_and_near_their_en
     assert middles[3] == pytest.approx(axes.y0 + axes.height / 2, abs=2)
 
 
+def test_no_line_strikes_through_a_name_where_many_run_side_by_side():
+    lines = [Line(f"method {i}", [1 + i / 4, 4 + i / 4], [9, 1], line_style(COLOURS[i % 7], i)) for i in range(12)]
+    boxes, axes, _ = named(lines)
+    parts = np.linspace(0, 1, 400)
+    for line in lines:
+        x, y = (np.interp(parts, (0, 1), ends) / 10 for ends in (line.x, line.y))
+        path = np.column_stack([axes.x0 + x * axes.width, axes.y0 + y * axes.height])
+        assert not any(box.contains(*point) for box in boxes.values() for point in path)
+
+
 def test_a_line_outside_the_axes_has_no_name():
     boxes, *_ = named([Line("far", [20, 30], [1, 2], line_style(COLOURS[0], 0)), *lines_to([5.0])])
     assert list(boxes) == ["method 0"]

@@ -274,7 +274,9 @@ def test_parts_escape_text_and_keep_html():
     for piece in ("&lt;x&gt;", "1 &amp; 2", "a &lt; b", '<tr class="front">', 'class="number"'):
         assert piece in made_table
     assert "<em>" in parts.page("t", [parts.section("A b, c", Html("<em>x</em>"))])
-    assert '<a href="#a-b-c">A b, c</a>' in parts.page("t", [parts.section("A b, c", "x")])
+    link = '<a href="#a-b-c">A b, c</a>'
+    assert link in parts.page("t", [parts.section("A b, c", "x"), parts.section("D", "y")])
+    assert link not in parts.page("t", [parts.section("A b, c", "x")])  # of one heading alone
 
 
 def test_a_row_of_a_table_has_a_cell_for_every_column():

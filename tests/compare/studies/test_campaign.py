@@ -4,37 +4,17 @@ from __future__ import annotations
 
 import json
 import os
-import signal
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pytest
+from answering import Answer, answers
 
 import compare.studies.campaign as module
 from compare.studies.campaign import campaign, declared
 from compare.studies.machine import ONE_THREAD
-from compare.studies.row import Record
 from reference import InputError
-from reference.process import Emit
 from reference.status import Status
-
-
-@dataclass(frozen=True)
-class Answer(Record):
-    text: str
-    status: Status = Status.OK
-    process: int = 0
-    threads: str = ""
-
-
-def answers(emit: Emit, offset: int, items: list[tuple[str, str]]) -> None:
-    for _, word in items:
-        if word == "hangs":
-            signal.pause()
-        if word == "dies":
-            os._exit(3)
-        emit(Answer(f"{word} {offset}", process=os.getpid(), threads=os.environ["OMP_NUM_THREADS"]))
 
 
 def failed(item: tuple[str, str], status: Status, reason: str) -> Answer:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sampled import one_in
 from typer.testing import CliRunner
 
 import compare.studies.measure as measure
@@ -39,7 +40,7 @@ def short() -> Scene:
 
 @pytest.fixture(scope="module")
 def bench(short: Scene) -> Bench:
-    return Bench(short, GridTruth(golden_of(short), float(T_END)), 8.0)
+    return Bench(short, GridTruth(golden_of(short), float(T_END)), 8.0, repeats=1)
 
 
 def test_the_error_of_rk4_falls_with_the_fourth_power_of_its_step(bench: Bench) -> None:
@@ -77,7 +78,7 @@ def test_a_study_is_one_call_and_says_in_a_line_what_it_holds(bench: Bench) -> N
     assert repr(row).startswith("Row(rk4 in plane at 4: missed_transits, ")
 
 
-@pytest.mark.parametrize("t_end", [10.0, 59.0, 90.0, 100.1])
+@pytest.mark.parametrize("t_end", one_in(2, [10.0, 59.0, 100.1, 90.0]))
 def test_a_span_that_is_no_multiple_of_the_grid_step_is_measured_to_its_end(t_end: float) -> None:
     result = study("paris", items=[("rk4", "plane", 0.1), ("rk4", "plane", 0.05)], t_end=t_end)
     assert result.t_end == t_end == result.golden.t[-1]
@@ -145,8 +146,8 @@ def test_what_cannot_run_is_a_row_with_its_reason(bench: Bench, monkeypatch: pyt
 
 
 def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path) -> None:
-    short = load_scene("paris", ["run.t_end=120", "inputs=binary64"])
-    items = [item for item in plan(short, ["rk4", "heyoka_double", "gauss_legendre"], False) if item[2] != 0.002]
+    short = load_scene("paris", ["run.t_end=20", "inputs=binary64"])
+    items = [item for item in plan(short, ["rk4", "heyoka_double"], False) if item[2] != 0.002]
     reports: list[str] = []
     journal_path = tmp_path / "rows.jsonl"
     first = study(short, items=items[:4], journal_path=journal_path)
@@ -283,9 +284,9 @@ def test_the_seconds_of_files_need_files() -> None:
 def test_a_truth_that_has_to_be_solved_for_tells_how_far_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
     times: list[float] = []
-    elsewhere = load_scene("paris", ["site.latitude=12.5", "run.t_end=3600"])
+    elsewhere = load_scene("paris", ["site.latitude=12.5", "run.t_end=600"])
     study(elsewhere, items=[("rkmk4", "momentum", 0.5)], digits=40, solving=times.append)
-    assert times == sorted(times) and 0 < times[0] <= times[-1] <= 3600
+    assert times == sorted(times) and 0 < times[0] <= times[-1] <= 600
 
 
 def test_the_precision_ladder_gains_digits_with_bits() -> None:

@@ -13,9 +13,9 @@ import jsonschema
 import numpy as np
 import pytest
 
-from compare.suite.badge import data_version
 from compare.suite.files import entries
 from reference import load, load_scene, trajectory
+from reference.shipped import DATA_VERSION
 
 SCHEMA = json.loads(files("compare.suite").joinpath("score.schema.json").read_text("utf-8"))
 SHORT = (
@@ -67,7 +67,7 @@ def test_a_suite_is_one_table_one_page_one_badge(foucault, folder, tmp_path):
     badge = (tmp_path / "page/badge.svg").read_text()
     root = ElementTree.fromstring(badge)
     title = root.find("{http://www.w3.org/2000/svg}title").text
-    assert title == f"Foucault pendulum: 1 of 3 scenes · 16.1 digits · data {data_version()}"
+    assert title == f"Foucault pendulum: 1 of 3 scenes · 16.1 digits · data {DATA_VERSION}"
     page = (tmp_path / "page/index.html").read_text()
     assert all(word in page for word in ("paris", "wrong", "bad", "refused", "disagrees", "What was found", "<svg"))
     document = json.loads((tmp_path / "page/suite.json").read_text())

@@ -209,9 +209,9 @@ def test_help_loads_neither_heyoka_nor_flint_nor_numpy():
 
 def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
     master, slave = pty.openpty()
-    words = [sys.executable, "-m", "foucault", "generate", "paris", "--t-end", "7200", "--digits", "12"]
+    words = [sys.executable, "-m", "foucault", "generate", "paris", "--t-end", "7200", "--digits", "9"]
     with subprocess.Popen(
-        [*words, "--out", str(tmp_path / "p")], stdout=subprocess.DEVNULL, stderr=slave, cwd=ROOT
+        [*words, "--level", "computed", "--out", str(tmp_path / "p")], stdout=subprocess.DEVNULL, stderr=slave, cwd=ROOT
     ) as process:
         os.close(slave)
         output = b""

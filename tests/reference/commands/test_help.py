@@ -20,6 +20,7 @@ from compare.studies.precisions import SPAN_S
 from compare.studies.stability import LIMIT_S as STABILITY_LIMIT_S
 from compare.studies.study import LIMIT_S as STUDY_LIMIT_S
 from reference.commands import app as computing
+from reference.shipped import DATA_VERSION
 
 COMMANDS = [str(one.name) for part in (computing, comparing) for one in part.registered_commands]
 
@@ -49,7 +50,7 @@ def test_every_command_has_help_and_pend_keeps_the_papers_switch_h(foucault, com
 
 
 def test_the_version_is_that_of_the_package(foucault):
-    assert foucault("--version") == (0, f"foucault {version('foucault-reference')}\n", "")
+    assert foucault("--version") == (0, f"foucault {version('foucault-reference')}, data {DATA_VERSION}\n", "")
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from forgery import forge, moved, seal
 from small_scenes import make_scene
 
 import reference
-from reference.dataset.checks.tables import _signs_on_grid
+from reference.dataset.checks.tables import _order, _signs_on_grid
 from reference.dataset.files import read_files
 from reference.dataset.manifest import MANIFEST
 from reference.dataset.place import MAX_ID, dataset_id
@@ -33,6 +33,15 @@ def problems(dataset):
 def test_twenty_problems_are_listed_at_most(dataset):
     forge(dataset, transits=lambda rows, _: [row.__setitem__(3, moved(row[3], Fraction(1))) for row in rows])
     assert len(verify(dataset).problems) == len(problems_of(dataset)) == 20
+
+
+@pytest.mark.parametrize("more", [-1, 0, 1, 2])
+def test_twenty_foreign_files_are_named_and_the_others_counted(dataset, more):
+    for k in range(20 + more):
+        (dataset / f"{k}.txt").touch()
+    notes = [note for note in verify(dataset).notes if "not part of the dataset" in note or note.startswith("and ")]
+    assert len(notes) == min(20, 20 + more) + (more > 0)
+    assert (notes[-1] == f"and {more} more") is (more > 0)
 
 
 @pytest.mark.parametrize("size, said", [(1 << 20, "is not JSON"), ((1 << 20) + 1, "at most 1048576 are read")])
@@ -64,6 +73,53 @@ def sealed(dataset, name, old, new):
 def test_a_malformed_cell_is_shown_up_to_its_eightieth_character(dataset):
     sealed(dataset, "grid.csv", "\n120,", "\n" + "x" * 200 + ",")
     assert f"grid.csv: row 3: t = '{'x' * 80}' is not a number of this column's form" in problems(dataset)
+
+
+def test_only_a_proof_is_audited(dataset):
+    command = json.loads((dataset / MANIFEST).read_text())["command"]
+    forge(dataset, manifest=lambda document: document.update(command=f"{command} --audit"))
+    assert "command does not follow from the scene" in problems(dataset)
+
+
+def test_runs_that_are_one_are_no_evidence_of_themselves(dataset):
+    def one_run_twice(document):
+        level = document["scene"]["run"]["level"] = document["level"] = "self_consistent"
+        document["command"] = document["command"].replace("confirmed", level)
+        for check in document["cross_checks"]:
+            check |= {name: document["run"][name] for name in ("formulation", "number")}
+
+    forge(dataset, manifest=one_run_twice)
+    assert "level = self_consistent, and no cross-check differs from the run" in problems(dataset)
+
+
+def test_transits_whose_bounds_touch_are_in_order_and_others_are_not(dataset):
+    files = read_files(dataset)
+    rows = [("1", "10.0", "1", "1"), ("2", "8.0", "-1", "1")]
+    for second, found in (("8.0", False), ("7.9", True)):
+        sheet = Sheet(("k", "t", "direction", "bound"), [rows[0], ("2", second, *rows[1][2:])], {})
+        assert any("not in order" in problem for problem in _order(files, sheet)) is found
+
+
+def test_transits_at_which_the_cord_is_nearly_level_pass(tmp_path):
+    """There vz = -(x vx + y vy)/z bends within |z|, a ten-millionth of the cord's length."""
+    solution = reference.solve(reference.load_scene("over_top"), t_end="10", digits=10, level="computed")
+    assert min(map(abs, solution.transits.exact("z"))) < 1e-7
+    assert problems_of(write(solution, tmp_path / "over")) == []
+
+
+def test_a_transit_at_which_the_cord_is_level_passes_and_its_place_is_checked(tmp_path):
+    """There nothing in the table tells vz; a planar swing through a right angle has xdot = 0 just there."""
+    solution = reference.solve(reference.load_scene("separatrix"), t_end="0.3", digits=10, level="computed")
+    assert max(map(abs, solution.transits.exact("z"))) < 1e-15
+    folder = write(solution, tmp_path / "level")
+    assert problems_of(folder) == []
+
+    def lift(rows, header):
+        rows[0][header.index("z")] = "0.010000000"
+
+    forge(folder, transits=lift)
+    found = problems(folder)
+    assert "distance 1 m from the pivot" in found and "ax = -18" in found
 
 
 def test_a_row_of_another_length_is_counted(dataset):

@@ -1,15 +1,20 @@
-"""The golden datasets that come with the project pass every check, and recomputing them gives the same bytes."""
+"""The golden datasets that come with the project pass every check, and other runs give the same digits."""
 
 from __future__ import annotations
 
 import pytest
+from sampled import one_in
 
 import reference
 from reference.columns import STATE
 from reference.dataset.recompute import recompute
-from reference.dataset.record import AUDIT
+from reference.dataset.record import AUDIT, NO_CONFIRM
 from reference.dataset.verify import problems_of
+from reference.engines import AUTO
+from reference.engines.registry import run
 from reference.shipped import data_root, seals
+from reference.solver.choice import confirming_plan, first_prec
+from reference.solver.pilot import run_pilot
 
 SHIPPED = sorted(seals())
 
@@ -23,21 +28,22 @@ def test_paris_is_among_them_with_its_whole_day():
     assert paris.manifest.counts.transits == len(paris.transits["t"]) == 10514
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", one_in(8, SHIPPED))  # `load` checks hash and seal of each below
 def test_it_passes_every_check(name):
     assert problems_of(data_root() / "golden" / name) == []
 
 
-@pytest.mark.parametrize("name", SHIPPED)
-def test_a_proof_that_ships_was_audited(name):
-    manifest = reference.load(name).manifest
-    assert (AUDIT in manifest.command.split()) == (manifest.level == "enclosed")
+def test_every_scene_has_a_proof_that_was_audited_and_all_but_the_thirty_days_a_confirmation():
+    manifests = {name: reference.load(name).manifest for name in SHIPPED}
+    assert {manifest.level for manifest in manifests.values()} == {"enclosed"}
+    assert all(AUDIT in manifest.command.split() for manifest in manifests.values())
+    assert {name for name, manifest in manifests.items() if NO_CONFIRM in manifest.command.split()} <= {"paris_30d"}
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", one_in(2, ["paris", "paris.binary64"]))
 def test_its_first_hour_made_again_agrees_within_the_bounds(name):
     golden = reference.load(name)
-    again = reference.solve(golden.scene, t_end="3600", transits=True)
+    again = reference.solve(golden.scene, t_end="3600", level="confirmed")
     transits = len(again.directions)
     assert transits == 438
     assert again.directions == [int(sign) for sign in golden.transits["direction"][:transits]]
@@ -53,9 +59,28 @@ def test_its_first_hour_made_again_agrees_within_the_bounds(name):
             assert len(near) == rows and all(near), column
 
 
-@pytest.mark.campaign
+@pytest.mark.long
 @pytest.mark.parametrize("name", SHIPPED)
-def test_made_again_it_has_the_same_bytes(name, pytestconfig):
-    if not pytestconfig.getoption("--long"):
-        pytest.skip("under --long; `make golden` makes paris again, and .ci/run compares its bytes")
+def test_a_run_of_60_bits_more_in_another_formulation_lies_within_every_bound(name, tally):
+    golden = reference.load(name)
+    scene, times = golden.scene, tuple(golden.scene.exact.grid)
+    pilot = run_pilot(scene.exact, times)
+    finer = run(confirming_plan(scene, times, pilot, first_prec(scene, pilot, AUTO) + 60))
+    assert finer.plan.formulation != golden.manifest.run.formulation
+    parts = [(golden.grid, finer.grid, STATE)]
+    if golden.manifest.counts.transits:
+        assert finer.directions == [int(sign) for sign in golden.transits["direction"]]
+        parts.append((golden.transits, finer.transits, ("t", "x", "y", "z", "vy", "ax")))
+    numbers = 0
+    for printed, computed, columns in parts:
+        for column in columns:
+            rows = zip(printed.exact(column), computed.exact(column), printed.bound(column), strict=True)
+            assert all(abs(ours - theirs) <= bound for ours, theirs, bound in rows), column
+            numbers += len(printed.exact(column))
+    tally(f"{name}: {numbers} numbers within their bounds of a run in {finer.plan.number}")
+
+
+@pytest.mark.long  # `make golden` makes paris again, and .ci/run compares its bytes
+@pytest.mark.parametrize("name", SHIPPED)
+def test_made_again_it_has_the_same_bytes(name):
     assert recompute(data_root() / "golden" / name) == []

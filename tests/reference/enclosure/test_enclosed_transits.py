@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 from itertools import pairwise
+from random import Random
 
 import mpmath as mp
 import numpy as np
@@ -11,9 +12,10 @@ from enclosure_recurrence import prove
 from flint import arb, ctx
 from scipy.integrate import solve_ivp
 
+from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, World
 from reference.enclosure.shapes import Covered, Leaf, Tube
-from reference.enclosure.transits import Scan, Slope, contract
+from reference.enclosure.transits import Scan, Slope, narrowed
 from reference.taylor_step import TaylorStep
 
 
@@ -185,16 +187,49 @@ def test_a_step_shorter_than_the_precision_is_refused():
         Scan(world).advance(Covered(Piece(world, step), Tube(arb(0), arb(0), arb(0))))
 
 
-def test_newton_asks_nothing_about_times_outside_of_its_leaves():
+ROUNDED = arb(2) ** -25  # the radius of a ball has 30 bits
+
+
+@pytest.mark.parametrize("low, high, sides, far", [
+    ("1/3", "2/3", (-1, 1), (0, 0)),  # nothing is known outside: both ends stay
+    ("-2/3", "1/3", (-1, 1), (1, 1)), ("-2/3", "1/3", (0, 1), (0, 1)), ("-2/3", "1/3", (1, 1), (0, 1)),
+    ("-2/3", "1/3", (-1, 0), (1, 0)),
+])  # fmt: skip
+def test_ends_move_only_to_signs_that_are_those_of_the_sides(low, high, sides, far):
     world = World(scene(), 128)
     with ctx.workprec(world.prec):
-        row = [0, 1 << 128, 1 << 127]  # xdot = 1 + s
+        row = [0, 0, 1 << 127]  # xdot = s
         piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
-        slope, third = Slope(Covered(piece, Tube(arb(0), arb(0), arb(0)))), arb(1) / 3
-        # a leaf narrower than a ball: whether the middle of the ball lies in it is not known
-        leaf, time = Leaf(1, third, third, slope), 1 + third
-        assert contract([leaf], time, time).overlaps(time)
-        assert contract([Leaf(1, arb(0), third, slope)], arb(1), time) is None
+        slope, (low, high) = Slope(Covered(piece, Tube(*[arb(2) ** -90] * 3))), (ball(Fraction(q)) for q in (low, high))
+        found = narrowed([Leaf(1, low, high, slope)], 1 + low, 1 + high, sides)
+        for end, old, moved in zip((found.lower(), found.upper()), (low, high), far, strict=True):
+            assert abs(end - 1 - (0 if moved else old)) < ROUNDED
+
+
+def test_a_zero_far_from_the_middle_of_a_bent_leaf_is_found():
+    world = World(scene(), 128)
+    with ctx.workprec(world.prec):
+        row = [0, -(1 << 108), 0, 0, 0, (1 << 128) // 5]  # xdot = s^4 - 2^-20, 0 at 1/32
+        piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
+        slope = Slope(Covered(piece, Tube(*[arb(2) ** -90] * 3)))
+        found = narrowed([Leaf(1, arb("0.01"), arb(1), slope)], arb("1.01"), arb(2), (-1, 1))
+        assert found.contains(1 + arb(2) ** -5)
+        assert found.rad() < arb(2) ** -70
+
+
+def test_whatever_is_proposed_the_zero_stays_between(monkeypatch):
+    rng, world = Random(2), World(scene(), 128)
+    with ctx.workprec(world.prec):
+        row = [0, 0, 1 << 127]  # xdot = s, known to 0.01
+        piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
+        slope = Slope(Covered(piece, Tube(*[arb("0.01")] * 3)))
+        leaves = [Leaf(1, arb(-1), arb("0.25"), slope), Leaf(1, arb("0.25"), arb(1), slope)]
+        for _ in range(200):
+            times = tuple(1 + arb(rng.choice((-1, 1)) * 10 ** rng.uniform(-4, 1)) for _ in range(2))
+            monkeypatch.setattr("reference.enclosure.transits.around_zero", lambda _, times=times: times)
+            found = narrowed(leaves, arb(0), arb(2), (-1, 1))
+            assert -ROUNDED <= found.lower() <= arb("0.99")
+            assert arb("1.01") <= found.upper() <= 2 + ROUNDED
 
 
 def test_a_parabola_that_stays_clear_has_no_zero():

@@ -160,7 +160,7 @@ def in_digits(step):
 @pytest.mark.parametrize("digits", [False, True], ids=["by FLINT", "by digits"])
 def test_sabotaged_approximants_are_all_covered_or_refused(digits, size, tally):
     rng, accepted, refused, harmed = Random(11 + digits), 0, 0, 0
-    enough = size(13, 220)
+    enough = size(7, 220)
     references = {name: truth(inputs, [end], 300)[0] for name, (inputs, end, _) in SABOTAGED.items()}
     while accepted < enough:
         name = rng.choice(list(SABOTAGED))

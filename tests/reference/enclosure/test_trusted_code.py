@@ -13,7 +13,7 @@ HOME = Path(reference.enclosure.__file__).parent
 TRUSTED = ("balls", "bound", "columns", "course", "digits", "printed", "transits")
 ARRAYS = {"digits": {"numpy", "numba"}, "bound": {"numpy"}}  # integers only
 PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
-BUDGET = 590  # lines of code; the goal is 420
+BUDGET = 483  # lines of code; the goal is 420
 BARE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
 SCOPES = (ast.Module, ast.ClassDef, ast.FunctionDef)
 
@@ -60,7 +60,8 @@ def test_trusted_code_says_so_and_holds_no_floating_point(name):
 @pytest.mark.parametrize("name", TRUSTED)
 def test_trusted_code_imports_nothing_untrusted(name):
     declarations = {"shapes", "taylor_step", "packing", "machine_code", *PROPOSALS} | ARRAYS.get(name, set())
-    allowed = {"__future__", "collections.abc", "fractions", "functools", "typing", "flint", *declarations, *TRUSTED}
+    library = {"__future__", "collections.abc", "fractions", "functools", "itertools", "typing", "flint"}
+    allowed = library | declarations | {*TRUSTED}
     for node in ast.walk(ast.parse(source(name))):
         if isinstance(node, ast.ImportFrom):
             assert node.module in allowed, node.module

@@ -7,6 +7,7 @@ import random
 import heyoka as hy
 import numpy as np
 import pytest
+from sampled import one_in
 from small_scenes import make_scene, model_at
 
 from reference.engines.heyoka.numbers import Numbers
@@ -73,7 +74,7 @@ def lagrangian_rates(state, k):
     return [ctx.mpf(whole) / ctx.mpf(2) ** 1000 for whole in numbers.fixed(values, 1000)]
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", one_in(5, range(20)))
 def test_all_formulations_agree_to_sixty_digits_where_all_terms_are_large(seed):
     ctx, k, n, v = model_at(random_scene(seed), PREC)
     expected = acceleration(n, v, k)

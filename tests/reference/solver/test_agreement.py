@@ -6,6 +6,7 @@ from fractions import Fraction
 from functools import cache
 
 import pytest
+from mpmath import findroot, mpf, sqrt
 from small_scenes import make_scene
 
 import reference
@@ -13,9 +14,11 @@ from reference.columns import GRID, TRANSITS
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import IntegrationError
+from reference.model.force import acceleration, force, tension
+from reference.model.start import Start
 from reference.precision import DOUBLE, real
 from reference.solver import solve as solver
-from reference.solver.agreement import Agreement, _bits_lacking
+from reference.solver.agreement import Agreement, bits_lacking
 from reference.solver.pilot import MARGIN_BITS
 from reference.solver.transit_errors import with_transit_errors
 
@@ -36,7 +39,11 @@ BEYOND_LIMBS = make_scene(
 )
 
 
-@pytest.mark.parametrize("scene", [ONE_RUN_TWICE, BEYOND_LIMBS], ids=["at the longest steps", "beyond limbs"])
+@pytest.mark.parametrize(
+    "scene",
+    [BEYOND_LIMBS, pytest.param(ONE_RUN_TWICE, marks=pytest.mark.long)],
+    ids=["beyond limbs", "at the longest steps"],
+)
 def test_a_tiny_swing_has_bounds_that_hold(scene):
     solution = reference.solve(scene)
     truth = run(Plan(scene.exact, "spin", real(512), solution.times, transits=True))
@@ -121,6 +128,46 @@ def test_the_errors_of_the_grid_as_they_are_do_not_bound_those_of_transits(name,
     assert gaps.largest()[column] > on_grid[of_grid]
 
 
+TURNING = make_scene(
+    pendulum={"length": "1", "drag": "0.25"},
+    site={"rotation_rate": "1.5", "equatorial_radius": "3"},
+    run={"t_end": "10", "grid_step": "1"},
+)
+
+
+def test_the_errors_of_transits_are_the_sums_that_the_module_states():
+    """A fast Earth and much drag, where each term counts; in exact fractions but for the norms."""
+    made = run(Plan(TURNING.exact, "spin", DOUBLE, (Fraction(0), Fraction(10)), transits=True))
+    errors = {name: Fraction(k, 10**6) for name, k in zip(GRID, (3, 5, 7, 2, 11, 13), strict=True)}
+    table = with_transit_errors(made, errors, None)
+    k = Start.of(TURNING.exact, 200).k
+    w, square, e = 2 * abs(k.rate) + k.drag, k.rate**2, {name: float(error) for name, error in errors.items()}
+    states = made.transits.only(GRID)
+    assert len(table) > 5
+    for row, state in enumerate(zip(*(states.exact(name) for name in GRID), strict=True)):
+        n, v = ([mpf(value) / k.length for value in part] for part in (state[:3], state[3:]))
+        pull, (ax, ay, az), aside = force(n, v, k), acceleration(n, v, k), abs(n[0])
+        of_x = abs(tension(n, v, k))
+        of_r, of_v = square + aside * (norm(pull) + square), w + aside * (2 * norm(v) + w)
+        off = of_x * e["x"] + of_r * (e["x"] + e["y"] + e["z"]) + of_v * (e["vx"] + e["vy"] + e["vz"])
+        jerk = k.length * (of_x * abs(v[0]) + of_r * norm(v) + of_v * norm((ax, ay, az)))
+        late = findroot(lambda t: (abs(ax) * k.length - off - jerk * t) * t - e["vx"], e["vx"] / abs(ax))  # noqa: B023
+        expected = {
+            "t": late,
+            "x": e["x"] + abs(ax) * k.length * late**2,
+            "y": e["y"] + abs(v[1]) * k.length * late,
+            "z": e["z"] + abs(v[2]) * k.length * late,
+            "vy": e["vy"] + abs(ay) * k.length * late,
+            "ax": off + jerk * late,
+        }
+        for name, value in expected.items():
+            assert float(table.bound(name)[row]) == pytest.approx(float(value), rel=1e-6), name
+
+
+def norm(vector):
+    return sqrt(sum(part**2 for part in vector))
+
+
 def test_the_time_of_a_transit_that_only_grazes_zero_is_unknown(paris):
     """xdot may be off by as much as the whole swing has: no zero of it is certain."""
     solution = run(Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(60)), transits=True))
@@ -131,7 +178,7 @@ def test_the_time_of_a_transit_that_only_grazes_zero_is_unknown(paris):
 @pytest.mark.parametrize(("units", "lacking"), [("1/4", 0), ("0.26", -1), ("1", 0), ("1.9", 1), ("1000", 10)])
 def test_runs_agree_to_a_quarter_of_the_last_digit_and_else_lack_the_bits_of_the_rest(units, lacking):
     gap = Fraction(units) / 10**5
-    found = _bits_lacking({"x": Fraction(0), "y": gap}, {"x": 9, "y": 5})
+    found = bits_lacking({"x": Fraction(0), "y": gap}, {"x": 9, "y": 5})
     assert found == (lacking + MARGIN_BITS if gap > Fraction(1, 4) / 10**5 else 0)
 
 

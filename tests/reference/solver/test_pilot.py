@@ -72,6 +72,7 @@ def test_perturbed_runs_that_diverge_at_every_precision_are_refused(monkeypatch)
         digits_lost(scene.exact, times, measured)
 
 
+@pytest.mark.long
 def test_growth_faster_than_any_precision_is_refused_from_the_first_runs():
     scene = load_scene("separatrix", ["run.t_end=1500", "run.grid_step=10"])
     with pytest.raises(UnreachableError, match=r"to the end it takes about (\d+) bits") as caught:
@@ -166,15 +167,62 @@ def test_effort_counts_steps_at_160_bits_and_grows_with_the_cube():
 
 
 def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(monkeypatch, paris):
-    honest = reference.solver.solve.run_pilot
-
     def longer(inputs, times):
-        return replace(honest(inputs, times), steps=reach.MAX_STEPS // 10)
+        return replace(run_pilot(inputs, times), steps=reach.MAX_STEPS // 10)
 
-    monkeypatch.setattr(reference.solver.solve, "run_pilot", longer)
+    for module in ("solve", "pilot"):
+        monkeypatch.setattr(f"reference.solver.{module}.run_pilot", longer)
     for level in ("computed", "confirmed"):
         with pytest.raises(UnreachableError, match=r"400 digits take \d+ bits over about \d+ steps"):
             reference.solve(paris, t_end="60", digits=400, level=level)
+
+
+def bits_of(solution):
+    return int(re.findall(r"\d+", solution.run.number)[0])
+
+
+@pytest.fixture
+def in_parts(monkeypatch):
+    """Have short sheets begun as long ones are."""
+    monkeypatch.setattr(pilot_runs, "LEAST_TIMES", 8)
+    monkeypatch.setattr(pilot_runs, "FIRST_PART", 4)
+
+
+def test_a_single_run_measures_the_pilot_and_is_made_again_if_that_was_too_hopeful(monkeypatch, paris, in_parts):
+    scene = paris.with_values(["run.t_end=600", "run.grid_step=10"])
+    times = tuple(scene.exact.grid)
+    whole, (begun, rough) = run_pilot(scene.exact, times), pilot_runs.begun_pilot(scene.exact, times)
+    assert len(rough) == len(times)
+    assert whole.errors["x"] < begun.errors["x"] < 2**10 * whole.errors["x"]
+    needed = whole.bits_for(30, scene.exact.t_end, checked=False)
+    for growth in (pilot_runs.GROWTH, Fraction(1, 2**80)):
+        monkeypatch.setattr(pilot_runs, "GROWTH", growth)
+        solution = reference.solve(scene, level="computed", digits=30)
+        assert bits_of(solution) >= needed
+        assert Fraction(1, 2) < max(solution.grid.bound("x")) / whole.estimates(bits_of(solution))["x"] < 2
+
+
+def test_a_proof_is_checked_by_what_its_pilot_lost_against_it(in_parts, paris):
+    scene = paris.with_values(["run.grid_step=1", "run.digits=15", "run.level=enclosed", "run.t_end=60"])
+    times = tuple(scene.exact.grid)
+    solution, pilot = reference.solve(scene), run_pilot(scene.exact, times)
+    begun, rough = pilot_runs.begun_pilot(scene.exact, times)
+    measured = begun.compared(rough, solution.grid, scene.exact.length)
+    assert len(solution.checks) == 2
+    for name, error in measured.errors.items():
+        assert abs(error - pilot.errors[name]) <= pilot.errors[name] / 64
+
+
+def test_a_start_that_promises_too_much_is_measured_to_the_end(monkeypatch, in_parts):
+    """From the top a swing loses its digits later than in the first quarter."""
+    scene = load_scene("separatrix", ["run.t_end=14", "run.grid_step=0.25"])
+    times = tuple(scene.exact.grid)
+    begun, _ = pilot_runs.begun_pilot(scene.exact, times)
+    assert begun.prec == DOUBLE.prec
+    whole = run_pilot(scene.exact, times)
+    solution = reference.solve(scene, level="computed", digits=20)
+    assert max(solution.grid.bound("z")) <= 2 * whole.estimates(bits_of(solution))["z"]
+    assert max(solution.grid.bound("z")) < Fraction(1, 10**19)
 
 
 def test_a_column_that_is_only_rounding_is_measured_by_its_kind():

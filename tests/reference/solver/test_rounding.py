@@ -9,7 +9,13 @@ import pytest
 
 import reference
 from reference.columns import GRID, TRANSITS
-from reference.solver.rounding import UndecidedRounding, check_decided, grid_decimals, transit_decimals
+from reference.solver.rounding import (
+    UndecidedRounding,
+    check_decided,
+    exact_decimals,
+    grid_decimals,
+    transit_decimals,
+)
 
 SURE, OPEN = Fraction(1, 10**12), Fraction(1)
 
@@ -41,3 +47,8 @@ def test_a_number_whose_error_leaves_a_digit_open_is_refused_in_grid_and_transit
     errors = dict.fromkeys(GRID if kind == "grid" else TRANSITS, SURE) | {"y": OPEN}
     with pytest.raises(UndecidedRounding, match="of y = "):
         check_decided(replace(solution, **{kind: table.with_errors(errors)}))
+
+
+@pytest.mark.parametrize(("values", "digits"), [(("60", "0"), 0), (("0.05",), 2), (("1.5", "0.125", "7"), 3)])
+def test_terminating_decimals_are_printed_exactly(values, digits):
+    assert exact_decimals(tuple(map(Fraction, values))) == digits

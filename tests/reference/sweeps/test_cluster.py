@@ -33,7 +33,7 @@ def cluster():
     import dask
 
     with (
-        dask.config.set({"distributed.scheduler.allowed-failures": 1}),
+        dask.config.set({"distributed.scheduler.allowed-failures": 1, "distributed.deploy.lost-worker-timeout": 1e7}),
         distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, silence_logs=50) as cluster,
     ):
         yield cluster
@@ -66,9 +66,8 @@ def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(clu
     assert load_sweep(there).counts == {"ok": ROWS}
 
 
-def test_a_row_that_kills_its_worker_crashes_alone(cluster, tmp_path, monkeypatch, size):
-    if not size(0, 1):
-        pytest.skip("thirty seconds of workers that start; test_store.py has the halving in every run")
+@pytest.mark.long  # thirty seconds of workers that start; test_store.py has the halving in every run
+def test_a_row_that_kills_its_worker_crashes_alone(cluster, tmp_path, monkeypatch):
     from reference.sweeps import cluster as module
 
     monkeypatch.setattr(module, "compute", poisoned_sweep.compute)

@@ -14,6 +14,7 @@ import pytest
 pytest.importorskip("numba")
 
 from limbs_states import states
+from sampled import one_in
 from small_scenes import make_scene, run_in_limbs
 
 from reference.columns import POSITION, STATE, VELOCITY
@@ -58,7 +59,7 @@ SPARE = 8  # times what heyoka loses at the same precision: the conditioning of 
 FLOOR_BITS = 6
 
 
-@pytest.mark.parametrize(("name", "digits"), CASES)
+@pytest.mark.parametrize(("name", "digits"), one_in(3, CASES))
 def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
     scene, prec = make_scene(**SCENES[name]), int(digits * 3.33) + 4
     times = tuple(t / 10 for t in TIMES) if name in FAST else TIMES
@@ -84,7 +85,6 @@ def test_a_run_loses_no_more_than_the_scene_does_to_heyoka(name, digits):
         assert gap <= 4 * allowed(VELOCITY) / abs(ax) + times[-1] * Fraction(2) ** (FLOOR_BITS - prec)
 
 
-@pytest.mark.slow
 def test_an_hour_of_paris_keeps_32_digits_and_all_transits():
     scene = make_scene(**PARIS)
     times = tuple(Fraction(60 * k) for k in range(61))
@@ -183,10 +183,8 @@ print((result.grid.values, result.transits.values, result.steps))
 """
 
 
-@pytest.mark.campaign
-def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, capsys, pytestconfig):
-    if not pytestconfig.getoption("--long"):
-        pytest.skip("compiles the engine once more, here under --long; the canaries of its products run always")
+@pytest.mark.long
+def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, capsys):
     plain = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_CACHE_DIR": str(tmp_path)}
     command = [sys.executable, "-c", SHORT]
     generic = subprocess.run(command, env={**os.environ, **plain}, capture_output=True, text=True, check=True)

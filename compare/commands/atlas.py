@@ -1,0 +1,52 @@
+"""`foucault atlas`: one page over all golden datasets, and one for each that judges a file in the browser."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from reference.commands.progress import progress
+from reference.commands.terminal import AsJson, emit, stoppable
+from reference.shipped import golden_root
+
+
+def command(
+    out: Annotated[
+        Path, typer.Option("--out", metavar="DIR", help="Write the pages into this folder (extra plot).")
+    ] = Path("atlas"),
+    data: Annotated[
+        Path | None,
+        typer.Option("--data", metavar="DIR", help="The folder of the datasets (default: those that ship)."),
+    ] = None,
+    studies: Annotated[
+        Path | None,
+        typer.Option(
+            "--studies",
+            metavar="DIR",
+            help="Results of `foucault study` and `stability`, as JSON (default: docs/studies in a checkout).",
+        ),
+    ] = None,
+    files: Annotated[
+        str,
+        typer.Option("--files", metavar="URL", help="Link files to URL/DATASET/FILE (default: name them alone)."),
+    ] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Make a page over all golden datasets.
+
+    Pictures, bounds and files of each; the page of a scene judges a program's output that is dropped on it.
+    """
+    from ..report.atlas.build import build
+    from ..report.atlas.pages import scenes_of
+    from ..report.atlas.studied import studies_folder
+    from ..report.folder import PAGE
+
+    with stoppable("nothing half was written"), progress() as show:
+        drawing = show("atlas", unit="scenes")
+        sizes = build(data or golden_root(), out, studies or studies_folder(), files, drawing)
+    if as_json:
+        emit({"out": str(out), "pages": [{"page": name, "bytes": size} for name, size in sizes.items()]})
+        return
+    typer.echo(f"{out / PAGE}: {scenes_of(len(sizes) - 1)}, {sum(sizes.values()) / 1e6:.1f} MB in {len(sizes)} pages")

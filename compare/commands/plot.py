@@ -1,0 +1,92 @@
+"""`foucault plot`: the pictures of a motion, from a scene, a dataset or a program's output."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from reference import InputError, load_scene, scene_ids
+from reference.commands.progress import progress
+from reference.commands.terminal import Assignments, EndTime, completion, refuse, replacements, stoppable
+from reference.nearest import did_you_mean, in_words
+from reference.shipped import seals
+
+from .options import announce, completion_of_lists, listed
+
+if TYPE_CHECKING:
+    from ..report.motion import Motion
+
+WHAT = ("path", "sphere", "plane", "transits")
+
+
+def command(
+    source: Annotated[
+        str,
+        typer.Argument(
+            metavar="SCENE|DATASET|FILE",
+            help="A scene, a dataset, or the file of a program's output; - is stdin.",
+            autocompletion=completion(lambda: {*scene_ids(), *seals()}),
+        ),
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="FILE", help="The picture: .svg, .png or .pdf (default: the name, and .svg)."),
+    ] = None,
+    what: Annotated[
+        str | None,
+        typer.Option(
+            "--what",
+            metavar="A,B,…",
+            help=f"Which of {', '.join(WHAT)} to draw, side by side (default: all that there are).",
+            autocompletion=completion_of_lists(lambda: WHAT),
+        ),
+    ] = None,
+    t_end: EndTime = None,
+    set_: Assignments = None,
+) -> None:
+    """Draw a motion: path, swing plane, transits.
+
+    A scene without a dataset is solved first. A file alone gives path and swing plane.
+    """
+    from ..report.charts.motion import motion_picture, panels
+    from ..report.charts.score import check_target, write_picture
+
+    wanted = listed(what, "--what")
+    for word in wanted or ():
+        if word not in WHAT:
+            raise InputError("--what", word, in_words(WHAT), did_you_mean(word, WHAT, ""))
+    target = out or Path(f"{'stdin' if source == '-' else Path(source).stem}.svg")
+    check_target(target, "--out")
+    motion = _motion(source, t_end, set_)
+    there = list(panels(motion))
+    missing = next((word for word in wanted or () if word not in there), None)
+    if missing is not None:
+        raise InputError("--what", missing, f"what there is of {source}: {in_words(there)}")
+    write_picture(target, motion_picture(motion, wanted or there, target), "--out")
+    typer.echo(f"{target}: the picture")
+
+
+def _motion(source: str, t_end: str | None, assignments: list[str] | None) -> Motion:
+    """Return the motion of a dataset if the word means one, of a file, or else of a scene."""
+    from reference import load
+    from reference.dataset.place import golden_folder
+
+    from ..candidates.read import read
+    from ..report.motion import Motion
+    from ..truth import golden_of
+
+    changed = {"--t-end": t_end, "--set": assignments or None}
+    path = Path(source)
+    if source == "-" or (path.is_file() and path.suffix.lower() != ".toml"):
+        refuse(changed, "for a file")
+        return Motion.of_candidate(read(source))
+    if golden_folder(source).is_dir() and not any(changed.values()):
+        return Motion.of_golden(load(source))
+    if golden_folder(source).is_dir() and source not in scene_ids():
+        refuse(changed, "for a dataset")
+    scene = load_scene(source, replacements(assignments, {"--t-end": ("run.t_end", t_end)}))
+    with stoppable("nothing was written"), progress() as show:
+        report = show(f"the motion of {scene.id}", float(scene.exact.t_end))
+        return Motion.of_golden(golden_of(scene, announce=announce, report=report))

@@ -1,0 +1,129 @@
+"""Parts of the pages of the atlas: flags, pictures, certified state, trust, files, inputs, how methods fare."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from reference import Golden
+from reference.columns import STATE
+from reference.dataset.certified import MEANING
+from reference.status import Status
+
+from ..page import Column, Html, TableRow, facts, table, text
+from .entry import Entry
+from .studied import Fared, Kept
+
+THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}  # of the proof's THEOREM.md
+
+
+def pictures(svgs: Sequence[str]) -> Html:
+    """Return pictures that stand side by side, or below each other on a narrow screen."""
+    return Html('<div class="pictures">\n' + "".join(svgs) + "</div>")
+
+
+def flags(entry: Entry) -> Html:
+    """Return why a scene is difficult: each flag with its sentence."""
+    notes = entry.golden.manifest.notes
+    items = "".join(f"<li><b>{text(flag.replace('_', ' '))}</b>: {text(notes[flag])}</li>" for flag in entry.flags)
+    return Html(f'<ul class="flags">{items}</ul>' if items else "")
+
+
+def state(golden: Golden) -> Html:
+    """Return the state at the end, as printed, with the bound of each number."""
+    manifest, last = golden.manifest, {name: golden.decimals(name)[-1] for name in ("t", *STATE)}
+    units = {name: "m/s" if name.startswith("v") else "m" for name in STATE}
+    rows = [
+        TableRow((name, Html(f'<span class="digits">{last[name]}</span>'), units[name], manifest.bounds.grid[name]))
+        for name in STATE
+    ]
+    columns = [Column(""), Column(f"state at t = {last['t']} s", "value"), Column("in"), Column("within", "number")]
+    return table(columns, rows)
+
+
+def trust(golden: Golden) -> Mapping[str, str]:
+    """Return bound, level, what stands behind it, and the transits, by name."""
+    manifest, bounds = golden.manifest, golden.manifest.bounds
+    behind = [MEANING[manifest.level]]
+    if manifest.enclosure is not None:
+        proof = manifest.enclosure
+        behind.append(
+            f"Before rounding every position is known to {proof.position_radius_m} m ({THEOREMS[proof.method]}); "
+            f"the run agrees with it to {proof.agreement_bits} bits."
+        )
+    behind += [
+        f"A run in {check.number}, formulation {check.formulation}, differs by {check.position_m} m at most."
+        for check in manifest.cross_checks
+    ]
+    count = manifest.counts.transits
+    within = f", each within {bounds.transit_s} s" if bounds.transit_s else ""
+    return {
+        "inputs": f"read as {manifest.inputs}",
+        "level": f"{manifest.level}, {manifest.digits} digits",
+        "behind it": " ".join(behind),
+        "bounds": f"positions {bounds.position_m} m, velocities {bounds.velocity_m_s} m/s",
+        "rows": f"{manifest.counts.grid} golden times",
+        "transits": f"{count} ({manifest.transits}){within}" if count else _none(manifest.transits),
+        "made by": manifest.command,
+        "seal": manifest.seal,
+    }
+
+
+def _none(reason: str) -> str:
+    return "none" if reason == "complete" else f"none: {reason}"
+
+
+def dataset(golden: Golden, base: str) -> Html:
+    """Return all that is to be said of a dataset: trust, and its files with sizes and hashes."""
+    columns = [Column("file"), Column("bytes", "number"), Column("sha256", "digest")]
+    rows = [
+        TableRow((linked(golden, name, base), f"{record.bytes:,}", record.sha256))
+        for name, record in golden.manifest.files.items()
+    ]
+    return Html(f"{facts(trust(golden))}\n{table(columns, rows)}")
+
+
+def linked(golden: Golden, name: str, base: str) -> Html:
+    """Return the name of a file, linked to where the files stand, if that is known."""
+    target = f"{base.rstrip('/')}/{golden.manifest.id}/{name}"
+    return Html(f'<a href="{text(target)}">{text(name)}</a>') if base else text(name)
+
+
+def inputs(golden: Golden) -> Html:
+    """Return the scene's inputs as they stand in the manifest."""
+    fields = {
+        f"{section}.{key}": value
+        for section, of in golden.manifest.scene.items()
+        if section != "run"
+        for key, value in of.items()
+    }
+    return facts(fields)
+
+
+def methods(kept: Kept) -> list[Html]:
+    """Return tables of how methods fared, as far as studies are kept: none, one or two."""
+    parts = []
+    if kept.asked:
+        columns = [Column("method"), Column("outcome"), Column("asked for", "number"), Column("digits kept", "number")]
+        rows = [
+            TableRow((one.method, one.status.words, _one(one.asked), _one(one.digits), _cpu(one)), _kind(one))
+            for one in sorted(kept.asked, key=lambda one: -(one.digits if one.digits is not None else -1.0))
+        ]
+        caption = "Runs that were asked for the same digits (docs/studies.md)"
+        parts.append(table([*columns, Column("CPU s", "number")], rows, caption))
+    if kept.least:
+        columns = [Column("method"), Column("least error", "number"), Column("its CPU s", "number")]
+        rows = [TableRow((one.method, f"{one.error_m:.2g} m", _cpu(one))) for one in kept.least]
+        parts.append(table(columns, rows, f"The most accurate run of each method over {kept.span_s:g} s"))
+    return parts
+
+
+def _kind(one: Fared) -> str:
+    return "" if one.status is Status.OK else "failed"
+
+
+def _one(digits: float | None) -> str:
+    return "" if digits is None else f"{max(digits, 0.0):.1f}"
+
+
+def _cpu(one: Fared) -> str:
+    return "" if one.cpu_s is None else f"{one.cpu_s:.2g}"

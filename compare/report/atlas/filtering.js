@@ -1,0 +1,20 @@
+"use strict";
+// Show the scenes that have the chosen flag and level.
+
+const form = document.querySelector(".filters");
+const cards = [...document.querySelectorAll(".card")];
+const chosen = (name) => document.getElementById(name).value;
+
+function filter() {
+  for (const card of cards) {
+    const fits = (name, words) => !chosen(name) || words.split(" ").includes(chosen(name));
+    card.hidden = !(fits("flag", card.dataset.flags) && fits("level", card.dataset.levels));
+    document.querySelector(`.jumps a[href="#${card.id}"]`).hidden = card.hidden;
+  }
+  const shown = cards.filter((card) => !card.hidden).length;
+  document.getElementById("count").textContent = `${shown} of ${cards.length} scenes`;
+}
+
+form.hidden = false;
+form.addEventListener("input", filter);
+filter();

@@ -1,0 +1,198 @@
+"""Pictures of a motion: its path from above or on the sphere, the swing plane, the transits; as files or for a page."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference.precision import Array
+from reference.shortened import shortened
+
+from ..motion import POINTS, Motion
+from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text
+
+DOTS = 360  # of one kind in a panel at most
+LINE = 1200  # points of a path at most
+DOT = 3.0  # diameter of a dot in points
+PANEL = (3.5, 3.0)  # in
+SEEN_FROM, ABOVE = np.radians(-60.0), np.radians(20.0)  # azimuth and height of the eye that sees the sphere
+_SMALL = 0.01  # degrees: a swing plane that turns less is drawn on a scale of this
+_ROUNDED = re.compile(r"(\d+\.\d\d)\d+")
+_ELEMENT = re.compile(r"<[^>]*>")  # the coordinates in it, not the text after it
+_FONTS = re.compile(r"font-family: [^;\"]+")
+_MARKERS = re.compile(r"(?:<use [^>]*style=\"fill: ([^;\"]*)[^>]*/>\s*){2,}")
+_PLACE = re.compile(r'x="(\S+)" y="(\S+)"')
+LONGEST_NAME = 40  # characters of a file's name above its picture
+
+
+def path(axes: Any, motion: Motion) -> None:
+    """Draw the path from above: the whole of it, or some swings spread over the span, or the rows alone."""
+    size = float(np.abs(motion.rows[:, :2]).max()) or 1.0
+    if len(motion.line):
+        size = max(size, float(np.nanmax(np.abs(motion.line[:, :2]))))
+    scale, unit = length_unit(size)
+    line, rows = _line(motion) * scale, _few(motion.rows, LINE) * scale
+    first = POINTS + 1 if motion.swings else len(line)
+    axes.plot(line[first:, 0], line[first:, 1], color=COLOURS[1], linewidth=0.7)
+    axes.plot(line[:first, 0], line[:first, 1], color=BLUE, linewidth=1.1 if motion.swings else 0.8)
+    if not len(line):
+        _dots(axes, rows[:, 0], rows[:, 1], BLUE)
+    _begin(axes, *rows[0, :2])
+    edge = 1.08 * size * scale
+    axes.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal")
+    axes.set(xlabel=f"x in {unit}, east", ylabel=f"y in {unit}, north")
+    axes.grid(True)
+    axes.set_title(f"Path from above: {_shown(motion)}")
+
+
+def sphere(axes: Any, motion: Motion) -> None:
+    """Draw the path on its sphere, seen from the south-east and from above; what lies behind is faint."""
+    right, up, depth = _seen((_line(motion) if len(motion.line) else motion.rows) / motion.length)
+    turn = np.linspace(0, 2 * np.pi, 73)
+    axes.plot(np.cos(turn), np.sin(turn), color=FAINT, linewidth=0.8)
+    around = _seen(np.column_stack([np.cos(turn), np.sin(turn), 0 * turn]))
+    for front, style in ((False, (0, (1, 3))), (True, "-")):
+        ring = np.where((around[2] > 0) == front, 1.0, np.nan)
+        axes.plot(around[0] * ring, around[1] * ring, color=FAINT, linewidth=0.6, linestyle=style)
+        near = np.where((depth > 0) == front, 1.0, np.nan)
+        axes.plot(right * near, up * near, color=BLUE, linewidth=0.9 if front else 0.5, alpha=1.0 if front else 0.5)
+    _begin(axes, right[0], up[0])
+    axes.plot([0], [0], marker="+", color=INK, markersize=6)
+    axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), aspect="equal")
+    axes.set_axis_off()
+    axes.set_title(f"On the sphere: {_shown(motion)}")
+
+
+def plane(axes: Any, motion: Motion) -> None:
+    """Draw the azimuth of the swing plane against time."""
+    t, angle = _few(motion.plane_t, DOTS), motion.plane
+    steps = (np.diff(angle) + 90) % 180 - 90
+    smooth = len(steps) == 0 or np.abs(steps).max() < 60
+    if smooth:  # without the leaps of 180 degrees
+        angle = angle[0] + np.concatenate([[0.0], np.cumsum(steps)]) if len(angle) else angle
+    angle = _few(angle, DOTS)
+    seconds, word = time_unit(float(motion.t[-1]))
+    _dots(axes, t * seconds, angle, BLUE)
+    if len(angle) and np.ptp(angle) < _SMALL:
+        axes.set_ylim(float(np.mean(angle)) - _SMALL, float(np.mean(angle)) + _SMALL)
+    if not smooth:
+        axes.set(ylim=(-90, 90), yticks=(-90, -45, 0, 45, 90))
+    axes.ticklabel_format(axis="y", useOffset=False)
+    axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel="degrees, from east to north")
+    axes.grid(True)
+    axes.set_title("Azimuth of the swing plane")
+
+
+def transits(axes: Any, motion: Motion) -> None:
+    """Draw x at each transit against its time: the turning points in the east, and those in the west."""
+    scale, unit = length_unit(float(np.abs(motion.transit_x).max(initial=0.0)) or 1.0)
+    seconds, word = time_unit(float(motion.t[-1]))
+    for direction, colour in ((1, COLOURS[1]), (-1, BLUE)):
+        mine = motion.directions == direction
+        t, x = _few(motion.transit_t[mine], DOTS // 2), _few(motion.transit_x[mine], DOTS // 2)
+        _dots(axes, t * seconds, x * scale, colour)
+    axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
+    axes.grid(True)
+    count = len(motion.transit_t)
+    axes.set_title(f"Where the bob turns in x: {count} transit{'' if count == 1 else 's'}")
+
+
+def panels(motion: Motion) -> dict[str, Callable[[Any, Motion], None]]:
+    """Return the pictures that there are of a motion, by name."""
+    found: dict[str, Callable[[Any, Motion], None]] = {"path": path}
+    if motion.wide:
+        found["sphere"] = sphere
+    if len(motion.plane_t) > 1:
+        found["plane"] = plane
+    if len(motion.transit_t):
+        found["transits"] = transits
+    return found
+
+
+def motion_picture(motion: Motion, names: Sequence[str], target: Path) -> bytes:
+    """Return the content of a picture file with panels side by side; the file's name says which form."""
+    drawn = panels(motion)
+    with sheet((PANEL[0] * len(names), PANEL[1] + 0.3)) as figure:
+        for axes, name in zip(np.atleast_1d(figure.subplots(1, len(names))), names, strict=True):
+            drawn[name](axes, motion)
+        figure.suptitle(shortened(motion.name, LONGEST_NAME), x=0.01, ha="left", fontsize=10)
+        return picture(figure, target.suffix[1:].lower())
+
+
+def motion_svgs(motion: Motion) -> list[str]:
+    """Return each picture as an SVG element of its own, small and for a page."""
+    elements = []
+    for name, draw in panels(motion).items():
+        with sheet(PANEL) as figure:
+            axes = figure.subplots()
+            draw(axes, motion)
+            text = svg_text(figure, f"{motion.name}-{name}", f"{motion.name}: {axes.get_title('left')}", "lines panel")
+        text = _ELEMENT.sub(
+            lambda element: _ROUNDED.sub(r"\1", element[0]), _FONTS.sub("font-family: sans-serif", text)
+        )
+        elements.append(_MARKERS.sub(_strokes, text))
+    return elements
+
+
+def _strokes(markers: re.Match[str]) -> str:
+    """Return dots, which are an element each, as one path of strokes without length."""
+    places = "".join(f"M{x} {y}h0" for x, y in _PLACE.findall(markers[0]))
+    style = f"fill: none; stroke: {markers[1]}; stroke-width: {DOT}; stroke-linecap: round"
+    return f'<path d="{places}" style="{style}"/>\n'
+
+
+def length_unit(size: float) -> tuple[float, str]:
+    """Return the factor and the word of a unit in which a length in m is a number from 1 to 1000."""
+    for factor, unit in ((1e-3, "km"), (1.0, "m"), (1e3, "mm"), (1e6, "µm"), (1e9, "nm"), (1e12, "pm")):
+        if size * factor >= (0.1 if unit == "m" else 1.0):
+            return factor, unit
+    return 1.0, "m"
+
+
+def time_unit(span: float) -> tuple[float, str]:
+    """Return the factor and the word of a unit in which a span in s is a handy number."""
+    for seconds, word, least in ((86_400.0, "d", 3.0), (3600.0, "h", 2.0), (60.0, "min", 10.0), (1.0, "s", 1.0)):
+        if span >= least * seconds:
+            return 1 / seconds, word
+    return (1e3, "ms") if span < 1 else (1.0, "s")
+
+
+def _shown(motion: Motion) -> str:
+    seconds, word = time_unit(float(motion.t[-1]))
+    whole = f"{motion.t[-1] * seconds:.3g} {word}"
+    if not len(motion.line):
+        return f"rows in {whole}"
+    return f"{motion.swings} of the swings in {whole}" if motion.swings else whole
+
+
+def _line(motion: Motion) -> Array:
+    """Return the points of the line; single swings are short enough."""
+    return motion.line if motion.swings else _few(motion.line, LINE)
+
+
+def _few(values: Array, most: int) -> Array:
+    """Return at most `most` rows, evenly spread, the first and the last among them."""
+    if len(values) <= most:
+        return values
+    return np.asarray(values[np.linspace(0, len(values) - 1, most).round().astype(int)])
+
+
+def _seen(points: Array) -> tuple[Array, Array, Array]:
+    """Return how far right, up and near points of a sphere of radius 1 are for the eye."""
+    x, y, z = points.T
+    to_eye = x * np.cos(SEEN_FROM) + y * np.sin(SEEN_FROM)
+    right = y * np.cos(SEEN_FROM) - x * np.sin(SEEN_FROM)
+    return right, z * np.cos(ABOVE) - to_eye * np.sin(ABOVE), z * np.sin(ABOVE) + to_eye * np.cos(ABOVE)
+
+
+def _dots(axes: Any, x: Array, y: Array, colour: str) -> None:
+    axes.plot(x, y, linestyle="none", marker="o", markersize=DOT, markeredgewidth=0, color=colour)
+
+
+def _begin(axes: Any, x: float, y: float) -> None:
+    """Mark the release."""
+    axes.plot([x], [y], marker="o", markersize=4.5, color=INK, linestyle="none", zorder=4)

@@ -1,0 +1,56 @@
+"""Sphinx: the site of all pages of the checkout and of the public docstrings; `make docs` builds it."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from sphinx.application import Sphinx
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+project = "Reference solver for the Foucault pendulum"
+author = "The Foucault reference authors"
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+
+# The source is the checkout: pages stay where a forge shows them, and their links lead to the same places.
+root_doc = "docs/index"
+include_patterns = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/**.md", "reference/enclosure/THEOREM.md"]
+exclude_patterns = [".*", "build", "compare", "data", "dist", "golden", "atlas", "tests"]
+myst_heading_anchors = 4
+highlight_language = "text"
+smartquotes = False  # r' is a derivative
+
+nitpicky = True  # what a docstring refers to has to exist
+default_role = "code"
+autodoc_class_signature = "separated"  # and api.md leaves it out: nobody makes these by hand
+autodoc_member_order = "groupwise"
+autodoc_typehints = "none"  # the docstrings say it with shapes and units
+napoleon_attr_annotations = False
+napoleon_use_ivar = True
+
+html_theme = "furo"
+html_title = "Foucault reference"
+html_copy_source = False
+html_show_copyright = False
+html_static_path, html_css_files = ["site/style.css"], ["style.css"]
+html_extra_path = ["site/index.html"]  # leads to the start page
+
+
+def with_commands(_: Sphinx, page: str, source: list[str]) -> None:
+    """Append to the page of commands what each of them prints as its help."""
+    if page == "docs/commands":
+        import typer
+        from typer.cli import get_docs_for_click
+
+        from foucault import commands
+
+        command = typer.main.get_command(commands())
+        text = get_docs_for_click(obj=command, ctx=typer.Context(command), name="foucault")
+        source[0] += text.partition("\n")[2]  # without the heading: the page has its own
+
+
+def setup(app: Sphinx) -> None:
+    """Have Sphinx call what stands above."""
+    app.connect("source-read", with_commands)

@@ -1,0 +1,130 @@
+"""Checks of a proof against runs: the states of its approximant, and the transits that event detection finds.
+
+Nothing that is proved rests on them. A run that contradicts the proof refuses it; one that cannot be made is recorded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+
+from ..engines.plan import Plan, Run
+from ..engines.registry import run
+from ..errors import IntegrationError, UnreachableError
+from ..precision import cheapest_type
+from ..scene import Scene
+from ..table import Table, bits_in
+from .pilot import Pilot
+from .solution import CrossCheck, Solution
+
+USUAL_DIGITS, FINER_DIGITS = 9, 27  # of the run with event detection, at first and on a second try
+EVALUATION_BITS = 12  # bits that a run may lose when its polynomial is evaluated, so that it misses its ball
+MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
+SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
+
+
+def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
+    """Return how far the run's states are from the middles of the balls.
+
+    Raises:
+        IntegrationError: one lies outside its ball by more than the rounding of its evaluation.
+    """
+    rounding = max(grid.largest().values()) / 2 ** (approximant.plan.number.prec - EVALUATION_BITS)
+    gaps = grid.distance(approximant.grid)
+    for name in grid.columns:
+        for t, gap, radius in zip(times, gaps.exact(name), grid.bound(name), strict=True):
+            if gap > radius + rounding:
+                raise IntegrationError(f"the run is outside the enclosure at t = {float(t)} s in {name}.")
+    return gaps
+
+
+def cross_checked(solution: Solution, pilot: Pilot) -> Solution:
+    """Return a solution with the check of its transits, or with the reason why that could not be made.
+
+    Raises:
+        IntegrationError: the run finds other transits; names the first that differs.
+    """
+    if solution.transits is None:
+        return solution
+    check = _transit_check(
+        solution.scene,
+        solution.times,
+        solution.grid,
+        solution.transits,
+        solution.directions,
+        pilot,
+        bool(solution.possible),
+    )
+    if isinstance(check, CrossCheck):
+        return replace(solution, checks=(*solution.checks, check))
+    return replace(solution, not_checked=check)
+
+
+def _transit_check(
+    scene: Scene,
+    times: tuple[Fraction, ...],
+    grid: Table,
+    transits: Table,
+    directions: list[int],
+    pilot: Pilot,
+    any_undecided: bool,
+) -> CrossCheck | str:
+    """Check that heyoka's event detection finds the enclosed transits, and no others unless some are undecided.
+
+    Returns:
+        The check, or why it could not be made: the proof does not rest on it.
+
+    Raises:
+        IntegrationError: the run finds other transits; names the first that differs.
+    """
+    usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
+    least = _bits_to_see(transits, times[-1], pilot)
+    contradiction: IntegrationError | None = None
+    for prec in (max(usual, least), max(finer, least + finer - usual)):
+        if prec > MOST_CHECK_PREC:
+            reason: Exception = UnreachableError(f"A run would take {prec} bits to see transits so flat.")
+            break
+        try:
+            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, transits=True))
+        except (UnreachableError, OverflowError) as error:
+            reason = error
+            break
+        try:
+            gap = _transit_gap(event_run, transits, directions, pilot, any_undecided)
+        except IntegrationError as error:  # the motion may amplify errors too much for so few digits
+            contradiction = reason = error
+        else:
+            return CrossCheck.of(event_run, grid.distance(event_run.grid).largest(), gap)
+    if contradiction is not None:
+        raise contradiction
+    return str(reason)
+
+
+def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
+    """Return the bits at which xdot between any two transits is far above a run's rounding errors."""
+    if not len(transits):
+        return 0
+    times = [Fraction(0), *transits.exact("t"), end]
+    apart = min((b - a for a, b in pairwise(times) if b > a), default=end)
+    least = min(map(abs, transits.exact("ax"))) * apart
+    return pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS if least else MOST_CHECK_PREC + 1
+
+
+def _transit_gap(event_run: Run, transits: Table, directions: list[int], pilot: Pilot, any_undecided: bool) -> Fraction:
+    """Return how far the transits that a run found are from the enclosed ones, at most, in s."""
+    found = [] if event_run.transits is None else event_run.transits.exact("t")
+    if len(found) != len(directions) and not any_undecided:
+        raise IntegrationError(f"heyoka finds {len(found)} transits, the enclosure {len(directions)}.")
+    prec = event_run.plan.number.prec
+    xdot_error, rounding = pilot.estimates(prec)["vx"], event_run.plan.times[-1] / 2 ** (prec - EVALUATION_BITS)
+    remaining = iter(zip(found, event_run.directions, strict=True))
+    largest = Fraction(0)
+    rows = zip(*(transits.exact(name) for name in ("t", "ax")), transits.bound("t"), directions, strict=True)
+    for k, (t, ax, bound, direction) in enumerate(rows, 1):
+        allowed = bound + xdot_error / abs(ax) + rounding
+        gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= allowed), None)
+        if gap is None:
+            raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {float(t)} s.")
+        largest = max(largest, gap)
+    return largest

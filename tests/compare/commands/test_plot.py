@@ -1,0 +1,97 @@
+"""`foucault plot`: pictures of scenes, datasets and files; what cannot be drawn is refused, and nothing is written."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import reference
+from compare.candidates.candidate import candidate_of
+from compare.observed.swing_plane import Gauge
+from compare.report.charts.motion import length_unit, time_unit
+from compare.report.motion import Motion
+
+pytest.importorskip("matplotlib")
+
+
+@pytest.fixture(scope="module")
+def paris():
+    return Motion.of_golden(reference.load("paris"))
+
+
+def test_rows_far_apart_are_filled_in_by_single_swings(paris):
+    swings = np.split(paris.line, np.flatnonzero(np.isnan(paris.line[:, 0])))
+    assert len(swings) == paris.swings + 1 == 10
+    first = paris.line[: np.flatnonzero(np.isnan(paris.line[:, 0]))[0]]
+    assert np.abs(first[0] - paris.rows[0]).max() < 1e-12
+    # one swing later the bob is back, but for the turn of the plane: 0.05 degrees
+    assert 1e-5 < np.hypot(*(first[-1] - first[0])[:2]) < 1e-3
+
+
+def test_the_swing_plane_of_paris_turns_as_it_should_and_of_a_file_too(paris):
+    hours = paris.plane_t / 3600
+    steps = (np.diff(paris.plane) + 90) % 180 - 90
+    turned = steps.sum() / (hours[-1] - hours[0])
+    about_the_plumb_line = Gauge.of(reference.load_scene("paris")).turn  # not about the ellipsoid's normal: 1.5e-3 less
+    assert turned == pytest.approx(-np.degrees(about_the_plumb_line) * 3600, rel=1e-4)
+    x, y, _ = paris.rows.T
+    alone = Motion.of_candidate(candidate_of("mine.csv", {"t": paris.t, "x": x, "y": y}))
+    steps = (np.diff(alone.plane) + 90) % 180 - 90
+    assert steps.sum() / np.ptp(alone.plane_t) * 3600 == pytest.approx(turned, rel=0.01)
+    assert len(alone.line) == 0 and alone.swings == 0  # a line through its rows would follow nothing
+
+
+def test_a_dense_file_is_a_line_and_a_wide_one_is_on_its_sphere():
+    t = np.linspace(0, 6, 200)
+    far = candidate_of("mine.csv", {"t": t, "x": np.cos(t), "y": 0 * t, "z": np.sin(t)})
+    motion = Motion.of_candidate(far)
+    assert len(motion.line) == 200 and motion.wide
+    assert not Motion.of_candidate(candidate_of("mine.csv", {"t": t, "x": np.cos(t), "y": 0 * t})).wide
+
+
+@pytest.mark.parametrize(
+    ("size", "unit"), [(1200.0, "km"), (67.0, "m"), (0.3, "m"), (0.03, "mm"), (3e-4, "µm"), (1e-9, "nm"), (0.0, "m")]
+)
+def test_lengths_are_told_in_units_of_their_size(size, unit):
+    factor, word = length_unit(size)
+    assert word == unit and (not size or 0.1 <= size * factor <= 1000)
+
+
+@pytest.mark.parametrize(("span", "unit"), [(5e5, "d"), (86_400, "h"), (3600, "min"), (60, "s"), (0.2, "ms")])
+def test_spans_are_told_in_units_of_their_size(span, unit):
+    factor, word = time_unit(span)
+    assert word == unit and 1 <= span * factor <= 1000
+
+
+def test_a_dataset_and_a_file_are_drawn(foucault, tmp_path):
+    out = tmp_path / "paris.svg"
+    assert foucault("plot", "paris", "--out", out) == (0, f"{out}: the picture\n", "")
+    text = out.read_text()
+    assert all(word in text for word in ("Path from above", "Azimuth of the swing plane", "10514 transits"))
+    again = tmp_path / "again.svg"
+    foucault("plot", "paris", "--out", again)
+    assert again.read_bytes() == out.read_bytes()
+    mine, png = tmp_path / "mine.csv", tmp_path / "mine.png"
+    mine.write_text("t,x,y\n" + "".join(f"{t},{t * t},{t}\n" for t in range(9)))
+    assert foucault("plot", mine, "--out", png, "--what", "path")[0] == 0
+    assert png.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("pariss",), "Did you mean paris?"),
+        (("paris", "--what", "spere"), "Did you mean sphere?"),
+        (("paris", "--what", "sphere"), "what there is of paris: path, plane or transits"),
+        (("paris", "--out", "nowhere/x.svg"), "a file in a folder that exists"),
+        (("paris", "--out", "x.gif"), "a path that ends in .svg, .png, .pdf"),
+        (("mine.csv", "--t-end", "3"), "no such option for a file"),
+        (("mine.csv",), "mine.csv: line 2"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_and_nothing_is_written(foucault, tmp_path, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.csv").write_text("t,x,y\n0,1,two\n")
+    status, out, err = foucault("plot", *words)
+    assert (status, out) == (2, "") and said in err
+    assert [path.name for path in tmp_path.iterdir()] == ["mine.csv"]

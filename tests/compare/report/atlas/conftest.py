@@ -1,0 +1,30 @@
+"""An atlas of the shipped datasets of Paris and of one short scene, made once."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+import reference
+from foucault import commands
+from reference.shipped import golden_root
+
+
+@pytest.fixture(scope="session")
+def atlas(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    pytest.importorskip("matplotlib")
+    folder = tmp_path_factory.mktemp("atlas")
+    data, out = folder / "data", folder / "pages"
+    data.mkdir()
+    for name in ("paris", "paris.binary64"):
+        (data / name).symlink_to(golden_root() / name)
+    short = reference.load_scene("hard", ["run.t_end=5", "run.digits=10", "run.level=computed"])
+    reference.write(reference.solve(short), data / "hard")
+    words = ["atlas", "--data", data, "--out", out, "--files", "https://example.org/golden/", "--json"]
+    done = CliRunner().invoke(commands(), list(map(str, words)), catch_exceptions=False)
+    told = {page["page"]: page["bytes"] for page in json.loads(done.stdout)["pages"]}
+    assert told == {path.name: path.stat().st_size for path in out.iterdir()}
+    return out

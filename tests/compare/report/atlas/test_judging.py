@@ -1,0 +1,195 @@
+"""The page's script judges as `foucault score` does: the same file, the same numbers, the same refusals (Node.js)."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+import reference
+from compare import judge
+from compare.candidates.names import meaning
+from compare.candidates.read import read, read_transits
+from compare.report.atlas.embedded import embedded, vocabulary
+from reference import InputError
+
+pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
+
+RUN = """
+const { truth, words, cases, headers } = JSON.parse(require("fs").readFileSync(0, "utf8"));
+const known = unpacked(truth);
+const told = cases.map(({ text, times, tolerance }) => {
+  try {
+    const candidate = text === null ? { columns: null, notes: [] } : readTrajectory(text, words);
+    candidate.transits = times === null ? candidate.transits ?? null : readTransits(times, words).transits;
+    const result = judge(candidate, known, tolerance);
+    if (result.path) delete result.path.errors;
+    return result;
+  } catch (error) {
+    if (!(error instanceof Unreadable)) throw error;
+    return { refused: error.message };
+  }
+});
+console.log(JSON.stringify({ told, meanings: headers.map((word) => meaning(word, words) ?? null) }));
+"""
+
+
+def run(golden, cases=(), headers=()):
+    """Run the script on cases of (trajectory or None, transits or None, tolerance or None)."""
+    folder = files("compare.report.atlas")
+    script = "".join(folder.joinpath(name).read_text("utf-8") for name in ("reading.js", "judging.js")) + RUN
+    asked = [{"text": text, "times": times, "tolerance": tolerance} for text, times, tolerance in cases]
+    document = {"truth": embedded(golden), "words": vocabulary(), "cases": asked, "headers": list(headers)}
+    done = subprocess.run(
+        ["node", "-e", script], input=json.dumps(document), capture_output=True, text=True, check=True
+    )
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def golden():
+    return reference.load("paris.binary64")
+
+
+def csv(header, *columns, separator=","):
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return header + "\n" + "".join(separator.join(map(repr, row)) + "\n" for row in rows)
+
+
+def trajectories(golden):
+    """Files at every 48th golden time: right and wrong ones, in several spellings."""
+    some = slice(None, None, 48)
+    t, x, y, z, vx, vy = (golden.grid[name][some] for name in ("t", "x", "y", "z", "vx", "vy"))
+    wave = np.cos(t)
+    late = csv("t,x,y", t, x - 0.01 * vx, y - 0.01 * vy)
+    return {
+        "right": csv("t,x,y,z", t, x + 1e-9 * wave, y, z),
+        "wrong": csv("t,x,y,z", t, x, y + 1e-5 * wave * t / t[-1], z),
+        "without_z": csv("t,x,y", t, x + 1e-8 * wave, y),
+        "exchanged": csv("t,x,y", t, y, x),
+        "late": late,
+        "units": csv("time (ms),pos_x [cm],north/mm", 1000 * t, 100 * (x + 1e-8), 1000 * y),
+        "decimal_comma": csv("t;x;y", t, x + 1e-8, y, separator=";").replace(".", ","),
+        "fortran": csv("# t x y", t, x + 1e-8, y, separator="  ").replace("e-", "D-"),
+        "west": csv("west,t,south", -x + 1e-8, t, -y),
+        "no_header": csv("# made by foucPend", t, x + 1e-8, y, z, x, y, z, x, y, z, separator=" "),
+        "clock_of_steps": csv("t,x,y", t * (1 + 1e-14), x + 1e-8, y),
+        "golden_itself": (golden.path / "grid.binary64.csv").read_text(),
+        "first_hour": csv("t,x,y", t[:2], x[:2] + 1e-8, y[:2]),
+    }
+
+
+SAME = ("max_error_m", "rms_error_m", "end_error_m", "covered")
+
+
+def test_trajectories_are_judged_as_score_does(golden, tmp_path):
+    texts = trajectories(golden)
+    told = run(golden, [(text, None, None) for text in texts.values()])["told"]
+    for (name, text), mine in zip(texts.items(), told, strict=True):
+        path = tmp_path / f"{name}.csv"
+        path.write_text(text)
+        score = judge(path, "paris", explain=False)
+        assert mine["verdict"] == score.verdict, name
+        expected = (score.errors.max_m, score.errors.rms_m, score.errors.end_m, score.covered)
+        assert [mine["path"][key] for key in SAME] == pytest.approx(expected, rel=1e-5, abs=3e-14), name
+        if score.errors.max_m > 2e-14:  # at the rounding of doubles the bounds differ: score knows the truth to more
+            assert mine["path"]["digits"] == pytest.approx(score.errors.digits, rel=1e-5), name
+        assert mine["tolerance_m"] == pytest.approx(score.tolerance_m, rel=1e-12)
+        if score.verdict == "disagrees":
+            assert (mine["path"]["worst"]["t"], mine["path"]["worst"]["component"]) == score.worst[:2], name
+    verdicts = {name: mine["verdict"] for name, mine in zip(texts, told, strict=True)}
+    assert {name for name, word in verdicts.items() if word == "disagrees"} == {"wrong", "exchanged", "late"}
+    notes = {name: " ".join(mine["notes"]) for name, mine in zip(texts, told, strict=True)}
+    assert "With x and y exchanged" in notes["exchanged"] and "0.01000 s slow" in notes["late"]
+    assert notes["wrong"] == "" == notes["right"]
+
+
+def test_transits_are_matched_as_score_does(golden, tmp_path):
+    t = golden.transits["t"]
+    near = t + 1e-9 * np.sin(t)
+    cases = {
+        "right": near,
+        "missing": np.delete(near, 4711),
+        "added": np.sort(np.append(near, [t[77] + 1.0, 3600.5])),
+        "doubled": np.sort(np.append(near, near[9])),
+        "shifted": near + 0.01,
+        "one_late": np.sort(np.where(np.arange(len(t)) == 500, near + 1e-3, near)),
+        "nearly_all_early": near[:-3],
+    }
+    wanted, questions = [], []
+    for name, times in cases.items():
+        path = tmp_path / f"{name}.csv"
+        path.write_text(csv("t", times))
+        wanted.append(judge(None, "paris", transits=read_transits(path), explain=False))
+        questions.append((None, path.read_text(), None))
+    for name, score, mine in zip(cases, wanted, run(golden, questions)["told"], strict=True):
+        assert mine["verdict"] == score.verdict, name
+        found, expected = mine["transits"], score.transits
+        assert found["matched"] == expected.matched, name
+        assert found["missed"] == expected.missed and found["extra"] == expected.extra, name
+        sizes = expected.max_error_s, expected.max_conditioned_m
+        assert [found["max_error_s"], found["max_conditioned_error_m"]] == pytest.approx(sizes, rel=1e-9), name
+
+
+ROW = "0,0.3,0.4\n"
+REFUSED = {  # and what the page says
+    "t,x,y\n0,0.3,0.4\n60,0.1\n": "Line 3 has 2 fields, and the first row has 3",
+    "t,x,y\n0,0.3,0.4\n60,0.1,o.2\n": "Line 3: o.2 is no number (y)",
+    "t,x,y\n0,0.3,0.4\n60,nan,0.1\n": "Line 3: x is nan",
+    "t,x,y\n60,0.3,0.4\n0,0.1,0.1\n": "Times have to increase",
+    "t,x,y\n-1,0.3,0.4\n": "times begin at 0",
+    "t,x\n0,0.3\n": "There is no column y in t, x",
+    "t,x,y,x\n0,0.3,0.4,1\n": "Two columns are x",
+    "t (lightyears),x,y\n" + ROW: "The unit lightyears of t is not known",
+    "t,x,y,z\n" + ROW: "The first row has 3 fields, and the header in line 1 has 4",
+    "0,1,2,3,4\n": "No line names the columns",
+    "t,x,y\n": "There are no rows",
+    "": "There are no rows",
+    "\0\1": "This is no text",
+    "t,x,y\n0,0.3,0.4\n60000000,0.1,0.1\n": "They look like milliseconds",
+}
+
+
+def test_what_score_refuses_the_page_refuses(golden, tmp_path):
+    told = run(golden, [(text, None, None) for text in REFUSED])["told"]
+    for (text, said), mine in zip(REFUSED.items(), told, strict=True):
+        assert said in mine.get("refused", ""), (text, mine)
+        path = tmp_path / "mine.csv"
+        path.write_text(text)
+        with pytest.raises(InputError):
+            judge(read(path), "paris", explain=False)
+
+
+def test_rows_between_the_golden_times_are_no_verdict_but_a_message(golden):
+    t, x, y = (golden.grid[name][:50] for name in ("t", "x", "y"))
+    shifted, between, some = csv("t,x,y", t + 0.5, x, y), csv("t,x,y", t**1.01, x, y), csv("t,x,y", t / 2, x, y)
+    told = run(golden, [(shifted, None, None), (between, None, None), (some, None, 10.0)])["told"]
+    assert "All are 0.500 s after one: is the clock shifted?" in told[0]["refused"]
+    assert "No row after t = 0 is at a golden time" in told[1]["refused"] and "clock" not in told[1]["refused"]
+    assert told[2]["path"]["rows"] == 25 and told[2]["notes"] == [
+        "25 of 50 rows are not at golden times and were not judged."
+    ]
+
+
+HEADERS = """
+t T time Time zeit t_s t[ms] time(ms) seconds ms time/h t_min elapsed_time x X x_m x/m "x" 'pos_x' x(t) X(cm) east west
+north SOUTH up down nord_m vx v_x vX xdot x_dot dx/dt ẋ x' vx[cm/s] vx_mm_per_s speed_x v_east north_velocity mps
+vx_kmh vx(m/s) vx[m*s^-1] x[furlong] phi lambda step e x_in y_ft z_um xx xy t_x x_t displacement_north r_x bob_y -
+vz_ms x(µm) vy[µm/s] x..m x__cm (x) []
+"""
+
+
+def test_headers_mean_what_they_mean_to_score(golden):
+    headers = [*HEADERS.split(), "position x", "time in ms", " x / cm ", ""]
+    found = run(golden, headers=headers)["meanings"]
+    for word, mine in zip(headers, found, strict=True):
+        one = meaning(word, {})
+        assert (mine is None) == (one is None), word
+        if one is not None:
+            factor = mine.get("factor") and mine["factor"][0] / mine["factor"][1]
+            assert (mine["column"], mine["rank"]) == (one.column, one.rank), word
+            assert factor == (None if one.factor is None else float(one.factor)), word

@@ -1,0 +1,192 @@
+"""The pages of the atlas: what they say, what a browser makes of them, and files that are dropped on them."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import shutil
+import subprocess
+
+import pytest
+
+import reference
+from compare import judge
+from compare.report.atlas.entry import Entry, entries
+from compare.report.atlas.pages import scene_page
+from compare.report.atlas.studied import Kept, kept_studies, studies_folder
+from reference.shipped import golden_root
+
+CHROMIUM = next(
+    (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None
+)
+browser = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
+
+
+@pytest.fixture
+def readings(tmp_path):
+    """A folder of the two datasets of Paris."""
+    for name in ("paris", "paris.binary64"):
+        (tmp_path / name).symlink_to(golden_root() / name)
+    return tmp_path
+
+
+def test_a_page_for_each_scene_and_one_over_all(atlas):
+    assert sorted(path.name for path in atlas.iterdir()) == ["hard.html", "index.html", "paris.html"]
+    text = (atlas / "index.html").read_text()
+    golden = reference.load("paris")
+    assert golden.decimals("x")[-1] in text and golden.manifest.bounds.grid["x"] in text
+    assert golden.manifest.title in text and "Path from above" in text and "On the sphere" in text
+    assert "foucault score hard mine.csv --t-end 5 --inputs decimal" in text
+    assert "https://example.org/golden/paris.binary64/grid.csv" in text
+    page = (atlas / "paris.html").read_text()
+    assert all(record.sha256 in page for record in golden.manifest.files.values())
+    assert golden.manifest.cross_checks[0].position_m in page and golden.manifest.seal in page
+
+
+def test_pages_load_nothing_and_stay_small(atlas):
+    for path in atlas.iterdir():
+        text = path.read_text()
+        assert "default-src 'none'" in text
+        assert not re.search(r"<(?:link|img|iframe|object)\b|\bsrc=|@import|fetch\(|XMLHttpRequest|import\(", text)
+        assert path.stat().st_size < 1_000_000
+
+
+def test_ids_stand_in_a_page_once(atlas):
+    for path in atlas.iterdir():
+        names = re.findall(r' id="([^"]+)"', path.read_text().partition("<script")[0])
+        assert len(names) == len(set(names)), path
+
+
+def test_what_studies_say_of_a_scene(tmp_path):
+    kept = kept_studies(studies_folder())
+    assert kept["paris"].asked and kept["paris"].least and kept["paris"].span_s == 86_400
+    assert [one.error_m for one in kept["hard"].least] == sorted(one.error_m for one in kept["hard"].least)
+    assert kept_studies(None) == {} and "silently wrong" in kept["hard"].sentence()
+    (tmp_path / "other.json").write_text('{"rows": [{"scene": "paris"}]}')
+    with pytest.raises(reference.InputError, match="a study as `foucault study` writes it"):
+        kept_studies(tmp_path)
+
+
+def test_without_a_study_the_page_says_nothing_of_methods(atlas, readings):
+    (paris,) = entries(readings)
+    assert "How methods fare" in (atlas / "paris.html").read_text()
+    assert "How methods fare" not in scene_page(paris, [], Kept(), "")
+
+
+def test_the_command_to_score_says_what_differs_from_the_scene(readings):
+    (two,) = entries(readings)
+    assert two.score_command() == "foucault score paris mine.csv" and len(two.datasets) == 2
+    alone = Entry(two.golden, two.golden)
+    assert alone.score_command() == "foucault score paris mine.csv --inputs decimal"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("--data", "nowhere"), "a folder of golden datasets"),
+        (("--studies", "."), "a study as `foucault study` writes it"),
+        (("--out", "mine"), "a new folder, or one that an earlier run wrote"),
+    ],
+)
+def test_wrong_folders_are_refused_and_nothing_is_written(foucault, tmp_path, monkeypatch, words, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "index.html").write_text("my own page")
+    (tmp_path / "some.json").write_text("[]")
+    status, out, err = foucault("atlas", *words)
+    assert (status, out) == (2, "") and said in err
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["index.html", "mine", "some.json"]
+
+
+TOLD = """
+<script>
+(async () => {
+  const told = [];
+  for (const files of %s) {
+    shown.innerHTML = "";
+    const data = new DataTransfer();
+    for (const [name, text] of files) data.items.add(new File([text], name));
+    zone.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
+    while (!shown.innerHTML) await new Promise((done) => setTimeout(done, 5));
+    const drawn = Boolean(shown.querySelector("svg path.error"));
+    told.push([shown.className, shown.innerText, drawn, shown.scrollWidth <= shown.clientWidth]);
+  }
+  const fits = document.documentElement.scrollWidth <= innerWidth;
+  document.body.innerHTML = '<pre id="told"></pre>';
+  document.getElementById("told").textContent = JSON.stringify({ told, fits, wide: innerWidth });
+})();
+</script></body>"""
+FILTERED = """
+<script>
+const told = [document.getElementById("count").textContent];
+for (const [name, value] of [["flag", "large_angle"], ["level", "enclosed"], ["flag", ""]]) {
+  document.getElementById(name).value = value;
+  form.dispatchEvent(new Event("input"));
+  const left = cards.filter((card) => !card.hidden).map((card) => card.id);
+  told.push([document.getElementById("count").textContent, left]);
+}
+const fits = document.documentElement.scrollWidth <= innerWidth;
+document.body.innerHTML = '<pre id="told"></pre>';
+document.getElementById("told").textContent = JSON.stringify({ told, fits, wide: innerWidth });
+</script></body>"""
+
+
+def in_browser(page, script, tmp_path):
+    """Return what a script at the end of a page wrote, in a window as wide as a phone's."""
+    path = tmp_path / "page.html"
+    path.write_text(page.read_text().replace("</body>", script))
+    done = subprocess.run(
+        [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}",
+         "--window-size=390,844", "--virtual-time-budget=20000", "--dump-dom", path.as_uri()],
+        capture_output=True, text=True, check=True, timeout=300,
+    )  # fmt: skip
+    return json.loads(html.unescape(re.search(r'<pre id="told">(.*?)</pre>', done.stdout, re.S)[1]))
+
+
+@browser
+def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, tmp_path):
+    golden = reference.load("paris.binary64")
+    t, x, y = (golden.grid[name][::10] for name in "txy")
+    times = golden.transits["t"]
+
+    def rows(header, *columns):
+        return header + "\n" + "".join(",".join(map(repr, row)) + "\n" for row in zip(*columns, strict=True))
+
+    columns = [one.tolist() for one in (t, x + 1e-8, y)]
+    right = rows("t,x,y", *columns)
+    missing = rows("t", [one for one in times.tolist() if one != times[41]])
+    dropped = [
+        [["right.csv", right]],
+        [["right.csv", right], ["times.csv", rows("t", times.tolist())]],
+        [["right.csv", right], ["times.csv", missing]],
+        [["exchanged.csv", rows("t,y,x", *columns)]],
+        [["late.csv", rows("t,x,y", (t + 7.0).tolist()[:-1], columns[1][:-1], columns[2][:-1])]],
+        [["ragged.csv", right + "86400,0.1\n"]],
+    ]
+    told = in_browser(atlas / "paris.html", TOLD % json.dumps(dropped).replace("<", "\\u003c"), tmp_path)
+    assert told["fits"], "the page is wider than a phone"
+    words = [one[0] for one in told["told"]]
+    assert words == ["agrees", "agrees", "disagrees", "disagrees", "refused", "refused"]
+    texts = [one[1] for one in told["told"]]
+    assert [one[2] for one in told["told"]] == [True, True, True, True, False, False] and all(
+        one[3] for one in told["told"]
+    )
+    path = tmp_path / "right.csv"
+    path.write_text(right)
+    score = judge(path, "paris", explain=False)
+    assert score.verdict == "agrees" and f"{score.errors.max_m:.3g}".replace("e-0", "e-") in texts[0].replace(
+        "1.00e", "1e"
+    )
+    assert "10514 matched, 0 missed, 0 extra" in texts[1]
+    assert f"10513 matched, 1 missed ({times[41]:.6f} s)" in texts[2]
+    assert "With x and y exchanged" in texts[3]
+    assert "All are 7.00 s after one" in texts[4] and "fields, and the first row has 3" in texts[5]
+
+
+@browser
+def test_scenes_are_filtered_by_flag_and_level(atlas, tmp_path):
+    told = in_browser(atlas / "index.html", FILTERED, tmp_path)
+    every, *chosen = told["told"]
+    assert every == "2 of 2 scenes" and told["fits"]
+    assert chosen == [["1 of 2 scenes", ["hard"]], ["0 of 2 scenes", []], ["1 of 2 scenes", ["paris"]]]

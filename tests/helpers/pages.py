@@ -1,0 +1,80 @@
+"""The pages of the documentation: their blocks of code, and their commands, run as a reader runs them."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+from markdown_it import MarkdownIt
+from places import ROOT
+
+PAGES = (
+    "README.md",
+    "CONTRIBUTING.md",
+    "CHANGELOG.md",
+    *sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").rglob("*.md")),
+    "reference/enclosure/THEOREM.md",
+)
+
+
+class Block(NamedTuple):
+    """A block of code: the word behind its fence, None for one that is only indented; its text."""
+
+    language: str | None
+    text: str
+
+
+def blocks(page: str) -> list[Block]:
+    """Return every block of code of a page, in order."""
+    tokens = MarkdownIt("commonmark").parse((ROOT / page).read_text(encoding="utf-8"))
+    kinds = {
+        "fence": lambda token: Block(token.info, token.content),
+        "code_block": lambda one: Block(None, one.content),
+    }
+    return [kinds[token.type](token) for token in tokens if token.type in kinds]
+
+
+def of_language(page: str, language: str) -> list[str]:
+    """Return the texts of a page's blocks in a language."""
+    return [block.text for block in blocks(page) if block.language == language]
+
+
+def commands(page: str) -> list[tuple[str, str]]:
+    """Return each `$ command` of the console blocks with the output printed below it."""
+    found = []
+    for block in of_language(page, "console"):
+        for part in re.split(r"^\$ ", block, flags=re.M)[1:]:
+            command, _, output = part.partition("\n")
+            found.append((command, output))
+    return found
+
+
+def write_files(page: str, folder: Path) -> list[str]:
+    """Write the blocks that begin with a comment of nothing but a file's name; return the names."""
+    names = []
+    for block in blocks(page):
+        named = re.match(r"# ([\w.]+)\n", block.text)
+        if named:
+            (folder / named[1]).write_text(block.text, encoding="utf-8")
+            names.append(named[1])
+    return names
+
+
+def output(command: str, folder: Path) -> str:
+    """Return what a command prints in a folder, stdout first; `foucault` and `python` are those of the tests."""
+    path = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    done = subprocess.run(
+        command, shell=True, capture_output=True, text=True, check=False, cwd=folder, env={**os.environ, **path}
+    )
+    said = re.sub(r"^.*: about .* after \d+ s\n", "", done.stderr, flags=re.M)  # on a slow machine
+    return done.stdout + said
+
+
+def shows(shown: str, got: str) -> bool:
+    """Whether a page shows what a command printed; a line … stands for any number of lines."""
+    lines = shown.splitlines(keepends=True)
+    return bool(re.fullmatch("".join("(?:.*\n)*?" if line == "…\n" else re.escape(line) for line in lines), got))

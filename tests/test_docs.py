@@ -1,0 +1,170 @@
+"""The pages: every block of code in them is run or is data, every link leads somewhere, and they make a site."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import typer
+from pages import PAGES, blocks, commands, of_language, output, shows, write_files
+from places import ROOT
+
+import compare
+import reference
+from foucault import commands as commands_of_foucault
+
+TUTORIAL, SWEEPS, STUDIES, CONTRIBUTING, API = (
+    "docs/tutorial.md",
+    "docs/sweeps.md",
+    "docs/studies.md",
+    "CONTRIBUTING.md",
+    "docs/api.md",
+)
+INDENTED = None
+# what the blocks of each page are in; all but formulas, and what Sphinx itself carries out, is run
+LANGUAGES = {
+    "README.md": {"sh", "console", "pycon"},  # sh by .ci/run, the others by test_readme.py
+    CONTRIBUTING: {"sh"},
+    TUTORIAL: {"sh", "console", "python", "toml"},
+    SWEEPS: {"sh"},
+    STUDIES: {"sh"},
+    API: {"{eval-rst}", "python"},
+    "docs/cite.md": {"{literalinclude} ../CITATION.cff"},
+    "docs/index.md": {"{include} ../README.md", "{toctree}"},
+    "reference/enclosure/THEOREM.md": {INDENTED},  # formulas
+}
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_what_a_page_s_blocks_are_in_is_known_and_so_is_what_runs_them(page):
+    assert {block.language for block in blocks(page)} == LANGUAGES.get(page, set())
+
+
+def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path):
+    assert write_files(TUTORIAL, tmp_path) == ["pendulum.py", "sphere.py", "test_pendulum.py", "mine.toml"]
+    for command, shown in commands(TUTORIAL):
+        got = output(command, tmp_path)
+        assert shows(shown, got), f"{command}\n{got}"
+    assert (tmp_path / "error.svg").is_file() and (tmp_path / "foucault.xml").is_file()
+
+
+def test_what_the_tutorial_installs_can_be_had():
+    (block,) = of_language(TUTORIAL, "sh")
+    (name, extras), *_ = re.findall(r"'([\w-]+)\[([\w,]+)\]'", block)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert name == project["name"]
+    assert set(extras.split(",")) <= set(project["optional-dependencies"])
+
+
+def test_the_test_of_the_page_on_python_passes(tmp_path):
+    (name,) = write_files(API, tmp_path)
+    assert output(f"python -m pytest -q {name}", tmp_path).startswith(".  ")
+
+
+def shell(page: str) -> Iterator[list[str]]:
+    """Yield the words of each command of a page's sh blocks, comments left out."""
+    for block in of_language(page, "sh"):
+        for line in block.replace("\\\n", " ").splitlines():
+            yield shlex.split(line, comments=True)
+
+
+def test_the_commands_of_the_page_on_sweeps_work(foucault, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("heights.csv").write_text("0\n1000\n", encoding="utf-8")
+    Path("draws.csv").write_text("pendulum.length,site.latitude\n60,40\n61,41\n", encoding="utf-8")
+    rows = []
+    for name, *words in shell(SWEEPS):
+        status, out, err = foucault(*words, "--t-end", "20", "--engine", "heyoka")  # the last --t-end counts
+        assert (name, status) == ("foucault", 0), err
+        rows.append(int(re.findall(r"^(\d+) rows: \1 ok$", out, re.M)[0]))
+    assert rows == [181, 10 * 20, 3 * 2, 2]
+
+
+def test_the_commands_of_the_studies_are_those_that_make_the_page():
+    sys.path.append(str(ROOT / "tests/bench"))
+    import studies_page
+
+    shown = [words for words in shell(STUDIES) if words]
+    assert all(words in map(shlex.split, studies_page.COMMANDS.values()) for words in shown)
+    assert shown
+
+
+def test_what_the_contributor_types_are_targets_and_what_the_readme_types_is_what_ci_runs():
+    made = [words[1] for words in shell(CONTRIBUTING)]
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    (phony,) = re.findall(r"^\.PHONY: (.+)$", makefile, re.M)
+    assert set(made) == set(phony.split()) - {"lint", "clean"}
+    first, second, _ = map(" ".join, shell("README.md"))
+    assert f"\n{first}\n" in (ROOT / ".ci/run").read_text(encoding="utf-8")
+    assert f"\n{second}\n" in (ROOT / ".ci/run").read_text(encoding="utf-8") + "\n"
+
+
+NOW = [page for page in PAGES if page != "CHANGELOG.md"]  # which tells of what was
+
+
+@pytest.mark.parametrize("page", NOW)
+def test_every_command_and_option_in_the_text_of_a_page_is_there(page):
+    known = typer.main.get_command(commands_of_foucault()).commands
+    text = (ROOT / page).read_text(encoding="utf-8")
+    for name, words in re.findall(r"`foucault ([a-z]+)([^`]*)`", text):
+        options = {option for one in known[name].params for option in one.opts} | {"--help"}
+        assert set(re.findall(r"(?<!\S)--[\w-]+", words)) <= options, (name, words)
+
+
+def build(source: Path, site: Path) -> subprocess.CompletedProcess[str]:
+    """Make a site as `make docs` does."""
+    (line,) = re.findall(r"-m sphinx (.+) -c docs \. build/docs$", (ROOT / "Makefile").read_text("utf-8"), re.M)
+    words = [sys.executable, "-m", "sphinx", *line.split(), "-c", str(ROOT / "docs"), str(source), str(site)]
+    return subprocess.run(words, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("site")
+    made = build(ROOT, folder)
+    assert made.returncode == 0, made.stderr  # any warning is an error: broken links, unknown names, pages in no list
+    return folder
+
+
+def test_all_pages_are_on_the_site_and_its_first_page_leads_to_them(site):
+    assert all((site / page).with_suffix(".html").is_file() for page in PAGES)
+    (start,) = re.findall(r"url=([\w/.]+)", (site / "index.html").read_text(encoding="utf-8"))
+    assert (site / start).is_file()
+
+
+@pytest.mark.parametrize("package", [reference, compare])
+def test_every_public_name_is_on_the_page_on_python(site, package):
+    page = (site / API).with_suffix(".html").read_text(encoding="utf-8")
+    assert [name for name in package.__all__ if f'id="{package.__name__}.{name}"' not in page] == []
+
+
+def test_every_command_is_on_the_page_on_commands_with_its_options(site):
+    page = (site / "docs/commands.html").read_text(encoding="utf-8")
+    listed = set(re.findall(r'<section id="foucault-(\w+)">', page))
+    assert listed == set(typer.main.get_command(commands_of_foucault()).list_commands(None))
+    assert page.count('--suite</span> <span class="pre">DIR</span>') == 1
+
+
+def test_a_broken_link_fails(tmp_path):
+    (tmp_path / "docs").mkdir()
+    links = ["[a](other.md)", "[b](other.md#there)", "[c](other.md#gone)", "[d](gone.md)", "[e](#nowhere)"]
+    (tmp_path / "docs/index.md").write_text("# I\n\n" + " ".join(links) + "\n\n```{toctree}\nother\n```\n", "utf-8")
+    (tmp_path / "docs/other.md").write_text("# O\n\n## There\n", "utf-8")
+    made = build(tmp_path, tmp_path / "site")
+    assert made.returncode == 1
+    assert re.findall(r": '([\w.]+)' \[myst.xref_missing\]", made.stderr) == ["gone", "gone.md", "nowhere"]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_every_file_and_folder_that_a_page_names_exists(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    links = [target for target in re.findall(r"\]\(([^)#]+)\)", text) if "://" not in target]
+    assert all(((ROOT / page).parent / target).exists() for target in links), links
+    paths = re.findall(r"`((?:reference|compare|tests|docs|data)/[\w./]*)`", text)
+    assert all((ROOT / path).exists() for path in paths), [path for path in paths if not (ROOT / path).exists()]

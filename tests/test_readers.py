@@ -1,0 +1,99 @@
+"""docs/readers: each program is compiled and run where its tool is installed, and reads what `reference.load` reads."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+import reference
+
+READERS = ROOT / "docs/readers"
+PARIS = ROOT / "data/golden/paris"
+MOST_LINES = 40
+# the tool that is wanted, what compiles the program (none for scripts), and what runs it
+COMMANDS = {
+    "golden.c": (["cc", "-O2", "{file}", "-o", "{program}"], ["{program}"]),
+    "golden.f90": (["gfortran", "{file}", "-o", "{program}"], ["{program}"]),
+    "golden.mjs": ([], ["node", "{file}"]),
+    "golden.go": (["go", "build", "-o", "{program}", "{file}"], ["{program}"]),
+    "golden.rs": (["rustc", "-O", "{file}", "-o", "{program}"], ["{program}"]),
+    "Golden.java": ([], ["java", "-XX:TieredStopAtLevel=1", "{file}"]),
+    "golden.m": ([], ["octave-cli", "--norc", "{file}"]),
+    "golden.R": ([], ["Rscript", "--vanilla", "{file}"]),
+}
+WITH_JSON = {"golden.mjs", "golden.go", "golden.m"}
+
+
+@pytest.fixture(scope="module")
+def paris():
+    return reference.load(PARIS)
+
+
+def test_every_program_is_run_is_short_and_stands_in_the_table():
+    files = {path.name for path in READERS.iterdir()} - {"README.md"}
+    assert files == set(COMMANDS)
+    assert all(len((READERS / name).read_text().splitlines()) <= MOST_LINES for name in files)
+    table = re.findall(r"^\|[^|]+\| \[([\w.]+)\]\(\1\) \|", (READERS / "README.md").read_text(), re.M)
+    assert set(table) == files
+
+
+def printed(name: str, folder: Path, tmp_path: Path) -> list[list[str]]:
+    """Return the words of each line that a program prints about a dataset."""
+    words = {"file": str(READERS / name), "program": str(tmp_path / "program")}
+    compiling, running = ([word.format(**words) for word in command] for command in COMMANDS[name])
+    if compiling:
+        subprocess.run(compiling, check=True, capture_output=True, cwd=tmp_path)
+    done = subprocess.run([*running, str(folder)], check=True, capture_output=True, text=True, cwd=tmp_path)
+    return [line.split() for line in done.stdout.splitlines()]
+
+
+def works(tool: str) -> bool:
+    """Return whether a tool is there, and more than the name of one that a home has to choose, as with rustup."""
+    return shutil.which(tool) is not None and (
+        tool != "rustc" or not subprocess.run([tool, "--version"], capture_output=True, check=False).returncode
+    )
+
+
+LONG = {"golden.go"}  # a fresh go compiles its own library first, for a quarter of a minute
+NAMES = [pytest.param(name, marks=[pytest.mark.long] if name in LONG else []) for name in COMMANDS]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_reads_paris(name, paris, tmp_path):
+    compiling, running = COMMANDS[name]
+    tool = (compiling or running)[0]
+    if not works(tool):
+        pytest.skip(f"{tool} is not installed for this user")
+    grid, state, transits, *vectors = _parted(printed(name, PARIS, tmp_path))
+    assert grid == ["grid", str(len(paris.times))]
+    assert [words[0] for words in state] == ["t", "x", "y", "z", "vx", "vy", "vz"]
+    assert [float(words[1]) for words in state] == [float(paris.exact(words[0])[-1]) for words in state]
+    assert [float(words[2]) for words in state[1:]] == [float(paris.grid.bound(words[0])[-1]) for words in state[1:]]
+    assert transits[:2] == ["transits", str(len(paris.directions))]
+    assert float(transits[2]) == float(max(paris.transits.bound("t")))
+    if name in WITH_JSON:
+        document = json.loads((PARIS / "vectors.json").read_text())
+        counts = [str(len(document[kind])) for kind in ("states", "transits")]
+        assert vectors == [["vectors", *counts, document["states"][1]["values"]["x"]["hexfloat"]]]
+    else:
+        assert vectors == []
+
+
+def _parted(lines):
+    """Return the line on the grid, the seven on its last row, that on transits, and what follows."""
+    return [lines[0], lines[1:8], lines[8], *lines[9:]]
+
+
+def test_fortran_reads_as_many_digits_as_quadruple_precision_has(paris, tmp_path):
+    if shutil.which("gfortran") is None:
+        pytest.skip("gfortran is not installed")
+    for column, value, *_ in printed("golden.f90", PARIS, tmp_path)[2:8]:
+        exact = paris.exact(column)[-1]
+        assert abs(Fraction(value) - exact) <= abs(exact) / 2**111

@@ -1,0 +1,123 @@
+"""The wheel and the source distribution: what they hold, their size, and their commands in an empty folder."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tarfile
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+from reference.shipped import data_root, scene_ids, seals
+
+WHEEL_BYTES, DATA_BYTES = 12_000_000, 25_000_000
+COMMANDS = [
+    ["--version"],
+    ["scenes"],
+    ["verify", "hard"],
+    ["generate", "paris", "--t-end", "60", "--digits", "10", "--level", "confirmed", "--out", "short"],
+    ["verify", "short"],
+    ["score", "paris", "mine.csv", "--t-end", "60"],
+    ["score", "paris", "wrong.csv", "--t-end", "60"],
+    ["plot", "mine.csv", "--out", "mine.svg"],
+    ["sweep", "paris", "--over", "site.latitude=0:40:20", "--t-end", "60", "--engine", "heyoka", "--json"],
+    ["atlas", "--data", ".", "--out", "atlas"],
+]
+SCRIPT = """
+import json, sys
+from pathlib import Path
+import compare, foucault, reference
+statuses = []
+for words in json.loads(sys.argv[1]):
+    sys.argv = ["foucault", *words]
+    try:
+        foucault.main()
+        statuses.append(0)
+    except SystemExit as stop:
+        statuses.append(int(stop.code or 0))
+golden = reference.load("paris")
+print(json.dumps({"statuses": statuses, "from": [m.__file__ for m in (foucault, reference, compare)],
+                  "release": [float(golden.grid[name][0]) for name in "xy"]}))
+"""
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("built")
+    subprocess.run([sys.executable, "-m", "hatchling", "build", "-d", str(folder)], cwd=ROOT, check=True)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wheel(built: Path) -> Path:
+    (path,) = built.glob("*.whl")
+    return path
+
+
+def names_of(root: Path, *parts: str) -> set[str]:
+    """Return the files that git keeps below some folders, or all of them where this is no checkout."""
+    if (root / ".git").exists():
+        listed = subprocess.run(["git", "ls-files", *parts], cwd=root, capture_output=True, text=True, check=True)
+        return {name for name in listed.stdout.splitlines() if (root / name).is_file()}
+    files = (path for part in parts for path in [root / part, *(root / part).rglob("*")])
+    return {str(path.relative_to(root)) for path in files if path.is_file() and "__pycache__" not in path.parts}
+
+
+def test_the_wheel_holds_every_module_and_all_data_and_no_more(wheel: Path) -> None:
+    with zipfile.ZipFile(wheel) as archive:
+        found = {name for name in archive.namelist() if ".dist-info/" not in name}
+    code = names_of(ROOT, "foucault.py", "reference", "compare")
+    data = {f"reference/{name}" for name in names_of(ROOT, "data")}
+    assert found >= code | data
+    assert {name for name in found - code - data if not name.startswith("reference/data/golden/")} == set()
+    assert wheel.stat().st_size < WHEEL_BYTES
+    assert sum(path.stat().st_size for path in data_root().rglob("*") if path.is_file()) < DATA_BYTES
+
+
+def test_the_source_distribution_holds_what_makes_and_tests_it(built: Path) -> None:
+    (path,) = built.glob("*.tar.gz")
+    with tarfile.open(path) as archive:
+        found = {name.partition("/")[2] for name in archive.getnames()}
+    kept = names_of(ROOT, "foucault.py", "reference", "compare", "data", "docs", "tests", "Makefile", "README.md")
+    assert kept <= found
+    assert path.stat().st_size < WHEEL_BYTES
+
+
+def test_every_scene_ships_and_every_dataset_that_the_index_names_is_there() -> None:
+    assert {name.partition(".")[0] for name in seals()} == set(scene_ids())
+    assert {path.name for path in (data_root() / "golden").iterdir() if path.is_dir()} == set(seals())
+
+
+def test_its_commands_work_in_an_empty_folder(
+    wheel: Path, tmp_path: Path, size: Callable[[dict[str, str], dict[str, str]], dict[str, str]]
+) -> None:
+    """What numba compiles, most of a minute of work, is compiled under --long; its absence is an installation too."""
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(tmp_path / "site")
+    place = tmp_path / "empty"
+    place.mkdir()
+    (place / "mine.csv").write_text("t,x,y\n0,0.3,0.4\n60,-0.176326733,-0.415867688\n")
+    (place / "wrong.csv").write_text("t,x,y\n0,0.3,0.4\n60,-0.176,-0.415\n")
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path / "site"), "FOUCAULT_CACHE": str(tmp_path / "cache")}
+    environment |= size({"NUMBA_DISABLE_JIT": "1"}, {})
+    done = subprocess.run(
+        [sys.executable, "-P", "-c", SCRIPT, json.dumps(COMMANDS)],
+        cwd=place,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout.splitlines()[-1])
+    assert found["statuses"] == [int("wrong.csv" in words) for words in COMMANDS], done.stdout + done.stderr
+    assert all(path.startswith(str(tmp_path / "site")) for path in found["from"])
+    assert found["release"] == [0.3, 0.4]
+    assert {path.name for path in place.iterdir()} == {"mine.csv", "wrong.csv", "short", "mine.svg", "atlas"}
+    assert (place / "atlas" / "index.html").is_file()
