@@ -70,25 +70,31 @@ def main() -> None:
 
 
 def _run() -> None:
-    from reference.errors import FoucaultError
+    from reference.errors import FoucaultError, Stopped
     from reference.plain_text import plain_lines, plain_output
     from reference.process import terminable
 
+    signals: list[int] = []
     try:
-        with plain_output(), terminable():
+        with plain_output(), terminable() as signals:
             try:
                 commands()(prog_name="foucault")
             finally:
                 sys.stdout.flush()
     except SystemExit as end:
         _end(end.code)
-    except FoucaultError as error:
-        _end(error.exit_status, str(error))
-    except BrokenPipeError:
+    except Stopped as stopped:
+        _end(stopped.exit_status, str(stopped))
+    except Exception as error:
+        if signals:  # what followed from the interruption is no mistake of the user's
+            _end(128 + signals[0])
+        if isinstance(error, FoucaultError):
+            _end(error.exit_status, str(error))
+        if not isinstance(error, OSError):
+            raise
         _forget_output()
-        _end(1)
-    except OSError as error:
-        _forget_output()
+        if isinstance(error, BrokenPipeError):
+            _end(1)
         _end(2, plain_lines(f"{error.filename or 'output'}: {error.strerror or error}"))
 
 

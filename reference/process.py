@@ -17,6 +17,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from importlib import import_module
+from types import FrameType
 from typing import Any, BinaryIO, cast
 
 from .errors import FoucaultError, IntegrationError
@@ -136,27 +137,36 @@ def _signals_held() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def terminable() -> Iterator[None]:
+def terminable() -> Iterator[list[int]]:
     """Turn SIGTERM and SIGHUP into SystemExit meanwhile, so that what was begun is cleared away.
 
     Signals that already have a handler, or that are ignored (nohup), are left alone, as all are outside of the main
     thread.
+
+    Yields:
+        The numbers of the signals that have come, SIGINT too. Their exception alone does not tell: code in C that is
+        interrupted while it is imported turns it into an ImportError.
     """
+    came: list[int] = []
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield came
         return
 
-    def stop(number: int, _: object) -> None:
+    def stop(number: int, frame: FrameType | None) -> None:
+        came.append(number)
+        if number == signal.SIGINT:
+            signal.default_int_handler(number, frame)
         raise SystemExit(128 + number)
 
-    numbers = [n for n in _ENDS_WITH_PARENT if n != signal.SIGINT and signal.getsignal(n) is signal.SIG_DFL]
-    for number in numbers:
+    usual = (signal.SIG_DFL, signal.default_int_handler)
+    before = {number: handler for number in _ENDS_WITH_PARENT if (handler := signal.getsignal(number)) in usual}
+    for number in before:
         signal.signal(number, stop)
     try:
-        yield
+        yield came
     finally:
-        for number in numbers:
-            signal.signal(number, signal.SIG_DFL)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def _leave_ending_to_parent() -> threading.Event:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import shlex
 import shutil
 import signal
+import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
@@ -13,6 +14,7 @@ from pathlib import Path
 import pytest
 from interruption import gone_within
 from moments import chosen, ended_at, undisturbed
+from places import ROOT
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
 
@@ -76,3 +78,26 @@ def test_a_command_ends_with_one_line_and_nothing_half(
             assert [path.name for path in place.iterdir()] in ([], ["out"])
     assert hits >= 0.9 * size(1, 36)  # the number of events varies by a few
     tally(f"{name}: {hits} interruptions at work, {said} of them with a line, no traceback, no half file, no orphan")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize(
+    "hides", ['ImportError("initialization failed")', 'InputError("--engine", "heyoka", "an installed engine")']
+)
+def test_an_interruption_that_other_code_turns_into_an_error_is_one(number: signal.Signals, hides: str) -> None:
+    """As code in C does that is interrupted while it is imported."""
+    program = f"""
+import os, foucault
+from reference.errors import InputError
+
+def interrupted(prog_name):
+    try:
+        os.kill(os.getpid(), {int(number)})
+    except BaseException as end:
+        raise {hides} from end
+
+foucault.commands = lambda: interrupted
+foucault.main()
+"""
+    ended = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "", "")
