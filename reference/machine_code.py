@@ -1,14 +1,16 @@
 """Machine code that numba keeps on disk: a damaged file or a full disk costs time, never a result.
 
 numba itself unpickles what it finds. Here every file ends with its hash, and says which function, for which types and
-which processor, it holds: what was changed, cut short or put in another's place is compiled again.
+which processor, it holds: what was changed, cut short or put in another's place is compiled again. Of several processes
+one compiles a function; the others wait and take what it has kept.
 """
 
 from __future__ import annotations
 
 import os
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -16,9 +18,13 @@ from typing import Any
 
 from numba.core import caching, ccallback, dispatcher
 
+from .file_lock import Taken, locked
 from .first_use import announce
 
+PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
+POLL_S = 0.05
 _HASH_BYTES = 32
+_turns: dict[Path, ExitStack] = {}  # functions that this process compiles; where that failed, until it is tried again
 
 
 class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]  # numba has no types
@@ -71,16 +77,44 @@ class _CheckedCache(caching.FunctionCache):  # type: ignore[misc]
         self._what, self._seconds = what, seconds
         stamp = self._impl.locator.get_source_stamp()
         self._cache_file = _CheckedFile(self._cache_path, self._impl.filename_base, stamp)
+        self._lock = Path(self._cache_path, f"{self._impl.filename_base}.lock")
 
     def load_overload(self, types: Any, target: Any) -> Any:
         code = super().load_overload(types, target)
         if code is None:
             announce(self._what, self._seconds)
+            self._begin_turn()
+            code = super().load_overload(types, target)  # another process may have compiled it meanwhile
+            if code is not None:
+                self._end_turn()
         return code
 
     def save_overload(self, types: Any, code: Any) -> None:
+        try:
+            with suppress(OSError):
+                super().save_overload(types, code)
+        finally:
+            self._end_turn()
+
+    def _begin_turn(self) -> None:
+        """Wait until no other process compiles this function, at most for `PATIENCE_S`: then it is compiled twice."""
+        self._end_turn()
+        turn, end = _turns.setdefault(self._lock, ExitStack()), time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
+            try:
+                Path(self._cache_path).mkdir(parents=True, exist_ok=True)
+                turn.enter_context(locked(self._lock))
+            except Taken:
+                time.sleep(POLL_S)
+            except OSError:  # nothing can be kept there
+                return
+            else:
+                turn.callback(self._lock.unlink, missing_ok=True)
+                return
+
+    def _end_turn(self) -> None:
         with suppress(OSError):
-            super().save_overload(types, code)
+            _turns.pop(self._lock, ExitStack()).close()
 
 
 def _cache_of(function: Any, what: str, seconds: int) -> Any:

@@ -1,7 +1,7 @@
 """A hidden folder beside what is written: filled there, renamed from there, and cleared away after a killed process.
 
-A folder in use is locked (flock on a file in it): a process number would say nothing where they repeat, in containers,
-or where several machines share a disk. Locks end with their process, however it ends.
+A folder in use is locked by a file in it: a process number would say nothing where they repeat, in containers, or where
+several machines share a disk.
 """
 
 from __future__ import annotations
@@ -13,14 +13,9 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from types import ModuleType
 from typing import BinaryIO
 
-fcntl: ModuleType | None
-try:
-    import fcntl
-except ImportError:  # Windows
-    fcntl = None
+from .file_lock import Taken, locked
 
 OLD = "old"  # what stood in the place of the target, while it is moved out of the way
 _LOCK = "lock"
@@ -41,10 +36,10 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
     while True:
         folder = Path(tempfile.mkdtemp(prefix=_prefix(name), dir=parent))
         try:
-            with _locked(folder):
+            with locked(folder / _LOCK):
                 yield folder
                 return
-        except _Taken:  # another process took it for left behind before it was locked
+        except Taken:  # another process took it for left behind before it was locked
             continue
         finally:
             _remove(folder, parent / name)
@@ -65,10 +60,6 @@ def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
         os.replace(work / "new", target)
 
 
-class _Taken(Exception):
-    """Another process holds the lock."""
-
-
 def _prefix(name: str) -> str:
     return f".{name}.partial-"
 
@@ -77,43 +68,9 @@ def _clear(parent: Path, name: str) -> None:
     """Remove the folders that no living process holds."""
     with suppress(FileNotFoundError):
         for path in [path for path in parent.iterdir() if path.name.startswith(_prefix(name))]:
-            with suppress(OSError, _Taken), _locked(path) as known:
+            with suppress(OSError, Taken), locked(path / _LOCK) as known:
                 if known or time.time() - path.stat().st_mtime > _FORGOTTEN_S:
                     _remove(path, parent / name)
-
-
-@contextmanager
-def _locked(folder: Path) -> Iterator[bool]:
-    """Hold a folder's lock meanwhile; yield False where the system has no locks.
-
-    Raises:
-        _Taken: another process holds it, or has removed the folder.
-    """
-    if fcntl is None:
-        yield False
-        return
-    try:
-        descriptor = os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW, 0o600)
-    except FileNotFoundError:
-        raise _Taken from None
-    try:
-        yield _lock(descriptor, folder / _LOCK)
-    finally:
-        os.close(descriptor)
-
-
-def _lock(descriptor: int, path: Path) -> bool:
-    """Lock an open file; return False if its disk has no locks."""
-    assert fcntl is not None
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        raise _Taken from None
-    except OSError:
-        return False
-    if not path.exists() or not os.path.samestat(os.fstat(descriptor), path.stat()):
-        raise _Taken
-    return True
 
 
 def _remove(folder: Path, target: Path) -> None:

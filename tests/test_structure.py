@@ -32,7 +32,7 @@ FLOORS = {
         ["inputs", "fields", "precision", "shipped", "columns", "workspace", "machine_code"],
         ["lazy"],
         ["nearest"],
-        ["errors", "status", "opening", "packages", "first_use"],
+        ["errors", "status", "opening", "packages", "first_use", "file_lock"],
         ["shortened", "plain_text"],
     ],
     "reference/engines": [

@@ -38,13 +38,13 @@ def command(
     for folder in folders:
         with progress() as show:
             found = verify(folder, show(folder.name))
-            problems = found.problems
+            problems, notes = found.problems, found.notes
             if recompute and not problems:
-                problems = recomputed(folder, show(folder.name))
-        rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": found.notes})
+                problems, notes = recomputed(folder, show(folder.name)), found.foreign
+        rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": notes})
         if not as_json:
             typer.echo(f"{folder}: {'ok' if not problems else 'WRONG'}")
-            for line in [*problems, *found.notes]:
+            for line in [*problems, *notes]:
                 typer.echo(f"  {line}")
     if as_json:
         emit({"rows": rows})

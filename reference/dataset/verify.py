@@ -20,11 +20,18 @@ class Verification:
 
     Attributes:
         problems: a sentence each; none if it passes.
-        notes: what was not checked, and what else lies in the folder.
+        foreign: what else lies in the folder.
+        left_out: what was not checked.
     """
 
     problems: list[str]
-    notes: list[str]
+    foreign: list[str]
+    left_out: list[str]
+
+    @property
+    def notes(self) -> list[str]:
+        """What lies beside the dataset, and what was not checked."""
+        return [*self.foreign, *self.left_out]
 
 
 def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
@@ -40,17 +47,17 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
     try:
         files = read_files(folder)
     except DatasetError as error:
-        return Verification(error.problems[:MAX_PROBLEMS], [])
-    notes = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:MAX_PROBLEMS]]
-    notes += [f"and {more} more"] if (more := len(files.foreign) - MAX_PROBLEMS) > 0 else []
+        return Verification(error.problems[:MAX_PROBLEMS], [], [])
+    foreign = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:MAX_PROBLEMS]]
+    foreign += [f"and {more} more"] if (more := len(files.foreign) - MAX_PROBLEMS) > 0 else []
     problems = [*islice(index.problems(files), MAX_PROBLEMS), *_row_by_row(files)]
+    left_out: list[str] = []
     if not problems:
         try:
             problems, left_out = motion.problems(files, report)
         except (ArithmeticError, BeyondDoublesError):
-            problems, left_out = [BEYOND], []
-        notes += left_out
-    return Verification(problems[:MAX_PROBLEMS], notes)
+            problems = [BEYOND]
+    return Verification(problems[:MAX_PROBLEMS], foreign, left_out)
 
 
 def problems_of(folder: Path) -> list[str]:

@@ -6,11 +6,13 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from math import ceil, log, sqrt
 
 from ..columns import POSITION, VELOCITY
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
+from ..inputs import Inputs
 from ..precision import DOUBLE, LONG_DOUBLE, real
 from ..scene import Scene
 from .approximant import COEFFICIENT_BITS
@@ -19,6 +21,7 @@ from .pilot import Pilot
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
 HARDWARE_ENGINE = "heyoka"  # computes in double and long double
+MOST_DIED = 1024  # bits by which a swing may die down: beyond them balls are made smaller step by step
 ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
 
 
@@ -86,3 +89,13 @@ def first_radius(pilot: Pilot, digits: int) -> Fraction:
     decimals = pilot.decimals(digits)
     unit = Fraction(1, 10 ** max(sorted(decimals[name] for name in kind)[1] for kind in (POSITION, VELOCITY)))
     return unit / (1 << ROUNDING_BITS)
+
+
+def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:
+    """Return the radius in m that tells a damped scene's last transits as closely as `radius` tells the first ones.
+
+    A small swing dies as exp(-r t), where r = γ/2; where drag is too strong for a swing, r = γ/2 - (γ²/4 - g/l)^(1/2).
+    """
+    half, stiffness = float(inputs.drag) / 2, float(inputs.gravity / inputs.length)
+    rate = half - sqrt(max(half**2 - stiffness, 0.0))
+    return radius / (1 << ceil(min(rate * float(inputs.t_end) / log(2), MOST_DIED)))

@@ -19,7 +19,7 @@ from ..precision import rounded_up
 from ..scene import Scene
 from ..table import Table, bits_in
 from .approximant import COEFFICIENT_BITS, Feed
-from .choice import first_radius
+from .choice import first_radius, late_radius
 from .pilot import Pilot, run_pilot
 from .proof_checks import checked_states, cross_checked
 from .rounding import UndecidedRounding, check_decided
@@ -65,7 +65,7 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
     """
     scene, times, pilot, rough = problem.scene, problem.times, problem.pilot, problem.rough
     span = float(times[-1])
-    radius = first_radius(pilot, scene.run.digits)
+    radius = first = first_radius(pilot, scene.run.digits)
     feed = Feed(scene.exact, times, problem.engine)
 
     try:
@@ -90,6 +90,8 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
                     advice = "It lies between two decimals as nearly as can be told: ask for one digit more."
                     break
                 radius = radius / max(FINER, ceil(SPARE * undecided.width))
+                if undecided.column == "t":
+                    radius = min(radius, late_radius(first, scene.exact))
             else:
                 return solution
     finally:

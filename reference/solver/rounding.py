@@ -48,8 +48,9 @@ class UndecidedRounding(UnreachableError):
 
     Attributes:
         width: half-width of the widest of these intervals, in units of the last printed digit.
+        column: the column that it stands in.
     """
 
     def __init__(self, width: Fraction, column: str, text: str) -> None:
         super().__init__(f"The enclosure of {column} = {text} does not decide its last digit.")
-        self.width = width
+        self.width, self.column = width, column

@@ -101,7 +101,7 @@ def _no_locks(*_: object) -> None:
 
 @pytest.mark.parametrize("attribute", ["fcntl", "fcntl.flock"])
 def test_without_locks_only_what_was_not_touched_for_a_day_goes(tmp_path, monkeypatch, attribute):
-    monkeypatch.setattr(f"reference.workspace.{attribute}", None if attribute == "fcntl" else _no_locks)
+    monkeypatch.setattr(f"reference.file_lock.{attribute}", None if attribute == "fcntl" else _no_locks)
     young, old = tmp_path / ".pp.partial-young", tmp_path / ".pp.partial-old"
     for folder in (young, old):
         folder.mkdir()

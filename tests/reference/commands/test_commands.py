@@ -12,6 +12,8 @@ import pytest
 from interruption import gone_within, interrupted, members
 from places import ROOT
 
+from reference.dataset.checks import motion
+
 SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
 
 
@@ -92,6 +94,15 @@ def test_generate_writes_a_dataset_that_verify_accepts(foucault, tmp_path):
     assert "7 transits" in out
     status, out, _ = foucault("verify", str(target), "--recompute")
     assert (status, out) == (0, f"{target}: ok\n")
+
+
+def test_verify_says_what_it_left_out_unless_it_solves_the_scene_again(foucault, tmp_path, monkeypatch):
+    for name in ("BASE_S", "ROW_S", "TRANSIT_S"):
+        monkeypatch.setattr(motion, name, 0.0)
+    target = tmp_path / "paris"
+    foucault("generate", "paris", *SHORT, "--out", str(target))
+    assert "the motion was not integrated again" in foucault("verify", str(target))[1]
+    assert foucault("verify", str(target), "--recompute")[1] == f"{target}: ok\n"
 
 
 def test_generate_json_has_the_keys_of_the_contract_and_nothing_else_on_stdout(foucault, tmp_path):

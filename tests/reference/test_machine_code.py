@@ -1,0 +1,69 @@
+"""Several processes that need the same machine code at the same time compile it once."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+pytest.importorskip("numba")
+
+MODULE = f"""
+import sys, time
+sys.path.insert(0, {str(ROOT)!r})
+from numba import extending, njit
+from reference.machine_code import kept
+
+def slow(x): ...
+
+@extending.overload(slow)
+def _(x):
+    print("compiled", flush=True)
+    time.sleep(1)
+    if FAILS:
+        raise KeyboardInterrupt
+    return lambda x: x + 1
+
+with kept():
+    @njit(cache=True)
+    def successor(x):
+        return slow(x)
+"""
+CALL = "import functions; functions.FAILS = False; print(functions.successor(41))"
+FAIL = """
+import functions
+for functions.FAILS in (True, False):
+    try:
+        print(functions.successor(41))
+    except KeyboardInterrupt:
+        pass
+"""
+
+
+def begun(program: str, folder: Path) -> subprocess.Popen[str]:
+    (folder / "functions.py").write_text(MODULE)
+    return subprocess.Popen([sys.executable, "-c", program], cwd=folder, stdout=subprocess.PIPE, text=True)
+
+
+def test_of_three_processes_one_compiles(tmp_path: Path) -> None:
+    said = [process.communicate(timeout=60)[0].split() for process in [begun(CALL, tmp_path) for _ in range(3)]]
+    assert sorted(said) == [["42"], ["42"], ["compiled", "42"]]
+    assert not [*tmp_path.rglob("*.lock")]
+
+
+def test_a_process_that_is_killed_while_it_compiles_leaves_the_turn_to_the_others(tmp_path: Path) -> None:
+    killed = begun(CALL, tmp_path)
+    assert killed.stdout is not None
+    assert killed.stdout.readline() == "compiled\n"
+    other = begun(CALL, tmp_path)
+    killed.kill()
+    killed.communicate()
+    assert other.communicate(timeout=60)[0].split() == ["compiled", "42"]
+    assert not [*tmp_path.rglob("*.lock")]
+
+
+def test_a_function_that_failed_to_compile_can_be_compiled_by_the_same_process(tmp_path: Path) -> None:
+    assert begun(FAIL, tmp_path).communicate(timeout=60)[0].split() == ["compiled", "compiled", "42"]
