@@ -13,13 +13,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
+from reference.columns import TRANSITS
 from reference.enclosure.approximant import pair
 from reference.enclosure.balls import add, ball, cross
 from reference.enclosure.bound import Piece, Radius, World
 from reference.enclosure.columns import Columns
 from reference.enclosure.digits import split
 from reference.enclosure.frames import ColumnSource
+from reference.enclosure.transits import Scan
+from reference.engines.plan import Plan
+from reference.engines.registry import run
 from reference.packing import DIGIT_BITS, Digits
+from reference.precision import real
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth
@@ -178,6 +183,76 @@ def test_sabotaged_approximants_are_all_covered_or_refused(digits, size, tally):
     assert refused < accepted
     way = "digits" if digits else "FLINT"
     tally(f"approximants by {way}: {accepted + refused} sabotaged, {accepted} covered, {refused} refused")
+
+
+def true_transits(inputs, end):
+    """The zeros of xdot by column, and their directions, by heyoka in another formulation."""
+    found = run(Plan(inputs, "spin", real(300), (Fraction(0), end), True))
+    return {column: found.transits.exact(column) for column in TRANSITS}, found.directions
+
+
+def false_claims(claims, zeros, directions):
+    """What the true zeros of xdot, by column, contradict in the transits that a proof found."""
+    found = []
+    inside = [[i for i, t in enumerate(zeros["t"]) if contains(claim.t, t)] for claim in claims]
+    missed = set(range(len(zeros["t"]))) - {i for hits in inside for i in hits}
+    found += [f"no interval holds the zero at {float(zeros['t'][i])} s" for i in missed]
+    for claim, hits in zip(claims, inside, strict=True):
+        if claim.kind == "one" and len(hits) == 1:
+            (i,) = hits
+            found += [name for name in zeros if not contains(getattr(claim, name), zeros[name][i])]
+            found += [f"zero {i} has another direction"] * (claim.direction != directions[i])
+        elif {"one": True, "odd": len(hits) % 2 == 0, "even": len(hits) % 2 == 1, "unknown": False}[claim.parity]:
+            found.append(f"{len(hits)} zeros are {claim.parity}")
+    return found
+
+
+@pytest.mark.parametrize("digits", [False, True], ids=["by FLINT", "by digits"])
+def test_transits_of_sabotaged_approximants_are_all_true_or_refused(digits, size, tally):
+    rng, accepted, refused, ones, possible, harmed = Random(23 + digits), 0, 0, 0, 0, 0
+    true = {name: true_transits(inputs, end) for name, (inputs, end, _) in SABOTAGED.items()}
+    enough = size(7, 320)
+    while accepted < enough:
+        name = rng.choice(list(SABOTAGED))
+        inputs, end, columns = SABOTAGED[name]
+        try:
+            proposed = sabotage(rng, inputs, end)
+            scan = None
+            for covered in carry(inputs, map(in_digits, proposed) if digits else proposed, columns):
+                scan = scan or Scan(covered.piece.world)
+                scan.advance(covered)
+            claims = scan.finish()
+        except (ArithmeticError, ValueError):
+            refused += 1
+            continue
+        accepted += 1
+        assert not false_claims(claims, *true[name]), name
+        ones += sum(claim.kind == "one" for claim in claims)
+        possible += sum(claim.kind == "possible" for claim in claims)
+        harmed += any(claim.t.high - claim.t.low > Fraction(1, 10**20) for claim in claims)
+    assert harmed > accepted / 2  # most of them did move the transits
+    assert refused < accepted
+    way = "digits" if digits else "FLINT"
+    kinds = f"{ones} single zeros and {possible} possible ones, none claimed wrongly"
+    tally(f"transits of approximants by {way}: {accepted + refused} sabotaged, {refused} refused; {kinds}")
+
+
+def test_false_claims_are_seen():
+    inputs, end, _ = SABOTAGED["paris"]
+    true = true_transits(inputs, end)
+    proof = prove(inputs, [end], Fraction(1, 10**20))
+    first, *others = proof.transits
+    shifted = replace(first, t=replace(first.t, low=first.t.high, high=first.t.high + 1))
+    assert not false_claims(proof.transits, *true)
+    for wrong in (
+        others,
+        [shifted, *others],
+        [replace(first, direction=-first.direction), *others],
+        [replace(first, parity="even"), *others],
+        [replace(first, vy=replace(first.vy, low=first.vy.high)), *others],
+        [*proof.transits, shifted],
+    ):
+        assert false_claims(wrong, *true)
 
 
 @pytest.mark.parametrize("columns", [False, True])
