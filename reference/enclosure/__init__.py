@@ -4,8 +4,8 @@ Trusted, and enough to believe a proof: `balls`, `bound`, `digits`, `columns`, `
 and `printed`, which holds the files that are written against the intervals. Untrusted, because the bound measures
 whatever they get wrong: `approximant` and `frames`, which propose polynomials, `guess`, which proposes zeros, `plan`,
 which chooses the precision, and `run`, which passes steps on.
-`audit` compares the sums of `digits` with FLINT's integers. `shapes` only declares. Endpoints of intervals are
-Fractions; no flint object leaves this package.
+`audit` compares the sums of `digits` with FLINT's integers, and an audited proof takes these: it does not rest on
+`digits`. `shapes` only declares. Endpoints of intervals are Fractions; no flint object leaves this package.
 """
 
 from .approximant import pair, turned

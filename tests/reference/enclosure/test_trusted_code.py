@@ -13,7 +13,8 @@ HOME = Path(reference.enclosure.__file__).parent
 TRUSTED = ("balls", "bound", "columns", "course", "digits", "printed", "transits")
 ARRAYS = {"digits": {"numpy", "numba"}, "bound": {"numpy"}}  # integers only
 PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
-BUDGET = 483  # lines of code; the goal is 420
+AUDITED = tuple(name for name in TRUSTED if name != "digits")  # what FLINT alone has proved does not rest on its sums
+BUDGET, AUDITED_BUDGET = 483, 420  # lines of code
 BARE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
 SCOPES = (ast.Module, ast.ClassDef, ast.FunctionDef)
 
@@ -42,6 +43,7 @@ def test_lines_are_counted_without_what_is_not_code():
 def test_trusted_code_stays_within_its_budget():
     counts = {name: code_lines(source(name)) for name in TRUSTED}
     assert sum(counts.values()) <= BUDGET, counts
+    assert sum(counts[name] for name in AUDITED) <= AUDITED_BUDGET, counts
 
 
 @pytest.mark.parametrize("name", TRUSTED)
