@@ -18,8 +18,8 @@ from ..rhs.problem import FirstOrderSystem, Problem
 from .options import Options
 
 BLOCK = 100_000  # steps whose states are in memory at a time
-# the items of section VI that each value of -a leaves out
-ITEMS = {0: frozenset[Any](), 1: frozenset({2}), 2: frozenset({1}), 3: frozenset({1, 2})}
+# the items of section VI that the two lowest bits of -a leave out
+ITEMS = (frozenset[Any](), frozenset({2}), frozenset({1}), frozenset({1, 2}))
 
 
 def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
@@ -56,8 +56,8 @@ def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
 
 def _problem(options: Options, step: float) -> Problem:
     problem = Problem.of(options.scene, "plane", [0.0, step])
-    if not options.bits:
+    items = ITEMS[options.bits % len(ITEMS)]
+    if not items:
         return problem
-    items = ITEMS[options.bits]
     k = truncated(problem.constants, items)
     return replace(problem, system=FirstOrderSystem.of(VARIABLES, partial(derivatives, items=items), k))

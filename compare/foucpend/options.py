@@ -65,7 +65,7 @@ class Options:
         steps: whole steps up to T.
         skip: steps from one snapshot to the next.
         method: id of the integrator.
-        bits: value of -a, the terms that are left out.
+        bits: value of -a; the lowest two bits tell which terms are left out, others mean nothing.
         exact: take the lines from the reference instead.
     """
 
@@ -106,7 +106,7 @@ class Options:
                         f"-{switch}", given[switch], "no such switch together with --exact", f"The reference {why}."
                     )
         values = DEFAULTS | dict(given)
-        skip, bits = _whole("s", values["s"], 1, None), _whole("a", values["a"], 0, 3)
+        skip, bits = _whole("s", values["s"], 1), _whole("a", values["a"], 0)
         if values["R"] not in METHOD_OF:
             raise InputError("-R", values["R"], "4, 5 or 6", "4: Runge-Kutta; 5: RKN-G 5(6); 6: RKN-G 6(7).")
         scene = _scene(values)
@@ -118,14 +118,13 @@ class Options:
         return cls(scene, inputs.grid_step, steps, skip, METHOD_OF[values["R"]], bits, exact)
 
 
-def _whole(switch: str, text: str, low: int, high: int | None) -> int:
-    upper = "" if high is None else f" to {high}"
+def _whole(switch: str, text: str, low: int) -> int:
     try:
         value = int(text)
     except ValueError:
         value = low - 1
-    if value < low or (high is not None and value > high):
-        raise InputError(f"-{switch}", text, f"a whole number from {low}{upper}")
+    if value < low:
+        raise InputError(f"-{switch}", text, f"a whole number from {low}")
     return value
 
 

@@ -54,7 +54,7 @@ def test_an_unknown_word_is_answered_with_those_most_like_it():
 
 def test_the_bits_of_the_papers_program_name_motions():
     word_of = {motion.path.keywords["items"]: motion.id for motion in mathar_items.APPROXIMATIONS}
-    names = {bits: word_of[items] for bits, items in ITEMS.items() if bits}
+    names = {bits: word_of[items] for bits, items in enumerate(ITEMS) if bits}
     assert sorted(names) == [1, 2, 3]
     assert set(names.values()) <= set(motions())
     # Its first bit is item 2, its second item 1.

@@ -69,7 +69,8 @@ def test_the_defaults_are_the_paper_s() -> None:
         ({"s": "0"}, "-s"),
         ({"s": "1.5"}, "-s"),
         ({"R": "7"}, "-R"),
-        ({"a": "4"}, "-a"),
+        ({"a": "-1"}, "-a"),
+        ({"a": "0x1"}, "-a"),
         ({"f": "0"}, "-f"),
         ({"g": "-1"}, "-g"),
         ({"q": "1"}, "-q"),
@@ -194,6 +195,13 @@ def test_the_bits_drop_what_the_approximations_of_section_vi_drop(bits: int, wor
     assert table[:, 1:4] == pytest.approx(expected[:, :3], abs=1e-9)
     full = snapshots(output(**PARIS, T="600", t="0.05", s="1200", R="6"))
     assert np.abs(table[-1, 1:3] - full[-1, 1:3]).max() > 1e-5
+
+
+def test_other_bits_mean_nothing() -> None:
+    few = {**PARIS, "T": "60", "t": "0.5"}
+    for bits in (4, 6, 2**70 + 1):
+        typed, meant = output(**few, a=str(bits)), output(**few, a=str(bits % 4))
+        assert (snapshots(typed) == snapshots(meant)).all()
 
 
 def test_exact_is_the_golden_dataset_to_the_last_digit_or_so() -> None:
