@@ -220,9 +220,10 @@ def test_help_loads_neither_heyoka_nor_flint_nor_numpy():
 
 def test_a_terminal_sees_a_progress_bar_with_simulated_time(tmp_path):
     master, slave = pty.openpty()
-    words = [sys.executable, "-m", "foucault", "generate", "paris", "--t-end", "7200", "--digits", "9"]
+    words = [sys.executable, "-m", "foucault", "generate", "paris", "--t-end", "7200", "--level", "computed"]
+    slow = ["--digits", "30", "--engine", "heyoka"]  # ten refreshes of the bar and more
     with subprocess.Popen(
-        [*words, "--level", "computed", "--out", str(tmp_path / "p")], stdout=subprocess.DEVNULL, stderr=slave, cwd=ROOT
+        [*words, *slow, "--out", str(tmp_path / "p")], stdout=subprocess.DEVNULL, stderr=slave, cwd=ROOT
     ) as process:
         os.close(slave)
         output = b""
