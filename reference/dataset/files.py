@@ -85,9 +85,7 @@ def read_files(folder: Path) -> Files:
                 texts[name] = data.decode()
             except UnicodeDecodeError:
                 problems.append(f"{name}: not UTF-8")
-        foreign = sorted(
-            set(os.listdir(directory.number if directory.number is not None else folder)) - {MANIFEST, *manifest.files}
-        )
+        foreign = sorted(set(os.listdir(folder)) - {MANIFEST, *manifest.files})
     if problems:
         raise DatasetError(str(folder), problems)
     tables = _tables(folder, manifest, texts)

@@ -14,12 +14,12 @@ from fractions import Fraction
 from itertools import islice
 
 from ...columns import GRID, TRANSITS
-from ...engines.limbs.size import LIMB_BITS, MOST_PREC
+from ...engines.limbs.size import LEAST_PREC, LIMB_BITS, MOST_PREC
 from ...engines.plan import Run
 from ...engines.registry import engines
 from ...errors import IntegrationError, UnreachableError
 from ...model.start import Start
-from ...precision import DOUBLE_BITS, GUARD_BITS, LONG_DOUBLE_BITS, bits_of
+from ...precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...table import Table
 from ..files import Files
 from ..manifest import Manifest
@@ -28,7 +28,6 @@ from ..sheets import Sheet
 MAX_ROWS = 20  # rows that are named
 BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
 PATIENCE = 4  # times that, before a run that was expected to be short is given up
-LEAST_PREC = LONG_DOUBLE_BITS + 1
 FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
 
 Progress = Callable[[float, float], None]  # called with the simulated time reached and the whole span, in s

@@ -15,11 +15,11 @@ import numpy as np
 
 from ...columns import GRID, POSITION, TRANSITS
 from ...engines.limbs.restarts import runs_from
-from ...engines.limbs.size import MOST_PREC
+from ...engines.limbs.size import LEAST_PREC, MOST_PREC
 from ...engines.plan import Run
 from ...model.constants import constants
 from ...model.force import acceleration
-from ...precision import GUARD_BITS, LONG_DOUBLE_BITS, Array, bits_of, context, to_fraction, to_mpf
+from ...precision import GUARD_BITS, Array, bits_of, context, to_fraction, to_mpf
 from ..files import Files
 from .completion import deep, depth, vertical_velocity
 from .propagation import spreads
@@ -37,7 +37,7 @@ def impossible(files: Files) -> str:
 
 
 def _prec(files: Files) -> int:
-    return max(LONG_DOUBLE_BITS + 1, bits_of(files.manifest.digits) + GUARD_BITS // 2)
+    return max(LEAST_PREC, bits_of(files.manifest.digits) + GUARD_BITS // 2)
 
 
 def problems(files: Files, seek: bool) -> Iterator[str]:

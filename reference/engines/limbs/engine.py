@@ -7,11 +7,11 @@ from fractions import Fraction
 from typing import Any
 
 from ...inputs import Inputs
-from ...precision import LONG_DOUBLE_BITS, NumberType
+from ...precision import NumberType
 from ...taylor_step import TaylorStep
 from ..engine import Engine
 from ..plan import Plan, Report, Run
-from .size import MOST_PREC
+from .size import LEAST_PREC, MOST_PREC
 
 STEP_S = 1.2e-5  # CPU seconds of a step at 160 bits: a fiftieth of heyoka's; it grows with the square of the bits
 
@@ -23,7 +23,7 @@ class Limbs(Engine):
     formulation = "inertial"
     requires = ("numba",)
     extra = "methods"
-    bits = range(LONG_DOUBLE_BITS + 1, MOST_PREC + 1)
+    bits = range(LEAST_PREC, MOST_PREC + 1)
     own_process = False
 
     def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:

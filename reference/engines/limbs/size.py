@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ...precision import LONG_DOUBLE_BITS
+
 LIMB_BITS = 22
 MOST_LIMBS = 18  # with more, and the order that goes with them, sums could pass 2**53
 ROUNDING_BITS = 9  # the limbs go this much below the precision, as the sums of a step round at the last limb
@@ -22,4 +24,4 @@ def highest_prec(limb_count: int) -> int:
     return fraction_bits(limb_count) - ROUNDING_BITS
 
 
-MOST_PREC = highest_prec(MOST_LIMBS)
+LEAST_PREC, MOST_PREC = LONG_DOUBLE_BITS + 1, highest_prec(MOST_LIMBS)

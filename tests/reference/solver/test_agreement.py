@@ -21,6 +21,7 @@ from reference.solver import solve as solver
 from reference.solver.agreement import Agreement, bits_lacking
 from reference.solver.pilot import MARGIN_BITS
 from reference.solver.transit_errors import with_transit_errors
+from reference.table import Table
 
 # in both runs these two once had the same number of limbs and, as steps were at their longest, the same steps
 ONE_RUN_TWICE = make_scene(
@@ -162,6 +163,18 @@ def test_the_errors_of_transits_are_the_sums_that_the_module_states():
         }
         for name, value in expected.items():
             assert float(table.bound(name)[row]) == pytest.approx(float(value), rel=1e-6), name
+
+
+@pytest.mark.parametrize("error", [Fraction(1, 10**40), Fraction(1, 10**16)])
+@pytest.mark.parametrize("bits", [100, 200])
+def test_no_error_of_a_transit_is_below_twice_the_difference_of_two_runs(error, bits):
+    rough, _, _ = transits_in_double("short cord")
+    differences = [[k * 10**-12 * (1 + row) for k in range(1, len(TRANSITS) + 1)] for row in range(len(rough.transits))]
+    apart = Table(TRANSITS, bits, [[int(x * 2**bits) for x in row] for row in differences])
+    table = with_transit_errors(rough, dict.fromkeys(GRID, error), apart)
+    for name in TRANSITS:
+        for bound, gap in zip(table.bound(name), apart.exact(name), strict=True):
+            assert 2 * gap <= bound < 2 * gap * (1 + Fraction(1, 10**9)), name
 
 
 def norm(vector):
