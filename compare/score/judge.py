@@ -167,8 +167,7 @@ def unjudged_transits(golden: Golden) -> str | None:
 
 def _transits(times: Array, golden: Golden, errors: TrajectoryErrors, tolerance_m: float) -> TransitErrors:
     end = float(golden.scene.exact.t_end)
-    # a release at rest is no transit, and beyond its end the truth is not known
-    judged = times[(times > 0) & (times <= end)]
+    judged = times[times <= end]  # beyond its end the truth is not known
     for interval in golden.manifest.possible:
         judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
     truth = golden.transits

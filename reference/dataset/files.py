@@ -207,9 +207,6 @@ def _tables(folder: Path, manifest: Manifest, texts: Mapping[str, str]) -> dict[
         if name not in texts or kind not in HEADERS:
             continue
         header, decimals = HEADERS[kind], manifest.decimals.get(kind, {})  # type: ignore[call-overload]
-        if set(decimals) != set(NUMBERS[kind]) and (decimals or getattr(manifest.counts, kind)):
-            problems.append(f"{MANIFEST}: decimals must name the columns {', '.join(NUMBERS[kind])} of {kind}")
-            continue
         if name.endswith(".binary64.csv"):
             header = (*header, *(f"{column}_hex" for column in NUMBERS[kind]))
         try:

@@ -175,6 +175,10 @@ class Manifest(Part):
             "bounds: a number beyond the range of binary64": all(
                 math.isfinite(float(bound)) for bound in (*self.bounds.grid.values(), *self.bounds.transits.values())
             ),
+            f"decimals.grid: must name the columns {', '.join(('t', *GRID))}": {*self.decimals.get("grid", ())}
+            == {"t", *GRID},
+            f"decimals.transits: must name the columns {', '.join(TRANSITS)}": {*self.decimals.get("transits", ())}
+            in ([{*TRANSITS}] if self.counts.transits else [{*TRANSITS}, set()]),
             "notes: one for each flag": set(self.notes) == set(self.flags),
             f"files: {' and '.join(ALWAYS)} belong to every dataset": set(ALWAYS) <= set(self.files),
         }

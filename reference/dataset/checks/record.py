@@ -90,7 +90,7 @@ def _bounds(manifest: Manifest) -> Iterator[str]:
     bounds = manifest.bounds
     for kind in ("grid", "transits"):
         for name, bound in getattr(bounds, kind).items():
-            if Fraction(bound) < Fraction(1, 2 * 10 ** manifest.decimals[kind].get(name, 0)):
+            if Fraction(bound) < Fraction(1, 2 * 10 ** manifest.decimals[kind][name]):
                 yield f"{MANIFEST}: bounds.{kind}.{name} = {bound} is less than half a unit of the last printed digit"
     largest = {
         "position_m": max((bounds.grid[name] for name in POSITION), key=Fraction),

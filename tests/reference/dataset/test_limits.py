@@ -81,6 +81,17 @@ def test_only_a_proof_is_audited(dataset):
     assert "command does not follow from the scene" in problems(dataset)
 
 
+@pytest.mark.parametrize("kind", ["grid", "transits"])
+@pytest.mark.parametrize(
+    "change",
+    [lambda names: names.pop("x"), lambda names: names.update(w=3), lambda names: names.clear()],
+    ids=["one less", "one more", "none"],
+)
+def test_decimals_name_the_columns(dataset, kind, change):
+    forge(dataset, manifest=lambda document: change(document["decimals"][kind]))
+    assert f"decimals.{kind}: must name the columns" in problems(dataset)
+
+
 def test_runs_that_are_one_are_no_evidence_of_themselves(dataset):
     def one_run_twice(document):
         level = document["scene"]["run"]["level"] = document["level"] = "self_consistent"
