@@ -42,7 +42,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference: precision": f"tests/reference/test_precision.py tests/reference/test_table.py {BITS}",
     "reference/solver: rounding": f"{SOLVER}rounding.py {FILES} {SOLVER}solve.py",
     "reference/solver: agreement transit_errors": f"{SOLVER}agreement.py {SOLVER}solve.py",
-    "reference/solver: solve": f"{BITS} {SOLVER}solve.py",
+    "reference/solver: solve": f"{BITS} {SOLVER}solve.py {SOLVER}pilot.py",
 }
 SLOW = "ships few_digits killed two_processes script same_command ten_times picture collinear 1000000 recomputing "
 SLOW += "large_angles loses_every thirty_digits effective_gravity every_transit"

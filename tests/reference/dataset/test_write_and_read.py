@@ -460,3 +460,9 @@ def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     assert paris.with_values(words) == changed
     assert command(make_scene("mine"), "heyoka", "mine").startswith("foucault generate mine.toml --t-end")
     assert command(make_scene("mine"), "heyoka", "mine+site.latitude=1").endswith("--set site.latitude=1")
+
+
+@pytest.mark.parametrize("name", ["separatrix", "damped"])
+def test_what_was_written_long_ago_is_what_would_be_written_today(name):
+    """Page, vectors and doubles are made again from the tables, and compared byte for byte."""
+    assert problems_of(golden_folder(name)) == []
