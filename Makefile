@@ -19,7 +19,7 @@ golden: .venv/solving
 
 # Each worker takes whole files: what a file prepares is prepared once.
 test: lint
-	@echo "Running the tests: a quarter of an hour on two cores"
+	@echo "Running the tests: 7 to 20 minutes on two cores"
 	$(PYTEST)
 
 # Every dataset that ships and is missing, then atlas/index.html over all; what was stopped goes on where it was
