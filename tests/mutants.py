@@ -31,7 +31,8 @@ DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/t
 LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: physics": f"{DATASET}tight_checks.py {DATASET}verify.py",
-    "reference/dataset/checks: record tables motion": f"{LIMITS} {DATASET}tight_checks.py {BITS} {DATASET}verify.py",
+    "reference/dataset/checks: record tables": f"{LIMITS} {DATASET}tight_checks.py {BITS} {DATASET}verify.py",
+    "reference/dataset/checks: motion shooting": f"{BITS} {DATASET}verify.py {DATASET}shooting.py",
     "reference/dataset/checks: index": f"{DATASET}index.py",
     "reference/dataset: verify files place vectors": f"{LIMITS} {FILES} {DATASET}verify.py",
     "reference/dataset: read sheets write manifest": f"{FILES} {DATASET}verify.py",

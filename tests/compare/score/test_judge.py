@@ -8,6 +8,7 @@ import sys
 from contextlib import contextmanager
 from dataclasses import replace
 from decimal import Context, Decimal, localcontext
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -89,6 +90,15 @@ def test_the_golden_numbers_agree_and_the_document_has_the_keys_of_the_contract(
     assert said["transits"]["matched"] == 10514
     assert said["reference"]["level"] == golden.manifest.level
     assert 4e-13 < said["input_floor_m"] < 6e-13  # rounding the inputs of Paris moves the bob by 5e-13 m in a day
+
+
+def test_what_is_allowed_is_allowed_to_the_last_bit(good, golden):
+    score = judge(good, "paris", transits=golden.transits["t"], explain=False)
+    for transit_m, agrees in ((score.allowed_m, True), (np.nextafter(score.allowed_m, 1), False)):
+        transits = SimpleNamespace(missed=[], extra=[], max_conditioned_m=transit_m)
+        assert replace(score, transits=transits).agrees is agrees
+    assert replace(score, tolerance_m=score.errors.max_m - score.errors.bound_m).agrees
+    assert not replace(score, tolerance_m=score.errors.max_m / 2 - score.errors.bound_m).agrees
 
 
 def test_the_table_says_the_same_in_words(foucault, good):

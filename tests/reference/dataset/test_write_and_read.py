@@ -11,6 +11,7 @@ import sys
 from fractions import Fraction
 from importlib.resources import files
 from pathlib import Path
+from types import SimpleNamespace
 
 import jsonschema
 import numpy as np
@@ -466,3 +467,14 @@ def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
 def test_what_was_written_long_ago_is_what_would_be_written_today(name):
     """Page, vectors and doubles are made again from the tables, and compared byte for byte."""
     assert problems_of(golden_folder(name)) == []
+
+
+def test_what_ships_is_audited(monkeypatch, tmp_path):
+    monkeypatch.setattr(writer, "ships", lambda folder: folder.parent == tmp_path)
+    monkeypatch.setattr(writer, "render", lambda *_: {})
+    monkeypatch.setattr(writer, "write_texts", lambda _, folder: folder.mkdir())
+    for proof in (None, SimpleNamespace(audited=True)):
+        assert write(SimpleNamespace(proof=proof), tmp_path / f"{proof is None}").exists()
+    with pytest.raises(InputError, match="audit"):
+        write(SimpleNamespace(proof=SimpleNamespace(audited=False)), tmp_path / "unaudited")
+    assert not (tmp_path / "unaudited").exists()

@@ -7,6 +7,7 @@ import sys
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -195,6 +196,25 @@ def test_two_runs_that_never_agree_are_refused_and_give_no_numbers(monkeypatch, 
     with pytest.raises(UnreachableError, match="do not agree to 30 digits") as caught:
         reference.solve(paris, t_end="60", digits=30)
     assert caught.value.exit_status == 3
+
+
+@pytest.mark.parametrize(
+    ("gaps", "engines"),
+    [
+        ([{"x": 1e-10, "y": 1e-10}, {"x": 1e-10, "y": 1e-11}, {"x": 1e-10, "y": 1e-12}], "limbs limbs heyoka"),
+        ([{"x": 1e-10, "y": 1e-10}, {"x": 9e-11, "y": 1e-10}, {"x": 8e-11, "y": 1e-10}], "limbs limbs heyoka"),
+        ([{"x": 1e-10, "y": 1e-10}, {"x": 1e-11, "y": 9e-11}, {"x": 1e-12, "y": 8e-11}], "limbs limbs limbs"),
+        ([{"x": 0, "y": 0}] * 3, "limbs limbs limbs"),  # only transits disagree, and may do so less with more bits
+    ],
+)
+def test_an_engine_whose_runs_come_no_nearer_is_replaced(monkeypatch, paris, gaps, engines):
+    tried, found = [], iter(gaps)
+    monkeypatch.setattr(solver, "MAX_RAISES", len(gaps))
+    monkeypatch.setattr(solver, "run_both", lambda fine, *_: tried.append(fine.engine) or (None, None))
+    monkeypatch.setattr(solver.Agreement, "between", lambda *_: SimpleNamespace(missing_bits=8, grid=next(found)))
+    with pytest.raises(UnreachableError):
+        reference.solve(paris, t_end="60", digits=30, level="confirmed")
+    assert " ".join(tried) == engines
 
 
 def test_runs_that_find_different_transits_do_not_agree(monkeypatch, paris):
