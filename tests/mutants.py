@@ -31,15 +31,15 @@ DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/t
 LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: physics": f"{DATASET}tight_checks.py {DATASET}verify.py",
-    "reference/dataset/checks: record tables": f"{LIMITS} {DATASET}tight_checks.py {BITS} {DATASET}verify.py",
+    "reference/dataset/checks: tables": f"{LIMITS} {DATASET}tight_checks.py {DATASET}verify.py",
+    "reference/dataset/checks: record": f"{LIMITS} {BITS} {DATASET}verify.py {SOLVER}confirming.py",
     "reference/dataset/checks: motion shooting": f"{BITS} {DATASET}verify.py {DATASET}shooting.py",
     "reference/dataset/checks: index": f"{DATASET}index.py",
     "reference/dataset: verify files place vectors": f"{LIMITS} {FILES} {DATASET}verify.py",
     "reference/dataset: read sheets write manifest": f"{FILES} {DATASET}verify.py",
     "compare/score: transits": f"{SCORE}transit_errors.py",
     "compare/score: errors": f"{SCORE}errors.py",
-    "compare/score: verdict": f"{SCORE}verdict.py",
-    "compare/score: judge scored": f"{SCORE}judge.py",
+    "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py",
     "reference: precision": f"tests/reference/test_precision.py tests/reference/test_table.py {BITS}",
     "reference/solver: rounding": f"{SOLVER}rounding.py {FILES} {SOLVER}solve.py",
     "reference/solver: agreement transit_errors": f"{SOLVER}agreement.py {SOLVER}solve.py",

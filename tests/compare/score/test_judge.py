@@ -324,6 +324,12 @@ def test_a_share_of_the_span_can_be_demanded(foucault, tmp_path, golden, states,
     assert json.loads(foucault("score", "paris", path, "--json")[1])["covered"] == min(1, (rows - 1) / 1440)
 
 
+@pytest.mark.parametrize("share", [-0.01, 1.01])
+def test_a_share_is_at_most_the_whole(good, share):
+    with pytest.raises(InputError, match="from 0 to 1"):
+        judge(good, "paris", covers=share, explain=False)
+
+
 def test_transits_alone_are_a_candidate(foucault, tmp_path, golden):
     zeros = golden.transits["t"]
     path = tmp_path / "zeros.csv"

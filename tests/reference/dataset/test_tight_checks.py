@@ -125,6 +125,19 @@ def test_the_bound_of_a_time_is_at_most_twice_the_error_of_xdot_over_ax(files, p
     assert any("transit 4: bound" in problem and "leave open" in problem for problem in problems) is found
 
 
+@pytest.mark.parametrize(("part", "grazes"), [(Fraction(99, 100), False), (Fraction(101, 100), True)])
+def test_the_bound_of_a_time_may_be_anything_where_xddot_is_so_small_that_the_zero_may_graze(
+    files, monkeypatch, part, grazes
+):
+    """ax² against twice the bound on xdot times the jerk."""
+    (ax,), _ = state(files, "transits", ROW, ("ax",))
+    jerk = part * ax**2 / (2 * Fraction(files.manifest.bounds.grid["vx"]))
+    monkeypatch.setattr(tables, "_largest_jerk", lambda _: jerk)
+    wide = with_change(files, "transits", "bound", Fraction(10))
+    problems = list(tables._bound_column(wide, wide.tables["transits.csv"]))
+    assert any("transit 4: bound" in problem and "leave open" in problem for problem in problems) is not grazes
+
+
 @pytest.mark.parametrize(("part", "found"), [(Fraction("1.9"), False), (Fraction("2.3"), True)])
 def test_the_bound_of_a_time_may_be_twice_the_difference_of_the_runs(files, part, found):
     apart = Fraction(1, 1000)

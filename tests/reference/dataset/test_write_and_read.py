@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import errno
 import json
 import math
@@ -478,3 +479,30 @@ def test_what_ships_is_audited(monkeypatch, tmp_path):
     with pytest.raises(InputError, match="audit"):
         write(SimpleNamespace(proof=SimpleNamespace(audited=False)), tmp_path / "unaudited")
     assert not (tmp_path / "unaudited").exists()
+
+
+def two_folders(place):
+    for name in "ab":
+        (place / name).mkdir()
+        (place / name / f"of_{name}").touch()
+    return place / "a", place / "b"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="renameat2 is Linux's")
+def test_two_folders_are_swapped_in_one_step(tmp_path):
+    a, b = two_folders(tmp_path)
+    if ctypes.CDLL(None).renameat2(-100, os.fsencode(a), -100, os.fsencode(b), 2):
+        pytest.skip("this disk cannot")
+    assert writer._exchange(a, b)
+    assert (a / "of_a").exists() and (b / "of_b").exists()  # swapped twice
+
+
+@pytest.mark.parametrize("missing", [OSError, AttributeError])
+def test_where_the_system_cannot_swap_folders_that_is_said(monkeypatch, tmp_path, missing):
+    def no_library(*_, **__):
+        raise missing
+
+    monkeypatch.setattr(writer.ctypes, "CDLL", no_library)
+    a, b = two_folders(tmp_path)
+    assert writer._exchange(a, b) is False
+    assert (a / "of_a").exists() and (b / "of_b").exists()
