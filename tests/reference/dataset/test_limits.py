@@ -14,6 +14,7 @@ from forgery import forge, moved, seal
 from small_scenes import make_scene
 
 import reference
+from reference.dataset.checks import record
 from reference.dataset.checks.tables import _order, _signs_on_grid
 from reference.dataset.files import read_files
 from reference.dataset.manifest import MANIFEST
@@ -90,6 +91,17 @@ def test_only_a_proof_is_audited(dataset):
 def test_decimals_name_the_columns(dataset, kind, change):
     forge(dataset, manifest=lambda document: change(document["decimals"][kind]))
     assert f"decimals.{kind}: must name the columns" in problems(dataset)
+
+
+@pytest.mark.parametrize(("part", "found"), [("0.5", False), ("0.49", True)])
+@pytest.mark.parametrize("kind", ["grid", "transits"])
+def test_a_bound_is_at_least_half_a_unit_of_the_last_digit(dataset, kind, part, found):
+    manifest = read_files(dataset).manifest
+    decimals = manifest.decimals[kind]["y"]
+    bounds = getattr(manifest.bounds, kind) | {"y": f"{part}e-{decimals}"}
+    changed = manifest.model_copy(update={"bounds": manifest.bounds.model_copy(update={kind: bounds})})
+    said = [line for line in record._bounds(changed) if f"bounds.{kind}.y" in line and "half a unit" in line]
+    assert bool(said) is found
 
 
 def test_runs_that_are_one_are_no_evidence_of_themselves(dataset):
