@@ -16,7 +16,7 @@ import pytest
 from compare.candidates.read import read
 from compare.score.explanation.findings import Explanation, Model
 from compare.score.judge import judge
-from reference import InputError, load, load_scene, trajectory
+from reference import InputError, load, load_scene, solve, trajectory
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.variants import Variants
 from reference.plain_text import plain
@@ -242,6 +242,13 @@ def test_a_release_at_rest_and_what_lies_beyond_the_end_are_no_extra_transits(fo
     path = tmp_path / "zeros.csv"
     path.write_text("t\n" + "\n".join(map(repr, [0.0, *golden.transits["t"].tolist(), 86400.5])) + "\n")
     assert foucault("score", "paris", good, "--transits", path)[0] == 0
+
+
+def test_a_moving_release_is_no_transit():
+    scene = load_scene("paris", ["release.vx=0.1", "run.t_end=120", "run.level=confirmed"])
+    zeros = np.array([float(t) for t in solve(scene).transits.exact("t")])
+    assert judge(None, scene, transits=zeros, explain=False).agrees
+    assert list(judge(None, scene, transits=np.array([0.0, *zeros]), explain=False).transits.extra) == [0.0]
 
 
 @pytest.mark.parametrize(("suffix", "start"), [("svg", b"<?xml"), ("png", b"\x89PNG")])
