@@ -46,9 +46,9 @@ def test_an_extra_one_is_named():
 
 def test_one_that_is_listed_twice_is_extra_although_xdot_is_zero_there():
     twice = np.sort([*TRUTH, TRUTH[5]])
-    made = against(twice, tolerance_m=1e-6, xdot=lambda at: np.zeros_like(at))
+    made = against(twice, tolerance_m=1e-6, xdot=np.zeros_like)
     assert (made.extra, made.missed) == ([TRUTH[5]], [])
-    made = against(np.sort([*TRUTH, 40.0]), tolerance_m=1e-6, xdot=lambda at: np.zeros_like(at))
+    made = against(np.sort([*TRUTH, 40.0]), tolerance_m=1e-6, xdot=np.zeros_like)
     assert made.extra == []
 
 

@@ -206,6 +206,14 @@ def test_a_single_run_measures_the_pilot_and_is_made_again_if_that_was_too_hopef
         assert Fraction(1, 2) < max(solution.grid.bound("x")) / whole.estimates(bits_of(solution))["x"] < 2
 
 
+def test_a_single_run_whose_bits_are_just_enough_is_not_made_again(monkeypatch, paris, in_parts):
+    runs = []
+    monkeypatch.setattr("reference.solver.solve.run", lambda *words: runs.append(words) or run(*words))
+    monkeypatch.setattr(Pilot, "compared", lambda pilot, *_: pilot)
+    reference.solve(paris.with_values(["run.t_end=600", "run.grid_step=10"]), level="computed", digits=30)
+    assert len(runs) == 1
+
+
 def test_a_proof_is_checked_by_what_its_pilot_lost_against_it(in_parts, paris):
     scene = paris.with_values(["run.grid_step=1", "run.digits=15", "run.level=enclosed", "run.t_end=60"])
     times = tuple(scene.exact.grid)
