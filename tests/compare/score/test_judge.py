@@ -15,7 +15,7 @@ import pytest
 
 from compare.candidates.read import read
 from compare.score.explanation.findings import Explanation, Model
-from compare.score.judge import judge
+from compare.score.judge import _reading, judge
 from reference import InputError, load, load_scene, solve, trajectory
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.variants import Variants
@@ -329,6 +329,12 @@ def test_a_share_of_the_span_can_be_demanded(foucault, tmp_path, golden, states,
     assert done == status
     assert ("covers too little" in out) is bool(status)
     assert json.loads(foucault("score", "paris", path, "--json")[1])["covered"] == min(1, (rows - 1) / 1440)
+
+
+@pytest.mark.parametrize("extended", [False, True])
+def test_inputs_that_the_scene_says_are_doubles_are_read_so_whatever_the_candidate_holds(extended):
+    scene = load_scene("paris", ["inputs=binary64"])
+    assert _reading(SimpleNamespace(extended=extended), scene, "auto") == (scene, "as the scene says")
 
 
 @pytest.mark.parametrize("share", [-0.01, 1.01])

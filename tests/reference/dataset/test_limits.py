@@ -115,6 +115,12 @@ def test_runs_that_are_one_are_no_evidence_of_themselves(dataset):
     assert "level = self_consistent, and no cross-check differs from the run" in problems(dataset)
 
 
+@pytest.mark.parametrize(("first", "last", "outside"), [("-0.9", "9", False), ("-1", "9", True), ("1", "1e5", True)])
+def test_transits_lie_after_the_release_and_up_to_the_end_as_far_as_their_bounds_tell(dataset, first, last, outside):
+    sheet = Sheet(("k", "t", "direction", "bound"), [("1", first, "1", "1"), ("2", last, "-1", "1")], {})
+    assert any("outside (0, t_end]" in problem for problem in _order(read_files(dataset), sheet)) is outside
+
+
 def test_transits_whose_bounds_touch_are_in_order_and_others_are_not(dataset):
     files = read_files(dataset)
     rows = [("1", "10.0", "1", "1"), ("2", "8.0", "-1", "1")]
