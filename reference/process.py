@@ -28,6 +28,7 @@ _START = "import sys; sys.path[:] = sys.argv[1:]; from reference.process import 
 _ENDS_WITH_PARENT = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 _LENGTH = 8  # bytes that hold the length of an object sent to a child
 LEAVE_S = 0.5  # seconds in which a child whose parent has ended can end what it has started itself
+AGAIN_S = 0.05  # seconds after which a signal is sent again whose exception was lost
 GRACE_S = 10.0  # seconds in which a child has to end by itself once its parent has closed the pipes
 
 
@@ -141,7 +142,7 @@ def terminable() -> Iterator[list[int]]:
     """Turn SIGTERM and SIGHUP into SystemExit meanwhile, so that what was begun is cleared away.
 
     Signals that already have a handler, or that are ignored (nohup), are left alone, as all are outside of the main
-    thread.
+    thread. A signal whose exception is lost, as Python ignores those in a finaliser, is sent again a moment later.
 
     Yields:
         The numbers of the signals that have come, SIGINT too. Their exception alone does not tell: code in C that is
@@ -158,6 +159,15 @@ def terminable() -> Iterator[list[int]]:
             signal.default_int_handler(number, frame)
         raise SystemExit(128 + number)
 
+    def again(lost: sys.UnraisableHookArgs) -> None:
+        if came and isinstance(lost.exc_value, KeyboardInterrupt | SystemExit):
+            timer = threading.Timer(AGAIN_S, os.kill, (os.getpid(), came[-1]))
+            timer.daemon = True
+            timer.start()
+        else:
+            said(lost)
+
+    said, sys.unraisablehook = sys.unraisablehook, again
     usual = (signal.SIG_DFL, signal.default_int_handler)
     before = {number: handler for number in _ENDS_WITH_PARENT if (handler := signal.getsignal(number)) in usual}
     for number in before:
@@ -167,6 +177,7 @@ def terminable() -> Iterator[list[int]]:
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+        sys.unraisablehook = said
 
 
 def _leave_ending_to_parent() -> threading.Event:
@@ -176,6 +187,8 @@ def _leave_ending_to_parent() -> threading.Event:
     that is returned is set, they end this process by an exception, so that it can end such a program.
     """
     ended = threading.Event()
+    said = sys.unraisablehook
+    sys.unraisablehook = lambda lost: None if ended.is_set() else said(lost)  # the exception met a finaliser
 
     def take(*_: object) -> None:
         if ended.is_set():

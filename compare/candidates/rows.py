@@ -62,7 +62,7 @@ def spelling(line: str) -> Spelling | None:
             one = Spelling(separator, comma, fortran, quoted)
             fields = [text.strip() for text in one.fields(line)]
             numbers = sum(is_number(text) or _HEXFLOAT.fullmatch(text) is not None for text in fields)
-            share = numbers / max(1, len(fields) - (fields[-1] == ""))
+            share = numbers / max(1, len(fields) - (fields[-1:] == [""]))
             if share > best.share:
                 best = Spelling(separator, comma, fortran, quoted, share)
     return best if best.share > 0.5 else None

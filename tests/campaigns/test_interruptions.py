@@ -101,3 +101,26 @@ foucault.main()
 """
     ended = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "", "")
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_interruption_that_is_lost_in_a_finaliser_is_sent_again(number: signal.Signals) -> None:
+    """Python ignores exceptions there."""
+    program = f"""
+import os, time, foucault
+
+class Last:
+    def __del__(self):
+        os.kill(os.getpid(), {int(number)})
+        time.sleep(0)
+
+def interrupted(prog_name):
+    Last()
+    time.sleep(20)
+    print("went on")
+
+foucault.commands = lambda: interrupted
+foucault.main()
+"""
+    ended = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "", "")

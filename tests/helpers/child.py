@@ -36,6 +36,20 @@ def freeze(_: Any) -> None:
     os.kill(os.getpid(), signal.SIGSTOP)
 
 
+class _Slow:
+    def __init__(self, parent: Any) -> None:
+        self.parent = parent
+
+    def __del__(self) -> None:
+        self.parent("finalising")
+        time.sleep(30)
+
+
+def finalise(parent: Any) -> None:
+    """Send a word from a finaliser that takes long; Python ignores exceptions there, and says so."""
+    _Slow(parent)
+
+
 def hold(parent: Any, folder: str) -> None:
     """Send a word, and wait; leave a file when it ends by an exception."""
     try:

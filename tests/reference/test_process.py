@@ -13,7 +13,7 @@ from pathlib import Path
 
 import child
 import pytest
-from child import count_to, doubled, freeze, refuse
+from child import count_to, doubled, finalise, freeze, refuse
 from places import ROOT
 
 from reference import process
@@ -59,6 +59,13 @@ def test_a_signal_to_the_whole_group_leaves_the_end_of_a_child_to_its_parent(num
     assert worker.receive() == 6
     worker.stop()
     assert worker._process.returncode == 0
+    assert capfd.readouterr().err == ""
+
+
+def test_a_child_that_is_in_a_finaliser_as_its_parent_stops_ends_without_a_word(capfd):
+    worker = Worker(finalise)
+    assert worker.receive() == "finalising"
+    worker.stop()
     assert capfd.readouterr().err == ""
 
 

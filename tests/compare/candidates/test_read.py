@@ -466,3 +466,10 @@ def test_more_rows_than_are_judged_are_refused(monkeypatch):
     monkeypatch.setattr("compare.candidates.columns.MAX_ROWS", 2)
     refused(csv(), "more than 2 rows")
     assert MAX_ROWS >= 1_000_000
+
+
+@pytest.mark.parametrize("quotes", ['""', '"" ""', '" "', '"'])
+def test_a_line_of_quotes_alone_is_no_row(quotes):
+    assert list(read_stream(io.BytesIO(f"{quotes}\nt,x,y\n0,1,1\n1,2,1\n".encode()), "run").t) == [0.0, 1.0]
+    with pytest.raises(InputError):
+        read_stream(io.BytesIO(quotes.encode()), "run")
