@@ -139,14 +139,14 @@ def _signals_held() -> Iterator[None]:
 
 @contextlib.contextmanager
 def terminable() -> Iterator[list[int]]:
-    """Turn SIGTERM and SIGHUP into SystemExit meanwhile, so that what was begun is cleared away.
+    """Turn SIGTERM and SIGHUP into SystemExit meanwhile, so that what was begun is cleared away; note SIGINT as well.
 
     Signals that already have a handler, or that are ignored (nohup), are left alone, as all are outside of the main
     thread. A signal whose exception is lost, as Python ignores those in a finaliser, is sent again a moment later.
 
     Yields:
-        The numbers of the signals that have come, SIGINT too. Their exception alone does not tell: code in C that is
-        interrupted while it is imported turns it into an ImportError.
+        The numbers of the signals that have come. The exception that arrives does not always tell: code in C that is
+        interrupted while it is imported raises an ImportError instead.
     """
     came: list[int] = []
     if threading.current_thread() is not threading.main_thread():

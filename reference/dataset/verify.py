@@ -16,12 +16,12 @@ BEYOND = "a number of the scene or of a table, or what follows from it, is beyon
 
 @dataclass(frozen=True)
 class Verification:
-    """The problems of a dataset, and notes on it.
+    """What a check of a dataset found.
 
     Attributes:
-        problems: a sentence each; none if it passes.
-        foreign: what else lies in the folder.
-        left_out: what was not checked.
+        problems: a sentence for each; none if the dataset passes.
+        foreign: a note on each file in the folder that does not belong to the dataset.
+        left_out: a sentence for each check that was not made, with its reason.
     """
 
     problems: list[str]
@@ -30,7 +30,7 @@ class Verification:
 
     @property
     def notes(self) -> list[str]:
-        """What lies beside the dataset, and what was not checked."""
+        """All that a user should know besides problems: files that do not belong to it, and checks not made."""
         return [*self.foreign, *self.left_out]
 
 
