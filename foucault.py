@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -11,6 +12,7 @@ if TYPE_CHECKING:
     import typer
 
 INTERRUPTED = 130
+SELDOM = 100_000  # objects made between two searches for garbage: imports make many, and leave none
 
 
 def commands() -> typer.Typer:
@@ -63,6 +65,8 @@ def _version(asked: bool) -> None:
 
 def main() -> None:
     """Run the command line; a mistake, a full disk or an interruption ends with a message and its exit status."""
+    gc.set_threshold(SELDOM)
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: more threads only wait
     try:
         _run()
     except KeyboardInterrupt:

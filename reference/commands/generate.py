@@ -116,7 +116,7 @@ def command(
     if scene_word is None:
         raise InputError("SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them.")
     from ..dataset.place import dataset_id, default_folder, ships
-    from ..dataset.shipping import summary
+    from ..dataset.shipping import preferred_engine, summary
     from ..dataset.write import check_target, write
     from ..solver.solve import solve
 
@@ -130,7 +130,8 @@ def command(
     audit, confirm = audit or (proving and ships(folder)), proving and not no_confirm
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
-        solution = solve(scene, engine=engine, audit=audit, confirm=confirm, report=report)
+        wanted = preferred_engine(folder) if engine == AUTO else engine
+        solution = solve(scene, engine=wanted, audit=audit, confirm=confirm, report=report)
     if engine not in (AUTO, solution.run.engine):
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)

@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from ..columns import POSITION
+from ..engines import AUTO
+from ..engines.registry import engines
 from ..errors import FoucaultError, IntegrationError, UnreachableError
 from ..process import Parent, Worker
 from ..scene import Scene, load_scene
@@ -97,14 +99,20 @@ def made(job: Job) -> Made:
 
 def _solved(scene: Scene, folder: Path) -> Solution:
     """Solve a scene; a proof is audited if it ships, and confirmed by heyoka unless that is out of reach."""
+    engine = preferred_engine(folder)
     if scene.run.level != "enclosed":
-        return solve(scene)
+        return solve(scene, engine=engine)
     try:
-        return solve(scene, audit=ships(folder), confirm=True)
+        return solve(scene, engine=engine, audit=ships(folder), confirm=True)
     except IntegrationError:
         raise
     except UnreachableError:
-        return solve(scene, audit=ships(folder))
+        return solve(scene, engine=engine, audit=ships(folder))
+
+
+def preferred_engine(folder: Path) -> str:
+    """Return limbs for what ships, so that it and heyoka's confirmation are of two codes; else the fastest engine."""
+    return "limbs" if ships(folder) and engines()["limbs"].installed else AUTO
 
 
 def serve(parent: Parent) -> None:

@@ -24,6 +24,7 @@ class Engine(ABC):
         extra: the extra of `pip install 'foucault-reference[…]'` that installs them.
         bits: lowest and highest precision that it is chosen for.
         own_process: whether a proof has it compute in a child process; else it costs too little for that.
+        start_s: CPU seconds until its first step: of importing what it requires and of loading what it has compiled.
     """
 
     name: ClassVar[str]
@@ -32,6 +33,7 @@ class Engine(ABC):
     extra: ClassVar[str]
     bits: ClassVar[range]
     own_process: ClassVar[bool]
+    start_s: ClassVar[float]
 
     @property
     def installed(self) -> bool:

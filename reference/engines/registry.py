@@ -14,6 +14,8 @@ from .batch import Batch
 from .engine import Engine
 from .plan import Plan, Report, Run
 
+MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
+
 
 @cache
 def engines() -> dict[str, Engine]:
@@ -47,14 +49,18 @@ def checked(name: str | None) -> str:
     return name
 
 
-def fastest(prec: int, name: str = AUTO) -> Engine:
-    """Return the engine to compute with at `prec` bits.
+def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS) -> Engine:
+    """Return the engine to compute with at `prec` bits, in a run that would be `steps` steps in double.
 
     The engine called `name` is taken if it is installed and can compute at this precision. Otherwise, or if `name` is
     "auto", it is the one with the least expected cost among the installed engines that can.
     """
     serving = [engine for engine in engines().values() if engine.installed and prec in engine.bits]
-    return min(serving, key=lambda engine: (engine.name != name and name != AUTO, engine.expected_s(1, prec)))
+
+    def cost(engine: Engine) -> tuple[bool, float]:
+        return engine.name != name and name != AUTO, engine.start_s + engine.expected_s(steps, prec)
+
+    return min(serving, key=cost)
 
 
 def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:

@@ -15,7 +15,7 @@ from .plan import Plan, Report, Run
 from .registry import engines, run
 
 REPORT_S = 0.2  # seconds between two reports of progress from the child
-WORTH_A_PROCESS = 4.0  # estimated CPU seconds from which a child pays for its start
+WORTH_A_PROCESS = 1.0  # estimated CPU seconds from which a child pays for its start
 COMPILATION_S = 10.0  # or for the wait while the other run compiles on its first use
 
 
@@ -28,12 +28,17 @@ def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None
         steps: about how many steps either takes.
         report: called with the simulated time, the mean of both.
     """
-    first_s, second_s = (engines()[plan.engine].expected_s(steps, plan.number.prec) for plan in (first, second))
+    first_s, second_s = (expected_s(plan, steps) for plan in (first, second))
     worth = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= COMPILATION_S
     end = float(first.times[-1])
     with beside(second, worth) as other:
         first_run = run(first, report and (lambda t: report((t + other.reached) / 2)))
         return first_run, other.result(report and (lambda t: report((end + t) / 2)))
+
+
+def expected_s(plan: Plan, steps: int) -> float:
+    """Return about how many CPU seconds a run takes that would be `steps` steps in double."""
+    return engines()[plan.engine].expected_s(steps, plan.number.prec)
 
 
 @contextmanager

@@ -53,6 +53,11 @@ class Start:
         return scaled(self.velocity, self.k.length)
 
     @cached_property
+    def rate(self) -> float:
+        """Rate of a small swing, or of its decay if that is faster, in 1/s."""
+        return max(float(self.ctx.sqrt(self.ctx.norm(self.k.pull))), float(self.k.drag))
+
+    @cached_property
     def rest(self) -> Vector:
         """Rest position over l, n = (0, sin θ, -cos θ), Mathar (46).
 

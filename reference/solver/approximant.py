@@ -13,7 +13,8 @@ from itertools import islice
 
 from ..engines import AUTO
 from ..engines.plan import Run
-from ..engines.registry import engines, fastest
+from ..engines.registry import MANY_STEPS, engines, fastest
+from ..engines.side_by_side import WORTH_A_PROCESS
 from ..errors import IntegrationError
 from ..inputs import Inputs
 from ..process import Emit, Worker
@@ -21,6 +22,14 @@ from ..taylor_step import TaylorStep
 
 COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
 BATCH = 32  # steps sent at once
+
+
+class Replaced(Exception):
+    """The engine that a proof began with is not the one to go on with: that is `engine`."""
+
+    def __init__(self, engine: str) -> None:
+        super().__init__(engine)
+        self.engine = engine
 
 
 @dataclass
@@ -33,21 +42,32 @@ class Feed:
         inputs: the scene's exact inputs.
         times: output times in s; the run goes one step beyond the last.
         engine: name of the engine, where it has the bits; "auto" for the fastest.
+        steps: about how many steps it takes in double.
     """
 
     inputs: Inputs
     times: tuple[Fraction, ...]
     engine: str = AUTO
+    steps: int = MANY_STEPS
+    _begun: str = ""
     _worker: Worker | None = field(default=None, repr=False)
     _steps: Iterator[TaylorStep] = field(default_factory=lambda: iter(()), repr=False)
     _runs: list[Run] = field(default_factory=list, repr=False)
 
     def __call__(self, prec: int) -> Iterator[TaylorStep]:
-        """Start a run at `prec` bits and return its steps, in order from t = 0."""
+        """Start a run at `prec` bits and return its steps, in order from t = 0.
+
+        Raises:
+            Replaced: another engine has to do it than at the first call. All that a proof has tried is to be of the
+                engine that its dataset names, so that `--engine` gives the same bytes again.
+        """
         self.stop()
         self._runs.clear()
-        engine = fastest(prec, self.engine)
-        if engine.own_process:
+        engine = fastest(prec, self.engine, self.steps)
+        if self._begun not in ("", engine.name):
+            raise Replaced(engine.name)
+        self._begun = engine.name
+        if engine.own_process and engine.expected_s(self.steps, prec) >= WORTH_A_PROCESS:
             self._worker = Worker(_send_steps, engine.name, self.inputs, self.times, prec)
             self._steps = self._received(self._worker)
         else:

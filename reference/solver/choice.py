@@ -38,8 +38,8 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: 
         from ..enclosure.plan import plan_for  # python-flint is not imported unless the level asks for it
 
         bits = plan_for(scene.exact, times[-1], first_radius(pilot, scene.run.digits), None).bits - COEFFICIENT_BITS
-        return fastest(bits, engine).plan(scene.exact, bits, times, transits=False)
-    return published_plan(scene, times, first_prec(scene, pilot, engine), engine)
+        return fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, transits=False)
+    return published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine)
 
 
 def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
@@ -57,11 +57,11 @@ def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
     return rounded_prec(max(prec, LONG_DOUBLE.prec))
 
 
-def published_plan(scene: Scene, times: tuple[Fraction, ...], prec: int, engine: str) -> Plan:
+def published_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int, engine: str) -> Plan:
     """Return the run that is published: of `prec` bits if it is alone, else finer than the one beside it."""
     finer = LONG_DOUBLE.prec if prec == DOUBLE.prec else prec + FINER_BITS
     bits = prec if scene.run.level == "computed" else finer
-    return fastest(bits, engine).plan(scene.exact, bits, times, scene.run.transits)
+    return fastest(bits, engine, pilot.steps).plan(scene.exact, bits, times, scene.run.transits)
 
 
 def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, prec: int) -> Plan:

@@ -11,7 +11,7 @@ from ..columns import GRID, TRANSITS
 from ..engines import AUTO
 from ..engines.plan import Run
 from ..engines.registry import run
-from ..engines.side_by_side import Beside, beside
+from ..engines.side_by_side import WORTH_A_PROCESS, Beside, beside, expected_s
 from ..errors import IntegrationError
 from ..precision import LONG_DOUBLE
 from ..scene import Scene
@@ -39,8 +39,9 @@ class Confirmation:
 
     @contextmanager
     def begun(self) -> Iterator[Beside]:
-        """Do the run in a child process meanwhile."""
-        with beside(confirming_plan(self._scene, self._times, self._pilot, self._prec)) as child:
+        """Do the run in a child process meanwhile, where that pays; else once it is waited for."""
+        plan = confirming_plan(self._scene, self._times, self._pilot, self._prec)
+        with beside(plan, expected_s(plan, self._pilot.steps) >= WORTH_A_PROCESS) as child:
             yield child
 
     def of(self, solution: Solution, child: Beside) -> Solution:

@@ -18,7 +18,7 @@ from ..errors import UnreachableError
 from ..precision import rounded_up
 from ..scene import Scene
 from ..table import Table, bits_in
-from .approximant import COEFFICIENT_BITS, Feed
+from .approximant import COEFFICIENT_BITS, Feed, Replaced
 from .choice import first_radius, late_radius
 from .pilot import Pilot, run_pilot
 from .proof_checks import checked_states, cross_checked
@@ -66,7 +66,7 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
     scene, times, pilot, rough = problem.scene, problem.times, problem.pilot, problem.rough
     span = float(times[-1])
     radius = first = first_radius(pilot, scene.run.digits)
-    feed = Feed(scene.exact, times, problem.engine)
+    feed = Feed(scene.exact, times, problem.engine, pilot.steps)
 
     try:
         for _ in range(ROUNDING_TRIES):
@@ -94,6 +94,8 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
                     radius = min(radius, late_radius(first, scene.exact))
             else:
                 return solution
+    except Replaced as replaced:
+        return proved(replace(problem, engine=replaced.engine), enclose, report)
     finally:
         feed.stop()
     raise UnreachableError(

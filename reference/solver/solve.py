@@ -83,7 +83,7 @@ def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Re
 
     def single(prec: int) -> Run:
         check_reach(pilot.steps, prec, scene.run.digits)
-        return run(published_plan(scene, times, prec, engine), report)
+        return run(published_plan(scene, times, pilot, prec, engine), report)
 
     pilot, rough = begun_pilot(scene.exact, times)
     prec = first_prec(scene, pilot, engine)
@@ -104,11 +104,11 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
     check_reach(pilot.steps, prec, digits)
     last_gap: Fraction | None = None
     for _ in range(MAX_RAISES):
-        fine = published_plan(scene, times, prec, engine)
+        fine = published_plan(scene, times, pilot, prec, engine)
         if scene.run.level == "confirmed":
             coarse = confirming_plan(scene, times, pilot, prec)
         else:
-            coarse = _witness(fine, prec, engine)
+            coarse = _witness(fine, prec, engine, pilot.steps)
         published, witness = run_both(fine, coarse, pilot.steps, report)
         gap = Agreement.between(published, witness, digits)
         if not gap.missing_bits:
@@ -131,9 +131,9 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
     )
 
 
-def _witness(fine: Plan, prec: int, engine: str) -> Plan:
+def _witness(fine: Plan, prec: int, engine: str, steps: int) -> Plan:
     """Return the run that checks another at the level self_consistent: by another engine, or in other steps."""
-    coarse = fastest(prec, engine)
+    coarse = fastest(prec, engine, steps)
     if coarse.name == fine.engine:
         return coarse.witness(fine, prec)
     return coarse.plan(fine.inputs, prec, fine.times, fine.transits)

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
 
 import heyoka as hy
 
 from ...precision import NumberType
 from .log import watched_log
+
+FOLDER = "foucault"  # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
+MOST_BYTES = 1 << 25
 
 
 @contextmanager
@@ -17,11 +22,25 @@ def compiling(number: NumberType) -> Iterator[None]:
 
     Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it is switched off.
     """
-    keep_on_disk(number)
     with watched_log():
+        keep_on_disk(number)
         yield
 
 
 def keep_on_disk(number: NumberType) -> None:
     """Have what is compiled from now on kept on disk, where that serves for numbers of this type."""
-    hy.llvm_state.set_diskcache_enabled(number.hardware and bool(hy.llvm_state.get_diskcache_path()))
+    hy.llvm_state.set_diskcache_enabled(number.hardware and _has_place())
+
+
+@cache
+def _has_place() -> bool:
+    """Give the cache a folder of its own, of bounded size; return whether it can be used."""
+    place = Path(hy.llvm_state.get_diskcache_path())
+    if not place.is_absolute():
+        return False
+    try:
+        hy.llvm_state.set_diskcache_path(place / FOLDER)
+        hy.llvm_state.set_diskcache_limit(MOST_BYTES)
+    except RuntimeError:  # it cannot be written, or is damaged
+        return False
+    return True

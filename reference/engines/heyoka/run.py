@@ -36,7 +36,7 @@ def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Stepper]
     watching = plan.transits and not xdot_vanishes(start)
     longest = plan.times[-1] * OTHER_STEPS if plan.other_steps else None
     formulation = carried(FORMULATIONS[plan.formulation], start, Numbers(plan.number).of)
-    stepper = Stepper(formulation, start, plan.number, events=watching, longest=longest)
+    stepper = Stepper(formulation, start, plan.number, events=watching, span=plan.times[-1], longest=longest)
     times = [stepper.numbers.of(t) for t in plan.times]
     if look_ahead is not None:
         look_ahead(stepper)

@@ -20,6 +20,7 @@ from .model import RoundedModel
 from .system import System
 
 STEPS_PER_REPORT = 64  # steps between two reports of progress
+SHORT_RUN = 2000  # span times rate of a run beyond long double that is too short for optimised code to pay
 TIME_BITS = 64  # a time, two numbers of the type, is read exactly with this many bits beyond twice the precision
 
 
@@ -40,6 +41,7 @@ class Stepper:
         start: constants and release, in a precision finer than the run's.
         number: type to compute in.
         events: whether to detect the zeros of xdot.
+        span: time in s that will be integrated, by which compiling is thorough or quick; thorough if None.
         longest: longest step in s; heyoka's own choice if None.
     """
 
@@ -50,6 +52,7 @@ class Stepper:
         number: NumberType,
         *,
         events: bool = False,
+        span: Fraction | None = None,
         longest: Fraction | None = None,
     ) -> None:
         self.number, self.model = number, RoundedModel(formulation, start.k, number)
@@ -59,7 +62,10 @@ class Stepper:
         self._longest = None if longest is None else self.numbers.of(longest)
         system = System.build(formulation, self.model.k)
         self._variables = [name for name, _ in system.equations]
-        keywords = dict(self.numbers.keywords)
+        compiled = dict(self.numbers.keywords)
+        if not number.hardware and span is not None and float(span) * start.rate < SHORT_RUN:
+            compiled["opt_level"] = 0  # calls of MPFR give the same numbers
+        keywords = dict(compiled)
         if events:
             zeros = self.zeros  # heyoka deep-copies callbacks: a function stays itself, a bound method would not
 
@@ -75,7 +81,7 @@ class Stepper:
             self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
             if events:
                 outputs = [system.xdot, system.xddot]
-                self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **self.numbers.keywords)
+                self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **compiled)
         self.compile_s = time.process_time() - started
         self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)

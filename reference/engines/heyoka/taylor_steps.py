@@ -34,7 +34,7 @@ def taylor_steps(
     """
     plan = Plan(inputs, "momentum", real(prec), times, transits=False)
     start = Start.of(inputs, prec + GUARD_BITS)
-    stepper = Stepper(FORMULATIONS["momentum"], start, plan.number)
+    stepper = Stepper(FORMULATIONS["momentum"], start, plan.number, span=times[-1])
     grid = [stepper.numbers.of(t) for t in times]
     started = time.process_time()
     rate = max(float(start.ctx.sqrt(start.ctx.norm(start.k.pull))), float(start.k.drag) / DECAYS)

@@ -25,6 +25,7 @@ class Limbs(Engine):
     extra = "methods"
     bits = range(LEAST_PREC, MOST_PREC + 1)
     own_process = False
+    start_s = 0.5
 
     def plan(self, inputs: Inputs, prec: int, times: tuple[Fraction, ...], transits: bool) -> Plan:
         """Return the run that keeps `prec` bits of a number as large as the swing."""

@@ -12,6 +12,8 @@ from small_scenes import make_scene, model_at, stepper_of
 
 import reference.engines.heyoka.run as module
 from reference.columns import STATE
+from reference.engines.heyoka import machine_code
+from reference.engines.heyoka import stepper as stepper_module
 from reference.engines.heyoka.log import watched_log
 from reference.engines.heyoka.system import System, equations_text
 from reference.engines.plan import Plan
@@ -144,6 +146,36 @@ def test_the_disk_cache_is_off_for_real_where_it_never_hits(paris):
     assert hy.llvm_state.get_diskcache_enabled()
     stepper_of(paris, real(160))
     assert not hy.llvm_state.get_diskcache_enabled()
+
+
+def test_the_disk_cache_is_the_projects_own_and_bounded(paris):
+    stepper_of(paris, DOUBLE)
+    assert hy.llvm_state.get_diskcache_path().name == machine_code.FOLDER
+    assert hy.llvm_state.get_diskcache_limit() == machine_code.MOST_BYTES
+
+
+@pytest.mark.parametrize("place", ["relative", "", "/dev/null/no_folder"])
+def test_where_no_cache_can_be_heyoka_does_without(paris, monkeypatch, tmp_path, place):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(machine_code.hy.llvm_state, "get_diskcache_path", lambda: place)
+    machine_code._has_place.cache_clear()
+    try:
+        stepper_of(paris, DOUBLE)
+        assert not hy.llvm_state.get_diskcache_enabled()
+        assert not list(tmp_path.iterdir())
+    finally:
+        monkeypatch.undo()
+        machine_code._has_place.cache_clear()
+
+
+@pytest.mark.parametrize("prec", [80, 200])
+def test_code_that_is_compiled_quickly_gives_the_same_numbers(paris, monkeypatch, prec):
+    plan = Plan(paris.exact, "space", real(prec), (Fraction(0), Fraction(50), Fraction(100)), transits=True)
+    quick = module.run(plan)
+    monkeypatch.setattr(stepper_module, "SHORT_RUN", 0)
+    thorough = module.run(plan)
+    assert quick.grid.values == thorough.grid.values
+    assert quick.transits.values == thorough.transits.values
 
 
 def test_no_states_give_no_rows(paris):

@@ -20,9 +20,10 @@ from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.dataset.verify import problems_of
 from reference.dataset.write import write
 from reference.engines.plan import Plan
-from reference.engines.registry import engines, run
+from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.precision import real
+from reference.solver import approximant
 from reference.solver.approximant import Feed
 from reference.solver.enclosed import solve_enclosed
 
@@ -31,7 +32,7 @@ SHORT = {"t_end": "300", "digits": 30, "level": "enclosed"}
 
 @pytest.fixture(scope="module")
 def enclosed():
-    return reference.solve(reference.load_scene("paris"), t_end="600", level="enclosed")
+    return reference.solve(reference.load_scene("paris"), t_end="600", level="enclosed", engine="limbs")
 
 
 def finer(scene, prec=300):
@@ -246,16 +247,39 @@ def test_an_error_in_the_feeds_process_arrives(paris):
     feed.stop()
 
 
+def test_all_that_a_proof_tries_is_of_the_engine_that_it_names(monkeypatch):
+    """At rest at the top, limbs have too few bits for the second try: heyoka begins again with the first."""
+    scene, tried = reference.load_scene("inverted_rest"), []
+
+    def watched(prec, *words):
+        engine = fastest(prec, *words)
+        tried.append((engine.name, prec))
+        return engine
+
+    monkeypatch.setattr(approximant, "fastest", watched)
+    by_limbs = reference.solve(scene, engine="limbs")
+    assert by_limbs.run.engine == "heyoka"
+    names, precs = zip(*tried, strict=True)
+    again = names.index("heyoka") + 1
+    assert names[0] == "limbs"
+    assert precs[again] == precs[0]
+    del tried[:again]
+    begun_by_limbs = list(tried)
+    tried.clear()
+    assert reference.solve(scene, engine="heyoka").run.number == by_limbs.run.number
+    assert tried == begun_by_limbs
+
+
 def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(monkeypatch):
     digits = pytest.importorskip("reference.enclosure.digits")
     scene = make_scene(run={**SHORT, "t_end": "30", "digits": 20})
-    audited = reference.solve(scene, audit=True)
-    assert grid_sheet(audited) == grid_sheet(reference.solve(scene))
+    audited = reference.solve(scene, engine="limbs", audit=True)
+    assert grid_sheet(audited) == grid_sheet(reference.solve(scene, engine="limbs"))
     honest = digits.norms
     monkeypatch.setattr(digits, "norms", lambda *words: [x / 2 for x in honest(*words)])
-    reference.solve(scene)  # half of the defect still bounds these few digits: only the audit can tell
+    reference.solve(scene, engine="limbs")  # half of the defect still bounds these few digits: only the audit can tell
     with pytest.raises(UnreachableError, match="audit: the sums of digits are not FLINT's"):
-        reference.solve(scene, audit=True)
+        reference.solve(scene, engine="limbs", audit=True)
 
 
 def test_an_audit_without_a_proof_is_refused():
