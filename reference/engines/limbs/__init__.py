@@ -8,6 +8,6 @@ fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are 
 - `problem`, `output_times`: a scene and its times in limbs.
 - `march`, `step`: steps; `recurrence`, `products`, `series`, `unrolled`: the Taylor coefficients of one, the sums of
   products in them, their arrays, and the innermost sums written out.
-- `limb`, `lanes`: numbers of limbs, eight side by side.
+- `limb`, `lanes`: numbers of limbs, eight side by side; `parts`: how what they compile becomes machine code once.
 - `zeros`, `polish`, `polynomial`, `xdot`: the zeros of xdot on a step; `dense_output`: the state inside a step.
 """

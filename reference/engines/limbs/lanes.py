@@ -18,6 +18,7 @@ from numba import types
 from numba.core import cgutils
 
 from ...machine_code import kept
+from .parts import AsPart
 
 LANES = 8
 _insert: Any = cgutils.get_or_insert_function
@@ -34,19 +35,18 @@ def hashed(folder: Path) -> str:
 SOURCES = hashed(Path(__file__).parent)
 _extending: Any = numba.extending  # untyped
 _OPTIONS = {"error_model": "numpy", "_nrt": False}  # no reference counting: all arrays come from the caller
+_PART: dict[str, Any] = _OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "pipeline_class": AsPart}
 
 
 def compiled(function: Function) -> Function:
     """Compile with numba, to be called from compiled functions; no option lets arithmetic be rearranged."""
-    callee: Function = _extending.register_jitable(no_cpython_wrapper=True, no_cfunc_wrapper=True, **_OPTIONS)(function)
+    callee: Function = _extending.register_jitable(**_PART)(function)
     return callee
 
 
 def inlined(function: Function) -> Function:
     """Compile into its callers: for small parts of innermost loops, where a call would cost more than the work."""
-    callee: Function = _extending.register_jitable(
-        no_cpython_wrapper=True, no_cfunc_wrapper=True, forceinline=True, **_OPTIONS
-    )(function)
+    callee: Function = _extending.register_jitable(forceinline=True, **_PART)(function)
     return callee
 
 
@@ -265,7 +265,7 @@ def _binary(operation: Any, name: str) -> None:
         return Lanes(Lanes, Lanes), generate
 
     # numba calls `choose` with the operands' types and reads the signature off the lambda; it wants no annotations here
-    @_extending.overload(operation)
+    @_extending.overload(operation, jit_options=_PART | {"forceinline": True})
     def choose(a, b):  # type: ignore[no-untyped-def]
         if isinstance(a, _Lanes) and isinstance(b, _Lanes):
             return lambda a, b: apply(a, b)  # noqa: PLW0108

@@ -28,7 +28,7 @@ from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search
 
 # why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
 GOOD, FULL, STUCK, DOUBTFUL = range(4)
-COMPILE_S = 20  # what compiling takes, about, of which users are told
+COMPILE_S = 11  # what compiling takes, about, of which users are told
 COLUMNS = 7  # x, y, z, vx, vy, vz, ax
 TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # in `MarchState.counts`
 
