@@ -7,6 +7,16 @@ from typing import Any
 
 from flint import arb, fmpz
 
+from ..packing import Digits
+
+
+def audit(piece: Any) -> None:
+    """Raise ArithmeticError unless sums of a piece's digits are FLINT's; what did not come as digits needs no audit."""
+    if isinstance(piece.rows, Digits):
+        from .digits import norms
+
+        compare(piece, norms)
+
 
 def compare(piece: Any, norms: Callable[..., list[arb]]) -> None:
     """Raise ArithmeticError unless a piece's exact sums are FLINT's integers and shortened ones bound them."""

@@ -23,12 +23,10 @@ class World:
     Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z.
     """
 
-    audit: Any = None  # called with a piece and the sums of digits, where FLINT's polynomials are to be taken
-
-    def __init__(self, inputs: Any, prec: int) -> None:
+    def __init__(self, inputs: Any, prec: int, by_flint: bool = False) -> None:
         if inputs.drag < 0 or inputs.length <= 0:
             raise ArithmeticError("not a pendulum: the theorems take a length > 0 and a drag >= 0")
-        self.prec = prec
+        self.prec, self.by_flint = prec, by_flint  # by FLINT's polynomials alone, not by sums of digits
         with ctx.workprec(prec):
             turn = fmpq(inputs.latitude.numerator, inputs.latitude.denominator) / 180
             sin, cos, rate = arb.sin_pi_fmpq(turn), arb.cos_pi_fmpq(turn), ball(inputs.rotation_rate)
@@ -44,9 +42,8 @@ class World:
             self.H = cross(self.r, add(v, cross(self.omega, self.r)))
             (x, y, vx), at_rest = (q.is_zero() for q in (*self.release[0][:2], v[0])), all(q.is_zero() for q in v)
             self.slow, self.flat = vx, at_rest and x  # xdot(0) = 0 exactly; and xddot(0) = 0
-            self.still = (vx and x and rate.is_zero()) or (
-                at_rest and x and y and (sin * cos * rate).is_zero()
-            )  # xdot = 0 for ever
+            planar, hangs = vx and rate.is_zero(), at_rest and y and (sin * cos * rate).is_zero()
+            self.still = x and (planar or hangs)  # xdot = 0 for ever
             c, w = size(self.c), size(self.omega)
             pace = c.sqrt() if c > 0 else w + size(self.H)
             self.w0 = pace.mid() if pace > 0 else arb(1)  # any positive number is a valid weight
@@ -121,12 +118,10 @@ class Piece:
 
     def defects(self) -> list[arb]:
         """Return the norms of d (three components), τ, τ', τ'': by sums of digits, or by FLINT's polynomials."""
-        if isinstance(self.rows, Digits):
+        if isinstance(self.rows, Digits) and not self.world.by_flint:
             from .digits import norms
 
-            if not self.world.audit:
-                return norms(self.rows.table, self.k.whole)
-            self.world.audit(self, norms)
+            return norms(self.rows.table, self.k.whole)
         return [norm(f, 2 * self.step.bits) for f in self.measured()]
 
     def measured(self) -> list[fmpz_poly]:

@@ -22,7 +22,7 @@ class Course:
         self.bound: Any = Columns(world) if columns else Radius(world)
         self.scan = Scan(world) if transits and not world.still else None
 
-    def advance(self, step: TaylorStep, proposal: tuple[Proposal, ...], lap: Callable[[str], None]) -> None:
+    def advance(self, step: TaylorStep, proposal: tuple[Proposal, ...], lap: Callable[[str], None]) -> Piece:
         """Take the next step, and columns if it is proved by them; `lap` is told which part of the work is done."""
         piece = Piece(self.world, step)
         lap("defect" if piece.sizes else "")
@@ -33,6 +33,7 @@ class Course:
         if self.scan:
             self.scan.advance(covered)
             lap("transits")
+        return piece
 
     def finish(self) -> tuple[list[list[Interval]], list[EnclosedTransit] | None]:
         """Return the states at `times`, and the transits; None if not requested or if xdot is zero for ever."""

@@ -4,12 +4,11 @@ Nothing here is a float, and no sum can overflow: `check` refuses what could (TH
 stands for 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
 """
 
-from collections.abc import Callable, Iterable
-from functools import reduce
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from flint import arb, fmpz
+from flint import arb, fmpz, fmpz_poly
 from numba import njit
 
 from ..machine_code import kept
@@ -36,24 +35,17 @@ compiled: Callable[[Any], Any] = njit(cache=True)
 with kept("the proof's sums", 5):
 
     @compiled
-    def used(row: Any) -> Any:
-        """Return the number of orders up to the last digit that is not 0."""
-        k = row.size
-        while k and not row[k - 1]:
-            k -= 1
-        return k
-
-    @compiled
     def multiply(to: Any, f: Any, g: Any, alike: bool) -> None:
         """Add the product of two polynomials to the sums, in the rows that these have; `alike` says that f is g."""
-        for q in range(f.shape[0]):
-            terms = used(f[q])
-            for r in range(q if alike else 0, min(g.shape[0], to.shape[0] - q)):
-                count, twice = used(g[r]), np.int32(2 if alike and r > q else 1)
-                row = g[r, :count]
-                for k in range(terms):
-                    factor, out = np.int32(twice * f[q, k]), to[q + r, k : k + count]
-                    for j in range(count):
+        for r in range(g.shape[0]):
+            count = g.shape[1]
+            while count and not g[r, count - 1]:
+                count -= 1
+            row = g[r, :count]
+            for q in range(min(r + 1 if alike else f.shape[0], to.shape[0] - r)):
+                for k in range(f.shape[1]):
+                    factor, out = np.int32((2 if alike and q < r else 1) * f[q, k]), to[q + r, k : k + count]
+                    for j in range(count if factor else 0):
                         out[j] += factor * row[j]
 
     @compiled
@@ -63,23 +55,17 @@ with kept("the proof's sums", 5):
         out, digits = np.zeros((count, 3, rows + TOP_ROWS), np.int64), np.zeros(rows + TOP_ROWS, np.int64)
         for i in range(count):
             for n in range(orders):
-                for sign in (1, -1):
-                    over = 0
-                    for t in range(rows + TOP_ROWS - 1, -1, -1):
-                        whole = over + (sign * to[i, t - TOP_ROWS, n] if t >= TOP_ROWS else 0)
-                        digits[t], over = whole & MASK, whole >> DIGIT_BITS
-                    if not over:  # else the coefficient is negative
-                        break
+                over = 0
+                for t in range(rows + TOP_ROWS - 1, 0, -1):
+                    whole = over + (to[i, t - TOP_ROWS, n] if t >= TOP_ROWS else 0)
+                    digits[t], over = whole & MASK, whole >> DIGIT_BITS
+                digits[0] = over  # -1 for a negative coefficient, else 0
                 for t in range(rows + TOP_ROWS):
-                    out[i, 0, t] += digits[t]
-                    out[i, 1, t] += n * digits[t]
-                    out[i, 2, t] += n * (n - 1) * digits[t]
+                    digit = digits[t] * (1 + 2 * over)
+                    out[i, 0, t] += digit
+                    out[i, 1, t] += n * digit
+                    out[i, 2, t] += n * (n - 1) * digit
         return out
-
-
-def joined(digits: Iterable[int]) -> int:
-    """Return the integer of digits, the highest first."""
-    return reduce(lambda n, digit: (n << DIGIT_BITS) + digit, digits)
 
 
 def split(n: int, count: int) -> list[int]:
@@ -103,12 +89,11 @@ def norms(rows: Any, whole: list[fmpz], more: int = MORE_ROWS) -> list[arb]:
     lift[:, :1] -= square
     v = (order[1:] * p[..., 1:]).astype(np.int32)
     to = np.zeros((4, count + more, 2 * orders), np.int64)
-    for i, factor in enumerate((lift, lift, tension)):
-        multiply(to[i], factor, p[i], False)
-        multiply(to[i], drag, v[i], False)
-        multiply(to[3], p[i], p[i], True)
-    multiply(to[0], -2 * turn, v[1], False)
-    multiply(to[1], 2 * turn, v[0], False)
+    products = [(0, lift, p[0]), (1, lift, p[1]), (2, tension, p[2]), (0, -2 * turn, v[1]), (1, 2 * turn, v[0])]
+    for i, f, g in [*products, *((i, drag, v[i]) for i in range(3))]:
+        multiply(to[i], f, g, False)
+    for f in p:
+        multiply(to[3], f, f, True)
     bend = order[1:-1] * order[2:] * p[..., 2:] << half
     to[:3, :count, : bend.shape[2]] += bend
     to[1:3, :count, 0] -= constants[3:] << half
@@ -117,4 +102,4 @@ def norms(rows: Any, whole: list[fmpz], more: int = MORE_ROWS) -> list[arb]:
     cut = 0 if more >= count - 1 else (4 * orders * most >> DIGIT_BITS) + 1
     sums, last = weigh(to), fmpz(2 - DIGIT_BITS * (count + 1 + more))
     digits = [*((0, f[0]) for f in sums[:3]), *enumerate(sums[3])]
-    return [arb((joined(x.tolist()) + cut * (2 * orders) ** n, last)) for n, x in digits]
+    return [arb((fmpz_poly(x[::-1].tolist())(1 << DIGIT_BITS) + cut * (2 * orders) ** n, last)) for n, x in digits]

@@ -3,50 +3,48 @@
 So nothing that rounds or prints between a proof and its files has to be believed.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
 
 from .shapes import EnclosedTransit, Interval
 
 GRID = "t,x,y,z,vx,vy,vz"
 TRANSITS = "k,t,direction,x,y,z,vy,ax,bound"
-DECIMAL = frozenset("-.0123456789")
+DECIMAL = frozenset("+-.0123456789")
+Bounds = Mapping[str, str]
 
 
 class Misprint(ArithmeticError):
     """A printed number is not that of the proof."""
 
 
-def check_grid(
-    text: str, times: Iterable[Fraction], states: Iterable[list[Interval]], bounds: Mapping[str, str]
-) -> None:
+def check_grid(text: str, times: Iterable[Fraction], states: Iterable[Sequence[Interval]], bounds: Bounds) -> None:
     """Raise Misprint unless grid.csv has the exact times, and each number is the nearest to all of its interval."""
-    for (time, *row), t, state in zip(rows(text, GRID), times, states, strict=True):
-        if Fraction(time) != t:
-            raise Misprint(f"the time {time}")
-        for name, number, x in zip(GRID.split(",")[1:], row, state, strict=True):
-            check(number, x, bounds[name])
+    check_rows(text, GRID, ([exact(t), *state] for t, state in zip(times, states, strict=True)), bounds)
 
 
-def check_transits(text: str, found: Iterable[EnclosedTransit], bounds: Mapping[str, str]) -> None:
+def check_transits(text: str, found: Iterable[EnclosedTransit], bounds: Bounds) -> None:
     """Raise Misprint unless transits.csv has the single zeros, in order, each number nearest to all of its interval."""
-    ones = [z for z in found if z.parity == "one"]
-    for k, (row, z) in enumerate(zip(rows(text, TRANSITS), ones, strict=True), 1):
-        cells: dict[str, Any] = dict(zip(TRANSITS.split(","), row, strict=True))
-        if (int(cells.pop("k")), int(cells.pop("direction"))) != (k, z.direction):
-            raise Misprint(f"transit {k}")
-        check(cells.pop("t"), z.t, cells.pop("bound"))
-        for name, number in cells.items():
-            check(number, getattr(z, name), bounds[name])
+    ones = enumerate((z for z in found if z.parity == "one"), 1)
+    rows = ([exact(k), z.t, exact(z.direction), z.x, z.y, z.z, z.vy, z.ax] for k, z in ones)
+    check_rows(text, TRANSITS, rows, bounds)
 
 
-def rows(text: str, header: str) -> list[list[str]]:
-    """Return the cells of a file with this header."""
-    first, *lines = text.splitlines()
+def exact(number: Fraction | int) -> Interval:
+    """Return the interval of one number."""
+    return Interval(Fraction(number), Fraction(number))
+
+
+def check_rows(text: str, header: str, rows: Iterable[list[Interval]], bounds: Bounds) -> None:
+    """Raise Misprint unless a file has these rows; what has no bound must be exact, and t has its row's, if any."""
+    names, (first, *lines) = header.split(","), text.splitlines()
     if first != header:
         raise Misprint(f"the header {first}")
-    return [line.split(",") for line in lines]
+    for line, row in zip(lines, rows, strict=True):
+        cells = dict(zip(names, line.split(","), strict=True))
+        of_row = {**bounds, "t": cells.get("bound", "0")}
+        for name, x in zip(names, row, strict=False):
+            check(cells[name], x, of_row.get(name, "0"))
 
 
 def check(number: str, x: Interval, bound: str) -> None:

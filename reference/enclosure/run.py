@@ -17,7 +17,7 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..taylor_step import TaylorStep
-from .audit import compare
+from .audit import audit
 from .bound import World
 from .course import Course
 from .frames import ColumnSource
@@ -154,7 +154,7 @@ class _Run:
         audit: bool,
     ) -> None:
         self.inputs, self.plan, self.times, self.radius, self.progress = inputs, plan, times, radius, progress
-        self.transits, self.audit = transits, audit
+        self.transits, self.audited = transits, audit
         self.end = times[-1]
         self.clock = _Clock()
 
@@ -166,8 +166,7 @@ class _Run:
             raise UnreachableError("enclosure: the approximant is empty.")
         bits, order = first.bits, len(first.coefficients[0]) - 1
         self.clock.lap("candidate")
-        world = World(self.inputs, bits + SCENE_GUARD_BITS)
-        world.audit = compare if self.audit else None
+        world = World(self.inputs, bits + SCENE_GUARD_BITS, self.audited)
         columns = ColumnSource(world) if self.plan.method == "columns" else None
         course = Course(world, self.times, columns is not None, self.transits)
         count = known = 0
@@ -175,7 +174,9 @@ class _Run:
         for step in self._until(chain([first], steps)):
             proposal = (columns.propose(step, [_log(z) for z in course.bound.z]),) if columns else ()
             self.clock.lap("candidate")
-            course.advance(step, proposal, self.clock.lap)
+            piece = course.advance(step, proposal, self.clock.lap)
+            if self.audited:
+                audit(piece)
             count += 1
             if len(course.states) > known:
                 known = len(course.states)

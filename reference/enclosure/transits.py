@@ -3,6 +3,7 @@
 from fractions import Fraction
 from functools import reduce
 from itertools import pairwise
+from typing import Any
 
 from flint import arb, arb_poly, ctx
 
@@ -28,23 +29,21 @@ class Slope:
         self.piece, self.tube, self.centre = piece, tube, ball(piece.step.centre)
         self.forms = ((piece.v[0], arb(0, tube.u)), (piece.v[0].derivative(), arb(0, tube.a)))
 
-    def at(self, n: int, s: arb) -> arb:
+    def at(self, n: int, s: arb) -> Any:
         """Return a ball that contains xdot (n = 0) or xddot (n = 1) on the ball `s`."""
-        value: arb = self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
-        return value
+        return self.forms[n][0](s) / self.piece.unit + self.forms[n][1]
 
-    def rate(self, s: arb) -> arb:
+    def rate(self, s: arb) -> Any:
         """Return a ball that contains xddot on `s`; about the middle of `s` where the series about 0 shows no sign."""
         (f, off), plain = self.forms[1], self.at(1, s)
         return plain if sign(plain) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.piece.unit + off
 
-    def bend(self, s: arb) -> arb:
+    def bend(self, s: arb) -> Any:
         """Return a ball that contains x''' on the ball `s`, by the equations of motion (section 7)."""
         k, (r, v) = self.piece.k, state(self.covered, s)
         a = [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
         F, F1 = k.force(r, v), add(k.force(v, a), times(-1, k.c))
-        rate: arb = F1[0] - v[0] * (dot(v, v) + dot(r, F)) - r[0] * (2 * dot(v, a) + dot(v, F) + dot(r, F1))
-        return rate
+        return F1[0] - v[0] * (dot(v, v) + dot(r, F)) - r[0] * (2 * dot(v, a) + dot(v, F) + dot(r, F1))
 
 
 class Scan:
@@ -83,14 +82,10 @@ class Scan:
                 way = bend or (sign(slope.bend(whole)) if self.world.flat else 0)
             elif not way and bend and sign(slope.at(0, low)) == (last := sign(slope.at(0, high))):
                 way = last
+        deep = 2 * depth >= self.world.prec or self.leaves > MOST_LEAVES
         if way:
             self._close(way)
-        elif (
-            bend
-            or 2 * depth >= self.world.prec
-            or self.leaves > MOST_LEAVES
-            or not speed.abs_upper() > 3 * slope.tube.u
-        ):
+        elif bend or deep or not speed.abs_upper() > 3 * slope.tube.u:
             self.cluster.append(Leaf(bend, low, high, slope))
         else:
             self._sort(slope, low, middle, depth + 1)
