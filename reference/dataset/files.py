@@ -224,7 +224,7 @@ def _pattern(header: tuple[str, ...], decimals: Mapping[str, int], name: str) ->
     """Return each column's name and the pattern of its numbers."""
     found = []
     for column in header:
-        places = decimals.get(column, 0)
+        places = decimals.get(column)
         plain = "-?[0-9]{1,308}" + (f"[.][0-9]{{{places}}}" if places else "")
         number = _HEXFLOAT if column.endswith("_hex") else _DOUBLE if "binary64" in name else plain
         found.append((column, _PATTERNS.get(column, number)))

@@ -80,7 +80,7 @@ def problems(files: Files, report: Progress | None = None) -> tuple[list[str], l
         while prec <= MOST_PREC:
             coarse = _run(files, prec - LIMB_BITS, seek, budget, report)
             fine = _run(files, prec, seek, budget, report)
-            found = _compared(files, coarse, fine, seek)
+            found = _compared(files, coarse, fine)
             if found is not None:
                 return found, []
             prec += FINER_BITS
@@ -109,7 +109,7 @@ def _steps(files: Files) -> int:
     speeds = (sum(abs(part) for part in row) for row in files.tables["grid.csv"].numbers(GRID[3:]))
     rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)) + abs(start.k.rate) + start.k.drag)
     rate += float(max(speeds) / files.scene.exact.length)
-    return int(min(1e15, float(files.scene.exact.t_end) * rate)) + 1
+    return int(min(1e15, float(files.scene.exact.t_end) * rate))
 
 
 def _run(files: Files, prec: int, seek: bool, budget: _Budget, report: Progress | None) -> Run:
@@ -122,12 +122,12 @@ def _run(files: Files, prec: int, seek: bool, budget: _Budget, report: Progress 
     return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), budget.watched(show))
 
 
-def _compared(files: Files, coarse: Run, fine: Run, seek: bool) -> list[str] | None:
+def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     """Return the numbers that are off; None where the two runs are too far apart to tell."""
     manifest = files.manifest
     comparisons = [_Comparison.of(manifest, "grid", files.tables["grid.csv"], coarse.grid, fine.grid)]
     found = []
-    if seek and (fine.transits is not None):
+    if fine.transits is not None:
         if coarse.directions != fine.directions:
             return None
         sheet = files.tables["transits.csv"]

@@ -140,11 +140,14 @@ def test_a_time_that_is_no_double_is_taken_as_it_is(golden):
     near = times.astype(float)
     truth = dense(golden, near, 2.0**-80)
     late = (times - near).astype(float)
-    moved = truth.states[:, :3] + 0.0
-    wide = moved.astype(np.longdouble) + truth.low[:, :3] + truth.states[:, 3:] * late[:, None]
-    made = trajectory_errors(candidate_of("wide", {"t": times, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
+    after, before = (dense(golden, near + h).states for h in (1e-3, -1e-3))
+    rates = np.hstack([truth.states[:, 3:], (after - before)[:, 3:] / 2e-3])
+    wide = truth.states.astype(np.longdouble) + truth.low + rates * late[:, None]
+    columns = dict(zip(COLUMNS, wide.T, strict=True))
+    made = trajectory_errors(candidate_of("wide", {"t": times, **columns}), truth, golden)
     assert np.abs(late).max() > 1e-12
-    assert made.max_m < 1e-18
+    assert max(np.abs(made.components[name]).max() for name in ("x", "y", "vx", "vy")) < 1e-18
+    assert max(np.abs(made.components[name]).max() for name in ("z", "vz")) < 1e-17  # 67 m in a long double
     blind = trajectory_errors(candidate_of("wide", {"t": near, "x": wide[:, 0], "y": wide[:, 1]}), truth, golden)
     assert blind.max_m > 1e-14
 

@@ -15,7 +15,7 @@ import pytest
 
 from compare.candidates.read import read
 from compare.score.explanation.findings import Explanation, Model
-from compare.score.judge import _reading, judge
+from compare.score.judge import _reading, _transits, judge
 from reference import InputError, load, load_scene, solve, trajectory
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.variants import Variants
@@ -571,7 +571,7 @@ def test_a_centrifugal_force_larger_than_g_is_warned_of(tmp_path, site, warned):
     assert all("site.gravity_is=effective" in note for note in notes)
 
 
-@pytest.mark.parametrize(("early", "whole"), [(1e-13, True), (0.9e-6, True), (1.1e-6, False)])
+@pytest.mark.parametrize(("early", "whole"), [(1e-13, True), (0.9e-6, True), (1e-6, True), (1.1e-6, False)])
 def test_a_file_that_ends_a_rounding_before_the_end_covers_all_of_it(tmp_path, golden, states, early, whole):
     path = write_csv(tmp_path / "short.csv", np.append(golden.t[-3:-1], 86400 * (1 - early)), states[-3:])
     assert (judge(path, "paris", explain=False).covered == 1.0) is whole
@@ -581,6 +581,37 @@ def test_a_transit_at_the_end_asked_for_is_judged(golden):
     zeros = golden.transits["t"]
     score = judge(None, "paris", transits=zeros, t_end=zeros[10])
     assert (score.transits.matched, score.transits.missed, score.transits.extra) == (11, [], [])
+
+
+def test_a_transit_at_the_end_of_the_span_is_judged(golden):
+    score = judge(None, "paris", transits=np.append(golden.transits["t"], 86400.0), explain=False)
+    assert score.transits.extra == [86400.0]
+
+
+def test_transits_within_an_interval_that_the_truth_leaves_open_are_not_judged(good, golden):
+    errors = judge(good, "paris", explain=False).errors
+    possible = [SimpleNamespace(from_s="10", to_s="11")]
+    unsure = replace(golden, manifest=golden.manifest.model_copy(update={"possible": possible}))
+    found = _transits(np.array([9.0, 10.0, 10.5, 11.0, 12.0]), unsure, errors, 1e-6)
+    assert np.sort([*found.at + found.errors_s, *found.extra]).tolist() == [9.0, 12.0]
+
+
+def test_a_transit_between_the_last_two_rows_is_missed_and_none_after_them(tmp_path, golden, states):
+    zeros = golden.transits["t"]
+    last = zeros[zeros <= golden.t[10]][-1]
+    assert golden.t[9] < last < golden.t[10]
+    path = write_csv(tmp_path / "part.csv", golden.t[:11], states[:11])
+    assert judge(path, "paris", transits=zeros[zeros < last], explain=False).transits.missed == [last]
+    assert judge(path, "paris", transits=zeros[zeros <= last], explain=False).agrees
+
+
+@pytest.mark.parametrize(("early", "tolerance_m", "after"), [(0.0, 0.0, 5), (0.9, 0.1, 5), (1.1, 0.1, 4)])
+def test_transits_alone_cover_the_motion_up_to_the_next_one_beyond_the_tolerance(golden, early, tolerance_m, after):
+    zeros = golden.transits["t"]
+    score = judge(None, "paris", transits=zeros[:5], explain=False)
+    last = zeros[4] - early * tolerance_m / score.errors.speed_m_s
+    part = replace(score, tolerance_m=tolerance_m, errors=replace(score.errors, t=np.array([0.0, last])))
+    assert part.covered == zeros[after] / 86400
 
 
 @pytest.mark.parametrize("as_model", [True, False])

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compare.score.transits import transit_errors
+from compare.score.transits import TransitErrors, transit_errors
 
 TRUTH = np.arange(1, 21) * 8.2
 AX = 0.05 * (-1.0) ** np.arange(20)
@@ -42,6 +42,11 @@ def test_an_extra_one_is_named():
     made = against(np.sort([*TRUTH, 40.0]))
     assert made.extra == [40.0]
     assert (made.matched, made.missed) == (20, [])
+
+
+def test_an_extra_one_beside_the_first_is_not_put_in_its_place():
+    made = against(np.sort([*TRUTH, TRUTH[0] + 1]))
+    assert (made.extra, made.max_error_s) == ([TRUTH[0] + 1], 0.0)
 
 
 def test_one_that_is_listed_twice_is_extra_although_xdot_is_zero_there():
@@ -135,6 +140,21 @@ def test_a_transit_matches_within_half_a_swing_and_not_beyond():
     assert against([4.0], one, slope).matched == 1
     found = against([*TRUTH[:-1], 150.0, TRUTH[-1] + 4.05])
     assert (found.matched, found.extra) == (20, [150.0])
+
+
+def test_half_a_swing_to_the_last_bit_is_within_it():
+    swing, three = np.array([8.0]), np.array([8.0, 9.0, 17.0])  # in both half of it is 4 s
+    assert against([12.0, 100.0], swing, np.ones(1)).matched == 1
+    assert against([12.0, 13.0], three, np.ones(3)).at.tolist() == [8.0, 9.0]
+    assert against([12.0], three, np.ones(3)).at.tolist() == [8.0]  # in order, and once
+
+
+def test_what_is_off_by_the_tolerance_to_the_last_bit_is_within_it():
+    one = np.array([0.5])
+    assert TransitErrors(one, one, [], [], one).shifted(0.5) == []
+    truth = np.array([8.0, 16.0, 16.5, 24.0])  # between the pair the bob is off by 4 m/s² * 0.5 s / 4 over 1 rad/s
+    pair = transit_errors(truth[[0, 3]], truth, np.full(4, 4.0), 1.0, 30.0, tolerance_m=0.5)
+    assert pair.undecided == [16.0, 16.5]
 
 
 def test_one_at_the_very_end_of_the_candidate_is_undecided():

@@ -6,10 +6,11 @@ import math
 from types import SimpleNamespace as Made
 
 import numpy as np
+import pytest
 
 from compare.score.explanation.findings import Explanation, Model, SizedCause
 from compare.score.transits import TransitErrors
-from compare.score.verdict import lines
+from compare.score.verdict import lines, percent
 
 WIND = Explanation(causes=(SizedCause("wind", "leaves out the wind", 0.25, "input"),), corrected_m=1e-9)
 RUN = Made(id="paris", run=Made(t_end="86400"), inputs="binary64")
@@ -102,3 +103,11 @@ def test_a_model_is_said_with_how_exact_it_is_and_what_it_costs():
     said = list(lines(score(explanation=model)))
     assert "As that model it is exact to 1e-09 m; against the full Lagrangian it is 0.25 m off:" in said
     assert not any(line.startswith("As that model") for line in lines(score()))
+
+
+@pytest.mark.parametrize(
+    ("share", "said"),
+    [(0.0, "0 %"), (0.29, "29 %"), (1.0, "100 %"), (1 - 1.5e-9, "99.9 %"), (1 - 0.5e-9, "100 %"), (0.012345, "1.23 %")],
+)
+def test_a_share_is_rounded_down_to_three_digits_but_for_rounding_errors(share, said):
+    assert percent(share) == said

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -53,3 +54,17 @@ def test_another_scene_and_other_versions_of_here_need_not_have_it(shipped, tmp_
         assert seals_of(copied) == []
     forge(copied, manifest=lambda m: m["generator"].update(heyoka="1"))  # made neither there nor here
     assert len(seals_of(copied)) == 1
+
+
+def test_a_proof_in_its_place_says_that_it_was_audited(shipped, tmp_path):
+    files = read_files(shipped)
+    aside = read_files(Path(shutil.copytree(shipped, tmp_path / "elsewhere" / "paris")))
+
+    def said(files, **changes):
+        return list(index.problems(replace(files, manifest=files.manifest.model_copy(update=changes))))
+
+    command = files.manifest.command
+    assert said(files, level="enclosed") == [
+        "manifest.json: a proof that ships must be audited: make it again with --audit"
+    ]
+    assert said(files, level="enclosed", command=f"{command} --audit") == said(aside, level="enclosed") == []

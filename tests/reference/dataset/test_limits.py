@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
@@ -14,9 +15,10 @@ from forgery import forge, moved, seal
 from small_scenes import make_scene
 
 import reference
+from reference.dataset import files as reading
 from reference.dataset.checks import record
 from reference.dataset.checks.tables import _order, _signs_on_grid
-from reference.dataset.files import read_files
+from reference.dataset.files import read_files, scene_of
 from reference.dataset.manifest import MANIFEST
 from reference.dataset.place import MAX_ID, dataset_id
 from reference.dataset.sheets import Sheet
@@ -51,6 +53,29 @@ def test_a_manifest_of_more_than_a_mebibyte_is_not_read(dataset, size, said):
         stream.truncate(size)
     assert said in problems(dataset)
     assert said in "\n".join(problems_of(dataset))
+
+
+@pytest.mark.parametrize("more, said", [(0, "breaks the schema at mistake"), (1, "breaks the schema in 1001 places")])
+def test_of_a_manifest_with_more_than_a_thousand_mistakes_they_are_counted(dataset, more, said):
+    document = json.loads((dataset / MANIFEST).read_text())
+    (dataset / MANIFEST).write_text(json.dumps({**document, **{f"mistake{i}": i for i in range(1000 + more)}}))
+    assert said in problems(dataset)
+
+
+def test_a_folder_that_is_put_in_the_place_of_another_meanwhile_is_not_read(dataset, monkeypatch):
+    def exchanged(manifest):
+        dataset.rename(dataset.with_name("aside"))
+        dataset.mkdir()
+        return scene_of(manifest)
+
+    monkeypatch.setattr(reading, "scene_of", exchanged)
+    assert "grid.csv" in read_files(dataset).tables
+
+
+def test_without_files_relative_to_a_folder_a_dataset_is_read_by_its_path(dataset, monkeypatch):
+    whole = read_files(dataset)
+    monkeypatch.setattr(reading.os, "supports_dir_fd", set())
+    assert read_files(dataset) == whole
 
 
 @pytest.mark.parametrize("size, said", [(1 << 28, "a byte was changed"), ((1 << 28) + 1, "at most 268435456 are read")])
@@ -91,6 +116,23 @@ def test_only_a_proof_is_audited(dataset):
 def test_decimals_name_the_columns(dataset, kind, change):
     forge(dataset, manifest=lambda document: change(document["decimals"][kind]))
     assert f"decimals.{kind}: must name the columns" in problems(dataset)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda m: m.run.__dict__.update(formulation="guess"), "run.formulation = guess is none"),
+        (
+            lambda m: m.scene["site"].update(gravity="9.80665 "),
+            "scene is not written with all its fields as they are read",
+        ),
+    ],
+)
+def test_where_a_manifest_makes_no_sense_nothing_else_is_said(dataset, change, said):
+    found = read_files(dataset)
+    changed = replace(found, manifest=found.manifest.model_copy(deep=True))
+    change(changed.manifest)
+    assert list(record.problems(changed)) == [f"{MANIFEST}: {said}"]
 
 
 @pytest.mark.parametrize(("part", "found"), [("0.5", False), ("0.49", True)])

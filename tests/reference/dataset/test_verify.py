@@ -226,12 +226,13 @@ def test_the_bounds_of_transits_can_be_made_neither_smaller_nor_larger(dataset):
         assert said in problems(copy)
 
 
-def test_doubles_that_are_not_the_nearest_are_found(dataset):
+@pytest.mark.parametrize("column", [0, 1])
+def test_doubles_that_are_not_the_nearest_are_found(dataset, column):
     files = read_files(dataset)
     lines = files.texts["grid.binary64.csv"].splitlines(keepends=True)
     cells = lines[3].rstrip("\n").split(",")
-    double = float.fromhex(cells[7 + 1]) * (1 + 2**-52)
-    cells[1], cells[8] = f"{double:.16e}", double.hex()
+    double = float.fromhex(cells[7 + column]) * (1 + 2**-52)
+    cells[column], cells[7 + column] = f"{double:.16e}", double.hex()
     lines[3] = ",".join(cells) + "\n"
     document = json.loads((dataset / MANIFEST).read_text())
     seal(dataset, document, {**files.texts, "grid.binary64.csv": "".join(lines)})

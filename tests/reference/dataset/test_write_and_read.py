@@ -306,7 +306,7 @@ def test_a_target_that_is_a_link_stays_one(dataset, solution):
     assert load(dataset).manifest.digits == 8
 
 
-def test_the_seal_of_what_ships_is_kept_and_of_nothing_else(solution, tmp_path, monkeypatch):
+def test_the_seal_of_a_dataset_of_the_project_is_kept_and_of_nothing_else(solution, tmp_path, monkeypatch):
     kept = []
     monkeypatch.setattr("reference.dataset.place.golden_root", lambda: tmp_path / "golden")
     monkeypatch.setattr(writer, "keep_seal", lambda *seal: kept.append(seal))
@@ -470,7 +470,7 @@ def test_what_was_written_long_ago_is_what_would_be_written_today(name):
     assert problems_of(golden_folder(name)) == []
 
 
-def test_what_ships_is_audited(monkeypatch, tmp_path):
+def test_no_proof_goes_to_the_golden_folder_unaudited(monkeypatch, tmp_path):
     monkeypatch.setattr(writer, "ships", lambda folder: folder.parent == tmp_path)
     monkeypatch.setattr(writer, "render", lambda *_: {})
     monkeypatch.setattr(writer, "write_texts", lambda _, folder: folder.mkdir())
@@ -481,16 +481,18 @@ def test_what_ships_is_audited(monkeypatch, tmp_path):
     assert not (tmp_path / "unaudited").exists()
 
 
-def two_folders(place):
+@pytest.fixture
+def two_folders(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     for name in "ab":
-        (place / name).mkdir()
-        (place / name / f"of_{name}").touch()
-    return place / "a", place / "b"
+        Path(name).mkdir()
+        Path(name, f"of_{name}").touch()
+    return Path("a"), Path("b")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="renameat2 is Linux's")
-def test_two_folders_are_swapped_in_one_step(tmp_path):
-    a, b = two_folders(tmp_path)
+def test_two_folders_are_swapped_in_one_step(two_folders):
+    a, b = two_folders
     if ctypes.CDLL(None).renameat2(-100, os.fsencode(a), -100, os.fsencode(b), 2):
         pytest.skip("this disk cannot")
     assert writer._exchange(a, b)
@@ -498,11 +500,11 @@ def test_two_folders_are_swapped_in_one_step(tmp_path):
 
 
 @pytest.mark.parametrize("missing", [OSError, AttributeError])
-def test_where_the_system_cannot_swap_folders_that_is_said(monkeypatch, tmp_path, missing):
+def test_where_the_system_cannot_swap_folders_that_is_said(monkeypatch, two_folders, missing):
     def no_library(*_, **__):
         raise missing
 
+    a, b = two_folders
     monkeypatch.setattr(writer.ctypes, "CDLL", no_library)
-    a, b = two_folders(tmp_path)
     assert writer._exchange(a, b) is False
     assert (a / "of_a").exists() and (b / "of_b").exists()

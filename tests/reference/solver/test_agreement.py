@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from functools import cache
 
@@ -201,3 +202,24 @@ def test_the_error_of_a_column_is_twice_the_difference_of_two_runs(paris):
     found = Agreement.between(one, other, 12)
     gaps = one.grid.only(GRID).distance(other.grid).largest()
     assert found.errors == {name: 2 * gap for name, gap in gaps.items()}
+
+
+@pytest.mark.parametrize("y", ["0.5", "0"])
+def test_the_error_of_a_column_that_never_changes_is_the_last_bit_of_the_second_run(y):
+    """Of the cord's length, and of the largest speed; where nothing moves, of the speed of a swing as wide as that."""
+    scene = make_scene(pendulum={"length": "2"}, site={"rotation_rate": "0"}, release={"x": "0", "y": y})
+    times = (Fraction(0), Fraction(1), Fraction(2))
+    one, other = (run(Plan(scene.exact, "spin", number, times, transits=False)) for number in (DOUBLE, real(120)))
+    found = Agreement.between(one, other, 12).errors
+    fastest = one.grid.largest()["vy"] or sqrt(scene.exact.gravity * 2)
+    assert found["x"] == Fraction(2, 2**120)
+    assert float(found["vx"]) == pytest.approx(float(fastest) / 2**120, rel=1e-12)
+
+
+def test_runs_that_find_other_transits_lack_half_their_bits(paris):
+    plans = (
+        Plan(paris.exact, "spin", number, (Fraction(0), Fraction(60)), transits=True) for number in (DOUBLE, real(120))
+    )
+    one, other = map(run, plans)
+    found = Agreement.between(one, replace(other, directions=other.directions[:-1]), 12)
+    assert (found.missing_bits, found.transits) == (60, None)

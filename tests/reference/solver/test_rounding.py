@@ -49,6 +49,16 @@ def test_a_number_whose_error_leaves_a_digit_open_is_refused_in_grid_and_transit
         check_decided(replace(solution, **{kind: table.with_errors(errors)}))
 
 
+@pytest.mark.parametrize(("of_grid", "of_transits"), [(OPEN, 2 * OPEN), (2 * OPEN, OPEN)])
+def test_the_widest_of_the_numbers_with_an_open_digit_is_named(solution, of_grid, of_transits):
+    grid = solution.grid.with_errors(dict.fromkeys(GRID, SURE) | {"y": of_grid})
+    transits = solution.transits.with_errors(dict.fromkeys(TRANSITS, SURE) | {"y": of_transits})
+    unsure = replace(solution, grid=grid, transits=transits)
+    with pytest.raises(UndecidedRounding) as caught:
+        check_decided(unsure)
+    assert (caught.value.width, caught.value.column) == (2 * OPEN * 10 ** grid_decimals(unsure)["y"], "y")
+
+
 @pytest.mark.parametrize(("values", "digits"), [(("60", "0"), 0), (("0.05",), 2), (("1.5", "0.125", "7"), 3)])
 def test_terminating_decimals_are_printed_exactly(values, digits):
     assert exact_decimals(tuple(map(Fraction, values))) == digits

@@ -17,7 +17,7 @@ from small_scenes import make_scene
 import reference
 from reference.columns import GRID
 from reference.dataset.sheets import grid_sheet, transits_sheet
-from reference.engines import side_by_side
+from reference.engines import registry, side_by_side
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.engines.side_by_side import run_both
@@ -215,6 +215,16 @@ def test_an_engine_whose_runs_come_no_nearer_is_replaced(monkeypatch, paris, gap
     with pytest.raises(UnreachableError):
         reference.solve(paris, t_end="60", digits=30, level="confirmed", engine="limbs")
     assert " ".join(tried) == engines
+
+
+def test_a_run_is_checked_by_the_fastest_engine_and_by_the_same_one_in_other_steps(paris):
+    times = (Fraction(0), Fraction(60))
+    fine = registry.engines()["limbs"].plan(paris.exact, 90, times, transits=True)
+    in_double, in_limbs = (solver._witness(fine, prec, "auto" if prec == 53 else "limbs", 10) for prec in (53, 80))
+    assert (in_double.engine, in_double.number, in_double.other_steps) == ("heyoka", DOUBLE, False)
+    assert (in_limbs.engine, in_limbs.other_steps) == ("limbs", True)
+    for plan in (in_double, in_limbs):
+        assert (plan.inputs, plan.times, plan.transits) == (paris.exact, times, True)
 
 
 def test_runs_that_find_different_transits_do_not_agree(monkeypatch, paris):
