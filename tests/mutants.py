@@ -3,7 +3,8 @@
     python tests/mutants.py --count 60 --seed 1                  # as many from each file of `TESTS` as far as possible
     python tests/mutants.py --module checks/tables --count 20    # from the files whose path contains that
 
-The tests run without any change first. What ends a run in an error, or takes five times as long, was noticed.
+The tests run without any change first. What ends a run in an error, or takes five times as long, was noticed. Mutants
+that no test could tell from the source are left out: `equivalent_mutants.toml` names them, each with a reason.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -52,11 +54,24 @@ SWAPPED |= {ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast
 SWAPPED |= {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.And: ast.Or, ast.Or: ast.And}
 
 
+EQUIVALENTS = Path(__file__).parent / "equivalent_mutants.toml"
+
+
 class Mutant(NamedTuple):
     file: str
-    change: str  # line: the line [before -> after]
+    number: int
+    line: str
+    change: str  # before -> after
     source: str  # of the whole file
     tests: str
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.number}: {self.line}   [{self.change}]"
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """What an entry of the table of equivalents names; the number of a line may change."""
+        return self.file, self.line, self.change
 
 
 def others(node: Any) -> Iterator[Any]:
@@ -107,20 +122,49 @@ def mutants(file: str, tests: str) -> Iterator[Mutant]:
             setattr(parent, field, new if i is None else [*old[:i], new, *old[i + 1 :]])
             before, after = (ast.unparse(part).partition("\n")[0] for part in (node, new))
             line = source.splitlines()[node.lineno - 1].strip()
-            yield Mutant(file, f"{node.lineno}: {line}   [{before} -> {after}]", ast.unparse(tree), tests)
+            yield Mutant(file, node.lineno, line, f"{before} -> {after}", ast.unparse(tree), tests)
             setattr(parent, field, old)
 
 
-def drawn(count: int, seed: int, module: str) -> list[Mutant]:
-    """Draw mutants, as many from each file as far as possible."""
-    draw, found = random.Random(seed), []
+def every_mutant() -> Iterator[list[Mutant]]:
+    """Yield all mutants of each file of `TESTS`."""
     for files, tests in TESTS.items():
         folder, _, names = files.partition(": ")
-        for file in (f"{folder}/{name}.py" for name in names.split()):
-            every = list(mutants(file, tests))
-            draw.shuffle(every)
-            found += [(i, draw.random(), mutant) for i, mutant in enumerate(every) if module in file]
-    return [mutant for _, _, mutant in sorted(found)[:count]]
+        for name in names.split():
+            yield list(mutants(f"{folder}/{name}.py", tests))
+
+
+def equivalents() -> list[dict[str, str]]:
+    """Return the entries of the table of equivalents."""
+    return list(tomllib.loads(EQUIVALENTS.read_text())["mutant"])
+
+
+def stale(entries: list[dict[str, str]], files: list[list[Mutant]]) -> Iterator[str]:
+    """Yield what is wrong with the table: each entry has a reason, and is exactly one mutant of today's source."""
+    found = Counter(mutant.key for every in files for mutant in every)
+    for entry in entries:
+        key = entry["file"], entry["line"], entry["change"]
+        if found[key] != 1:
+            yield f"{EQUIVALENTS.name}: {found[key]} mutants of today's source are {': '.join(key[:2])}   [{key[2]}]"
+        if not entry["why"].strip():
+            yield f"{EQUIVALENTS.name}: no reason for {': '.join(key[:2])}   [{key[2]}]"
+        found[key] = min(found[key], 0)  # an entry that stands there twice
+
+
+def drawn(count: int, seed: int, module: str) -> tuple[list[Mutant], int]:
+    """Draw mutants, as many from each file as far as possible; return also how many equivalents were left out."""
+    draw, found, left_out = random.Random(seed), [], 0
+    entries, files = equivalents(), list(every_mutant())
+    if problems := list(stale(entries, files)):
+        raise SystemExit("\n".join(problems))
+    known = {(entry["file"], entry["line"], entry["change"]) for entry in entries}
+    for every in files:
+        telling = [mutant for mutant in every if mutant.key not in known]
+        draw.shuffle(telling)
+        chosen = [(i, draw.random(), mutant) for i, mutant in enumerate(telling) if module in mutant.file]
+        left_out += len(every) - len(telling) if chosen else 0
+        found += chosen
+    return [mutant for _, _, mutant in sorted(found)[:count]], left_out
 
 
 def status_of(tests: str, folder: Path, most: int, output: int | None = subprocess.DEVNULL) -> int:
@@ -157,7 +201,8 @@ def main() -> None:
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--module", default="", help="part of the paths to choose")
     chosen = options.parse_args()
-    every, copies, found = drawn(chosen.count, chosen.seed, chosen.module), Queue[Path](), Counter[tuple[str, str]]()
+    every, left_out = drawn(chosen.count, chosen.seed, chosen.module)
+    copies, found = Queue[Path](), Counter[tuple[str, str]]()
 
     def run(mutant: Mutant) -> str:
         folder = copies.get()
@@ -173,10 +218,11 @@ def main() -> None:
         for mutant, what in zip(every, pool.map(run, every), strict=True):
             found[mutant.file, what] += 1
             if what != "killed":
-                print(f"{what:9} {mutant.file}:{mutant.change}", flush=True)
+                print(f"{what:9} {mutant}", flush=True)
     for file in sorted({file for file, _ in found}):
         print(f"{file:45}", *(f"{found[file, what]:3} {what}" for what in ("killed", "timeout", "survived")))
-    print(f"{len(every)} mutants, {sum(found[file, what] for file, what in found if what == 'survived')} survived")
+    survived = sum(found[file, what] for file, what in found if what == "survived")
+    print(f"{len(every)} mutants, {survived} survived; {left_out} equivalents left out of the population")
 
 
 if __name__ == "__main__":

@@ -26,7 +26,8 @@ MAX_FILE = 1 << 28
 MAX_FILES = 1 << 29  # all together
 MAX_MISTAKES = 1000  # of a manifest, for each of which pydantic would make a text
 HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER}
-_NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+_NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0)
+_AS_BYTES = getattr(os, "O_BINARY", 0)
 _BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
 _PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND}
 _DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
@@ -152,7 +153,7 @@ def _read(directory: _Directory, name: str, size: int | None) -> bytes:
     """
     path = name if directory.number is not None else directory.path / name
     # without blocking, because a named pipe would wait for a writer
-    number = os.open(path, os.O_RDONLY | _NOT_BLOCKING, dir_fd=directory.number)
+    number = os.open(path, os.O_RDONLY | _NOT_BLOCKING | _AS_BYTES, dir_fd=directory.number)
     status = os.fstat(number)
     if not stat.S_ISREG(status.st_mode):
         os.close(number)  # `open` leaves that of a folder open

@@ -22,6 +22,7 @@ from reference.precision import (
     magnitude,
     outward,
     real,
+    rounded,
     rounded_up,
     to_fraction,
     to_mpf,
@@ -55,6 +56,12 @@ def test_a_printed_number_is_within_half_of_its_last_digit(value, decimals):
     assert abs(Fraction(text) - value) <= Fraction(1, 2 * 10**decimals)
     assert len(text.partition(".")[2]) == decimals
     assert not (text.startswith("-") and Fraction(text) == 0)
+
+
+@pytest.mark.parametrize("denominator", range(1, 9))
+def test_a_quotient_is_rounded_to_the_nearest_integer_and_ties_to_even(denominator):
+    for numerator in range(-40, 41):
+        assert rounded(numerator, denominator) == round(Fraction(numerator, denominator))
 
 
 @given(positive)

@@ -94,6 +94,13 @@ def test_growth_needs_four_rows_after_the_release_and_four_times_the_first(golde
     assert (made.growth_exponent is not None) is found
 
 
+def test_errors_that_are_the_bound_of_the_truth_have_no_growth(golden, truth):
+    made = trajectory_errors(candidate(truth), truth, golden)
+    for position, grows in ((made.bound_m, False), (2 * made.bound_m, True)):
+        found = replace(made, position=np.full(len(TIMES), position)).growth_exponent
+        assert (found is not None) is grows
+
+
 def test_a_component_is_relative_if_its_truth_is_known_and_an_error_is_at_least_the_bound(golden, truth):
     end, speed = truth.states.copy(), trajectory_errors(candidate(truth), truth, golden)
     bound = 1e-6

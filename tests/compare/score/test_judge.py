@@ -15,7 +15,7 @@ import pytest
 
 from compare.candidates.read import read
 from compare.score.explanation.findings import Explanation, Model
-from compare.score.judge import _reading, _transits, judge
+from compare.score.judge import _flung_off, _reading, _transits, judge
 from reference import InputError, load, load_scene, solve, trajectory
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.variants import Variants
@@ -569,6 +569,10 @@ def test_a_centrifugal_force_larger_than_g_is_warned_of(tmp_path, site, warned):
     notes = [note for note in judge(path, scene, explain=False).notes if "larger than g" in note]
     assert bool(notes) is warned
     assert all("site.gravity_is=effective" in note for note in notes)
+
+
+def test_without_any_force_there_is_none_larger_than_g():
+    assert _flung_off(load_scene("paris", ["site.gravity=0", "site.rotation_rate=0"])) == ()
 
 
 @pytest.mark.parametrize(("early", "whole"), [(1e-13, True), (0.9e-6, True), (1e-6, True), (1.1e-6, False)])

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import sys
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -70,6 +71,22 @@ def test_a_folder_that_is_put_in_the_place_of_another_meanwhile_is_not_read(data
 
     monkeypatch.setattr(reading, "scene_of", exchanged)
     assert "grid.csv" in read_files(dataset).tables
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there files are opened in other ways")
+def test_files_are_opened_to_be_read_without_waiting_for_a_writer(dataset, monkeypatch):
+    opened, honest = {}, os.open
+
+    def noted(path, flags, **place):
+        opened[path] = flags
+        return honest(path, flags, **place)
+
+    noted_by_system = {noted, *os.supports_dir_fd}
+    monkeypatch.setattr(reading.os, "supports_dir_fd", noted_by_system)
+    monkeypatch.setattr(reading.os, "open", noted)
+    read_files(dataset)
+    assert opened.pop(dataset) == os.O_RDONLY | os.O_DIRECTORY
+    assert set(opened.values()) == {os.O_RDONLY | os.O_NONBLOCK}
 
 
 def test_without_files_relative_to_a_folder_a_dataset_is_read_by_its_path(dataset, monkeypatch):

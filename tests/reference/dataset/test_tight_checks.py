@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from fractions import Fraction
 from itertools import product
+from types import SimpleNamespace
 
 import mpmath
 import pytest
@@ -205,6 +206,35 @@ def test_a_run_takes_as_many_steps_as_its_fastest_rate_has_in_the_span(files):
 
     assert steps("1e6") == pytest.approx(1e6 * rate, abs=1)
     assert steps("1e15") == 10**15
+
+
+@pytest.mark.parametrize(
+    ("bound", "decimals", "found"),
+    [("0.124", 3, True), ("0.124", 4, False), ("0.125", 3, False)],
+)
+def test_a_column_has_its_digits_if_its_largest_number_is_more_than_eight_bounds(bound, decimals, found):
+    """From 0.876 to 1.124: five digits are four or five after the point."""
+    manifest = SimpleNamespace(
+        digits=5, decimals={"grid": dict.fromkeys(GRID, decimals)}, bound=lambda *_: Fraction(bound)
+    )
+    grid = Sheet(GRID, [("0.5",) * 6, ("-1.0",) * 6, ("0.9",) * 6], {})
+    said = list(tables._digits(SimpleNamespace(manifest=manifest, tables={"grid.csv": grid})))
+    assert len(said) == 6 * found
+
+
+@pytest.mark.parametrize(("z", "rises"), [("0.0009", True), ("0", False)])
+def test_h_at_a_transit_may_be_off_by_its_slopes_however_level_the_cord_is(files, z, rises):
+    """There vz = -y vy/z and h = (vy² + vz²)/2 + g z; where z is 0, vz is none."""
+    x, y, z, vy, b = 0.8, 0.6, float(z), 2.0, 1e-18
+    scene = make_scene(pendulum={"length": "1"}, site={"rotation_rate": "0", "gravity": "5"})
+    columns = [integers([int(Fraction(str(part)) * 10**18)]) for part in (x, y, z, 0, vy, 0)]
+    state = physics._Moments(
+        replace(files, scene=scene), ["row"], columns, 10**18, [1, 1, 1, 0, 1, 0], 10**18, Sheet((), [], {})
+    )
+    vz = -y * vy / z if rises else 0.0
+    slopes = (vz * vz / y, abs(5 - vz * vz / z) if rises else 5, vy + vz * vz / vy)
+    (allowed,) = state.allowed(physics._invariant)
+    assert float(allowed) == pytest.approx(1.05 * sum(slopes) * b, rel=0.1)
 
 
 def moments(columns, bounds, length):

@@ -6,6 +6,7 @@ import json
 import random
 import shutil
 from fractions import Fraction
+from itertools import repeat
 from pathlib import Path
 
 import pytest
@@ -370,6 +371,12 @@ def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(datase
     monkeypatch.setattr(integration, "STEPS_PER_CALL", 8)
     (note,) = verify(dataset).notes
     assert "takes more than 0 s" in note
+
+
+def test_twenty_numbers_that_the_row_before_does_not_lead_to_are_named(dataset, monkeypatch):
+    monkeypatch.setattr(motion, "_compared", lambda *_: None)
+    monkeypatch.setattr("reference.dataset.checks.shooting.problems", lambda *_: repeat("off"))
+    assert motion.problems(read_files(dataset)) == (["off"] * 20, [])
 
 
 def test_recomputing_gives_the_same_bytes(dataset):

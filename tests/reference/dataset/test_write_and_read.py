@@ -29,9 +29,11 @@ from reference.dataset.place import dataset_id, default_folder, golden_folder
 from reference.dataset.read import load
 from reference.dataset.record import command
 from reference.dataset.render import render
+from reference.dataset.sheets import Sheet, nearest_doubles
 from reference.dataset.verify import problems_of
 from reference.dataset.write import check_target, write
 from reference.errors import DatasetError, InputError
+from reference.table import Table
 
 NAMES = {MANIFEST, *ALWAYS, *OPTIONAL}
 
@@ -508,3 +510,10 @@ def test_where_the_system_cannot_swap_folders_that_is_said(monkeypatch, two_fold
     monkeypatch.setattr(writer.ctypes, "CDLL", no_library)
     assert writer._exchange(a, b) is False
     assert (a / "of_a").exists() and (b / "of_b").exists()
+
+
+def test_a_number_that_its_error_reaches_gets_the_double_of_the_printed_one():
+    """In sixteenths: 16 within 16 is noise about zero, 17 within 16 is not."""
+    table = Table(("x",), 4, [(16,), (17,), (-17,), (-16,)], [(16,)] * 4)
+    sheet = Sheet(("t", "x"), [("0", text) for text in ("0.9", "1.1", "-1.1", "-0.9")], {})
+    assert nearest_doubles(table, sheet) == {"x": [0.9, 17 / 16, -17 / 16, -0.9]}

@@ -178,6 +178,16 @@ def test_no_error_of_a_transit_is_below_twice_the_difference_of_two_runs(error, 
             assert 2 * gap <= bound < 2 * gap * (1 + Fraction(1, 10**9)), name
 
 
+def test_the_errors_of_transits_are_rounded_up_by_far_more_than_a_double_rounds(monkeypatch):
+    rough, on_grid, _ = transits_in_double("short cord")
+    table = with_transit_errors(rough, on_grid, None)
+    monkeypatch.setattr("reference.solver.transit_errors.ROUNDED_UP", 1.0)
+    plain = with_transit_errors(rough, on_grid, None)
+    for name in TRANSITS:
+        for bound, alone in zip(table.bound(name), plain.bound(name), strict=True):
+            assert alone * (1 + Fraction(1, 2**41)) < bound < alone * (1 + Fraction(1, 2**39)), name
+
+
 def norm(vector):
     return sqrt(sum(part**2 for part in vector))
 

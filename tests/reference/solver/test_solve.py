@@ -227,6 +227,16 @@ def test_a_run_is_checked_by_the_fastest_engine_and_by_the_same_one_in_other_ste
         assert (plan.inputs, plan.times, plan.transits) == (paris.exact, times, True)
 
 
+@pytest.mark.parametrize(("level", "plan"), [("confirmed", "confirming_plan"), ("self_consistent", "_witness")])
+def test_a_level_has_the_second_run_that_it_is_named_for(monkeypatch, paris, level, plan):
+    planned, honest = [], getattr(solver, plan)
+    other = {"confirming_plan": "_witness", "_witness": "confirming_plan"}[plan]
+    monkeypatch.setattr(solver, plan, lambda *words: planned.append(honest(*words)) or planned[-1])
+    monkeypatch.setattr(solver, other, None)
+    (check,) = reference.solve(paris, t_end="60", digits=12, level=level).checks
+    assert check.formulation == planned[-1].formulation
+
+
 def test_runs_that_find_different_transits_do_not_agree(monkeypatch, paris):
     honest = solver.run_both
 
