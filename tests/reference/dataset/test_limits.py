@@ -13,6 +13,7 @@ from types import SimpleNamespace
 
 import pytest
 from forgery import forge, moved, seal
+from pydantic import ValidationError
 from small_scenes import make_scene
 
 import reference
@@ -20,7 +21,7 @@ from reference.dataset import files as reading
 from reference.dataset.checks import record
 from reference.dataset.checks.tables import _order, _signs_on_grid
 from reference.dataset.files import read_files, scene_of
-from reference.dataset.manifest import MANIFEST
+from reference.dataset.manifest import ALWAYS, MANIFEST, Manifest
 from reference.dataset.place import MAX_ID, dataset_id
 from reference.dataset.sheets import Sheet
 from reference.dataset.vectors import _closest_pair
@@ -122,6 +123,22 @@ def test_only_a_proof_is_audited(dataset):
     command = json.loads((dataset / MANIFEST).read_text())["command"]
     forge(dataset, manifest=lambda document: document.update(command=f"{command} --audit"))
     assert "command does not follow from the scene" in problems(dataset)
+
+
+def test_a_dataset_needs_the_files_of_every_one_and_no_others(dataset):
+    document = json.loads((dataset / MANIFEST).read_text())
+    files = {name: document["files"][name] for name in ALWAYS}
+    assert set(Manifest.model_validate({**document, "files": files}).files) == set(ALWAYS)
+    for name in ALWAYS:
+        with pytest.raises(ValidationError, match="belong to every dataset"):
+            Manifest.model_validate({**document, "files": {other: files[other] for other in ALWAYS if other != name}})
+
+
+def test_a_grid_of_two_times_is_one_and_of_one_is_none(dataset):
+    document = json.loads((dataset / MANIFEST).read_text())
+    assert Manifest.model_validate({**document, "counts": {**document["counts"], "grid": 2}}).counts.grid == 2
+    with pytest.raises(ValidationError, match="a grid has two times at least"):
+        Manifest.model_validate({**document, "counts": {**document["counts"], "grid": 1}})
 
 
 @pytest.mark.parametrize("kind", ["grid", "transits"])
