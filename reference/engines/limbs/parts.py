@@ -1,8 +1,8 @@
 """How functions that only compiled functions call are compiled: machine code is made once, of all that Python calls.
 
-numba would optimise each function, and make machine code of it, by itself, again in its callers, in their callers and so
-on: the series six times. Here it makes LLVM's text of it, which is linked into the callers; the function that Python
-calls is then optimised as a whole.
+numba would optimise each function, and make machine code of it, by itself, again in its callers, in their callers and
+so on: the series six times. Here it makes LLVM's text of it, which is linked into the callers; the function that
+Python calls is then optimised as a whole.
 """
 
 from __future__ import annotations

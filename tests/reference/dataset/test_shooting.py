@@ -168,7 +168,7 @@ def test_each_row_is_shot_to_the_next_and_may_be_off_by_its_bound_and_what_the_l
     files.tables["grid.csv"] = Sheet(GRID, [tuple(str(float(part)) for part in state) for state in states], {})
     spread = np.tile(np.arange(1, 7) / 10, (3, 1))
     monkeypatch.setattr(shooting, "_spreads", lambda *_: (spread, spread))
-    monkeypatch.setattr(shooting, "_completed", lambda _, state, __: state)
+    monkeypatch.setattr(shooting, "_completed", lambda _, state, ctx: state * (ctx.prec > 99))  # 67 bits, and 32 more
 
     def said(part, j, side):
         off = side * Fraction(part) * (Fraction(1, 100) + Fraction(101, 1000) * (j + 1))
@@ -192,6 +192,8 @@ def test_each_row_is_shot_to_the_next_and_may_be_off_by_its_bound_and_what_the_l
             (problem,) = said("1.001", j, side)
             assert problem.startswith(f"grid.csv: t = 20: {name} is off by")
             assert problem.endswith("from where the row before leads to, its bound is 0.01")
+    monkeypatch.setattr(shooting, "_spreads", lambda *_: (0 * spread, 0 * spread))
+    assert said(Fraction(10, 111), 0, 1) == []  # the bound to the last bit
 
 
 def test_what_the_bounds_spread_to_is_found_row_by_row_whatever_the_blocks(monkeypatch):
@@ -228,8 +230,8 @@ def test_a_state_is_completed_where_the_bob_is_a_quarter_of_the_cord_below_or_ab
 
 
 LIMIT = Fraction(1, 100)
-STATE = {"x": "0.96", "y": "1.2", "z": "-1.28", "vy": "1"}  # of a cord of 2 m; vz = 1.2/1.28 m/s keeps it on the sphere
-RATES = {"x": 0.0, "y": 1.0, "z": 0.9375, "vx": 3.5229375, "vy": 4.403671875}  # per s, with g/l = 5/s²
+STATE = {"x": "0.96", "y": "1.2", "z": "-1.28", "vy": "0.5"}  # of a cord of 2 m; vz = 0.6/1.28 m/s keeps it there
+RATES = {"x": 0.0, "y": 0.5, "z": 0.46875, "vx": 3.184734375, "vy": 3.98091796875}  # per s, with g/l = 5/s²
 SPREAD = {"x": 0.125, "y": 0.25, "z": 0.375, "vx": 0.5, "vy": 0.625}
 
 

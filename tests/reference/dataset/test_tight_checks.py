@@ -237,6 +237,56 @@ def test_h_at_a_transit_may_be_off_by_its_slopes_however_level_the_cord_is(files
     assert float(allowed) == pytest.approx(1.05 * sum(slopes) * b, rel=0.1, abs=0)
 
 
+def test_the_states_at_transits_are_those_printed_with_no_speed_to_the_east_and_none_given_upwards(files):
+    made = physics._at_transits(files)
+    assert not made.columns[3].any() and not made.columns[5].any()
+    bounds = [files.manifest.bound("transits", name) for name in ("x", "y", "z", "vy")]
+    assert [Fraction(bound, made.unit) for bound in made.bounds] == [*bounds[:3], 0, bounds[3], 0]
+
+
+def test_transits_that_are_none_or_not_given_are_not_looked_at(files):
+    broken = with_change(files, "transits", "z", Fraction(1))
+    assert said(broken, "transits.csv")
+    counts = files.manifest.counts.model_copy(update={"transits": 0})
+    assert not said(replace(broken, manifest=files.manifest.model_copy(update={"counts": counts})), "transits.csv")
+    assert not said(replace(broken, tables={"grid.csv": files.tables["grid.csv"]}), "transits.csv")
+
+
+def in_a_swing(files, state, bounds, gravity="5"):
+    """One state on a cord of 1 m."""
+    scene = make_scene(pendulum={"length": "1"}, site={"rotation_rate": "0", "gravity": gravity})
+    columns = [integers([int(Fraction(part) * 10**18)]) for part in state]
+    return physics._Moments(replace(files, scene=scene), ["row"], columns, 10**18, bounds, 10**18, None)
+
+
+@pytest.mark.parametrize("z", ["-0.7", "0.7"])
+def test_h_is_taken_on_the_sphere_on_the_side_where_the_bob_is(files, z):
+    """With x = 0.6 it is at ±0.8, and there vz = -0.6/z."""
+    (h,) = in_a_swing(files, ("0.6", "0", z, "1", "2", "9"), [1] * 6).values(physics._invariant)
+    side = math.copysign(1, float(z))
+    assert float(h) == pytest.approx((1 + 4 + 0.75**2) / 2 + 5 * 0.8 * side, rel=1e-12)
+
+
+def test_h_beyond_the_sphere_is_taken_at_the_height_of_the_pivot(files):
+    (h,) = in_a_swing(files, ("1.2", "0", "-0.8", "1", "2", "3"), [1] * 6).values(physics._invariant)
+    assert float(h) == pytest.approx((1 + 4 + 9) / 2, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("state", "gravity", "slopes"),
+    [
+        (("0.6", "0", "-0.8", "1", "2", "0.75"), "5", (5.21484375, 1.875, 0, 1.5625, 2, 0)),
+        (("0.6", "0", "-0.8", "1e-6", "0", "7.5e-7"), "0", (0, 0, 0, 1.5625e-6, 0, 0)),
+    ],
+    ids=["swing", "hardly moves"],
+)
+def test_h_may_be_off_by_its_slopes_along_the_sphere(files, state, gravity, slopes):
+    """Where z = -√(1 - x² - y²) and vz = -(x vx + y vy)/z follow; differentiated by hand."""
+    made = in_a_swing(files, state, [int(slope > 0) for slope in slopes], gravity)
+    (allowed,) = made.allowed(physics._invariant)
+    assert float(allowed) == pytest.approx(1.05e-18 * sum(slopes), rel=1e-3, abs=0)
+
+
 def moments(columns, bounds, length):
     """One state of whole numbers, over 1."""
     return physics._Moments(None, ["row"], [integers([q]) for q in columns], 1, bounds, length, None)

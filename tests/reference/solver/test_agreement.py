@@ -226,10 +226,12 @@ def test_the_error_of_a_column_that_never_changes_is_the_last_bit_of_the_second_
     assert float(found["vx"] * 2**120) == pytest.approx(float(fastest), rel=1e-12)
 
 
-def test_runs_that_find_other_transits_lack_half_their_bits(paris):
+def test_runs_that_find_other_transits_lack_half_their_bits_and_one_without_any_is_not_asked(paris):
     plans = (
         Plan(paris.exact, "spin", number, (Fraction(0), Fraction(60)), transits=True) for number in (DOUBLE, real(120))
     )
     one, other = map(run, plans)
     found = Agreement.between(one, replace(other, directions=other.directions[:-1]), 12)
     assert (found.missing_bits, found.transits) == (60, None)
+    found = Agreement.between(one, replace(other, transits=None, directions=[]), 12)
+    assert (found.missing_bits != 60, found.transits) == (True, None)  # the grid alone tells
