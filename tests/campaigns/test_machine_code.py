@@ -99,12 +99,12 @@ def test_what_heyoka_kept(tmp_path: Path, size: Callable[[int, int], int], tally
     place = {"XDG_CACHE_HOME": tmp_path / "cache", "FOUCAULT_CACHE": tmp_path / "ours"}
     words = [*HEYOKA, str(tmp_path / "p")]
     good = run(words, **place)
-    files = sorted((tmp_path / "cache" / "heyoka").iterdir())
+    files = sorted((tmp_path / "cache" / "heyoka" / "foucault").iterdir())
     assert files
     before = {path.name: path.read_bytes() for path in (tmp_path / "p").iterdir()}
     names = list(DAMAGES)[size(2, 0) : size(3, 5)]
     for name in names:
-        for path in (tmp_path / "cache" / "heyoka").iterdir():
+        for path in (tmp_path / "cache" / "heyoka" / "foucault").iterdir():
             path.write_bytes(DAMAGES[name](path.read_bytes()))
         assert run(words, **place) == good
         assert {path.name: path.read_bytes() for path in (tmp_path / "p").iterdir()} == before
