@@ -31,7 +31,7 @@ def test_no_dataset_ends_in_a_traceback_a_hang_or_full_memory(size, tally, tmp_p
     pairs = size(0, 200)
     changes = ["run.t_end=180", "run.digits=15", "run.level=confirmed"]
     scene = reference.load_scene("paris", changes).model_copy(update={"id": "small"})
-    source = write(reference.solve(scene), tmp_path / "good" / "small")
+    source = write(reference.solve(scene, engine="limbs"), tmp_path / "good" / "small")
     work = tmp_path / "work"
     work.mkdir()
     program = ROOT / "tests/helpers/hostile_verifications.py"
