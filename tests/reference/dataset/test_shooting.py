@@ -304,6 +304,11 @@ def test_the_zeros_found_are_the_transits_in_order_but_near_a_row(found, edges, 
     assert compared(THREE, found, edges) == [f"transits.csv: {said}"] * bool(said)
 
 
+def test_a_number_of_a_transit_may_be_off_by_its_bound_to_the_last_bit():
+    zeros = [("10", 1), ("20", -1), ("30", 1)]
+    assert compared(THREE, zeros, ["0", "40"], off=dict.fromkeys(STATE, LIMIT)) == []
+
+
 def test_a_zero_found_on_both_sides_of_a_row_is_not_taken_for_the_next_transit():
     """The next one's bound reaches over it; the bound of the one before does not reach as far as its own."""
     printed = [("10", "0.01"), ("20", "0.125"), ("20.25", "0.25"), ("30", "0.01")]

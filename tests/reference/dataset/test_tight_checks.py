@@ -15,6 +15,7 @@ from small_scenes import make_scene
 from reference.columns import GRID
 from reference.dataset.checks import motion, physics, tables
 from reference.dataset.files import read_files
+from reference.dataset.invariant import INVARIANT_BITS
 from reference.dataset.sheets import Sheet
 from reference.fixed_point import integers
 from reference.model.constants import constants
@@ -307,3 +308,20 @@ def test_the_bob_may_leave_the_sphere_up_to_the_corner_and_no_further(files, y, 
     """With x = 8 within 2, x² may be off by 2*8*2 + 2*2 = 36 = 10² - 8²; 11² - 8² - 4² = 41."""
     row = replace(moments([-8, y, 0, 0, 0, 0], [2, 0, 0, 0, 0, 0], length), files=files)
     assert bool(list(row.off_the_sphere())) is found
+
+
+@pytest.mark.parametrize(
+    ("unit", "bounds", "bits"),
+    [(2**30, [4, 0, 1024], 28), (2**100, [1, 8, 8], 67), (1, [4, 4, 8], 0), (2**30, [0, 0, 0], 0)],
+)
+def test_h_is_taken_to_the_bits_of_the_smallest_bound_up_to_twice_the_digits(files, unit, bounds, bits):
+    """Twenty digits are 67 bits."""
+    made = replace(moments([0] * 6, [*bounds, 0, 0, 0], 1), files=files, unit=unit)
+    assert made._bits == bits + 67 + INVARIANT_BITS
+
+
+@pytest.mark.parametrize(("z", "level"), [(2, True), (-2, True), (3, False), (-3, False)])
+def test_at_a_transit_with_a_cord_that_may_be_level_not_all_is_known(z, level):
+    made = moments([9, 9, z, 9, 0 if not level else 9, 9], [0, 0, 2, 0, 5, 0], 9)
+    assert made._whole.tolist() == [True]
+    assert replace(made, transits=Sheet((), [], {}))._whole.tolist() == [not level]
