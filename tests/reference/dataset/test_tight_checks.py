@@ -21,6 +21,7 @@ from reference.fixed_point import integers
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
 from reference.precision import context, fixed_decimal
+from reference.table import Table
 
 ROW, WIDER = 3, 10**9  # bounds so wide that rounding, of which they consist, is nothing beside them
 
@@ -325,3 +326,17 @@ def test_at_a_transit_with_a_cord_that_may_be_level_not_all_is_known(z, level):
     made = moments([9, 9, z, 9, 0 if not level else 9, 9], [0, 0, 2, 0, 5, 0], 9)
     assert made._whole.tolist() == [True]
     assert replace(made, transits=Sheet((), [], {}))._whole.tolist() == [not level]
+
+
+@pytest.mark.parametrize(("bound", "apart", "found"), [("0.5", "0", 0), ("0.4", "0", 12), ("0.25", "0.25", 0)])
+def test_a_row_may_be_off_from_the_motion_by_its_bound_and_by_what_the_runs_are_apart_to_the_last_bit(
+    bound, apart, found
+):
+    """Printed are 1.5 and -1.5, the motion has 1 and -2, in halves."""
+    sheet = Sheet(("t", *GRID), [("0", *["1.5"] * 6), ("1", *["-1.5"] * 6)], {})
+    run = Table(GRID, 1, [(2,) * 6, (-4,) * 6])
+    same = (dict.fromkeys(GRID, Fraction(text)) for text in (apart, bound))
+    comparison = motion._Comparison("grid", sheet, run, *same, {})
+    assert len(comparison.problems()) == found
+    assert comparison.decided
+    assert not replace(comparison, apart=dict.fromkeys(GRID, Fraction("0.51"))).decided
