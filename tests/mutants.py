@@ -31,11 +31,12 @@ ROOT, WORKERS = Path(__file__).parent.parent, 2
 SPARE_S, LONGER = 30, 5  # what the tests of a mutant may take: some CPU seconds, and times what they take without it
 DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/test_", "tests/reference/solver/test_"
 LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
+TIGHT = f"{DATASET}tight_checks.py"
 TESTS = {  # files by folder, and what tests them, the quick ones first
-    "reference/dataset/checks: physics": f"{DATASET}tight_checks.py {DATASET}verify.py",
-    "reference/dataset/checks: tables": f"{LIMITS} {DATASET}tight_checks.py {DATASET}verify.py",
+    "reference/dataset/checks: physics": f"{TIGHT} {DATASET}verify.py",
+    "reference/dataset/checks: tables": f"{LIMITS} {TIGHT} {DATASET}verify.py",
     "reference/dataset/checks: record": f"{LIMITS} {BITS} {DATASET}verify.py {SOLVER}confirming.py",
-    "reference/dataset/checks: motion shooting": f"{BITS} {DATASET}tight_checks.py {DATASET}verify.py {DATASET}shooting.py",
+    "reference/dataset/checks: motion shooting": f"{BITS} {TIGHT} {DATASET}verify.py {DATASET}shooting.py",
     "reference/dataset/checks: index": f"{DATASET}index.py",
     "reference/dataset: verify files place vectors manifest": f"{LIMITS} {FILES} {DATASET}verify.py",
     "reference/dataset: read sheets write": f"{FILES} {DATASET}verify.py",
