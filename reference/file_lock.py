@@ -49,6 +49,10 @@ def _lock(descriptor: int, path: Path) -> bool:
         raise Taken from None
     except OSError:
         return False
-    if not path.exists() or not os.path.samestat(os.fstat(descriptor), path.stat()):
+    try:
+        held = os.path.samestat(os.fstat(descriptor), path.stat())
+    except FileNotFoundError:
+        held = False
+    if not held:
         raise Taken
     return True

@@ -43,27 +43,33 @@ for functions.FAILS in (True, False):
 """
 
 
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with the module, written once: numba compares the time of a source with that of its code."""
+    (tmp_path / "functions.py").write_text(MODULE)
+    return tmp_path
+
+
 def begun(program: str, folder: Path) -> subprocess.Popen[str]:
-    (folder / "functions.py").write_text(MODULE)
     return subprocess.Popen([sys.executable, "-c", program], cwd=folder, stdout=subprocess.PIPE, text=True)
 
 
-def test_of_three_processes_one_compiles(tmp_path: Path) -> None:
-    said = [process.communicate(timeout=60)[0].split() for process in [begun(CALL, tmp_path) for _ in range(3)]]
+def test_of_three_processes_one_compiles(folder: Path) -> None:
+    said = [process.communicate(timeout=60)[0].split() for process in [begun(CALL, folder) for _ in range(3)]]
     assert sorted(said) == [["42"], ["42"], ["compiled", "42"]]
-    assert not [*tmp_path.rglob("*.lock")]
+    assert not [*folder.rglob("*.lock")]
 
 
-def test_a_process_that_is_killed_while_it_compiles_leaves_the_turn_to_the_others(tmp_path: Path) -> None:
-    killed = begun(CALL, tmp_path)
+def test_a_process_that_is_killed_while_it_compiles_leaves_the_turn_to_the_others(folder: Path) -> None:
+    killed = begun(CALL, folder)
     assert killed.stdout is not None
     assert killed.stdout.readline() == "compiled\n"
-    other = begun(CALL, tmp_path)
+    other = begun(CALL, folder)
     killed.kill()
     killed.communicate()
     assert other.communicate(timeout=60)[0].split() == ["compiled", "42"]
-    assert not [*tmp_path.rglob("*.lock")]
+    assert not [*folder.rglob("*.lock")]
 
 
-def test_a_function_that_failed_to_compile_can_be_compiled_by_the_same_process(tmp_path: Path) -> None:
-    assert begun(FAIL, tmp_path).communicate(timeout=60)[0].split() == ["compiled", "compiled", "42"]
+def test_a_function_that_failed_to_compile_can_be_compiled_by_the_same_process(folder: Path) -> None:
+    assert begun(FAIL, folder).communicate(timeout=60)[0].split() == ["compiled", "compiled", "42"]
