@@ -42,12 +42,12 @@ class Score:
         tolerance_m: largest position error allowed, in m.
         swing: turn of the swing plane and delay.
         drifts: of h and of `|r| - l`, if the candidate has the columns.
+        covers: share of the scene's span that was demanded, from 0 to 1.
+        as_model: whether agreement as a named model is enough.
+        notes: remarks that a reader ought to know.
         transits: errors of its transits, or None.
         timing: run time of the program, or None.
         explanation: the likely reasons for the error; None if they were not looked for.
-        notes: remarks that a reader ought to know.
-        covers: share of the scene's span that was demanded, from 0 to 1.
-        as_model: whether agreement as a named model is enough.
     """
 
     candidate: Candidate
@@ -58,12 +58,12 @@ class Score:
     tolerance_m: float
     swing: SwingErrors
     drifts: dict[str, float]
+    covers: float
+    as_model: bool
+    notes: tuple[str, ...]
     transits: TransitErrors | None = None
     timing: Timing | None = None
     explanation: Explanation | None = None
-    notes: tuple[str, ...] = ()
-    covers: float = 0.0
-    as_model: bool = False
 
     def __repr__(self) -> str:
         return f"Score({self.verdict} with {self.scene.id}: {self.errors.max_m:.2g} m)"

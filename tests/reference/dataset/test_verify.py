@@ -24,6 +24,7 @@ from reference.dataset.sheets import GRID_HEADER
 from reference.dataset.verify import problems_of, verify
 from reference.dataset.write import write
 from reference.engines.limbs import integration
+from reference.engines.limbs.size import MOST_PREC
 from reference.engines.registry import engines
 from reference.errors import DatasetError
 from reference.precision import fixed_decimal
@@ -377,6 +378,18 @@ def test_twenty_numbers_that_the_row_before_does_not_lead_to_are_named(dataset, 
     monkeypatch.setattr(motion, "_compared", lambda *_: None)
     monkeypatch.setattr("reference.dataset.checks.shooting.problems", lambda *_: repeat("off"))
     assert motion.problems(read_files(dataset)) == (["off"] * 20, [])
+
+
+@pytest.mark.parametrize(
+    ("number", "digits", "prec"),
+    [("real(128)", 12, 128), ("real(9999)", 12, MOST_PREC), ("long_double", 12, 87), ("long_double", 45, 182)],
+)
+def test_the_motion_is_integrated_in_the_bits_of_the_run_where_limbs_have_them_and_in_those_of_the_digits(
+    dataset, number, digits, prec
+):
+    manifest = read_files(dataset).manifest
+    run = manifest.run.model_copy(update={"number": number})
+    assert motion._first_prec(manifest.model_copy(update={"run": run, "digits": digits})) == prec
 
 
 def test_recomputing_gives_the_same_bytes(dataset):
