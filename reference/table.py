@@ -82,6 +82,11 @@ class Table:
         i = self._place(name)
         return [Fraction(row[i], 1 << self.bits) for row in self.errors]
 
+    def whole(self, name: str, bits: int) -> list[int]:
+        """Return the values of a column as integers over 2**bits, which are no fewer than the table's."""
+        i, up = self._place(name), bits - self.bits
+        return [row[i] << up for row in self.values]
+
     def _place(self, name: str) -> int:
         if name not in self.columns:
             raise KeyError(f"{name!r} is no column; there are {', '.join(self.columns)}")

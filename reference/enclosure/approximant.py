@@ -14,7 +14,7 @@ from typing import Any
 from flint import ctx, fmpz, fmpz_poly
 
 from ..taylor_step import EARTH, TaylorStep
-from .balls import dot, integer
+from .balls import dot, fixed
 from .bound import World, scaled
 
 AXES_GUARD_BITS = 16  # precision of the scene's constants beyond the coefficients that they turn
@@ -37,7 +37,7 @@ def _turned_rows(e: TaylorStep, world: World) -> tuple[list[int], ...]:
     """Return four rows, x, m, w and h² λ."""
     bits, (east, north, up) = e.bits, e.coefficients[:3]
     with ctx.workprec(world.prec):
-        sin, cos = (int(integer(x, bits)) for x in world.tilt)
+        sin, cos = map(int, fixed(list(world.tilt), bits)[0])
     m = [(y * sin - z * cos) >> bits for y, z in zip(north, up, strict=True)]
     w = [(y * cos + z * sin) >> bits for y, z in zip(north, up, strict=True)]
     p, unit = [fmpz_poly(row) for row in (east, m, w)], fmpz(1) << bits

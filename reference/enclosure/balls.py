@@ -13,6 +13,12 @@ UNIT = arb(0, 1)  # contains all |s| <= 1
 Vector = list[Any]  # three balls, or three integer polynomials
 
 
+def demand(holds: bool, reason: str) -> None:
+    """Raise ArithmeticError unless something holds without which nothing would be proved."""
+    if not holds:
+        raise ArithmeticError(reason)
+
+
 def ball(q: Fraction) -> arb:
     """Return a ball that contains the fraction."""
     return arb(fmpq(q.numerator, q.denominator))
@@ -20,8 +26,7 @@ def ball(q: Fraction) -> arb:
 
 def upper(x: arb) -> arb:
     """Return an upper bound; raise ArithmeticError if it is not finite or not below 2^64."""
-    if not x < HUGE:
-        raise ArithmeticError("a bound is not finite or has outgrown the sphere")
+    demand(x < HUGE, "a bound is not finite or has outgrown the sphere")
     return x.upper()
 
 
@@ -32,14 +37,9 @@ def interval(x: arb) -> Interval:
     return Interval(*(Fraction(n << max(e, 0), 1 << max(-e, 0)) for n, e in ends))
 
 
-def integer(x: arb, bits: int) -> fmpz:
-    """Return an integer near x 2^bits."""
-    return (x * (fmpz(1) << bits)).mid().floor().unique_fmpz() or fmpz(0)
-
-
 def fixed(values: Vector, bits: int) -> tuple[list[fmpz], arb]:
     """Return integers over 2^bits near the balls, and a bound of the sum of their distances."""
-    whole = [integer(x, bits) for x in values]
+    whole = [(x * (fmpz(1) << bits)).mid().floor().unique_fmpz() or fmpz(0) for x in values]
     off = [(x - arb(n) / (fmpz(1) << bits)).abs_upper() for x, n in zip(values, whole, strict=True)]
     return whole, upper(sum(off, arb(0)))
 

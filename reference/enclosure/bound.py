@@ -13,7 +13,7 @@ from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
 from ..packing import DIGIT_BITS, Digits
 from ..taylor_step import TaylorStep
-from .balls import SHORT, Vector, add, ball, cross, dot, fixed, interval, norm, size, times, upper
+from .balls import SHORT, Vector, add, ball, cross, demand, dot, fixed, interval, norm, size, times, upper
 from .shapes import Covered, Interval, Sizes, Tube
 
 
@@ -24,8 +24,7 @@ class World:
     """
 
     def __init__(self, inputs: Any, prec: int, by_flint: bool = False) -> None:
-        if inputs.drag < 0 or inputs.length <= 0:
-            raise ArithmeticError("not a pendulum: the theorems take a length > 0 and a drag >= 0")
+        demand(inputs.drag >= 0 < inputs.length, "not a pendulum: the theorems take a length > 0 and a drag >= 0")
         self.prec, self.by_flint = prec, by_flint  # by FLINT's polynomials alone, not by sums of digits
         with ctx.workprec(prec):
             turn = fmpq(inputs.latitude.numerator, inputs.latitude.denominator) / 180
@@ -42,11 +41,11 @@ class World:
             self.H = cross(self.r, add(v, cross(self.omega, self.r)))
             (x, y, vx), at_rest = (q.is_zero() for q in (*self.release[0][:2], v[0])), all(q.is_zero() for q in v)
             self.slow, self.flat = vx, at_rest and x  # xdot(0) = 0 exactly; and xddot(0) = 0
-            planar, hangs = vx and rate.is_zero(), at_rest and y and (sin * cos * rate).is_zero()
-            self.still = x and (planar or hangs)  # xdot = 0 for ever
+            # xdot = 0 for ever: in a plane that does not turn, or at rest on the vertical
+            self.still = x and ((vx and rate.is_zero()) or (at_rest and y and (sin * cos * rate).is_zero()))
             c, w = size(self.c), size(self.omega)
-            pace = c.sqrt() if c > 0 else w + size(self.H)
-            self.w0 = pace.mid() if pace > 0 else arb(1)  # any positive number is a valid weight
+            # any positive number is a valid weight
+            self.w0 = next(pace.mid() for pace in (c.sqrt(), w + size(self.H), arb(1)) if pace > 0)
             energy = dot(self.H, self.H) / 2 - dot(self.omega, self.H) - dot(self.c, self.r)
             self.speed = upper(w + upper(w**2 + 2 * (energy + c)).sqrt())  # |H| at any time
             self.below, self.above = upper(self.w0**2 + w**2 / 2 + energy), upper(c - self.w0**2)  # -+ (c·r - w0²)
@@ -78,11 +77,6 @@ class Scaled:
             self.c_size, self.omega_size, self.drag_size = size(self.c), size(self.omega), upper(self.drag)
             self.speed, self.below, self.above = world.speed * self.h, world.below * self.h**2, world.above * self.h**2
 
-    def force(self, r: Vector, v: Vector) -> Vector:
-        """Return the acceleration of a free bob, in balls."""
-        turn = add(cross(self.omega, r), times(2, v))
-        return add(self.c, times(-1, cross(self.omega, turn)), times(-self.drag, v))
-
 
 scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each other
 
@@ -91,8 +85,7 @@ class Piece:
     """A step with its polynomials p, p' and λ, used from `begin` to `end` (in s)."""
 
     def __init__(self, world: World, step: TaylorStep) -> None:
-        if not -1 <= step.low < step.high <= 1 or step.h <= 0:
-            raise ArithmeticError("a step must lie in -1 <= s <= 1, where its sizes hold")
+        demand(-1 <= step.low < step.high <= 1 and step.h > 0, "a step must lie in -1 <= s <= 1, where its sizes hold")
         self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)
         self.unit, self.rows = fmpz(1) << step.bits, step.coefficients
         self.p = polynomials(self.rows, slice(3))
@@ -139,10 +132,8 @@ def polynomials(rows: Sequence[Any], part: slice) -> list[fmpz_poly]:
     """Return a part of the rows of coefficients as polynomials."""
     if not isinstance(rows, Digits):
         return [fmpz_poly(row) for row in rows[part]]
-    (several, count, orders), unit = rows.table[part].shape, fmpz(1) << 2 * DIGIT_BITS
-    table = np.zeros((several, count + count % 2, orders), np.int64)
-    table[:, count % 2 :] = rows.table[part]
-    pairs = ((table[:, ::2] << DIGIT_BITS) + table[:, 1::2]).tolist()
+    table, odd, unit = rows.table[part].astype(np.int64), rows.table.shape[1] % 2, fmpz(1) << 2 * DIGIT_BITS
+    pairs = np.concatenate([table[:, :odd], (table[:, odd::2] << DIGIT_BITS) + table[:, odd + 1 :: 2]], 1).tolist()
     return [reduce(lambda f, pair: f * unit + fmpz_poly(pair), row, fmpz_poly()) for row in pairs]
 
 
@@ -153,8 +144,7 @@ def error_rate(k: Scaled, size_p: arb) -> arb:
 
 def tube(k: Scaled, d: Sizes, eta: arb, gamma: arb) -> Tube:
     """Return the bounds of position, velocity and acceleration from |e| <= eta and |g| <= gamma (section 7)."""
-    if not eta < 2:
-        raise ArithmeticError("a bound is as wide as the sphere")
+    demand(eta < 2, "a bound is as wide as the sphere")
     turn, gw = d.k + k.omega_size, k.drag_size * k.omega_size
     u = gamma + turn * eta + d.d1
     torque = k.c_size * eta + k.omega_size * gamma + k.drag_size * gamma + gw * (1 + d.p) * eta + d.d2
@@ -171,12 +161,12 @@ class Carried:
 
     def join(self, piece: Piece) -> Vector:
         """Return bounds of the jumps in p and K from the end of the step before to the start of `piece`."""
-        if piece.begin != self.time or piece.world is not self.world:
-            raise ArithmeticError("steps must join, and be of one scene")
-        ends = (piece.values(ball(s)) for s in (piece.step.low, piece.step.high))
-        start, end = ([*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))] for p, v in ends)
-        self.time, self.last, before = piece.end, end, self.last
-        return [(a - b).abs_upper() for a, b in zip(start, before, strict=True)]
+        demand(piece.begin == self.time and piece.world is self.world, "steps must join, and be of one scene")
+        with ctx.workprec(self.world.prec):
+            ends = (piece.values(ball(s)) for s in (piece.step.low, piece.step.high))
+            start, end = ([*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))] for p, v in ends)
+            self.time, self.last, before = piece.end, end, self.last
+            return [(a - b).abs_upper() for a, b in zip(start, before, strict=True)]
 
 
 class Radius(Carried):
@@ -186,8 +176,7 @@ class Radius(Carried):
 
     def advance(self, piece: Piece) -> Covered:
         """Carry the radius over a piece."""
-        with ctx.workprec(self.world.prec):
-            k, jump, d = piece.k, self.join(piece), piece.sizes
+        k, jump, d = piece.k, self.join(piece), piece.sizes
         with ctx.workprec(SHORT):
             span, gw, ck = ball(piece.step.high - piece.step.low), k.drag_size * k.omega_size, k.c_size + d.k**2
             start, source = upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.world.w0), d.d2 / k.w + d.d1
@@ -208,8 +197,7 @@ def output(covered: Covered, time: Fraction) -> list[Interval]:
     """Return position and velocity at an output time, in m and m/s; at 0 those of the release itself."""
     piece, world = covered.piece, covered.piece.world
     with ctx.workprec(world.prec):
-        if not piece.begin <= time <= piece.end:
-            raise ArithmeticError("the tube holds on its own step only")
+        demand(piece.begin <= time <= piece.end, "the tube holds on its own step only")
         r, v = state(covered, ball((time - piece.step.centre) / piece.step.h))
         moving = [world.turned(r, -1), world.turned(times(1 / piece.k.h, v), -1)]
         return [interval(x * world.length) for part in (moving if time else world.release) for x in part]

@@ -23,9 +23,9 @@ class Columns(Carried):
     def advance(self, piece: Piece, proposal: Proposal) -> Covered:
         """Carry the box of the z_j over `piece`; `proposal[j]` holds the six polynomials of column j."""
         k, step, d, columns = piece.k, piece.step, piece.sizes, [[fmpz_poly(f) for f in c] for c in proposal]
-        with ctx.workprec(self.world.prec):
-            slack = add(self.join(piece), self.rest)
+        jump = self.join(piece)
         with ctx.workprec(2 * SHORT):
+            slack = add(jump, self.rest)
             inverse = matrix(columns, ball(step.low), k.h).inv()
             moved, self.carried = inverse * self.carried, matrix(columns, ball(step.high), k.h)
             pairs = [(moved[i, j].abs_upper() * self.z[j], inverse[i, j].abs_upper() * slack[j]) for i, j in GRID]

@@ -8,6 +8,7 @@ from fractions import Fraction
 from typing import Any
 
 from ..taylor_step import TaylorStep
+from .balls import demand
 from .bound import Piece, Radius, World, output
 from .columns import Columns
 from .shapes import EnclosedTransit, Interval, Proposal
@@ -37,8 +38,7 @@ class Course:
 
     def finish(self) -> tuple[list[list[Interval]], list[EnclosedTransit] | None]:
         """Return the states at `times`, and the transits; None if not requested or if xdot is zero for ever."""
-        end = self.times[-1]
-        if len(self.states) < len(self.times) or (end and self.bound.time != end):
-            raise ArithmeticError("the steps do not end with the run")
+        end, complete = self.times[-1], len(self.states) == len(self.times)
+        demand(complete and (not end or self.bound.time == end), "the steps do not end with the run")
         transits = self.scan.finish() if self.scan and end else []
         return self.states, transits if self.scan else None

@@ -8,7 +8,7 @@ from .balls import SHORT
 from .shapes import Leaf
 
 POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
-NEAR = arb(2) ** -40  # a last one so short has come near
+NEAR = arb(2) ** -28  # a last one so short has come near: what is left is about its square
 MARGIN = 1 + arb(2) ** -8  # farther from the zero than xdot is uncertain
 
 

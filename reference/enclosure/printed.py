@@ -5,6 +5,7 @@ So nothing that rounds or prints between a proof and its files has to be believe
 
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
+from typing import Any
 
 from .shapes import EnclosedTransit, Interval
 
@@ -20,22 +21,17 @@ class Misprint(ArithmeticError):
 
 def check_grid(text: str, times: Iterable[Fraction], states: Iterable[Sequence[Interval]], bounds: Bounds) -> None:
     """Raise Misprint unless grid.csv has the exact times, and each number is the nearest to all of its interval."""
-    check_rows(text, GRID, ([exact(t), *state] for t, state in zip(times, states, strict=True)), bounds)
+    check_rows(text, GRID, ([t, *state] for t, state in zip(times, states, strict=True)), bounds)
 
 
 def check_transits(text: str, found: Iterable[EnclosedTransit], bounds: Bounds) -> None:
     """Raise Misprint unless transits.csv has the single zeros, in order, each number nearest to all of its interval."""
     ones = enumerate((z for z in found if z.parity == "one"), 1)
-    rows = ([exact(k), z.t, exact(z.direction), z.x, z.y, z.z, z.vy, z.ax] for k, z in ones)
+    rows = ([k, z.t, z.direction, z.x, z.y, z.z, z.vy, z.ax] for k, z in ones)
     check_rows(text, TRANSITS, rows, bounds)
 
 
-def exact(number: Fraction | int) -> Interval:
-    """Return the interval of one number."""
-    return Interval(Fraction(number), Fraction(number))
-
-
-def check_rows(text: str, header: str, rows: Iterable[list[Interval]], bounds: Bounds) -> None:
+def check_rows(text: str, header: str, rows: Iterable[list[Any]], bounds: Bounds) -> None:
     """Raise Misprint unless a file has these rows; what has no bound must be exact, and t has its row's, if any."""
     names, (first, *lines) = header.split(","), text.splitlines()
     if first != header:
@@ -44,7 +40,7 @@ def check_rows(text: str, header: str, rows: Iterable[list[Interval]], bounds: B
         cells = dict(zip(names, line.split(","), strict=True))
         of_row = {**bounds, "t": cells.get("bound", "0")}
         for name, x in zip(names, row, strict=False):
-            check(cells[name], x, of_row.get(name, "0"))
+            check(cells[name], x if isinstance(x, Interval) else Interval(x, x), of_row.get(name, "0"))
 
 
 def check(number: str, x: Interval, bound: str) -> None:

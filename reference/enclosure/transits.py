@@ -7,12 +7,11 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx
 
-from .balls import SHORT, add, ball, dot, interval, times
+from .balls import SHORT, ball, demand, interval
 from .bound import World, state
 from .guess import around_zero
 from .shapes import Covered, EnclosedTransit, Interval, Leaf
 
-PARTS = 4  # that a step is cut into at once, as by halves of halves
 MOST_LEAVES = 4096  # of a step that are sorted: what is left of it is reported as one possible transit
 
 
@@ -38,32 +37,29 @@ class Slope:
         (f, off), plain = self.forms[1], self.at(1, s)
         return plain if sign(plain) else arb_poly(f)(arb_poly([s.mid(), 1]))(s - s.mid()) / self.piece.unit + off
 
-    def bend(self, s: arb) -> Any:
-        """Return a ball that contains x''' on the ball `s`, by the equations of motion (section 7)."""
-        k, (r, v) = self.piece.k, state(self.covered, s)
-        a = [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
-        F, F1 = k.force(r, v), add(k.force(v, a), times(-1, k.c))
-        return F1[0] - v[0] * (dot(v, v) + dot(r, F)) - r[0] * (2 * dot(v, a) + dot(v, F) + dot(r, F1))
+    def push(self, s: arb) -> int:
+        """Return the sign of xdot on `s` after a start at rest with x = 0: that of the Coriolis force; or 0."""
+        k, north = self.piece.k, self.piece.v[1].derivative()(s) / self.piece.unit + self.forms[1][1]
+        return sign(k.omega[2] * north) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
 
 
 class Scan:
     """Bisects the steps into leaves and closes clusters of those that are not E, also across steps (section 8)."""
 
     def __init__(self, world: World) -> None:
-        self.world, self.begun, self.left, self.time, self.leaves = world, False, 0, Fraction(0), 0
+        self.world, self.left, self.time, self.leaves = world, 0, Fraction(0), 0
         self.end: tuple[Slope, arb] | None = None
         self.found, self.cluster = list[EnclosedTransit](), list[Leaf]()
 
     def advance(self, covered: Covered) -> None:
         """Sort the leaves of the next step."""
         piece = covered.piece
-        if piece.begin != self.time or piece.world is not self.world:
-            raise ArithmeticError("steps must join, and be of one scene")
+        demand(piece.begin == self.time and piece.world is self.world, "steps must join, and be of one scene")
         with ctx.workprec(self.world.prec):
             slope, low, high = Slope(covered), ball(piece.step.low), ball(piece.step.high)
+            self.left = self.left if self.time else sign(slope.at(0, low))
             self.end, self.time, self.leaves = (slope, high), piece.end, 0
-            self.left = self.left if self.begun else sign(slope.at(0, low))
-            ends = [low, *((low + (high - low) * k / PARTS).mid() for k in range(1, PARTS)), high]
+            ends = [low, *((low + (high - low) * k / 4).mid() for k in (1, 2, 3)), high]
             for part in pairwise(ends):
                 self._sort(slope, *part, 2)
 
@@ -72,14 +68,13 @@ class Scan:
         # most leaves are decided at low precision, and only a few need all bits
         with ctx.workprec(SHORT if depth < 4 else self.world.prec):
             whole, middle = low.union(high), ((low + high) / 2).mid()
-            if not low < middle < high:
-                raise ArithmeticError("a step is too short for the precision")
+            demand(low < middle < high, "a step is too short for the precision")
             rate = slope.at(1, whole) if depth < 4 else slope.rate(whole)
             speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
             way, bend = sign(speed), sign(rate)
-            if not way and not self.begun and self.world.slow:
-                # from rest, xdot takes the sign of its first derivative that is not 0
-                way = bend or (sign(slope.bend(whole)) if self.world.flat else 0)
+            if not way and self.world.slow and not (self.left or self.cluster):
+                # this is the first leaf: from rest, xdot takes the sign of its first derivative that is not 0
+                way = bend or (slope.push(whole) if self.world.flat else 0)
             elif not way and bend and sign(slope.at(0, low)) == (last := sign(slope.at(0, high))):
                 way = last
         deep = 2 * depth >= self.world.prec or self.leaves > MOST_LEAVES
@@ -90,7 +85,6 @@ class Scan:
         else:
             self._sort(slope, low, middle, depth + 1)
             self._sort(slope, middle, high, depth + 1)
-        self.begun = True
 
     def finish(self) -> list[EnclosedTransit]:
         """Close the cluster that is open at T; return all transits in order."""
@@ -101,8 +95,7 @@ class Scan:
     def _close(self, right: int) -> None:
         leaves, sides, self.cluster, self.left = self.cluster, (self.left, right), [], right
         steady, product = {leaf.bend for leaf in leaves} in ({1}, {-1}), sides[0] * right
-        if not leaves and product < 0:
-            raise ArithmeticError("two enclosures contradict each other")
+        demand(bool(leaves) or product >= 0, "two enclosures contradict each other")
         if not leaves or (steady and product > 0):
             return
         ends = ((leaves[0].slope, leaves[0].low), (leaves[-1].slope, leaves[-1].high))
@@ -113,10 +106,8 @@ class Scan:
         self.found.append(EnclosedTransit(parity, way, interval(t), *self._values(leaves, t)))
 
     def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:
-        rows = []
-        for slope, s in touched(leaves, t):
-            r, v = (self.world.turned(a, -1) for a in state(slope.covered, s))
-            rows.append([*r, v[1] / slope.piece.k.h, slope.at(1, s) / slope.piece.k.h**2])
+        turned, parts = self.world.turned, [(f, f.piece.k.h, s, *state(f.covered, s)) for f, s in touched(leaves, t)]
+        rows = [[*turned(r, -1), turned(v, -1)[1] / h, f.at(1, s) / h**2] for f, h, s, r, v in parts]
         return [interval(reduce(arb.union, x) * self.world.length) for x in zip(*rows, strict=True)]
 
 

@@ -5,6 +5,7 @@ Nothing that is proved rests on them. A run that contradicts the proof refuses i
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from fractions import Fraction
 from itertools import pairwise
@@ -105,26 +106,29 @@ def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
     """Return the bits at which xdot between any two transits is far above a run's rounding errors."""
     if not len(transits):
         return 0
-    times = [Fraction(0), *transits.exact("t"), end]
-    apart = min((b - a for a, b in pairwise(times) if b > a), default=end)
-    least = min(map(abs, transits.exact("ax"))) * apart
+    unit = 1 << transits.bits
+    times = [0, *transits.whole("t", transits.bits), math.floor(end * unit)]
+    apart = min((b - a for a, b in pairwise(times) if b > a), default=times[-1])
+    least = Fraction(min(map(abs, transits.whole("ax", transits.bits))) * apart, unit**2)
     return pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS if least else MOST_CHECK_PREC + 1
 
 
 def _transit_gap(event_run: Run, transits: Table, directions: list[int], pilot: Pilot, any_undecided: bool) -> Fraction:
     """Return how far the transits that a run found are from the enclosed ones, at most, in s."""
-    found = [] if event_run.transits is None else event_run.transits.exact("t")
-    if len(found) != len(directions) and not any_undecided:
-        raise IntegrationError(f"heyoka finds {len(found)} transits, the enclosure {len(directions)}.")
-    prec = event_run.plan.number.prec
-    xdot_error, rounding = pilot.estimates(prec)["vx"], event_run.plan.times[-1] / 2 ** (prec - EVALUATION_BITS)
-    remaining = iter(zip(found, event_run.directions, strict=True))
-    largest = Fraction(0)
-    rows = zip(*(transits.exact(name) for name in ("t", "ax")), transits.bound("t"), directions, strict=True)
+    seen = event_run.transits or Table(transits.columns, 0, [])
+    if len(seen) != len(directions) and not any_undecided:
+        raise IntegrationError(f"heyoka finds {len(seen)} transits, the enclosure {len(directions)}.")
+    prec, bits = event_run.plan.number.prec, max(seen.bits, transits.bits)
+    remaining = iter(zip(seen.whole("t", bits), event_run.directions, strict=True))
+    # in integers over 2**bits, as there may be many
+    rounding = math.ceil(event_run.plan.times[-1] * Fraction(2) ** (bits + EVALUATION_BITS - prec))
+    xdot_error, largest = math.ceil(pilot.estimates(prec)["vx"] * (1 << 2 * bits)), 0
+    bounds = (math.ceil(bound * (1 << bits)) for bound in transits.bound("t"))
+    rows = zip(*(transits.whole(name, bits) for name in ("t", "ax")), bounds, directions, strict=True)
     for k, (t, ax, bound, direction) in enumerate(rows, 1):
-        allowed = bound + xdot_error / abs(ax) + rounding
+        allowed = bound + xdot_error // abs(ax) + rounding
         gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= allowed), None)
         if gap is None:
-            raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {float(t)} s.")
+            raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {t / (1 << bits)} s.")
         largest = max(largest, gap)
-    return largest
+    return Fraction(largest, 1 << bits)

@@ -10,7 +10,7 @@ from flint import ctx, fmpz_poly
 
 from reference.enclosure import Enclosure, enclose
 from reference.enclosure.approximant import GRAIN, pair, stretched
-from reference.enclosure.balls import cross, integer
+from reference.enclosure.balls import cross, fixed
 from reference.enclosure.bound import World
 from reference.enclosure.run import SCENE_GUARD_BITS
 from reference.inputs import Inputs
@@ -51,11 +51,9 @@ class Recurrence:
         self.f = bits + GUARD_BITS
         self.one = 1 << self.f
         with ctx.workprec(world.prec + self.f):
-            self.c = [int(integer(x, self.f)) for x in world.c]
-            self.w = int(integer(world.omega[2], self.f))
-            self.g = int(integer(world.drag, self.f))
-            self.n = [int(integer(x, self.f)) for x in world.r]
-            self.V = [int(integer(x, self.f)) for x in cross(world.H, world.r)]
+            whole = lambda balls: [int(n) for n in fixed(balls, self.f)[0]]  # noqa: E731
+            self.c, (self.w, self.g) = whole(world.c), whole([world.omega[2], world.drag])
+            self.n, self.V = whole(world.r), whole(cross(world.H, world.r))
 
     def _dot(self, a: Iterable[int], b: Iterable[int]) -> int:
         return int(sum(map(mul, a, b))) >> self.f

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -109,7 +110,7 @@ class Stepper:
         """Count a step, or raise if it failed."""
         if outcome not in (hy.taylor_outcome.success, hy.taylor_outcome.time_limit):
             raise IntegrationError(f"heyoka stopped at t = {float(self.time)} s with outcome {outcome}.")
-        if not np.isfinite(self._ta.state.astype(float)).all():
+        if not all(map(math.isfinite, self._ta.state.astype(float).tolist())):
             raise IntegrationError(f"the state is not finite at t = {float(self.time)} s.")
         self.steps += 1
 

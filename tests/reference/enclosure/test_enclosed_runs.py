@@ -12,7 +12,7 @@ from sampled import one_in
 
 from reference.enclosure import enclose, turned
 from reference.enclosure.approximant import pair
-from reference.enclosure.balls import integer
+from reference.enclosure.balls import fixed
 from reference.enclosure.bound import World
 from reference.errors import UnreachableError
 from reference.taylor_step import LOCAL, TaylorStep
@@ -107,7 +107,7 @@ def test_an_approximant_too_coarse_is_requested_again_with_more_bits():
 def test_coefficients_of_an_integrator_are_an_approximant():
     bits, rows = 192, []
     with ctx.workprec(256):
-        sin, cos = (int(integer(x, bits)) for x in World(PARIS, 256).tilt)
+        sin, cos = map(int, fixed(list(World(PARIS, 256).tilt), bits)[0])
     for e in Recurrence(World(PARIS, 256), bits, 96).chain(Fraction(1, 2)):
         x, m, w, _ = e.coefficients
         y = [(a * sin + b * cos) >> bits for a, b in zip(m, w, strict=True)]

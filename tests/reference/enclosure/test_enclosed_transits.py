@@ -7,7 +7,7 @@ from random import Random
 import mpmath as mp
 import numpy as np
 import pytest
-from enclosure_oracle import PARIS, carry, doubles, scene, steps
+from enclosure_oracle import PARIS, carry, doubles, scene, steps, truth
 from enclosure_recurrence import prove
 from flint import arb, ctx
 from scipy.integrate import solve_ivp
@@ -140,15 +140,44 @@ def test_no_transits_where_xdot_is_zero_for_ever(inputs):
     assert proof.transits is None
 
 
-@pytest.mark.parametrize("inputs", [scene(drag="0.2", rotation_rate="0.01"), scene(x="0", y="0.5")])
-def test_third_derivative_by_the_equations_is_that_of_a_good_polynomial(inputs):
-    covered = next(carry(inputs, steps(inputs, Fraction(5))))
-    piece = covered.piece
-    third = piece.v[0].derivative().derivative()
-    for place in ("-0.7", "0", "0.4"):
-        with ctx.workprec(128):
-            gap = Slope(covered).bend(arb(place)) - third(arb(place)) / piece.unit
-        assert gap.abs_upper() < arb("1e-30")
+def released_in_the_meridian(rng):
+    """Rest at x = 0 anywhere in the meridian, above the horizontal too, on any planet, with or without drag."""
+    rate = rng.choice((-1, 1)) * 10 ** rng.uniform(-4, 0)
+    drag = rng.choice(("0", f"{10 ** rng.uniform(-3, 1):.9f}"))
+    angles = (f"{rng.uniform(1, 179):.6f}", rng.choice(("90", "-90")), "0", "0")
+    place = {"latitude": f"{rng.uniform(-90, 90):.6f}", "length": f"{10 ** rng.uniform(-1, 2):.6f}"}
+    return scene(**place, angles=angles, rotation_rate=f"{rate:.9f}", drag=drag, equatorial_radius="100")
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_from_rest_in_the_meridian_xdot_has_the_sign_of_the_coriolis_force_on_a_short_leaf(seed):
+    inputs = released_in_the_meridian(Random(seed))
+    covered = next(carry(inputs, steps(inputs, Fraction(1, 100))))
+    slope, step = Slope(covered), covered.piece.step
+    assert slope.push(ball(step.low).union(ball(step.low + 1000))) == 0
+    assert Slope(covered._replace(tube=Tube(*covered.tube[:2], arb(1e9)))).push(ball(step.low)) == 0
+    begin, end, seen = ball(step.low), ball(step.high), 0
+    for halving in range(8):
+        leaf = begin.union(begin + (end - begin) / 2**halving)
+        sign = slope.push(leaf)
+        if sign:
+            seen += 1
+            parts = [Fraction(k, 16) for k in range(1, 17)]
+            times = [step.h * (step.high - step.low) * part / 2**halving for part in parts]
+            assert {1 if state[3] > 0 else -1 for state in truth(inputs, times)} == {sign}
+    assert seen >= 4
+
+
+def test_the_tension_follows_from_the_angular_momentum():
+    """λ = |v|² + r·F = |H|² + r·c, on which the largest leaf at a start from rest rests (THEOREM.md, section 8)."""
+    rng = np.random.default_rng(0)
+    r, v, c, turn = rng.normal(size=(4, 100, 3))
+    r /= np.linalg.norm(r, axis=1)[:, None]
+    along = lambda a, b: np.sum(a * b, axis=1)  # noqa: E731
+    v -= along(v, r)[:, None] * r
+    force = c - np.cross(turn, np.cross(turn, r)) - 2 * np.cross(turn, v) - 0.3 * v
+    momentum = np.cross(r, v + np.cross(turn, r))
+    assert along(v, v) + along(r, force) == pytest.approx(along(momentum, momentum) + along(r, c), abs=1e-12)
 
 
 def parabola(delta, u):

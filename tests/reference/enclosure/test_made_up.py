@@ -83,32 +83,6 @@ def dot(a, b):
     return sum(x * y for x, y in zip(a, b, strict=True))
 
 
-def free(k, r, v, c):
-    """F of section 7, with its terms one by one."""
-    twice, once = cross(k.omega, v), cross(k.omega, cross(k.omega, r))
-    return [x - y - 2 * z - k.drag * q for x, y, z, q in zip(c, once, twice, v, strict=True)]
-
-
-def test_the_third_derivative_holds_for_every_state_in_the_tube():
-    rng = Random(4)
-    inputs = scene(length="2", latitude="40", rotation_rate="0.7", drag="0.4", equatorial_radius="5")
-    world = World(inputs, 128)
-    for _ in range(40):
-        rows = tuple([rng.randint(-(2**64), 2**64) for _ in range(4)] for _ in range(4))
-        piece = Piece(world, TaylorStep(Fraction(0), Fraction(1, 2), Fraction(-1), Fraction(1), 64, rows))
-        tube = Tube(*(arb(10) ** -rng.randint(1, 6) for _ in range(3)))
-        s = Fraction(rng.randint(-8, 8), 8)
-        with ctx.workprec(128):
-            p, v = piece.values(ball(s))
-            a = [f.derivative()(ball(s)) / piece.unit for f in piece.v]
-            r, v, a = ([x + rng.choice((-1, 0, 1)) * e for x in part] for part, e in zip((p, v, a), tube, strict=True))
-            k, zero = piece.k, [0, 0, 0]
-            F, F1 = free(k, r, v, k.c), free(k, v, a, zero)
-            exact = F1[0] - v[0] * (dot(v, v) + dot(r, F)) - r[0] * (2 * dot(v, a) + dot(v, F) + dot(r, F1))
-            assert abs(Slope(Covered(piece, tube)).bend(ball(s)) - exact.mid()).lower() <= arb(2) ** -90
-            assert Slope(Covered(piece, tube)).bend(ball(s)).contains(exact.mid())
-
-
 def test_three_zeros_within_the_tube_are_odd_and_not_one():
     xdot = fmpq_poly([1])
     for z in (Fraction(1), Fraction(1) + Fraction(1, 10**4), Fraction(1) - Fraction(1, 10**4)):
