@@ -28,7 +28,7 @@ def check(rows: Any, constants: Any) -> int:
     return most
 
 
-with kept("the proof's sums", 5):
+with kept():
 
     @njit(cache=True)  # type: ignore[untyped-decorator]  # numba has no types
     def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:

@@ -53,6 +53,7 @@ def test_columns_are_taken_by_name_whatever_their_order():
     assert turned.exact("x") == one.exact("x") == [Fraction(1, 256), Fraction(3, 256)]
     assert turned.bound("y") == one.bound("y") == [Fraction(6, 256), Fraction(8, 256)]
     assert one["y"].tolist() == [2 / 256, 4 / 256]
+    assert (one.whole("y", 8), one.whole("y", 11)) == ([2, 4], [16, 32])
     assert len(one) == 2
     assert one.largest_bounds() == {"x": Fraction(7, 256), "y": Fraction(8, 256)}
     with pytest.raises(KeyError, match="'z' is no column; there are x, y"):
