@@ -144,13 +144,13 @@ def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden) -> Tra
         golden: the dataset of the truth; the scales are those of its whole grid, whatever the candidate's rows.
     """
     t_low = candidate.low.get("t")
-    rates = None if t_low is None else _rates(truth.states, constants_in_double(golden.scene.exact))
+    # the truth is known at the double t; the candidate's row belongs to t + t_low
+    later = None if t_low is None else _rates(truth.states, constants_in_double(golden.scene.exact)) * t_low[:, None]
     components = {}
     for i, name in enumerate(COLUMNS):
         if name in candidate.columns:
             low = candidate.low.get(name, 0.0) - truth.low[:, i]
-            # the truth is known at the double t; the candidate's row belongs to t + t_low
-            low = low if t_low is None or rates is None else low - rates[:, i] * t_low
+            low = low if later is None else low - later[:, i]
             components[name] = difference(candidate.columns[name], truth.states[:, i], low)
     amplitudes = [np.hypot(golden.x, golden.y), np.hypot(truth.states[:, 0], truth.states[:, 1])]
     amplitude = max(float(part.max()) for part in amplitudes) or float(golden.scene.exact.length)

@@ -246,6 +246,19 @@ def test_the_states_at_transits_are_those_printed_with_no_speed_to_the_east_and_
     assert [Fraction(bound, made.unit) for bound in made.bounds] == [*bounds[:3], 0, bounds[3], 0]
 
 
+def test_the_motion_has_its_transits_sought_just_where_the_dataset_claims_to_hold_them_all(files, monkeypatch):
+    sought = []
+    monkeypatch.setattr(motion, "_run", lambda _files, _prec, seek, *_: sought.append(seek))
+    monkeypatch.setattr(motion, "_compared", lambda *_: [])
+    unasked = files.scene.with_values(["run.transits=false"])
+    undecided = files.manifest.model_copy(update={"transits": "undecided intervals"})
+    states_alone = {"grid.csv": files.tables["grid.csv"]}
+    others = (replace(files, scene=unasked), replace(files, manifest=undecided), replace(files, tables=states_alone))
+    for changed in (files, *others):
+        assert motion.problems(changed) == ([], [])
+    assert sought == [True, True, *[False] * 6]
+
+
 def test_transits_that_are_none_or_not_given_are_not_looked_at(files):
     counts = files.manifest.counts.model_copy(update={"transits": 0})
     none = files.manifest.model_copy(update={"counts": counts})
