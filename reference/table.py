@@ -83,7 +83,7 @@ class Table:
         return [Fraction(row[i], 1 << self.bits) for row in self.errors]
 
     def whole(self, name: str, bits: int) -> list[int]:
-        """Return the values of a column as integers over 2**bits, which are no fewer than the table's."""
+        """Return the values of a column as integers over 2**bits; `bits` is at least the table's."""
         i, up = self._place(name), bits - self.bits
         return [row[i] << up for row in self.values]
 

@@ -14,7 +14,7 @@ Vector = list[Any]  # three balls, or three integer polynomials
 
 
 def demand(holds: bool, reason: str) -> None:
-    """Raise ArithmeticError unless something holds without which nothing would be proved."""
+    """Raise ArithmeticError unless a condition holds on which the proof rests."""
     if not holds:
         raise ArithmeticError(reason)
 

@@ -24,7 +24,7 @@ class World:
     """
 
     def __init__(self, inputs: Any, prec: int, by_flint: bool = False) -> None:
-        demand(inputs.drag >= 0 < inputs.length, "not a pendulum: the theorems take a length > 0 and a drag >= 0")
+        demand(inputs.drag >= 0 and inputs.length > 0, "not a pendulum: the theorems take a length > 0 and a drag >= 0")
         self.prec, self.by_flint = prec, by_flint  # by FLINT's polynomials alone, not by sums of digits
         with ctx.workprec(prec):
             turn = fmpq(inputs.latitude.numerator, inputs.latitude.denominator) / 180
