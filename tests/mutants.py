@@ -28,6 +28,7 @@ from queue import Queue
 from typing import Any, NamedTuple
 
 ROOT, WORKERS = Path(__file__).parent.parent, 2
+EQUIVALENTS = Path(__file__).parent / "equivalent_mutants.toml"
 SPARE_S, LONGER = 30, 5  # what the tests of a mutant may take: some CPU seconds, and times what they take without it
 DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/test_", "tests/reference/solver/test_"
 LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
@@ -53,9 +54,6 @@ SLOW += "large_angles loses_every thirty_digits effective_gravity every_transit"
 SWAPPED: dict[type, type] = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt, ast.Eq: ast.NotEq}
 SWAPPED |= {ast.NotEq: ast.Eq, ast.Is: ast.IsNot, ast.IsNot: ast.Is, ast.In: ast.NotIn, ast.NotIn: ast.In}
 SWAPPED |= {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.And: ast.Or, ast.Or: ast.And}
-
-
-EQUIVALENTS = Path(__file__).parent / "equivalent_mutants.toml"
 
 
 class Mutant(NamedTuple):

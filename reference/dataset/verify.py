@@ -16,7 +16,7 @@ BEYOND = "a number of the scene or of a table, or what follows from it, is beyon
 
 @dataclass(frozen=True)
 class Verification:
-    """What a check of a dataset found.
+    """The outcome of checking a dataset.
 
     Attributes:
         problems: a sentence for each; none if the dataset passes.
