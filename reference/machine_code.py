@@ -72,12 +72,15 @@ class _CheckedCache(caching.FunctionCache):  # type: ignore[misc]
 
     _impl_class = _Places
 
-    def __init__(self, function: Any, what: str, seconds: int) -> None:
+    def __init__(self, function: Any, what: str, seconds: int, sources: str) -> None:
         super().__init__(function)
-        self._what, self._seconds = what, seconds
+        self._what, self._seconds, self._sources = what, seconds, sources
         stamp = self._impl.locator.get_source_stamp()
         self._cache_file = _CheckedFile(self._cache_path, self._impl.filename_base, stamp)
         self._lock = Path(self._cache_path, f"{self._impl.filename_base}.lock")
+
+    def _index_key(self, types: Any, code: Any) -> Any:
+        return self._sources, *super()._index_key(types, code)
 
     def load_overload(self, types: Any, target: Any) -> Any:
         code = super().load_overload(types, target)
@@ -117,24 +120,25 @@ class _CheckedCache(caching.FunctionCache):  # type: ignore[misc]
             _turns.pop(self._lock, ExitStack()).close()
 
 
-def _cache_of(function: Any, what: str, seconds: int) -> Any:
+def _cache_of(function: Any, what: str, seconds: int, sources: str) -> Any:
     try:
-        return _CheckedCache(function, what, seconds)
+        return _CheckedCache(function, what, seconds, sources)
     except (RuntimeError, OSError):  # there is no folder for it that can be written
         return caching.NullCache()
 
 
 @contextmanager
-def kept(what: str = "", seconds: int = 0) -> Iterator[None]:
+def kept(what: str = "", seconds: int = 0, sources: str = "") -> Iterator[None]:
     """Have functions that are declared meanwhile with `cache=True` use a checked cache.
 
     Args:
         what: what they are, in the plural, for the line that announces a long compilation; without it there is none.
         seconds: that it takes, about.
+        sources: a hash of the other files that they are made of: numba looks at their own alone.
     """
     users: tuple[Any, Any] = (dispatcher, ccallback)
     for module in users:
-        module.FunctionCache = partial(_cache_of, what=what, seconds=seconds)
+        module.FunctionCache = partial(_cache_of, what=what, seconds=seconds, sources=sources)
     try:
         yield
     finally:

@@ -27,7 +27,7 @@ def _(x):
         raise KeyboardInterrupt
     return lambda x: x + 1
 
-with kept():
+with kept(sources=sys.argv[1] if sys.argv[1:] else ""):
     @njit(cache=True)
     def successor(x):
         return slow(x)
@@ -50,8 +50,8 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def begun(program: str, folder: Path) -> subprocess.Popen[str]:
-    return subprocess.Popen([sys.executable, "-c", program], cwd=folder, stdout=subprocess.PIPE, text=True)
+def begun(program: str, folder: Path, *arguments: str) -> subprocess.Popen[str]:
+    return subprocess.Popen([sys.executable, "-c", program, *arguments], cwd=folder, stdout=subprocess.PIPE, text=True)
 
 
 def test_of_three_processes_one_compiles(folder: Path) -> None:
@@ -73,3 +73,8 @@ def test_a_process_that_is_killed_while_it_compiles_leaves_the_turn_to_the_other
 
 def test_a_function_that_failed_to_compile_can_be_compiled_by_the_same_process(folder: Path) -> None:
     assert begun(FAIL, folder).communicate(timeout=60)[0].split() == ["compiled", "compiled", "42"]
+
+
+def test_what_is_made_of_other_sources_is_compiled_again(folder: Path) -> None:
+    said = [begun(CALL, folder, sources).communicate(timeout=60)[0].split() for sources in ("first", "other", "first")]
+    assert said == [["compiled", "42"], ["compiled", "42"], ["42"]]

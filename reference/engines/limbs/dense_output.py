@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .lanes import LANES, compiled, load, occupied, plus_product, shuffled, spread, store
+from .compiling import compiled
+from .lanes import LANES, load, occupied, plus_product, shuffled, spread, store
 from .limb import DOUBLED, RADIX, UNIT, Array, add_product, carry, carry_scalar, clear, divide
 from .series import LinearTerms, Series, partner, positions, to_positions, to_speeds
 from .step import GRAINS, Model, lane_products

@@ -7,57 +7,20 @@ the same bits come out with and without FMA, on every machine.
 from __future__ import annotations
 
 import operator
-from collections.abc import Callable
-from hashlib import sha256
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numba.extending
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.core import cgutils
 
-from ...machine_code import kept
-from .parts import AsPart
+from .compiling import PART
 
 LANES = 8
-_insert: Any = cgutils.get_or_insert_function
-Function = TypeVar("Function", bound=Callable[..., Any])
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
 FUSE = ("contract",)
-
-
-def hashed(folder: Path) -> str:
-    """Return a hash of a folder's sources for cached functions to close over: numba looks at their own file alone."""
-    return "".join(sha256(path.read_bytes()).hexdigest() for path in sorted(folder.glob("*.py")))
-
-
-SOURCES = hashed(Path(__file__).parent)
 _extending: Any = numba.extending  # untyped
-_OPTIONS = {"error_model": "numpy", "_nrt": False}  # no reference counting: all arrays come from the caller
-_PART: dict[str, Any] = _OPTIONS | {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "pipeline_class": AsPart}
-
-
-def compiled(function: Function) -> Function:
-    """Compile with numba, to be called from compiled functions; no option lets arithmetic be rearranged."""
-    callee: Function = _extending.register_jitable(**_PART)(function)
-    return callee
-
-
-def inlined(function: Function) -> Function:
-    """Compile into its callers: for small parts of innermost loops, where a call would cost more than the work."""
-    callee: Function = _extending.register_jitable(forceinline=True, **_PART)(function)
-    return callee
-
-
-def entry(function: Function, what: str, seconds: int, nogil: bool = False) -> Function:
-    """Compile with numba, to be called from Python; the machine code of `what` is cached on disk."""
-    compiler: Any = numba.njit
-    with kept(what, seconds):
-        dispatcher: Function = compiler(cache=True, nogil=nogil, **_OPTIONS)(function)
-    return dispatcher
-
-
+_insert: Any = cgutils.get_or_insert_function
 _Type: Any = types.Type
 
 
@@ -265,7 +228,7 @@ def _binary(operation: Any, name: str) -> None:
         return Lanes(Lanes, Lanes), generate
 
     # numba calls `choose` with the operands' types and reads the signature off the lambda; it wants no annotations here
-    @_extending.overload(operation, jit_options=_PART | {"forceinline": True})
+    @_extending.overload(operation, jit_options=PART | {"forceinline": True})
     def choose(a, b):  # type: ignore[no-untyped-def]
         if isinstance(a, _Lanes) and isinstance(b, _Lanes):
             return lambda a, b: apply(a, b)  # noqa: PLW0108

@@ -18,7 +18,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ...precision import to_fraction
-from .lanes import LANES, compiled, inlined, load, nearest, plus_product, spread, store
+from .compiling import compiled, inlined
+from .lanes import LANES, load, nearest, plus_product, spread, store
 from .size import LIMB_BITS, fraction_bits
 
 Array = npt.NDArray[np.float64]

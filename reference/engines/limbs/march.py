@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
+from .compiling import compiled, entry
 from .dense_output import divide_place, evaluate, to_cartesian
-from .lanes import LANES, SOURCES, compiled, entry, load, store
+from .lanes import LANES, load, store
 from .limb import Array, aligned
 from .polish import polish
 from .recurrence import taylor_coefficients
@@ -91,37 +92,6 @@ def state_at_release(start: Array, first: int, multiplicity: int, order: int, li
 
 
 @compiled
-def _march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
-    """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
-    s, counts, limb_count, order = state.s, state.counts, model.limb_count, model.order
-    for i in range(steps):
-        if seek and counts[ZEROS] + MOST_ZEROS > len(out.moments) // 3:
-            return FULL
-        if not _step_coefficients(state, model):
-            return STUCK
-        m = counts[LENGTH]
-        sum_series(state.rows, s, order, limb_count)
-        if seek and counts[STEPS] == 0:
-            counts[SIGN] = _first_sign(state, model)
-        project(state.now, state.rows, s, m, limb_count)
-        if seek and not _write_zeros(state, model, out):
-            return DOUBTFUL
-        _write_outputs(state, model, out)
-        if 2 * i < len(out.steps):
-            out.steps[2 * i], out.steps[2 * i + 1] = counts[TIME], m
-            size = (order + 1) * limb_count * LANES
-            for j in range(0, size, LANES):
-                store(out.series, i * size + j, load(s.c, j))
-        counts[TIME] += m
-        counts[STEPS] += 1
-        counts[MULTIPLICITY] = 0
-        counts[LENGTH] = counts[NEXT]
-        if counts[TIME] >= until:
-            return GOOD
-    return FULL
-
-
-@compiled
 def _first_sign(state: MarchState, model: Model) -> int:
     """Return the sign of xdot at release, or just after it."""
     if state.counts[MULTIPLICITY] > 0:
@@ -188,17 +158,32 @@ def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
     return True
 
 
-def _entry(sources: str) -> Any:
-    """Return the function that Python calls, cached on disk for these sources.
-
-    numba's cache looks at the file of the function that is called, not at those that it calls; but whatever a function
-    closes over is part of its key.
-    """
-
-    def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
-        return _march(state, model, out, until, steps, seek) if sources else STUCK
-
-    return entry(march, "limbs", COMPILE_S)
-
-
-march = _entry(SOURCES)
+@entry("limbs", COMPILE_S)
+def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
+    """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
+    s, counts, limb_count, order = state.s, state.counts, model.limb_count, model.order
+    for i in range(steps):
+        if seek and counts[ZEROS] + MOST_ZEROS > len(out.moments) // 3:
+            return FULL
+        if not _step_coefficients(state, model):
+            return STUCK
+        m = counts[LENGTH]
+        sum_series(state.rows, s, order, limb_count)
+        if seek and counts[STEPS] == 0:
+            counts[SIGN] = _first_sign(state, model)
+        project(state.now, state.rows, s, m, limb_count)
+        if seek and not _write_zeros(state, model, out):
+            return DOUBTFUL
+        _write_outputs(state, model, out)
+        if 2 * i < len(out.steps):
+            out.steps[2 * i], out.steps[2 * i + 1] = counts[TIME], m
+            size = (order + 1) * limb_count * LANES
+            for j in range(0, size, LANES):
+                store(out.series, i * size + j, load(s.c, j))
+        counts[TIME] += m
+        counts[STEPS] += 1
+        counts[MULTIPLICITY] = 0
+        counts[LENGTH] = counts[NEXT]
+        if counts[TIME] >= until:
+            return GOOD
+    return FULL

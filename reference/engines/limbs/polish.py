@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from .compiling import compiled
 from .dense_output import evaluate
-from .lanes import LANES, compiled, load, store
+from .lanes import LANES, load, store
 from .limb import Array, add_double, carry_scalar, double_of, set_double
 from .recurrence import taylor_coefficients
 from .series import LinearTerms, Series

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .lanes import compiled
+from .compiling import compiled
 from .limb import Array
 
 HALVINGS = 60  # more than a double has bits

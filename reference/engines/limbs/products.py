@@ -5,7 +5,8 @@ An order's sums lack its products with order 0, which the recurrence adds itself
 
 from __future__ import annotations
 
-from .lanes import LANES, compiled, inlined, load, plus_product, spread, store
+from .compiling import compiled, inlined
+from .lanes import LANES, load, plus_product, spread, store
 from .limb import DOUBLED, Array
 from .series import AXIAL_SQUARE, TENSION, M, Series, W, X
 from .unrolled import MOST_ROWS, PLANES, WIDTH, add_convolved

@@ -12,7 +12,8 @@ k is small as h**k, its leading limbs are zero and are not touched, so that high
 
 from __future__ import annotations
 
-from .lanes import LANES, compiled, inlined, load, occupied, plus_product, shuffled, spread, store, within
+from .compiling import compiled, inlined
+from .lanes import LANES, load, occupied, plus_product, shuffled, spread, store, within
 from .limb import DOUBLED, LARGEST, Array, carry, carry_scalar, divide
 from .products import add_products, add_squares, clear_sums, copy_to_planes
 from .series import AXIAL_SQUARE, SPIN, TENSION, Counts, LinearTerms, Series, W, partner, to_positions, to_speeds

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from .compiling import compiled
 from .dense_output import evaluate
-from .lanes import LANES, compiled
+from .lanes import LANES
 from .limb import DOUBLED, Array, carry_scalar, double_of, double_of_lane, sign_of
 from .series import TENSION, VM, VX, LinearTerms, M, Series, X
 from .step import Model

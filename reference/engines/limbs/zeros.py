@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .lanes import LANES, compiled
+from .compiling import compiled
+from .lanes import LANES
 from .limb import Array, add_double, double_of_lane, set_double
 from .polynomial import CONVEX, FREE, UNDECIDED, classify, crossing, extremum, recentre, value_at
 from .series import Counts, LinearTerms, Series, X, empty_series

@@ -5,7 +5,8 @@ Between a highest and a lowest point passes half a period of u, longer than half
 
 from __future__ import annotations
 
-from ..limbs.lanes import LANES, at_least, compiled, load, magnitude, spread, store, where
+from ..limbs.compiling import compiled
+from ..limbs.lanes import LANES, at_least, load, magnitude, spread, store, where
 from ..limbs.lanes import plus_product as fma
 from ..limbs.limb import Array
 from .series import Series

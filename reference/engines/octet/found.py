@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..limbs.lanes import compiled
+from ..limbs.compiling import compiled
 from ..limbs.limb import Array
 from . import rows
 

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..limbs.lanes import LANES, compiled
+from ..limbs.compiling import compiled
+from ..limbs.lanes import LANES
 from ..limbs.limb import Array
 from ..limbs.polynomial import FREE, MONOTONE, classify, crossing, value_at
 from .series import MOST_ORDER

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ..batch import DOUBTFUL, STOPPED
-from ..limbs.lanes import LANES, SOURCES, at_least, compiled, entry, hashed, load, occupied, spread, store, where
+from ..limbs.compiling import SOURCES, compiled, entry, hashed
+from ..limbs.lanes import LANES, at_least, load, occupied, spread, store, where
 from ..limbs.limb import Array, aligned
 from . import rows
 from .apsides import CONVERGED as TURNED
@@ -159,8 +160,8 @@ def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Mo
     return True
 
 
-@compiled
-def _march(m: March, order: int, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
+@entry("steps of eight rows at once", rows.COMPILE_S, SOURCES + hashed(Path(__file__).parent), nogil=True)
+def march(m: March, order: int, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
     """Take at most `steps` steps, or until no room is left for times; return whether all rows are done."""
     many = len(numbers) // rows.COLUMNS
     if m.counts[NEXT] == 0:
@@ -190,15 +191,3 @@ def _march(m: March, order: int, numbers: Array, results: Array, moments: Moment
                 if m.last[lane] != 0.0 and m.counts[ROW + lane] >= 0:
                     _leave(m, lane, numbers, results, int(m.last[lane]) - 1)
     return bool(m.counts[DONE] == many)
-
-
-def _entry(sources: str) -> Any:
-    """Return the function that Python calls, cached on disk for these sources: see `limbs.march`."""
-
-    def march(m: March, order: int, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
-        return _march(m, order, numbers, results, moments, steps) if sources else False
-
-    return entry(march, "steps of eight rows at once", rows.COMPILE_S, nogil=True)
-
-
-march = _entry(SOURCES + hashed(Path(__file__).parent))

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..limbs.lanes import LANES, at_least, compiled, inlined, larger, load, magnitude, spread, store, where
+from ..limbs.compiling import compiled, inlined
+from ..limbs.lanes import LANES, at_least, larger, load, magnitude, spread, store, where
 from ..limbs.lanes import plus_product as fma
 from ..limbs.limb import Array, aligned
 

@@ -12,7 +12,7 @@ pytest.importorskip("numba")
 from numba.core import codegen, event
 
 FUNCTIONS = """
-from reference.engines.limbs.lanes import compiled, entry, inlined
+from reference.engines.limbs.compiling import compiled, entry, inlined
 
 @inlined
 def square(x):
@@ -26,13 +26,13 @@ def fourth(x):
 def eighth(x):
     return fourth(x) * fourth(x)
 
-def _sixteenth(x):
+@entry("", 0)
+def sixteenth(x):
     return eighth(x) * eighth(x)
 
-def _ninth(x):
+@entry("", 0)
+def ninth(x):
     return eighth(x) * x
-
-sixteenth, ninth = entry(_sixteenth, "", 0), entry(_ninth, "", 0)
 """
 PARTS = ["eighth", "fourth", "square"]
 
@@ -71,21 +71,21 @@ def compiled_by(call):
 
 def test_machine_code_is_made_of_what_python_calls_alone(tmp_path, names):
     functions = loaded(tmp_path)
-    assert compiled_by(lambda: functions.sixteenth(3)) == (3**16, ["_sixteenth", *PARTS])
-    assert names == ["_sixteenth"]
-    assert compiled_by(lambda: functions.ninth(3)) == (3**9, ["_ninth"])
-    assert names == ["_sixteenth", "_ninth"]
+    assert compiled_by(lambda: functions.sixteenth(3)) == (3**16, sorted(["sixteenth", *PARTS]))
+    assert names == ["sixteenth"]
+    assert compiled_by(lambda: functions.ninth(3)) == (3**9, ["ninth"])
+    assert names == ["sixteenth", "ninth"]
 
 
 def test_parts_serve_other_types_too(tmp_path, names):
     functions = loaded(tmp_path)
     assert functions.sixteenth(3) == 3**16
     assert math.isclose(functions.sixteenth(1.5), 1.5**16, rel_tol=1e-15)
-    assert names == ["_sixteenth"] * 2
+    assert names == ["sixteenth"] * 2
 
 
 def test_what_is_kept_on_disk_needs_no_parts(tmp_path):
     assert loaded(tmp_path).sixteenth(3) == 3**16
     functions = loaded(tmp_path)
     assert compiled_by(lambda: functions.sixteenth(3)) == (3**16, [])
-    assert compiled_by(lambda: functions.ninth(3)) == (3**9, ["_ninth", *PARTS])
+    assert compiled_by(lambda: functions.ninth(3)) == (3**9, sorted(["ninth", *PARTS]))
