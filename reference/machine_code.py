@@ -82,6 +82,9 @@ class _CheckedCache(caching.FunctionCache):  # type: ignore[misc]
     def _index_key(self, types: Any, code: Any) -> Any:
         return self._sources, *super()._index_key(types, code)
 
+    def is_missing(self, types: Any, target: Any) -> bool:
+        return self._index_key(types, target.codegen()) not in self._cache_file._load_index()
+
     def load_overload(self, types: Any, target: Any) -> Any:
         code = super().load_overload(types, target)
         if code is None:
@@ -144,3 +147,9 @@ def kept(what: str = "", seconds: int = 0, sources: str = "") -> Iterator[None]:
     finally:
         for module in users:
             module.FunctionCache = caching.FunctionCache
+
+
+def missing(function: Any, types: Any) -> bool:
+    """Return whether a function that was declared under `kept` could have its machine code on disk, but has not."""
+    cache = function._cache
+    return isinstance(cache, _CheckedCache) and cache.is_missing(types, function.targetctx)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import queue
 import threading
 from collections.abc import Callable
@@ -26,11 +25,6 @@ class Checked(Protocol):
 
     def check(self) -> None:
         """Raise if nothing will come any more."""
-
-
-def default_workers() -> int:
-    """Return how many cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def next_done(done: queue.SimpleQueue[Any], workers: Checked) -> Any:

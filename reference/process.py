@@ -32,6 +32,11 @@ AGAIN_S = 0.05  # seconds after which a signal is sent again whose exception was
 GRACE_S = 10.0  # seconds in which a child has to end by itself once its parent has closed the pipes
 
 
+def usable_cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 class Parent:
     """A child's view of its parent: call it to send an object, iterate over it to take those that the parent sends."""
 

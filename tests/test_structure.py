@@ -161,10 +161,9 @@ PUBLIC = {
     "reference.opening": "open_at_once",
     "reference.packages": "missing switched_off",
     "reference.plain_text": "finite plain plain_json plain_lines",
-    "reference.pool": "default_workers",
     "reference.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType bits_of "
     "context fixed_decimal real to_fraction to_mpf",
-    "reference.process": "Emit Worker alarm terminable",
+    "reference.process": "Emit Worker alarm terminable usable_cores",
     "reference.scene": "LEVELS MAX_ROWS RunTable",
     "reference.shortened": "shortened",
     "reference.shipped": "DATA_VERSION data_root golden_root in_checkout seals",

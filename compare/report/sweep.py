@@ -32,7 +32,7 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
         cluster: address of the scheduler that had the work done, if one had.
     """
     from reference.engines.registry import batches
-    from reference.pool import default_workers
+    from reference.process import usable_cores
 
     request, tally = swept.request, swept.tally
     plan, counts = request.document(), swept.counts
@@ -45,7 +45,7 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
         "level": request.level,
         "engine": request.engine,
         "lanes": batches()[request.engine].lanes,
-        "workers": None if cluster else workers or default_workers(),
+        "workers": None if cluster else workers or usable_cores(),
         "cluster": cluster,
         "rows_total": len(swept),
         "rows_done": sum(tally.counts.values()),

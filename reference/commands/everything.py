@@ -100,14 +100,15 @@ def _executor(
 ) -> tuple[Callable[[Job], Any], Any]:
     """Return what begins a dataset, and what tells whether anything can still come."""
     from ..dataset.shipping import isolated, serve
-    from ..pool import Pool, default_workers
+    from ..pool import Pool
+    from ..process import usable_cores
 
     if cluster is not None:
         from ..sweeps.cluster import Scheduler, solving_versions
 
         scheduler = stack.enter_context(Scheduler(cluster, solving_versions))
         return lambda job: scheduler.begin(isolated, job), scheduler
-    pool = stack.enter_context(Pool(min(workers or default_workers(), count), serve))
+    pool = stack.enter_context(Pool(min(workers or usable_cores(), count), serve))
     return pool.submit, pool
 
 

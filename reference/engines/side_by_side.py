@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 from collections.abc import Iterator
@@ -10,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from ..errors import FoucaultError
-from ..process import Emit, Worker
+from ..process import Emit, Worker, usable_cores
 from .plan import Plan, Report, Run
 from .registry import engines, run
 
@@ -44,7 +43,7 @@ def expected_s(plan: Plan, steps: int) -> float:
 @contextmanager
 def beside(plan: Plan, worth: bool = True) -> Iterator[Beside]:
     """Do a run meanwhile in a child process, where that is worth it and the machine has two cores; else afterwards."""
-    worker = Worker(_run_in_child, plan) if worth and (os.cpu_count() or 1) >= 2 else None
+    worker = Worker(_run_in_child, plan) if worth and usable_cores() >= 2 else None
     try:
         yield Beside(plan, worker)
     finally:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -10,7 +9,7 @@ from functools import partial
 from typing import Any
 
 from ..errors import IntegrationError
-from ..process import Emit, Worker
+from ..process import Emit, Worker, usable_cores
 from .proving import Problem, proved
 from .rounding import grid_decimals, transit_decimals
 from .solution import Solution
@@ -27,7 +26,7 @@ def audit_of(problem: Problem) -> Iterator[Callable[[Solution], Solution]]:
     Raises:
         IntegrationError: FLINT alone proves other digits.
     """
-    worth = problem.pilot.steps >= WORTH_STEPS and (os.cpu_count() or 1) >= 2
+    worth = problem.pilot.steps >= WORTH_STEPS and usable_cores() >= 2
     worker = Worker(_send_digits, problem) if worth else None
 
     def audited(solution: Solution) -> Solution:

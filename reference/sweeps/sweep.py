@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..engines import AUTO
 from ..errors import InputError
 from ..packages import missing
-from ..pool import default_workers
+from ..process import usable_cores
 from ..scene import Scene
 from .audit import Audit
 from .audit import audit as audited
@@ -218,7 +218,7 @@ def _executor(
         from .cluster import ClusterExecutor
 
         return stack.enter_context(ClusterExecutor(asked, out, cluster))
-    return stack.enter_context(LocalExecutor(asked, out, min(workers or default_workers(), parts)))
+    return stack.enter_context(LocalExecutor(asked, out, min(workers or usable_cores(), parts)))
 
 
 def _reader(swept: Swept) -> Callable[[int], Mapping[str, Any]]:

@@ -13,7 +13,8 @@ from ...model.vanishing import xdot_vanishes, zero_at_release
 from ..plan import AT_REST, Plan, Report
 from .lanes import LANES
 from .limb import Array, aligned, joined
-from .march import COLUMNS, DOUBTFUL, GOOD, STUCK, TIME, ZEROS, MarchState, Outputs, march, state_at_release
+from .march import DOUBTFUL, GOOD, STUCK, loaded, march
+from .march_state import COLUMNS, TIME, ZEROS, Outputs, state_at_release
 from .output_times import limbs_of_fractions
 from .problem import LimbProblem, limb_problem
 from .size import MOST_PREC, fraction_bits
@@ -43,7 +44,10 @@ class Integration:
         self.problem, self.seek = problem, seek
         limb_count, model = problem.model.limb_count, problem.model
         multiplicity = zero_at_release(problem.start) if seek else 0
-        self.state: MarchState = state_at_release(problem.state, problem.first, multiplicity, model.order, limb_count)
+        cpu_start = time.process_time()
+        code = loaded()
+        self.compile_s = time.process_time() - cpu_start
+        self.state = state_at_release(problem.state, problem.first, multiplicity, model, code)
         room = STEPS_PER_CALL + MOST_ZEROS if seek else 0
         self.out = Outputs(
             whole,
@@ -56,9 +60,6 @@ class Integration:
             aligned(polynomials * (model.order + 1) * limb_count * LANES),
         )
         self.until = int(whole[-1]) + 1
-        cpu_start = time.process_time()
-        march(self.state, model, self.out, self.until, 0, seek)
-        self.compile_s = time.process_time() - cpu_start
         self._zeros: list[tuple[Any, Any, Any]] = []
 
     def finish(self, report: Report | None) -> None:
@@ -78,7 +79,7 @@ class Integration:
 
     def advance(self, steps: int) -> bool:
         """Take at most `steps` steps; return true when the last output time is passed."""
-        outcome = march(self.state, self.problem.model, self.out, self.until, steps, self.seek)
+        outcome = march.python(self.state, self.problem.model, self.out, self.until, steps, self.seek)
         self._keep_zeros()
         if outcome == STUCK:
             raise IntegrationError(f"no step is short enough at t = {self.time} s.")

@@ -1,18 +1,28 @@
-"""The compiled loop of Taylor steps: states at the output times and zeros of xdot, written as steps pass them."""
+"""The compiled loop of Taylor steps, from the release on."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from contextlib import ExitStack
 
-import numpy as np
-
-from .compiling import compiled, entry
-from .dense_output import divide_place, evaluate, to_cartesian
+from ...process import Emit, Worker, usable_cores
+from .compiling import compiled
+from .kernel import Kernel
 from .lanes import LANES, load, store
-from .limb import Array, aligned
-from .polish import polish
+from .march_state import (
+    LENGTH,
+    MULTIPLICITY,
+    NEXT,
+    SCALED,
+    SIGN,
+    STEPS,
+    TIME,
+    ZEROS,
+    Addresses,
+    MarchState,
+    Outputs,
+)
+from .outputs import write_outputs
 from .recurrence import taylor_coefficients
-from .series import Counts, LinearTerms, Series, empty_series
 from .step import (
     LEAST_FACTOR,
     SAFETY_FACTOR,
@@ -25,70 +35,42 @@ from .step import (
     sum_series,
 )
 from .xdot import sign_after_release, sign_of_xdot
-from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search
+from .zeros import MOST_ZEROS
 
 # why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
 GOOD, FULL, STUCK, DOUBTFUL = range(4)
-COMPILE_S = 11  # what compiling takes, about, of which users are told
-COLUMNS = 7  # x, y, z, vx, vy, vz, ax
-TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # in `MarchState.counts`
+
+_taylor_coefficients, _write_outputs = taylor_coefficients.call, write_outputs.call
 
 
-class MarchState(NamedTuple):
-    """State carried between steps, and working arrays.
-
-    Attributes:
-        now: rows of n, in the axes x, m, w, and of V in the unit of time.
-        counts: time and step length in grains; multiplicity of the zero of xdot at release; sign of xdot; steps;
-            output times passed; zeros written; the step length that `terms` is for; the next step's length.
-        s: the step's series.
-        terms: its linear terms.
-        rows, place: working arrays: all lanes at some place in the step, and that place.
-        search: working arrays for the step's zeros.
-    """
-
-    now: Array
-    counts: Counts
-    s: Series
-    terms: LinearTerms
-    rows: Array
-    place: Array
-    search: Search
-
-
-class Outputs(NamedTuple):
-    """Output times, the states at them, and zeros of xdot.
-
-    Attributes:
-        whole, remainders: times in whole grains, and the limbs of the remainders, shape (times * limb_count,).
-        states: `limb_count` rows per time, as `dense_output.to_cartesian` writes them.
-        moments: per zero the step's start and length in grains, and the crossing's sign.
-        places: per zero the limbs of its place in the step.
-        zero_states: `limb_count` rows per zero.
-        steps: start and length in grains of the first steps of a call, as many as there is room for.
-        series: the coefficients of as many steps, (order + 1) * `limb_count` rows each.
-    """
-
-    whole: Counts
-    remainders: Array
-    states: Array
-    moments: Counts
-    places: Array
-    zero_states: Array
-    steps: Counts
-    series: Array
-
-
-def state_at_release(start: Array, first: int, multiplicity: int, order: int, limb_count: int) -> MarchState:
-    """Return the state carried between steps, initialised at the release."""
-    counts = np.zeros(9, dtype=np.int64)
-    counts[LENGTH], counts[MULTIPLICITY] = first, multiplicity
-    terms = LinearTerms(*(aligned(LANES * (limb_count + 2)) for _ in LinearTerms._fields))
-    rows = aligned(LANES * (limb_count + 2))
-    now = aligned(len(start))
-    now[:] = start
-    series, search = empty_series(order, limb_count), empty_search(order, limb_count)
-    return MarchState(now, counts, series, terms, rows, np.zeros(limb_count + 2), search)
+@Kernel
+def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
+    """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
+    s, counts, limb_count, order = state.s, state.counts, model.limb_count, model.order
+    for i in range(steps):
+        if seek and counts[ZEROS] + MOST_ZEROS > len(out.moments) // 3:
+            return FULL
+        if not _step_coefficients(state, model):
+            return STUCK
+        m = counts[LENGTH]
+        sum_series(state.rows, s, order, limb_count)
+        if seek and counts[STEPS] == 0:
+            counts[SIGN] = _first_sign(state, model)
+        project(state.now, state.rows, s, m, limb_count)
+        if not _write_outputs(state.code.outputs, state, model, out, seek):
+            return DOUBTFUL
+        if 2 * i < len(out.steps):
+            out.steps[2 * i], out.steps[2 * i + 1] = counts[TIME], m
+            size = (order + 1) * limb_count * LANES
+            for j in range(0, size, LANES):
+                store(out.series, i * size + j, load(s.c, j))
+        counts[TIME] += m
+        counts[STEPS] += 1
+        counts[MULTIPLICITY] = 0
+        counts[LENGTH] = counts[NEXT]
+        if counts[TIME] >= until:
+            return GOOD
+    return FULL
 
 
 @compiled
@@ -110,7 +92,7 @@ def _step_coefficients(state: MarchState, model: Model) -> bool:
             counts[SCALED] = m
         order_zero(state.s, state.terms, state.now, m, model.limb_count)
         shorter = m // 2
-        if taylor_coefficients(state.s, state.terms, model.order, model.limb_count, model.drag):
+        if _taylor_coefficients(state.code.series, state.s, state.terms, model.order, model.limb_count, model.drag):
             factor = step_size_factor(state.s, model.order, model.limb_count, model.tolerance)
             if factor >= LEAST_FACTOR:
                 counts[NEXT] = next_length(m, factor, model.longest)
@@ -121,69 +103,18 @@ def _step_coefficients(state: MarchState, model: Model) -> bool:
         counts[LENGTH] = shorter
 
 
-@compiled
-def _write_outputs(state: MarchState, model: Model, out: Outputs) -> None:
-    """Write the states at the output times that the step passes."""
-    counts, limb_count = state.counts, model.limb_count
-    start, m = counts[TIME], counts[LENGTH]
-    while counts[ROWS] < len(out.whole) and out.whole[counts[ROWS]] < start + m:
-        i = counts[ROWS]
-        state.place[:] = 0.0
-        for q in range(limb_count):
-            state.place[q] = out.remainders[i * limb_count + q]
-        divide_place(state.place, out.whole[i] - start, m, limb_count)
-        evaluate(state.rows, state.s, state.place, model.order, limb_count)
-        to_cartesian(out.states, i * limb_count * LANES, state.rows, state.s, state.terms, model, m)
-        counts[ROWS] += 1
+def loaded() -> Addresses:
+    """Compile or load the kernels and return the addresses of those that others call.
+
+    What is not kept on disk is compiled by two processes if the machine has two cores: series and steps here, the
+    outputs in a child.
+    """
+    with ExitStack() as stack:
+        if write_outputs.missing and usable_cores() >= 2:
+            stack.callback(Worker(_compile_outputs).stop)
+        march.address()
+        return Addresses(taylor_coefficients.address(), write_outputs.address())
 
 
-@compiled
-def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
-    """Write the zeros of xdot on the step; return false if they stay in doubt."""
-    counts, limb_count, z, m = state.counts, model.limb_count, state.search, state.counts[LENGTH]
-    after = sign_of_xdot(state.now, model.terms.turn, state.s, limb_count)
-    count = bracket_zeros(z, state.s, state.terms, state.rows, counts[SIGN], after, counts[MULTIPLICITY], model)
-    if count == GRAZING:
-        return False
-    for i in range(count):
-        if not polish(z, i, state.s, state.terms, state.rows, model):
-            return False
-        n = counts[ZEROS]
-        for q in range(limb_count):
-            out.places[n * limb_count + q] = z.place[q]
-        to_cartesian(out.zero_states, n * limb_count * LANES, state.rows, state.s, state.terms, model, m)
-        out.moments[3 * n], out.moments[3 * n + 1], out.moments[3 * n + 2] = counts[TIME], m, z.direction[i]
-        counts[ZEROS] += 1
-    counts[SIGN] = after
-    return True
-
-
-@entry("limbs", COMPILE_S)
-def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
-    """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
-    s, counts, limb_count, order = state.s, state.counts, model.limb_count, model.order
-    for i in range(steps):
-        if seek and counts[ZEROS] + MOST_ZEROS > len(out.moments) // 3:
-            return FULL
-        if not _step_coefficients(state, model):
-            return STUCK
-        m = counts[LENGTH]
-        sum_series(state.rows, s, order, limb_count)
-        if seek and counts[STEPS] == 0:
-            counts[SIGN] = _first_sign(state, model)
-        project(state.now, state.rows, s, m, limb_count)
-        if seek and not _write_zeros(state, model, out):
-            return DOUBTFUL
-        _write_outputs(state, model, out)
-        if 2 * i < len(out.steps):
-            out.steps[2 * i], out.steps[2 * i + 1] = counts[TIME], m
-            size = (order + 1) * limb_count * LANES
-            for j in range(0, size, LANES):
-                store(out.series, i * size + j, load(s.c, j))
-        counts[TIME] += m
-        counts[STEPS] += 1
-        counts[MULTIPLICITY] = 0
-        counts[LENGTH] = counts[NEXT]
-        if counts[TIME] >= until:
-            return GOOD
-    return FULL
+def _compile_outputs(_: Emit) -> None:
+    write_outputs.address()

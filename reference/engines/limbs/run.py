@@ -11,7 +11,7 @@ from ...columns import RUN
 from ...table import Table
 from ..plan import Plan, Report, Run
 from .integration import Integration, integration_of
-from .march import STEPS
+from .march_state import STEPS
 from .size import fraction_bits
 
 SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction

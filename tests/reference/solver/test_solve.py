@@ -284,9 +284,9 @@ def test_two_processes_give_what_one_gives(monkeypatch, paris):
     fine = Plan(paris.exact, "momentum", real(120), (Fraction(0), Fraction(120)), transits=True)
     coarse = replace(fine, formulation="space", number=real(100))
     seen: list[float] = []
-    monkeypatch.setattr(side_by_side.os, "cpu_count", lambda: 1)
+    monkeypatch.setattr(side_by_side, "usable_cores", lambda: 1)
     alone = run_both(fine, coarse, 10**9, seen.append)
-    monkeypatch.setattr(side_by_side.os, "cpu_count", lambda: 2)
+    monkeypatch.setattr(side_by_side, "usable_cores", lambda: 2)
     together = run_both(fine, coarse, 10**9, seen.append)
     for one, other in zip(alone, together, strict=True):
         assert one.grid == other.grid
