@@ -1,10 +1,10 @@
-"""Two runs at the same time, one in a child process if the machine has two cores and the work is worth it."""
+"""Work at the same time as other work, in a child process if the machine has two cores and it is worth it."""
 
 from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
@@ -30,7 +30,7 @@ def run_both(first: Plan, second: Plan, steps: int, report: Report | None = None
     first_s, second_s = (expected_s(plan, steps) for plan in (first, second))
     worth = min(first_s, second_s) >= WORTH_A_PROCESS or second_s >= COMPILATION_S
     end = float(first.times[-1])
-    with beside(second, worth) as other:
+    with beside(worth, send_run, second) as other:
         first_run = run(first, report and (lambda t: report((t + other.reached) / 2)))
         return first_run, other.result(report and (lambda t: report((end + t) / 2)))
 
@@ -41,50 +41,75 @@ def expected_s(plan: Plan, steps: int) -> float:
 
 
 @contextmanager
-def beside(plan: Plan, worth: bool = True) -> Iterator[Beside]:
-    """Do a run meanwhile in a child process, where that is worth it and the machine has two cores; else afterwards."""
-    worker = Worker(_run_in_child, plan) if worth and usable_cores() >= 2 else None
+def beside(worth: bool, work: Callable[..., None], *arguments: Any) -> Iterator[Beside]:
+    """Do work meanwhile in a child process, where that is worth it and the machine has two cores; else afterwards.
+
+    `work(emit, *arguments)` stands at the top level of a module; it sends simulated times, as `reports` does, and then
+    its result.
+    """
+    worker = Worker(work, *arguments) if worth and usable_cores() >= 2 else None
     try:
-        yield Beside(plan, worker)
+        yield Beside(worker, work, *arguments)
     finally:
         if worker is not None:
             worker.stop()
 
 
 class Beside:
-    """A run that is done in a child process, or by this one once its result is wanted."""
+    """Work that is done in a child process, or by this one once its result is wanted."""
 
-    def __init__(self, plan: Plan, worker: Worker | None) -> None:
-        self._plan, self._messages, self._reader = plan, list[Any](), None
+    def __init__(self, worker: Worker | None, work: Callable[..., None], *arguments: Any) -> None:
+        self._work, self._arguments, self._messages, self._reader = work, arguments, list[Any](), None
         if worker is not None:
             self._reader = threading.Thread(target=_collect, args=(worker, self._messages), daemon=True)
             self._reader.start()
+
+    @property
+    def at_work(self) -> bool:
+        """Whether the child is at work."""
+        return self._reader is not None and self._reader.is_alive()
 
     @property
     def reached(self) -> float:
         """Simulated time in s that the child has reached."""
         return next((item for item in reversed(self._messages) if isinstance(item, float)), 0.0)
 
-    def result(self, report: Report | None = None) -> Run:
-        """Wait for the run and return it; `report` is called with the simulated time meanwhile.
+    def result(self, report: Report | None = None) -> Any:
+        """Wait for the result and return it; `report` is called with the simulated time meanwhile.
 
         Raises:
-            FoucaultError: the run failed, as it would have done here.
+            FoucaultError: the work failed, as it would have done here.
         """
         if self._reader is None:
-            return run(self._plan, report)
+            return self._done_here(report)
         while self._reader.is_alive():
-            self._reader.join(0.2)
+            self._reader.join(REPORT_S)
             if report is not None:
                 report(self.reached)
-        if not isinstance(self._messages[-1], Run):
+        if isinstance(self._messages[-1], Exception):
             raise self._messages[-1]
-        found: Run = self._messages[-1]
-        return found
+        return self._messages[-1]
+
+    def _done_here(self, report: Report | None) -> Any:
+        sent: list[Any] = []
+
+        def take(item: Any) -> None:
+            if not isinstance(item, float):
+                sent.append(item)
+            elif report is not None:
+                report(item)
+
+        self._work(take, *self._arguments)
+        return sent[-1]
+
+
+def slowest(report: Report, others: list[Beside]) -> Report:
+    """Return a report that tells the time which all work has reached: the caller's, and others' that is going on."""
+    return lambda t: report(min([t, *(other.reached for other in others if other.at_work)]))
 
 
 def _collect(worker: Worker, messages: list[Any]) -> None:
-    """Append the child's messages as they arrive: times reached, and at last its run or its error."""
+    """Append the child's messages as they arrive: times reached, and at last its result or its error."""
     try:
         for item in worker:
             messages.append(item)
@@ -92,13 +117,19 @@ def _collect(worker: Worker, messages: list[Any]) -> None:
         messages.append(error)
 
 
-def _run_in_child(emit: Emit, plan: Plan) -> None:
+def send_run(emit: Emit, plan: Plan) -> None:
+    """Do a run and send it; to be done beside other work."""
+    emit(run(plan, reports(emit)))
+
+
+def reports(emit: Emit) -> Report:
+    """Return a report that sends the simulated time, not too often."""
     last_report = time.monotonic()
 
     def report(t: float) -> None:
         nonlocal last_report
         if time.monotonic() - last_report > REPORT_S:
             last_report = time.monotonic()
-            emit(t)
+            emit(float(t))
 
-    emit(run(plan, report))
+    return report

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
+from ..engines.side_by_side import Beside, beside, reports
 from ..errors import IntegrationError
-from ..process import Emit, Worker, usable_cores
+from ..process import Emit
 from .proving import Problem, proved
 from .rounding import grid_decimals, transit_decimals
 from .solution import Solution
@@ -18,38 +19,28 @@ WORTH_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which a 
 
 
 @contextmanager
-def audit_of(problem: Problem) -> Iterator[Callable[[Solution], Solution]]:
-    """Begin an audit; yield the function that takes the proved solution, waits, and returns it as audited.
+def audit_of(problem: Problem) -> Iterator[Beside]:
+    """Begin an audit, in a child process where that pays, else once it is waited for: its result is for `audited`."""
+    with beside(problem.pilot.steps >= WORTH_STEPS, _send_digits, problem) as child:
+        yield child
 
-    The audit is done meanwhile if it is worth a process and the machine has two cores, else once it is waited for.
+
+def audited(solution: Solution, digits: Any) -> Solution:
+    """Return a proved solution as audited, given the digits of its audit.
 
     Raises:
         IntegrationError: FLINT alone proves other digits.
     """
-    worth = problem.pilot.steps >= WORTH_STEPS and usable_cores() >= 2
-    worker = Worker(_send_digits, problem) if worth else None
-
-    def audited(solution: Solution) -> Solution:
-        if (worker.receive() if worker else _digits_by_flint(problem)) != _digits(solution):
-            raise IntegrationError("FLINT alone proves other digits.")
-        assert solution.proof is not None
-        return replace(solution, proof=replace(solution.proof, audited=True))
-
-    try:
-        yield audited
-    finally:
-        if worker is not None:
-            worker.stop()
+    if digits != _digits(solution):
+        raise IntegrationError("FLINT alone proves other digits.")
+    assert solution.proof is not None
+    return replace(solution, proof=replace(solution.proof, audited=True))
 
 
 def _send_digits(emit: Emit, problem: Problem) -> None:
-    emit(_digits_by_flint(problem))
-
-
-def _digits_by_flint(problem: Problem) -> Any:
     from ..enclosure import enclose
 
-    return _digits(proved(problem, partial(enclose, audit=True)))
+    emit(_digits(proved(problem, partial(enclose, audit=True), reports(emit))))
 
 
 def _digits(solution: Solution) -> Any:

@@ -11,7 +11,7 @@ from ..columns import GRID, TRANSITS
 from ..engines import AUTO
 from ..engines.plan import Run
 from ..engines.registry import run
-from ..engines.side_by_side import WORTH_A_PROCESS, Beside, beside, expected_s
+from ..engines.side_by_side import WORTH_A_PROCESS, Beside, beside, expected_s, send_run
 from ..errors import IntegrationError
 from ..precision import LONG_DOUBLE
 from ..scene import Scene
@@ -41,17 +41,17 @@ class Confirmation:
     def begun(self) -> Iterator[Beside]:
         """Do the run in a child process meanwhile, where that pays; else once it is waited for."""
         plan = confirming_plan(self._scene, self._times, self._pilot, self._prec)
-        with beside(plan, expected_s(plan, self._pilot.steps) >= WORTH_A_PROCESS) as child:
+        with beside(expected_s(plan, self._pilot.steps) >= WORTH_A_PROCESS, send_run, plan) as child:
             yield child
 
-    def of(self, solution: Solution, child: Beside) -> Solution:
-        """Return a proved solution with the check that confirms it.
+    def of(self, solution: Solution, found: Run) -> Solution:
+        """Return a proved solution with the check that confirms it, given the run that was begun.
 
         Raises:
             UnreachableError: a finer run, which it takes, is out of reach.
             IntegrationError: heyoka finds other numbers, or other transits.
         """
-        found, last = child.result(), None
+        last = None
         for _ in range(MAX_RAISES):
             check, missing = _compared(found, solution)
             if not missing:

@@ -6,9 +6,10 @@ from contextlib import ExitStack
 from fractions import Fraction
 
 from ..engines.plan import Report
+from ..engines.side_by_side import Beside, slowest
 from ..errors import InputError
 from ..scene import Scene
-from .auditing import audit_of
+from .auditing import audit_of, audited
 from .confirming import Confirmation
 from .pilot import begun_pilot, run_pilot
 from .proving import Problem, proved
@@ -42,13 +43,17 @@ def solve_enclosed(
 
     pilot, rough = (run_pilot(scene.exact, times), None) if confirm else begun_pilot(scene.exact, times)
     problem = Problem(scene, times, engine, pilot, rough)
+    children: list[Beside] = []
+    report = report and slowest(report, children)
     with ExitStack() as meanwhile:
         if confirm:
             confirmation = Confirmation(scene, times, pilot)
-            child = meanwhile.enter_context(confirmation.begun())
+            confirming = meanwhile.enter_context(confirmation.begun())
+            children.append(confirming)
         if audit:
-            audited = meanwhile.enter_context(audit_of(problem))
+            auditing = meanwhile.enter_context(audit_of(problem))
+            children.append(auditing)
         solution = proved(problem, enclosure.enclose, report)
         if audit:
-            solution = audited(solution)
-        return confirmation.of(solution, child) if confirm else solution
+            solution = audited(solution, auditing.result(report))
+        return confirmation.of(solution, confirming.result(report)) if confirm else solution

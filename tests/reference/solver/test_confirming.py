@@ -13,9 +13,10 @@ from reference.dataset.recompute import recompute
 from reference.dataset.record import NO_CONFIRM
 from reference.dataset.verify import problems_of
 from reference.dataset.write import write
-from reference.engines.side_by_side import Beside
+from reference.engines import side_by_side
+from reference.engines.side_by_side import Beside, send_run
 from reference.errors import InputError, IntegrationError, UnreachableError
-from reference.solver import reach
+from reference.solver import enclosed, reach
 
 SHORT = {"t_end": "60", "digits": 18, "level": "enclosed"}
 PARIS = reference.load_scene("paris")
@@ -63,7 +64,7 @@ def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
         return dataclasses.replace(honest(self), directions=[])
 
     monkeypatch.setattr(Beside, "result", wrong)
-    monkeypatch.setattr("reference.solver.confirming.run", lambda plan: wrong(Beside(plan, None)))
+    monkeypatch.setattr("reference.solver.confirming.run", lambda plan: wrong(Beside(None, send_run, plan)))
     with pytest.raises(IntegrationError, match="does not confirm"):
         reference.solve(PARIS, **SHORT, confirm=True)
 
@@ -80,3 +81,23 @@ def test_without_a_proof_there_is_nothing_to_confirm(foucault, tmp_path):
         reference.solve(PARIS, level="confirmed", confirm=True)
     status, _, said = foucault("generate", "paris", "--level", "confirmed", NO_CONFIRM, "--out", tmp_path / "paris")
     assert status == 2 and "without --level enclosed" in said
+
+
+def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeypatch):
+    seen: list[float] = []
+    honest, before = enclosed.proved, []
+
+    def noted(*arguments):
+        solution = honest(*arguments)
+        before.extend(seen)
+        return solution
+
+    monkeypatch.setattr(enclosed, "proved", noted)
+    monkeypatch.setattr(side_by_side, "usable_cores", lambda: 2)
+    monkeypatch.setattr("reference.solver.confirming.WORTH_A_PROCESS", 0.0)
+    end = 9000.0
+    reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm=True, report=seen.append)
+    assert before[-1] < end  # the proof has ended, its audit has not
+    after = seen[len(before) :]
+    assert after[0] < end
+    assert after == sorted(after)
