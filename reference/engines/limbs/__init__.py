@@ -6,8 +6,11 @@ fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are 
 - `engine`: its declaration; `size`: limbs for a precision.
 - `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof; `integration`, in progress.
 - `problem`, `output_times`: a scene and its times in limbs.
-- `march`, `step`: steps; `recurrence`, `products`, `series`, `unrolled`: the Taylor coefficients of one, the sums of
-  products in them, their arrays, and the innermost sums written out.
-- `limb`, `lanes`: numbers of limbs, eight side by side; `parts`: how what they compile becomes machine code once.
-- `zeros`, `polish`, `polynomial`, `xdot`: the zeros of xdot on a step; `dense_output`: the state inside a step.
+- `march`, `march_state`, `step`: the loop of steps, what is carried from one to the next, and one of them.
+- `recurrence`, `products`, `series`, `unrolled`: the Taylor coefficients of a step, the sums of products in them, their
+  arrays, and the innermost sums written out.
+- `outputs`: what is read from a step; `dense_output`: the state inside it; `zeros`, `polish`, `polynomial`, `xdot`: the
+  zeros of xdot on it.
+- `limb`, `lanes`: numbers of limbs, eight side by side.
+- `compiling`, `kernel`: how functions are compiled; those that are called by address are compiled each by itself.
 """

@@ -19,7 +19,7 @@ from .lanes import instruction
 from .limb import Array
 from .series import Counts
 
-COMPILE_S = 8  # what compiling all kernels takes, about, of which users are told
+COMPILE_S = 8  # what compiling all kernels takes in two processes, about, of which users are told
 
 _intp: Any = types.intp
 _TYPES: dict[Any, Any] = {
@@ -33,7 +33,7 @@ _TYPES: dict[Any, Any] = {
 
 
 class Kernel:
-    """A compiled function of fixed types, those that its annotations name.
+    """A compiled function of fixed types, those that its annotations name; it raises nothing.
 
     Attributes:
         call: to be called from compiled functions with the address, then the function's arguments.
