@@ -16,6 +16,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
+from numba import njit
 from numba.core import caching, ccallback, dispatcher
 
 from .file_lock import Taken, locked
@@ -147,6 +148,12 @@ def kept(what: str = "", seconds: int = 0, sources: str = "") -> Iterator[None]:
     finally:
         for module in users:
             module.FunctionCache = caching.FunctionCache
+
+
+def compiled(function: Any) -> Any:
+    """Compile a function with numba, quickly enough to say nothing, and keep its machine code."""
+    with kept():
+        return njit(cache=True)(function)
 
 
 def missing(function: Any, types: Any) -> bool:

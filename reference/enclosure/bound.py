@@ -3,7 +3,6 @@
 Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H. A name of a size is an upper bound.
 """
 
-from collections.abc import Sequence
 from fractions import Fraction
 from functools import cached_property, lru_cache, reduce
 from typing import Any
@@ -101,16 +100,15 @@ class Piece:
         """The defects and norms, from integers but for the radii of the constants (section 6)."""
         k, bits = self.k, self.step.bits
         with ctx.workprec(SHORT):
-            *d, t, t1, t2 = self.defects()
-            v1, v2 = (size([norm(f, bits) for f in part]) for part in (self.v, [f.derivative() for f in self.v]))
-            size_p = upper((1 + t).sqrt())
+            *d, t, t1 = self.defects()
+            v1, size_p, degree = size([norm(f, bits) for f in self.v]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
             defect = size_p * (size(d) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
-            speed, rate = v1 + k.omega_size * size_p, v2 + k.omega_size * v1
-            first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + t2 * size_p / 2
+            speed, rate = v1 + k.omega_size * size_p, (degree - 1 + k.omega_size) * v1
+            first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + (2 * degree - 1) * t1 * size_p / 2
             return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
 
     def defects(self) -> list[arb]:
-        """Return the norms of d (three components), τ, τ', τ'': by sums of digits, or by FLINT's polynomials."""
+        """Return the norms of d (three components), τ, τ': by sums of digits, or by FLINT's polynomials."""
         if isinstance(self.rows, Digits) and not self.world.by_flint:
             from .digits import norms
 
@@ -118,17 +116,17 @@ class Piece:
         return [norm(f, 2 * self.step.bits) for f in self.measured()]
 
     def measured(self) -> list[fmpz_poly]:
-        """Return d (three components), τ, τ', τ'' over 2^(2 bits)."""
+        """Return d (three components), τ, τ' over 2^(2 bits)."""
         k, p, v, unit = self.k, self.p, self.v, self.unit
         (tension,) = polynomials(self.rows, slice(3, 4))
         (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], tension - k.whole[1]
         d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, tension), p, strict=True)]
         d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
         tau = dot(p, p) - unit * unit
-        return [*add(d, times(drag, v)), tau, tau.derivative(), tau.derivative().derivative()]
+        return [*add(d, times(drag, v)), tau, tau.derivative()]
 
 
-def polynomials(rows: Sequence[Any], part: slice) -> list[fmpz_poly]:
+def polynomials(rows: Any, part: slice) -> list[fmpz_poly]:
     """Return a part of the rows of coefficients as polynomials."""
     if not isinstance(rows, Digits):
         return [fmpz_poly(row) for row in rows[part]]

@@ -33,7 +33,7 @@ _TYPES: dict[Any, Any] = {
 
 
 class Kernel:
-    """A compiled function of fixed types, those that its annotations name; it raises nothing.
+    """A compiled function of fixed types, those that its annotations name.
 
     Attributes:
         call: to be called from compiled functions with the address, then the function's arguments.
@@ -81,7 +81,9 @@ def _by_address(signature: Any) -> Any:
         convention, (address, values) = context.call_conv, arguments
         kind = convention.get_function_type(signature.return_type, signature.args)
         code, values = builder.inttoptr(address, kind.as_pointer()), cgutils.unpack_tuple(builder, values)
-        _, result = convention.call_function(builder, code, signature.return_type, signature.args, values)
+        status, result = convention.call_function(builder, code, signature.return_type, signature.args, values)
+        with cgutils.if_unlikely(builder, status.is_error):
+            convention.return_status_propagate(builder, status)
         return result
 
     @instruction

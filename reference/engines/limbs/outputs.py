@@ -1,4 +1,4 @@
-"""What is read from a Taylor step: the states at the output times that it passes, and the zeros of xdot on it."""
+"""The outputs of a Taylor step: the states at the output times that it passes, and the zeros of xdot on it."""
 
 from __future__ import annotations
 

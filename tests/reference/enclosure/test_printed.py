@@ -11,7 +11,7 @@ pytest.importorskip("flint")
 import reference
 from reference.columns import GRID
 from reference.dataset.render import render
-from reference.enclosure.printed import Misprint, check_grid, check_transits
+from reference.enclosure.printed import check_grid, check_transits
 from reference.errors import FoucaultError
 
 
@@ -45,7 +45,7 @@ def test_every_digit_that_is_changed_is_found(name, printed):
                     new = cells[k][:place] + str((int(old) + 1) % 10) + cells[k][place:][1:]
                     spoilt = [*lines]
                     spoilt[i] = ",".join([*cells[:k], new, *cells[k + 1 :]])
-                    with pytest.raises(Misprint):
+                    with pytest.raises(ArithmeticError, match="misprint"):
                         checks[name]("\n".join([header, *spoilt]))
                     found += 1
     assert found > 40
@@ -69,13 +69,13 @@ def swapped(lines):
 )
 def test_rows_columns_directions_bounds_and_spellings_that_are_wrong_are_found(spoil, printed):
     checks, texts = printed
-    with pytest.raises((Misprint, ValueError)):
+    with pytest.raises((ArithmeticError, ValueError)):
         checks["transits.csv"]("\n".join(spoil(texts["transits.csv"].splitlines())))
 
 
 def test_a_column_whose_bound_is_too_small_is_found(solution, printed):
     proved = solution.proof.enclosed
-    with pytest.raises(Misprint):
+    with pytest.raises(ArithmeticError, match="misprint"):
         check_grid(
             printed[1]["grid.csv"],
             proved.times,
@@ -86,7 +86,7 @@ def test_a_column_whose_bound_is_too_small_is_found(solution, printed):
 
 def test_a_table_that_is_not_the_proof_is_not_printed(solution):
     values = [tuple(v + (1 << solution.grid.bits) // 10**15 for v in row) for row in solution.grid.values]
-    with pytest.raises(Misprint):
+    with pytest.raises(ArithmeticError, match="misprint"):
         render(replace(solution, grid=replace(solution.grid, values=values)))
 
 

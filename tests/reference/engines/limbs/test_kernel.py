@@ -48,6 +48,18 @@ def twice(address, a, start):
     return 2 * _total(address, a, start)
 
 @Kernel
+def divided(a: int, b: int) -> int:
+    if b == 0:
+        raise ZeroDivisionError("by nothing")
+    return a // b
+
+_divided = divided.call
+
+@entry("", 0)
+def halved(address, a, b):
+    return _divided(address, a, b) // 2
+
+@Kernel
 def wrong(start: int) -> float:
     return start
 """
@@ -92,6 +104,12 @@ def test_a_kernel_gets_its_arguments_and_gives_its_result_by_address(functions):
         assert functions.total.python(a, 1) == sign * (5 * 2.5 + 7 * 4.0) / 4
         assert functions.twice(functions.total.address(), a, 1) == 2 * functions.total.python(a, 1)
         assert len(functions.total.python.signatures) == 1  # the types of its annotations are those of its arguments
+
+
+def test_an_exception_passes_through_a_call_by_address(functions):
+    assert functions.halved(functions.divided.address(), 12, 3) == 2
+    with pytest.raises(ZeroDivisionError, match="by nothing"):
+        functions.halved(functions.divided.address(), 12, 0)
 
 
 def test_a_kernel_that_returns_another_type_than_it_says_is_refused(functions):
