@@ -13,6 +13,7 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 from reference.enclosure.bound import Piece, Radius, Scaled, World
 from reference.enclosure.columns import CUT, FINE, Columns, cut, residuals
 from reference.enclosure.shapes import Sizes
+from reference.packing import DIGIT_BITS, Digits
 from reference.taylor_step import TaylorStep
 
 
@@ -67,6 +68,17 @@ def anything(rng):
     return Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, tuple(rows)))
 
 
+def of_digits(rng):
+    """The same, the polynomials as digits: few orders, often no more than one, some of them all zero."""
+    world, count, orders = anything(rng).world, rng.randint(2, 4), rng.randint(1, 3)
+    size = (4, count, orders)
+    table = np.reshape([rng.choice((0, 1)) * rng.randint(-(2**21), 2**21) for _ in range(np.prod(size))], size)
+    if rng.random() < 0.3:
+        table[:3, :, rng.randrange(orders) :] = 0
+    bits = DIGIT_BITS * count - 1
+    return Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, Digits(table)))
+
+
 def defects(piece, s):
     """d1, d2, p, K, τ, d1' from their definitions in (1), not from Lemma 0."""
     rows = [[Fraction(c, 1 << piece.step.bits) for c in row] for row in piece.step.coefficients]
@@ -96,6 +108,22 @@ def test_sizes_bound_what_their_names_say_and_nearly_reach_it():
                 assert x <= mp.mpf(float(bound)) * (1 + mp.mpf(10) ** -9), (Sizes._fields[i], piece.step)
                 best[i] = max(best[i], x / float(bound) if x else 0)
     assert all(best > 0.97), best
+
+
+def test_sizes_from_digits_bound_what_their_names_say():
+    pytest.importorskip("numba")
+    rng, tried = Random(6), 0
+    for _ in range(300):
+        piece = of_digits(rng)
+        try:
+            bounds = piece.sizes
+        except ArithmeticError:  # numbers that sums of digits may not hold
+            continue
+        tried += 1
+        for s in (Fraction(-1), Fraction(0), Fraction(1)):
+            for x, bound in zip(map(length, defects(piece, s)), bounds, strict=True):
+                assert x <= mp.mpf(float(bound)) * (1 + mp.mpf(10) ** -9)
+    assert tried > 100
 
 
 def numbers(rng, *names):
