@@ -101,10 +101,10 @@ class Piece:
         k, bits = self.k, self.step.bits
         with ctx.workprec(SHORT):
             *d, t, t1 = self.defects()
-            v1, size_p, degree = size([norm(f, bits) for f in self.v]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
+            v1, size_p, n = size([norm(f, bits) for f in self.v]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
             defect = size_p * (size(d) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
-            speed, rate = v1 + k.omega_size * size_p, (degree - 1 + k.omega_size) * v1
-            first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + (2 * degree - 1) * t1 * size_p / 2
+            speed, rate = v1 + k.omega_size * size_p, (n - 1 + k.omega_size) * v1
+            first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + (2 * n - 1) * t1 * size_p / 2
             return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
 
     def defects(self) -> list[arb]:

@@ -8,6 +8,7 @@ from .balls import SHORT
 from .shapes import Leaf
 
 POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
+ORDERS = 40  # for which so many orders do: a series loses two bits from one to the next
 NEAR = arb(2) ** -28  # a last one so short has come near: what is left is about its square
 MARGIN = 1 + arb(2) ** -8  # farther from the zero than xdot is uncertain
 
@@ -18,8 +19,9 @@ def around_zero(leaves: list[Leaf]) -> tuple[arb, arb]:
     slope, full, s = leaf.slope, ctx.prec, ((leaf.low + leaf.high) / 2).mid()
     (f, off), (g, _) = slope.forms
     with ctx.workprec(SHORT):
+        short_f, short_g = f.truncate(ORDERS), g.truncate(ORDERS)
         for _ in range(POLISH):
-            before, s = s, (s - f(s) / g(s)).mid()
+            before, s = s, (s - short_f(s) / short_g(s)).mid()
             if abs(s - before) < NEAR:
                 break
     rate = g(s).mid()

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from flint import arb
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class Interval:
     """A closed interval with exact endpoints."""
 
@@ -17,7 +17,7 @@ class Interval:
     high: Fraction
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class EnclosedTransit:
     """A single zero of xdot ("one"), or an interval that may hold zeros ("possible"); SI units."""
 
