@@ -150,7 +150,7 @@ def kept(what: str = "", seconds: int = 0, sources: str = "") -> Iterator[None]:
             module.FunctionCache = caching.FunctionCache
 
 
-def compiled(function: Any) -> Any:
+def compiled_and_kept(function: Any) -> Any:
     """Compile a function with numba, quickly enough to say nothing, and keep its machine code."""
     with kept():
         return njit(cache=True)(function)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from flint import arb, fmpz, fmpz_poly
 
-from ..machine_code import compiled
+from ..machine_code import compiled_and_kept
 from ..packing import DIGIT_BITS
 from .balls import demand
 
@@ -28,7 +28,7 @@ def check(rows: Any, constants: Any) -> int:
     return most
 
 
-@compiled
+@compiled_and_kept
 def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:
     """Add the product of two polynomials to the sums `i`, in the rows that these have; `alike`: f is g."""
     for r in range(g.shape[0]):

@@ -11,7 +11,7 @@ import reference.enclosure
 
 HOME = Path(reference.enclosure.__file__).parent
 TRUSTED = ("balls", "bound", "columns", "course", "digits", "printed", "transits")
-ARRAYS = {"digits": {"numpy", "numba"}, "bound": {"numpy"}}  # integers only
+ARRAYS = {"digits": {"numpy"}, "bound": {"numpy"}}  # integers only
 PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
 AUDITED = tuple(name for name in TRUSTED if name != "digits")  # what FLINT alone has proved does not rest on its sums
 BUDGET, AUDITED_BUDGET = 420, 365  # lines of code
