@@ -50,7 +50,7 @@ class Kernel:
     @property
     def missing(self) -> bool:
         """Whether the machine code could be on disk, but is not."""
-        return not self.python.overloads and missing(self.python, self._signature.args)
+        return missing(self.python, self._signature.args)
 
     def address(self) -> int:
         """Return the address of the machine code, which is compiled or loaded if need be.

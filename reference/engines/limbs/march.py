@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import ExitStack
+from functools import cache
 
 from ...process import Emit, Worker, usable_cores
 from .compiling import compiled
@@ -103,8 +104,9 @@ def _step_coefficients(state: MarchState, model: Model) -> bool:
         counts[LENGTH] = shorter
 
 
+@cache
 def loaded() -> Addresses:
-    """Compile or load the kernels and return the addresses of those that others call.
+    """Compile or load the kernels, once in a process, and return the addresses of those that others call.
 
     What is not kept on disk is compiled by two processes if the machine has two cores: series and steps here, the
     outputs in a child.
