@@ -84,6 +84,17 @@ def test_digits_whose_sums_may_overflow_are_refused(spoil):
         check(rows, constants + 2**40)
 
 
+def test_sums_that_may_reach_two_to_the_62_are_refused_and_none_below():
+    rows, constants = np.full((4, 64, 64), 1 << 20, np.int32), np.zeros((5, 64), np.int64)
+    # 64 * 64 products with a digit of λ and three squares; two derivatives, c, and the 1 of τ
+    least = (1 << 62) - (((64**2 << 20) + (1 << DIGIT_BITS)) << DIGIT_BITS)
+    rows[3, 5, 7] = least // (64**2 << 20) - (3 << 20)
+    with pytest.raises(ArithmeticError, match="overflow"):
+        check(rows, constants)
+    rows[3, 5, 7] -= 1
+    assert check(rows, constants) < least
+
+
 def test_digits_hand_out_the_integers_that_they_stand_for():
     rows = [[-(2**196), 2**196 - 1, 0, -1, 1, 2**60, -(2**60)], [5] * 7]
     digits = Digits(np.array([np.array([split(n, 9) for n in row]).T for row in rows], np.int64))

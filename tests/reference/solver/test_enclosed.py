@@ -23,7 +23,7 @@ from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.precision import real
-from reference.solver import approximant
+from reference.solver import approximant, auditing
 from reference.solver.approximant import Feed
 from reference.solver.enclosed import solve_enclosed
 
@@ -282,6 +282,22 @@ def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(m
     reference.solve(scene, engine="limbs")  # half of the defect still bounds these few digits: only the audit can tell
     with pytest.raises(UnreachableError, match="audit: the sums of digits are not FLINT's"):
         reference.solve(scene, engine="limbs", audit=True)
+
+
+@pytest.mark.parametrize("transits", [True, False])
+def test_an_audit_that_proves_other_digits_is_refused(transits):
+    solution = reference.solve(make_scene(run={**SHORT, "t_end": "30", "digits": 20, "transits": transits}))
+    digits = auditing._digits(solution)
+    assert auditing.audited(solution, digits).proof.audited
+    others = [replace(solution, directions=[*solution.directions, 1])]
+    for name in ("grid", "transits") if transits else ("grid",):
+        table = getattr(solution, name)
+        *rows, last = table.values
+        spoilt = replace(table, values=[*rows, (*last[:-1], last[-1] + (1 << table.bits))])
+        others.append(replace(solution, **{name: spoilt}))
+    for other in others:
+        with pytest.raises(IntegrationError, match="FLINT alone proves other digits"):
+            auditing.audited(other, digits)
 
 
 def test_an_audit_without_a_proof_is_refused():
