@@ -8,7 +8,7 @@ from .balls import SHORT
 from .shapes import Leaf
 
 POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
-ORDERS = 40  # for which so many orders do: a series loses two bits from one to the next
+ORDERS = 40  # of the Taylor series, enough for this: a coefficient is about a quarter of the one before
 NEAR = arb(2) ** -28  # a last one so short has come near: what is left is about its square
 MARGIN = 1 + arb(2) ** -8  # farther from the zero than xdot is uncertain
 
