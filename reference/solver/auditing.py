@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -18,11 +17,9 @@ from .solution import Solution
 WORTH_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which a process pays for its start
 
 
-@contextmanager
-def audit_of(problem: Problem) -> Iterator[Beside]:
+def audit_of(problem: Problem) -> AbstractContextManager[Beside]:
     """Begin an audit, in a child process where that pays, else once it is waited for: its result is for `audited`."""
-    with beside(problem.pilot.steps >= WORTH_STEPS, _send_digits, problem) as child:
-        yield child
+    return beside(problem.pilot.steps >= WORTH_STEPS, _send_digits, problem)
 
 
 def audited(solution: Solution, digits: Any) -> Solution:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import replace
 from fractions import Fraction
 
@@ -37,12 +36,10 @@ class Confirmation:
         self._prec = first_prec(scene, pilot, AUTO)
         check_reach(pilot.steps, self._prec, scene.run.digits, WITHOUT)
 
-    @contextmanager
-    def begun(self) -> Iterator[Beside]:
+    def begun(self) -> AbstractContextManager[Beside]:
         """Do the run in a child process meanwhile, where that pays; else once it is waited for."""
         plan = confirming_plan(self._scene, self._times, self._pilot, self._prec)
-        with beside(expected_s(plan, self._pilot.steps) >= WORTH_A_PROCESS, send_run, plan) as child:
-            yield child
+        return beside(expected_s(plan, self._pilot.steps) >= WORTH_A_PROCESS, send_run, plan)
 
     def of(self, solution: Solution, found: Run) -> Solution:
         """Return a proved solution with the check that confirms it, given the run that was begun.
