@@ -87,10 +87,21 @@ def spread(_: Any, value: Any) -> Any:
 
 @instruction
 def plus_product(_: Any, total: Any, a: Any, b: Any) -> Any:
-    """Return total + a b in each lane."""
+    """Return total + a b in each lane, where both operations are exact: the compiler may fuse them."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         return builder.fadd(arguments[0], builder.fmul(arguments[1], arguments[2], flags=FUSE), flags=FUSE)
+
+    return Lanes(Lanes, Lanes, Lanes), generate
+
+
+@instruction
+def fma(_: Any, total: Any, a: Any, b: Any) -> Any:
+    """Return total + a b in each lane, rounded once, also where the processor has no such instruction."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        name, kind = f"llvm.fma.v{LANES}f64", ir.FunctionType(VECTOR, [VECTOR] * 3)
+        return builder.call(_insert(builder.module, kind, name), [*arguments[1:], arguments[0]])
 
     return Lanes(Lanes, Lanes, Lanes), generate
 

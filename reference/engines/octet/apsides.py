@@ -6,8 +6,7 @@ Between a highest and a lowest point passes half a period of u, longer than half
 from __future__ import annotations
 
 from ..limbs.compiling import compiled
-from ..limbs.lanes import LANES, at_least, load, magnitude, spread, store, where
-from ..limbs.lanes import plus_product as fma
+from ..limbs.lanes import LANES, at_least, fma, load, magnitude, spread, store, where
 from ..limbs.limb import Array
 from .series import Series
 from .zeros import NOISE, Zeros, keep

@@ -46,7 +46,8 @@ def packed(rows: Rows, wanted: Wanted) -> Array:
         beyond = np.copysign(np.inf, high) if moved > 0 else 0.0
         numbers[:, column] = np.where(high == 0, 0.0, np.nextafter(high, beyond)) if moved else high
     rate = np.sqrt(size.high) + speed
-    unit = 2.0 ** np.floor(-np.log2(np.where(rate > 0, rate, 1.0 / rows.t_end[:, 0])))
+    mantissa, exponent = np.frexp(np.where(rate > 0, rate, 1.0 / rows.t_end[:, 0]))
+    unit = np.ldexp(1.0, (mantissa == 0.5) - exponent)  # a power of two: times the rate at most 1
     numbers[:, [TURN_P, TURN_U, W, V, S]] *= unit[:, None]
     numbers[:, PULL] *= unit * unit
     numbers[:, UNIT], numbers[:, END : END + 2] = unit, rows.t_end

@@ -10,8 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..limbs.compiling import compiled, inlined
-from ..limbs.lanes import LANES, at_least, larger, load, magnitude, spread, store, where
-from ..limbs.lanes import plus_product as fma
+from ..limbs.lanes import LANES, at_least, fma, larger, load, magnitude, spread, store, where
 from ..limbs.limb import Array, aligned
 
 NOISE = 2.0**-44  # of the sum of a polynomial's terms: a smaller value is taken for rounding
