@@ -76,7 +76,12 @@ def to_fraction(value: Any) -> Fraction:
 
 def bits_of(digits: float) -> int:
     """Return the number of bits that hold `digits` decimal digits."""
-    return math.ceil(digits * math.log2(10))
+    return math.ceil(digits * log2(10))
+
+
+def log2(value: float) -> float:
+    """Return the logarithm to base 2, the same on every machine: that of libm may differ in its last bit."""
+    return float(context(2 * DOUBLE_BITS).log(value, 2))
 
 
 def rounded(numerator: int, denominator: int) -> int:

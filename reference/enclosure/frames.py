@@ -1,4 +1,8 @@
-"""Proposals of the six columns for Theorem E: the linearised flow of a step, in double precision. Untrusted."""
+"""Proposals of the six columns for Theorem E: the linearised flow of a step, in double precision. Untrusted.
+
+The radii of a proof follow from them, and so do bytes of its dataset. So only operations are used that IEEE 754 rounds
+alike on every machine, one after another: no BLAS, no LAPACK, no functions of libm.
+"""
 
 from __future__ import annotations
 
@@ -6,14 +10,14 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-from flint import fmpz_poly
+from flint import arb, fmpz_poly
 
 from ..taylor_step import TaylorStep
 from .bound import World
 from .columns import FINE
 
 ORDER = 27  # of the columns' polynomials
-ILL = 10  # condition number above which the frame is made orthogonal
+ILL = 13  # condition number (Frobenius) above which the frame is made orthogonal
 
 
 class ColumnSource:
@@ -43,31 +47,63 @@ class ColumnSource:
         field[3:, 0, :3] = -hats(c[None])[0]
         field[3:, 0, 3:] = -hats(w[None])[0]
         if g:
-            along = n @ w
+            along = product(n, w[:, None])[:, 0]
             field[3:, :, :3] -= g * (n.T[:, :, None] * w + np.eye(3)[:, None, :] * along[:, None])
             field[3:, 0, 3:] -= g * np.eye(3)
         back = np.zeros((M + 1, 6, 6))  # coefficient k stands at M - k
         back[M] = np.eye(6)
         for k in range(M):
-            back[M - k - 1] = field[:, : k + 1].reshape(6, -1) @ back[M - k :].reshape(-1, 6) / (k + 1)
-        flow = back[::-1]
-        a, b = float(step.low), float(step.high)
+            back[M - k - 1] = product(field[:, : k + 1].reshape(6, -1), back[M - k :].reshape(-1, 6)) / (k + 1)
+        flow = back[::-1].reshape(M + 1, 36)
         unit = np.array([1.0] * 3 + [h * self.w0] * 3)
-        powers = np.arange(M + 1)
-        start, end = (np.tensordot(s**powers, flow, 1) for s in (a, b))
-        combine = np.linalg.solve(start, unit[:, None] * self._frame(np.fromiter(widths, float)))
-        columns = flow @ combine
-        self.end = (end @ combine) / unit[:, None]
+        start, end = (product(_powers(float(s), M)[None], flow).reshape(6, 6) for s in (step.low, step.high))
+        combine = product(_inverse(start), unit[:, None] * self._frame(widths))
+        columns = product(flow.reshape(-1, 6), combine).reshape(M + 1, 6, 6)
+        self.end = product(end, combine) / unit[:, None]
         integers = np.rint(np.ldexp(columns, FINE))
         return [[[int(x) for x in integers[:, i, j]] for i in range(6)] for j in range(6)]
 
-    def _frame(self, widths: Any) -> Any:
-        lengths = np.linalg.norm(self.end, axis=0)
+    def _frame(self, widths: Iterable[float]) -> Any:
+        lengths = np.sqrt((self.end * self.end).sum(axis=0))
         straight = self.end / lengths
-        if np.linalg.cond(straight) < ILL:
+        inverse = _inverse(straight)
+        if (straight * straight).ravel().cumsum()[-1] * (inverse * inverse).ravel().cumsum()[-1] < ILL**2:
             return straight
-        order = np.argsort(-(np.log(lengths) + widths))
-        return np.linalg.qr(straight[:, order])[0]
+        logs = [float(arb(length).log()) + width for length, width in zip(lengths, widths, strict=True)]
+        return _orthogonal(straight[:, sorted(range(6), key=lambda j: -logs[j])])
+
+
+def product(a: Any, b: Any) -> Any:
+    """Return the matrix product, each sum taken in order."""
+    return np.multiply(a.T[:, :, None], b[:, None, :], order="C").sum(axis=0)  # along the first axis: one by one
+
+
+def _powers(x: float, order: int) -> Any:
+    return np.cumprod([1.0, *[x] * order])
+
+
+def _inverse(matrix: Any) -> Any:
+    """Return the inverse, by elimination with row exchanges."""
+    size = len(matrix)
+    rows = np.hstack([matrix, np.eye(size)])
+    for i in range(size):
+        pivot = i + int(np.argmax(np.abs(rows[i:, i])))
+        rows[[i, pivot]] = rows[[pivot, i]]
+        rows[i] /= rows[i, i]
+        others = np.arange(size) != i
+        rows[others] -= rows[others, i : i + 1] * rows[i]
+    return rows[:, size:]
+
+
+def _orthogonal(matrix: Any) -> Any:
+    """Return orthonormal columns, each from those up to it (Gram and Schmidt, twice, as once loses digits)."""
+    columns: list[Any] = []
+    for column in matrix.T:
+        left = column
+        for done in columns * 2:
+            left = left - (done * left).cumsum()[-1] * done
+        columns.append(left / np.sqrt((left * left).cumsum()[-1]))
+    return np.array(columns).T
 
 
 def hats(rows: Any) -> Any:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from decimal import Decimal
 from fractions import Fraction
-from math import ceil, log2
+from math import ceil
 from typing import Any, NamedTuple
 
 from ..errors import UnreachableError
+from ..precision import log2
 from .bound import World
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris

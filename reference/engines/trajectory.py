@@ -97,7 +97,7 @@ def trajectory(
         moments, state = model.numbers.all_of(times), model.release(start)
     except OverflowError:
         raise BeyondDoublesError from None
-    most = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * _fastest_rate(start) * float(moments[-1]))
+    most = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * start.fastest_rate * float(moments[-1]))
     try:
         states = model.propagator(tolerance).from_zero(state, moments, max_steps=most)
     except IntegrationError as error:
@@ -105,9 +105,3 @@ def trajectory(
         advice = f"The formulation {formulation} is singular {where}: take momentum." if where else ""
         raise IntegrationError(error.reason, advice) from None
     return model.doubles(states)
-
-
-def _fastest_rate(start: Start) -> float:
-    """Return the sum of the rates of swing, release, rotation and drag, in 1/s."""
-    ctx, k = start.ctx, start.k
-    return float(ctx.sqrt(ctx.norm(k.pull)) + ctx.norm(start.v) + abs(k.rate) + k.drag)

@@ -58,6 +58,12 @@ class Start:
         return max(float(self.ctx.sqrt(self.ctx.norm(self.k.pull))), float(self.k.drag))
 
     @cached_property
+    def fastest_rate(self) -> float:
+        """Sum of the rates of swing, release, rotation and drag, in 1/s."""
+        ctx, k = self.ctx, self.k
+        return float(ctx.sqrt(ctx.norm(k.pull)) + ctx.norm(self.v) + abs(k.rate) + k.drag)
+
+    @cached_property
     def rest(self) -> Vector:
         """Rest position over l, n = (0, sin θ, -cos θ), Mathar (46).
 

@@ -79,7 +79,7 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_step
         limb_count=limb_count,
         order=order,
         drag=bool(k.drag),
-        tolerance=2.0 ** -(prec + TAIL_BITS),
+        tolerance=math.ldexp(1.0, -(prec + TAIL_BITS)),
         longest=longest,
         terms=_linear_terms(turn[2] * h, pull[1] * h * h, pull[2] * h * h, k.drag * h, limb_count + 1),
         powers=LinearTerms(*(np.array(row, dtype=float) for row in _POWERS)),
@@ -154,8 +154,6 @@ def _linear_terms(w: Any, am: Any, aw: Any, g: Any, limb_count: int) -> LinearTe
 
 def _unit_of_time(start: Start) -> tuple[Fraction, int]:
     """Return a power of two near the first step, in s, and that step in grains."""
-    ctx, k = start.ctx, start.k
-    rate = float(ctx.sqrt(ctx.norm(k.pull)) + ctx.norm(start.v) + abs(k.rate) + k.drag)
-    step = GUESS / rate if rate > 0 else 1.0
+    step = GUESS / start.fastest_rate if start.fastest_rate > 0 else 1.0
     mantissa, exponent = math.frexp(step)
     return Fraction(2) ** exponent, max(1, int(mantissa * GRAINS))

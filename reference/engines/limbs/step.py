@@ -6,6 +6,7 @@ which velocities are kept between steps. So times are exact, and a change of m c
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -23,6 +24,7 @@ LEAST_FACTOR = 0.9  # a step with at least this step-size factor is accepted as 
 SAFETY_FACTOR = 0.98  # of the next length, against the one that the last coefficients allow
 RESOLVED = 4.0  # units of the last limb: smaller coefficients say nothing about the decay of the series
 KEEP_FROM, KEEP_TO = 0.94, 1.03  # the length stays as it is while the new one would be within these multiples of it
+LN_2, ROOT_HALF = 0.6931471805599453, 0.7071067811865476
 
 _swapped_halves = shuffled((3, 4, 5, 0, 1, 2, -1, -1), "_swapped_halves")
 _speeds = shuffled((-1, -1, -1, 3, 4, 5, -1, -1), "_speeds")
@@ -136,16 +138,37 @@ def step_size_factor(s: Series, order: int, limb_count: int, tolerance: float) -
     It is estimated from the last two resolved coefficients (Jorba and Zou 2005), assuming geometric decay.
     """
     least, resolved_orders, k = 2.0, 0, order
-    least_size, target = RESOLVED * 2.0 ** (1 - LIMB_BITS * limb_count), tolerance ** (1.0 / order)
+    least_size, target = math.ldexp(RESOLVED, 1 - LIMB_BITS * limb_count), _log2(tolerance) / order
     while resolved_orders < 2 and 2 * k > order:
         size = 0.0
         for lane in range(6):
             size = max(size, abs(double_of_lane(s.c, k * limb_count * LANES, lane, limb_count)))
         if size >= least_size:
-            least = min(least, target * size ** (-1.0 / k))
+            least = min(least, _exp2(target - _log2(size) / k))
             resolved_orders += 1
         k -= 1
     return least
+
+
+@compiled
+def _log2(x: float) -> float:
+    """Return log2(x) of a positive number, to some units in the last place; libm's differs from CPU to CPU."""
+    fraction, exponent = math.frexp(x)
+    y = (fraction - ROOT_HALF) / (fraction + ROOT_HALF)
+    square, total = y * y, 0.0
+    for n in range(21, 0, -2):
+        total = total * square + 1.0 / n
+    return exponent - 0.5 + 2.0 / LN_2 * y * total
+
+
+@compiled
+def _exp2(x: float) -> float:
+    """Return 2**x, likewise."""
+    whole = np.rint(x)
+    part, total = (x - whole) * LN_2, 1.0
+    for n in range(15, 0, -1):
+        total = 1.0 + total * part / n
+    return math.ldexp(total, int(whole))
 
 
 @compiled
