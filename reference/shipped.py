@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import json
+import time
 import tomllib
+from functools import partial
 from pathlib import Path
+from typing import BinaryIO
+
+from .file_lock import Taken, locked
+from .workspace import replace_file
 
 INDEX = "index.json"
-DATA_VERSION = "1.0"  # of what datasets hold, apart from the code's: docs/format.md says when it is raised
+POLL_S = 0.01
+DATA_VERSION = "1.1"  # of what datasets hold, apart from the code's: docs/format.md says when it is raised
 
 
 def data_root() -> Path:
@@ -31,21 +38,42 @@ def scene_ids() -> list[str]:
     return sorted(path.stem for path in (data_root() / "scenes").glob("*.toml"))
 
 
-def seals() -> dict[str, str]:
-    """Return the seal of each golden dataset that comes with the project, by id, from `golden/index.json`."""
+def index() -> dict[str, dict[str, str]]:
+    """Return what `golden/index.json` says of each golden dataset that comes with the project, by id.
+
+    `seal` is that of its manifest, `options` are those of its command that say how it is made.
+    """
     try:
         text = (golden_root() / INDEX).read_text("utf-8")
     except FileNotFoundError:
         return {}
-    return {name: str(seal) for name, seal in json.loads(text).items()}
+    found: dict[str, dict[str, str]] = json.loads(text)
+    return found
 
 
-def keep_seal(name: str, seal: str) -> None:
-    """Write the seal of a dataset that ships into `golden/index.json`, whole or not at all."""
-    text = json.dumps(dict(sorted({**seals(), name: seal}.items())), indent=1) + "\n"
-    draft = golden_root() / f".{INDEX}.draft"
-    draft.write_text(text, "utf-8")
-    draft.replace(golden_root() / INDEX)
+def seals() -> dict[str, str]:
+    """Return the seal of each golden dataset that comes with the project, by id."""
+    return {name: entry["seal"] for name, entry in index().items()}
+
+
+def keep_seal(name: str, seal: str, options: str) -> None:
+    """Write the seal of a dataset that ships into `golden/index.json`, whole or not at all, one process at a time."""
+    path = golden_root() / INDEX
+    lock = path.with_suffix(".lock")
+    while True:
+        try:
+            with locked(lock):
+                every = index() | {name: {"seal": seal, "options": options}}
+                data = (json.dumps(dict(sorted(every.items())), indent=1) + "\n").encode()
+                replace_file(path, partial(_write, data))
+                lock.unlink(missing_ok=True)
+                return
+        except Taken:
+            time.sleep(POLL_S)
+
+
+def _write(data: bytes, stream: BinaryIO) -> None:
+    stream.write(data)
 
 
 def flag_meanings() -> dict[str, str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -115,10 +116,9 @@ def command(
     refuse({"--workers": workers, "--cluster": cluster}, "without --all")
     if scene_word is None:
         raise InputError("SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them.")
-    from ..dataset.place import dataset_id, default_folder, ships
-    from ..dataset.shipping import preferred_engine, summary
+    from ..dataset.place import dataset_id, default_folder
+    from ..dataset.shipping import making_of, solved, summary
     from ..dataset.write import check_target, write
-    from ..solver.solve import solve
 
     chosen("--engine", engine, ENGINES)
     scene = load_scene(scene_word, replacements(set_, options))
@@ -127,11 +127,13 @@ def command(
     check_target(folder)
     proving = scene.run.level == "enclosed"
     refuse({"--no-confirm": no_confirm and not proving}, "without --level enclosed")
-    audit, confirm = audit or (proving and ships(folder)), proving and not no_confirm
+    refuse({"--audit": audit and not proving}, "without --level enclosed")
+    usual = making_of(scene, name, folder)
+    wanted = usual.engine if engine == AUTO else engine
+    making = replace(usual, engine=wanted, audit=audit or usual.audit, confirm=usual.confirm and not no_confirm)
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
-        wanted = preferred_engine(folder) if engine == AUTO else engine
-        solution = solve(scene, engine=wanted, audit=audit, confirm=confirm, report=report)
+        solution = solved(scene, making, report)
     if engine not in (AUTO, solution.run.engine):
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)

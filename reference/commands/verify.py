@@ -40,7 +40,8 @@ def command(
             found = verify(folder, show(folder.name))
             problems, notes = found.problems, found.notes
             if recompute and not problems:
-                problems, notes = recomputed(folder, show(folder.name)), found.foreign
+                problems, measured = recomputed(folder, show(folder.name))
+                notes = [*found.foreign, *measured]
         rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": notes})
         if not as_json:
             typer.echo(f"{folder}: {'ok' if not problems else 'WRONG'}")

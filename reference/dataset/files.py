@@ -18,7 +18,7 @@ from ..errors import DatasetError, FoucaultError, InputError
 from ..nearest import did_you_mean
 from ..scene import Scene, parse_scene
 from ..shipped import seals
-from .manifest import MANIFEST, OPTIONAL, Manifest
+from .manifest import FORMAT, MANIFEST, OPTIONAL, Manifest
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 
 MAX_MANIFEST = 1 << 20  # bytes
@@ -180,8 +180,9 @@ def _manifest(folder: Path, directory: _Directory) -> Manifest:
     except OSError as error:
         raise refused(f"cannot be read: {error.strerror}") from None
     except ValidationError as error:
-        if isinstance(document, dict) and document.get("schema_version") == 1:
-            raise refused("is of format 1: make the dataset again with `foucault generate`") from None
+        older = document.get("schema_version") if isinstance(document, dict) else None
+        if older in range(1, FORMAT):
+            raise refused(f"is of format {older}: make the dataset again with `foucault generate`") from None
         if error.error_count() > MAX_MISTAKES:
             raise refused(f"breaks the schema in {error.error_count()} places") from None
         details = error.errors()[0]

@@ -14,7 +14,7 @@ from ..columns import GRID, TRANSITS
 from ..scene import Level, Reading
 
 MANIFEST = "manifest.json"
-FORMAT = 2
+FORMAT = 3
 ALWAYS = ("grid.csv", "certified.txt")
 OPTIONAL = ("transits.csv", "grid.binary64.csv", "transits.binary64.csv", "vectors.json")
 NUMBER = (
@@ -126,7 +126,7 @@ class Manifest(Part):
     `seal` is the sha256 of the same text with an empty seal. It finds accidents; a forger can make it again.
     """
 
-    schema_version: Literal[2]  # FORMAT
+    schema_version: Literal[3]  # FORMAT
     seal: Sha256 | Literal[""]
     id: Name
     title: Text

@@ -56,12 +56,17 @@ def changes_in(name: str) -> list[str]:
     return [] if changed.startswith("sha256=") else [word for word in changed.split(",") if word]
 
 
+def is_of_shipped_scene(scene: Scene, name: str) -> bool:
+    """Return whether a dataset is that of a scene that comes with the project, unchanged but for its reading."""
+    shipped = shipped_scene(scene)
+    own = shipped is not scene and name == dataset_id(shipped.model_copy(update={"inputs": scene.inputs}))
+    return own and scene.run == shipped.run
+
+
 def default_folder(scene: Scene, name: str) -> Path:
     """Return the folder that a dataset of this id is written to: ./golden, or the checkout's data for what ships."""
     local = Path(GOLDEN) / name
-    shipped = shipped_scene(scene)
-    own = shipped is not scene and name == dataset_id(shipped.model_copy(update={"inputs": scene.inputs}))
-    if own and scene.run == shipped.run and in_checkout() and not local.is_dir():
+    if is_of_shipped_scene(scene, name) and in_checkout() and not local.is_dir():
         return golden_root() / name
     return local
 

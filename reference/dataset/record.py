@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from dataclasses import dataclass
 from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -34,7 +36,28 @@ _UP = {
 UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
 AUDIT = "--audit"  # in a dataset's command, it says that FLINT alone proved the same digits
 NO_CONFIRM = "--no-confirm"  # there, that a proof stands without heyoka's confirmation
-PACKAGES = ("heyoka", "mpmath")
+ENGINE = "--engine"
+PACKAGES = ("heyoka", "mpmath", "numba", "numpy", "python-flint")
+
+
+@dataclass(frozen=True)
+class Making:
+    """How a dataset is made: by which engine, and whether its proof is audited and confirmed."""
+
+    engine: str = "limbs"
+    audit: bool = True
+    confirm: bool = True
+
+    @classmethod
+    def of(cls, command: str) -> Making:
+        """Read it off a dataset's command, or off the options in the index of what ships."""
+        words = command.split()
+        return cls(words[words.index(ENGINE) + 1], AUDIT in words, NO_CONFIRM not in words)
+
+    @property
+    def options(self) -> str:
+        """The options that say it."""
+        return " ".join([ENGINE, self.engine, *[AUDIT] * self.audit, *[NO_CONFIRM] * (not self.confirm)])
 
 
 def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | None = None) -> Manifest:
@@ -43,7 +66,7 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
     name = name or dataset_id(scene)
     initial, drift = invariant_drift(scene, grid)
     return Manifest.model_construct(
-        schema_version=2,
+        schema_version=3,
         seal="",
         id=name,
         title=scene.title,
@@ -81,7 +104,7 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
         ],
         enclosure=None if solution.proof is None else _enclosure(solution.proof),
         generator=generator(),
-        command=command(scene, run.engine, name, *_wishes(solution.proof)),
+        command=command(scene, name, _making(solution)),
         files={},
     )
 
@@ -105,36 +128,31 @@ def equations_of(scene: Scene, formulation: str, number: str) -> Equations:
 
 
 def generator() -> dict[str, str]:
-    """Return the version of the data, and those of the libraries that the numbers depend on.
+    """Return the version of the data, and those of the installed libraries that the bytes depend on.
 
     The version of the code is not among them: a release that changes no digit changes no dataset.
     """
-    return {"foucault-data": DATA_VERSION, **{name: _version(name) for name in PACKAGES}}
+    found = {"foucault-data": DATA_VERSION}
+    for name in PACKAGES:
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
 
 
-def _version(package: str) -> str:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return "unknown"
+def _making(solution: Solution) -> Making:
+    proof = solution.proof
+    return Making(solution.run.engine, proof is not None and proof.audited, proof is None or proof.confirmed)
 
 
-def _wishes(proof: Proof | None) -> tuple[bool, bool]:
-    """Return whether a proof was audited, and whether it was confirmed."""
-    return (False, False) if proof is None else (proof.audited, proof.confirmed)
-
-
-def command(scene: Scene, engine: str, name: str, audited: bool = False, confirmed: bool = False) -> str:
+def command(scene: Scene, name: str, making: Making) -> str:
     """Return the command that makes a dataset: of a shipped scene, or of the scene's own file, with what was changed.
 
-    `name` is the dataset's id, which names the changes; `audited` and `confirmed` say that its proof was.
+    `name` is the dataset's id, which names the changes; without a proof there is nothing that was left out.
     """
     run = scene.run
     parts = ["foucault", "generate", scene.id if scene.id in scene_ids() else f"{scene.id}.toml"]
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
-    parts += ["--engine", engine]
-    parts += [AUDIT] if audited else []
-    parts += [NO_CONFIRM] if run.level == "enclosed" and not confirmed else []
+    parts += [making.options]
     parts += [] if run.transits else ["--no-transits"]
     own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=")
     shipped = shipped_scene(scene)

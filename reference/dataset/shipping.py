@@ -9,17 +9,18 @@ from typing import Any
 
 from ..columns import POSITION
 from ..engines import AUTO
-from ..engines.registry import engines
+from ..engines.plan import Report
 from ..errors import FoucaultError, IntegrationError, UnreachableError
 from ..process import Parent, Worker
 from ..scene import Scene, load_scene
-from ..shipped import scene_ids, seals
+from ..shipped import index, scene_ids, seals
 from ..solver.rounding import grid_decimals
 from ..solver.solution import Solution
 from ..solver.solve import solve
 from ..status import Status
 from .files import read_files
-from .place import dataset_id, default_folder, ships
+from .place import dataset_id, default_folder, is_of_shipped_scene, ships
+from .record import Making
 from .render import render
 from .sheets import column_bounds, scene_inputs
 
@@ -88,7 +89,7 @@ def made(job: Job) -> Made:
     """Solve a scene and return its dataset, or why there is none."""
     try:
         scene = job.load()
-        solution = _solved(scene, job.folder)
+        solution = solved(scene, making_of(scene, job.name, job.folder))
         return Made(render(solution, job.name), summary(solution, job.folder))
     except UnreachableError as error:
         status = Status.GAVE_UP if isinstance(error, IntegrationError) else Status.UNREACHABLE
@@ -97,22 +98,27 @@ def made(job: Job) -> Made:
         return Made(status=Status.INVALID, reason=str(error))
 
 
-def _solved(scene: Scene, folder: Path) -> Solution:
-    """Solve a scene; a proof is audited if it ships, and confirmed by heyoka unless that is out of reach."""
-    engine = preferred_engine(folder)
-    if scene.run.level != "enclosed":
-        return solve(scene, engine=engine)
-    try:
-        return solve(scene, engine=engine, audit=ships(folder), confirm=True)
-    except IntegrationError:
-        raise
-    except UnreachableError:
-        return solve(scene, engine=engine, audit=ships(folder))
+def making_of(scene: Scene, name: str, folder: Path) -> Making:
+    """Return how a dataset is made if nothing else is asked for: what ships as the index says, wherever it is written.
+
+    A new one that is to ship is made with limbs, so that it and heyoka's confirmation are of two codes.
+    """
+    if ships(folder) or is_of_shipped_scene(scene, name):
+        entry = index().get(name)
+        return Making.of(entry["options"]) if entry else Making()
+    return Making(AUTO, audit=False)
 
 
-def preferred_engine(folder: Path) -> str:
-    """Return limbs for what ships, so that it and heyoka's confirmation are of two codes; else the fastest engine."""
-    return "limbs" if ships(folder) and engines()["limbs"].installed else AUTO
+def solved(scene: Scene, making: Making, report: Report | None = None) -> Solution:
+    """Solve a scene in the way in which its dataset is to be made.
+
+    Raises:
+        InputError: the engine is not installed; no other one takes its place.
+        UnreachableError: the level or the digits cannot be reached.
+    """
+    proving = scene.run.level == "enclosed"
+    audit, confirm = making.audit and proving, making.confirm and proving
+    return solve(scene, engine=making.engine, audit=audit, confirm=confirm, report=report)
 
 
 def serve(parent: Parent) -> None:

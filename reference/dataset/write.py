@@ -15,6 +15,7 @@ from ..solver.solution import Solution
 from ..workspace import OLD, workspace
 from .manifest import MANIFEST
 from .place import ships
+from .record import Making
 from .render import render
 from .verify import problems_of
 
@@ -89,7 +90,8 @@ def write_texts(texts: Mapping[str, str], folder: Path) -> None:
             raise DatasetError(str(folder), problems)
         _put_in_place(new, target)
         if ships(target):
-            keep_seal(target.name, json.loads(texts[MANIFEST])["seal"])
+            manifest = json.loads(texts[MANIFEST])
+            keep_seal(target.name, manifest["seal"], Making.of(manifest["command"]).options)
 
 
 def _put_in_place(new: Path, target: Path) -> None:

@@ -15,7 +15,7 @@ from ..files import Files
 from ..invariant import invariant_drift
 from ..manifest import MANIFEST, CrossCheckRecord, Manifest
 from ..place import changes_in, dataset_id, shipped_scene
-from ..record import NO_CONFIRM, UNIT_OF, command, equations_of, frame_of, notes_of
+from ..record import NO_CONFIRM, UNIT_OF, Making, command, equations_of, frame_of, notes_of
 from ..render import derived_texts
 from ..sheets import scene_inputs
 
@@ -44,11 +44,9 @@ def problems(files: Files) -> Iterator[str]:
             yield f"{MANIFEST}: {name} does not follow from the scene"
     if not _is_its_id(files):
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
-    wishes = (False, True) if manifest.level == "enclosed" else (False,)
-    if manifest.command not in {
-        command(scene, engine, manifest.id, audited, confirmed)
-        for engine, audited, confirmed in product(engine_names(), wishes, wishes)
-    }:
+    proofs = ((False, True), (False, True)) if manifest.level == "enclosed" else ((False,), (True,))
+    makings = [Making(*words) for words in product(engine_names(), *proofs)]
+    if manifest.command not in {command(scene, manifest.id, making) for making in makings}:
         yield f"{MANIFEST}: command does not follow from the scene"
     vanishes = xdot_vanishes(Start.of(scene.exact, PREC))
     if (manifest.transits == "xdot is identically zero") != (vanishes and scene.run.transits):
