@@ -79,13 +79,10 @@ def _compiled(scene: Scene) -> dict[str, Any]:
         UnreachableError: `generate` refuses the scene.
     """
     from ..engines.equations import lines_and_left_out
-    from ..solver.choice import first_plan
-    from ..solver.pilot import begun_pilot, run_pilot
+    from ..solver.choice import first_plan, pilot_for
 
     times = tuple(scene.exact.grid)
-    one_run = scene.run.level in ("computed", "enclosed")
-    pilot = begun_pilot(scene.exact, times)[0] if one_run else run_pilot(scene.exact, times)
-    plan = first_plan(scene, times, pilot)
+    plan = first_plan(scene, times, pilot_for(scene, times))
     number = str(plan.number)
     lines, left_out = lines_and_left_out(scene, plan.formulation, number)
     run = {"engine": plan.engine, "formulation": plan.formulation, "number": number}

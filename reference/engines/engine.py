@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from dataclasses import replace
 from fractions import Fraction
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from ..inputs import Inputs
 from ..packages import missing, switched_off
 from ..taylor_step import TaylorStep
-from .plan import Plan, Report, Run
+from .plan import Pace, Plan, Report, Run
 
 
 class Engine(ABC):
@@ -52,14 +52,13 @@ class Engine(ABC):
         return replace(self.plan(published.inputs, prec, published.times, published.transits), other_steps=True)
 
     @abstractmethod
-    def run(self, plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
+    def run(self, plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
         """Integrate a plan.
 
         Args:
             plan: the run to do.
             report: called with the simulated time reached, in s.
-            look_ahead: called before the first step, to refuse a run that would take too long; it leaves the stepper
-                as it was, or raises. Only heyoka calls it.
+            pace: called now and then, to refuse a run that would take too long; not with transits.
 
         Raises:
             InputError: more bits than the engine has.

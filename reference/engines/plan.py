@@ -17,6 +17,7 @@ from ..precision import DOUBLE_BITS, GUARD_BITS, NumberType
 from ..table import Table
 
 Report = Callable[[float], None]  # called with the simulated time reached, in s
+Pace = Callable[[int, float], None]  # called with the steps taken and the time reached; raises to end a run
 
 AT_REST = "Where xdot is nothing but rounding, as at rest, there are no transits: run.transits = false."
 MOST_TURN = 1.75  # longest step times the swing's frequency: a small swing's series reach further, bounds do not

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from importlib import import_module
-from typing import Any
 
 from ..errors import InputError
 from ..packages import switched_off
 from . import AUTO, batch_names, engine_names
 from .batch import Batch
 from .engine import Engine
-from .plan import Plan, Report, Run
+from .plan import Pace, Plan, Report, Run
 
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
 
@@ -63,6 +61,6 @@ def fastest(prec: int, name: str = AUTO, steps: int = MANY_STEPS) -> Engine:
     return min(serving, key=cost)
 
 
-def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
+def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
     """Integrate a plan with its engine; for arguments and errors see `Engine.run`."""
-    return engines()[plan.engine].run(plan, report, look_ahead)
+    return engines()[plan.engine].run(plan, report, pace)

@@ -6,23 +6,36 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from math import ceil, log, sqrt
+from math import ceil, e, sqrt
 
 from ..columns import POSITION, VELOCITY
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
 from ..inputs import Inputs
-from ..precision import DOUBLE, LONG_DOUBLE, real
+from ..precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
 from ..scene import Scene
 from .approximant import COEFFICIENT_BITS
-from .pilot import Pilot
+from .pilot import Pilot, run_pilot
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
 HARDWARE_ENGINE = "heyoka"  # computes in double and long double
 MOST_DIED = 1024  # bits by which a swing may die down: beyond them balls are made smaller step by step
 ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
+
+
+def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> Pilot:
+    """Return the pilot of a scene: in hardware only where its level promises no bytes and its numbers are hardware's.
+
+    Raises:
+        UnreachableError: as `run_pilot`.
+    """
+    if scene.run.level in ("computed", "self_consistent") and bits_of(scene.run.digits) <= LONG_DOUBLE.prec:
+        pilot = run_pilot(scene.exact, times, hardware=True)
+        if published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine).number.hardware:
+            return pilot
+    return run_pilot(scene.exact, times)
 
 
 def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str = AUTO) -> Plan:
@@ -45,14 +58,14 @@ def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: 
 def first_prec(scene: Scene, pilot: Pilot, engine: str) -> int:
     """Return the bits that a scene's digits need: of the only run, or of the coarser of two that have to agree.
 
-    Where double serves, long double is compared with it, and nothing of higher precision is compiled.
+    Where double serves, long double is compared with it, and nothing of higher precision is compiled; not with a proof.
     """
     span = scene.exact.t_end if scene.run.transits else None
     if scene.run.level == "computed":
         prec = pilot.bits_for(scene.run.digits, span, checked=False)
         return rounded_prec(prec) if prec > LONG_DOUBLE.prec else prec
     prec = pilot.bits_for(scene.run.digits, span, checked=True)
-    if prec <= DOUBLE.prec and engine in (AUTO, HARDWARE_ENGINE):
+    if prec <= DOUBLE.prec and engine in (AUTO, HARDWARE_ENGINE) and scene.run.level != "enclosed":
         return DOUBLE.prec
     return rounded_prec(max(prec, LONG_DOUBLE.prec))
 
@@ -98,4 +111,4 @@ def late_radius(radius: Fraction, inputs: Inputs) -> Fraction:
     """
     half, stiffness = float(inputs.drag) / 2, float(inputs.gravity / inputs.length)
     rate = half - sqrt(max(half**2 - stiffness, 0.0))
-    return radius / (1 << ceil(min(rate * float(inputs.t_end) / log(2), MOST_DIED)))
+    return radius / (1 << ceil(min(rate * float(inputs.t_end) * log2(e), MOST_DIED)))

@@ -11,7 +11,8 @@ from ..errors import InputError
 from ..scene import Scene
 from .auditing import audit_of, audited
 from .confirming import Confirmation
-from .pilot import begun_pilot, run_pilot
+from .pilot import run_pilot
+from .proof_checks import guarded
 from .proving import Problem, proved
 from .solution import Solution
 
@@ -27,7 +28,8 @@ def solve_enclosed(
     """Enclose a scene's states and transits so tightly that every digit asked for is decided.
 
     With `audit` FLINT alone proves the same run again, which has to give the same digits; with `confirm` heyoka's run
-    in another formulation has to agree to each of them. Both are done meanwhile, in processes of their own.
+    in another formulation has to agree to each of them. Both are done meanwhile, in processes of their own. Where no
+    such run confirms every transit, one in a cheaper type may refuse them.
 
     Raises:
         InputError: python-flint is not installed.
@@ -41,8 +43,8 @@ def solve_enclosed(
         advice = "Install it with pip install 'foucault-reference[enclose]', or ask for the level confirmed."
         raise InputError("--level", "enclosed", f"the package {error.name}, which the proof needs", advice) from None
 
-    pilot, rough = (run_pilot(scene.exact, times), None) if confirm else begun_pilot(scene.exact, times)
-    problem = Problem(scene, times, engine, pilot, rough)
+    pilot = run_pilot(scene.exact, times)
+    problem = Problem(scene, times, engine, pilot)
     children: list[Beside] = []
     report = report and slowest(report, children)
     with ExitStack() as meanwhile:
@@ -56,4 +58,6 @@ def solve_enclosed(
         solution = proved(problem, enclosure.enclose, report)
         if audit:
             solution = audited(solution, auditing.result(report))
-        return confirmation.of(solution, confirming.result(report)) if confirm else solution
+        if confirm:
+            solution = confirmation.of(solution, confirming.result(report))
+        return solution if confirm and not solution.possible else guarded(solution, pilot)

@@ -1,39 +1,36 @@
 """Pilot runs: how fast rounding errors grow on a scene, and the bits and steps a result will need.
 
-A run of `momentum` in double beside one in long double shows how many digits are lost between release and end. A scene
-that would take too many steps, because it is stiff or long, is refused before that, by the pace of its first steps.
+Two cheap runs that differ in precision show how many digits are lost between release and end. From them follow bits,
+number types and formulations, and so the bytes of a dataset. So they are made in arithmetic that is the same on every
+machine, in limbs or heyoka's `real`; in double and long double only where the result itself is in these types. A scene
+that would take too many steps, because it is stiff or long, is refused by the pace of the first steps.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import partial
-from typing import TYPE_CHECKING
 
 from ..columns import GRID, HORIZONTAL, POSITION, VELOCITY
+from ..engines import AUTO
 from ..engines.plan import Plan
-from ..engines.registry import run
+from ..engines.registry import fastest, run
 from ..errors import BeyondDoublesError, UnreachableError
 from ..inputs import Inputs
-from ..precision import DOUBLE, LONG_DOUBLE, NumberType, decimals_for, real
+from ..model.start import Start
+from ..precision import DOUBLE, LONG_DOUBLE, decimals_for, real
 from ..table import Table, bits_in, decimals_of, resolved
-from .reach import MAX_PREC, MAX_STEPS, check_pace, effort
+from .reach import MAX_PREC, MAX_STEPS, Pace, effort
 
-if TYPE_CHECKING:
-    from ..engines.heyoka.stepper import Stepper
-
+PILOT_PREC, PILOT_GAP_BITS = 47, 22  # of the first pair of exact runs: three limbs beside four
+LATER_GAP_BITS = 64  # bits between two pilot runs of more precision
 MARGIN_BITS = 14  # a run's error stays this many bits below the last digit, so that rounding is rarely in doubt
 CLOSE_TRANSIT_BITS = 12  # bits that the time of a day's worst conditioned transit loses against xdot
 ESTIMATE_FACTOR = 16  # safety factor from the pilot's error to that of a run which no second one checks
 LEAST_ULPS = 4  # and that error is never taken below this many units in the last place
 LEAST_TIMES = 64  # the pilot runs are compared at more times than this, so that no error is small by luck
 LOST = Fraction(1, 1 << 12)  # an error above this part of the largest position or speed leaves no digit
-PILOT_GAP_BITS = 64  # bits between the two pilot runs in `real`
-FIRST_PART = 16  # of a long run that is compared later itself, the finer pilot run computes this part
-GROWTH = FIRST_PART**2  # until then errors are taken to grow like the square of the time
 ZERO_PREC = 512  # bits from which a position or velocity that shrinks with the precision is taken for zero
 
 
@@ -75,11 +72,6 @@ class Pilot:
         """Return the errors to state for a single run at a precision."""
         return {name: error * Fraction(2) ** (self.prec - prec) for name, error in self.cautious.items()}
 
-    def compared(self, rough: Table, fine: Table, length: Fraction) -> Pilot | None:
-        """Return the pilot with the errors of its coarser run against a better one; None if that keeps no digit."""
-        errors, largest = fine.distance(rough).largest(), fine.largest()
-        return None if _lost(errors, largest, length, self.prec) else replace(self, errors=errors, largest=largest)
-
     def decimals(self, digits: int) -> dict[str, int]:
         """Return the decimals of each column with which its largest number has `digits` significant digits."""
         return decimals_of(self.sizes, digits)
@@ -106,74 +98,65 @@ class Pilot:
         return needed
 
 
-def run_pilot(inputs: Inputs, times: tuple[Fraction, ...]) -> Pilot:
-    """Measure rounding errors from two cheap runs of `momentum`, in higher precision if the first keep no digit.
+def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], *, hardware: bool = False) -> Pilot:
+    """Measure rounding errors from two cheap runs, in higher precision if the first keep no digit.
+
+    Args:
+        inputs: the exact inputs of a scene.
+        times: output times in s, from 0.
+        hardware: begin with double and long double, for a result in these types; its errors are measured, and not the
+            same on every machine.
 
     Raises:
         UnreachableError: the run takes too many steps, or rounding grows so fast that no affordable run keeps a digit.
     """
     if len(times) <= LEAST_TIMES:
         times = tuple(times[-1] * k / LEAST_TIMES for k in range(LEAST_TIMES + 1))
-    pair: tuple[NumberType, NumberType] = (DOUBLE, LONG_DOUBLE)
-    look_ahead: Callable[[Stepper], None] | None = partial(check_pace, inputs, times[-1])
+    pair = (DOUBLE.prec, LONG_DOUBLE.prec) if hardware else (PILOT_PREC, PILOT_PREC + PILOT_GAP_BITS)
+    pace: Pace | None = Pace(inputs, times[-1])
     last_prec, good_until, steps = 0, Fraction(0), 0
-    while pair[1].prec <= MAX_PREC and effort(steps, pair[1].prec) <= MAX_STEPS:
+    while pair[1] <= MAX_PREC and effort(steps, pair[1]) <= MAX_STEPS:
+        prec = pair[0]
         try:
-            coarse, fine = (
-                run(Plan(inputs, "momentum", number, times, transits=False), look_ahead=check)
-                for number, check in zip(pair, (look_ahead, None), strict=True)
-            )
+            coarse = run(_plan(inputs, times, prec, hardware), pace=pace)
+            fine = run(_plan(inputs, times, pair[1], hardware))
         except OverflowError:
             raise BeyondDoublesError from None
-        look_ahead, steps, prec = None, coarse.steps, pair[0].prec
+        pace, steps = None, coarse.steps
         grid = fine.grid.only(GRID)
         gaps, largest = grid.distance(coarse.grid), grid.largest()
         errors = gaps.largest()
         if not _lost(errors, largest, inputs.length, prec):
+            drifted = {name: largest[name] * steps / 2**prec for name in largest}
+            errors = errors if hardware else {name: max(error, drifted[name]) for name, error in errors.items()}
             return Pilot(prec, errors, largest, coarse.tension, coarse.cpu_s + fine.cpu_s, steps)
         last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
         next_prec = max(2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1]))
-        pair, last_prec = (real(next_prec), real(next_prec + PILOT_GAP_BITS)), prec
+        pair, last_prec, hardware = (next_prec, next_prec + LATER_GAP_BITS), prec, False
     raise UnreachableError(
         f"Rounding grows so fast that runs keep no digit beyond t = {float(good_until):.3g} s; "
-        f"to the end it takes about {pair[0].prec} bits, which is out of reach.",
+        f"to the end it takes about {pair[0]} bits, which is out of reach.",
         "Ask for a shorter run: run.t_end.",
     )
 
 
-def begun_pilot(inputs: Inputs, times: tuple[Fraction, ...]) -> tuple[Pilot, Table | None]:
-    """Measure rounding errors over the first part of a long run alone, and take them to grow with the time.
-
-    Returns:
-        The pilot, and the states of the run in double at `times`, by which `Pilot.compared` measures the errors of all
-        of it when a better run is there. They are None, and the pilot that of `run_pilot`, if there are few times, or
-        if double keeps no digit.
-
-    Raises:
-        UnreachableError: as `run_pilot`.
-    """
-    part = len(times) // FIRST_PART
-    if part <= LEAST_TIMES:
-        return run_pilot(inputs, times), None
-    begun = run_pilot(inputs, times[: part + 1])
-    errors = {name: GROWTH * error for name, error in begun.errors.items()}
-    if begun.prec > DOUBLE.prec or _lost(errors, begun.largest, inputs.length, begun.prec):
-        return run_pilot(inputs, times), None
-    plan = Plan(inputs, "momentum", DOUBLE, times, transits=False)
-    try:
-        rough = run(plan, look_ahead=partial(check_pace, inputs, times[-1]))
-    except OverflowError:
-        raise BeyondDoublesError from None
-    grid = rough.grid.only(GRID)
-    cpu_s = begun.cpu_s + rough.cpu_s
-    return Pilot(DOUBLE.prec, errors, grid.largest(), rough.tension, cpu_s, rough.steps), grid
+def _plan(inputs: Inputs, times: tuple[Fraction, ...], prec: int, hardware: bool) -> Plan:
+    """Return a pilot run; unless it is to be one in hardware, in exact arithmetic, by the engine that is fastest."""
+    if hardware:
+        return Plan(inputs, "momentum", DOUBLE if prec == DOUBLE.prec else LONG_DOUBLE, times, transits=False)
+    radians = math.ceil(Start.of(inputs, LONG_DOUBLE.prec).fastest_rate * float(times[-1]))  # about one a step
+    plan = fastest(max(prec, LONG_DOUBLE.prec + 1), AUTO, 2 * radians).plan(inputs, prec, times, transits=False)
+    return replace(plan, number=real(prec)) if plan.number.hardware else plan
 
 
 def _lost(errors: dict[str, Fraction], largest: dict[str, Fraction], length: Fraction, prec: int) -> bool:
-    """Return whether position or velocity keeps no digit; one that shrinks with the precision is zero, not lost."""
+    """Return whether position or velocity keeps no digit; one that shrinks with the precision is zero, not lost.
+
+    Nor does a velocity keep one that is exactly zero: numbers with a fixed point may not show so slow a motion.
+    """
     parts = [tuple(max(of[name] for name in kind) for of in (errors, largest)) for kind in (POSITION, VELOCITY)]
-    zero = length / 2 ** (prec // 2) if prec >= ZERO_PREC else Fraction(0)
-    return any(error > size * LOST and size > zero for error, size in parts)
+    zero = length / 2 ** (prec // 2) if prec >= ZERO_PREC else Fraction(-1)
+    return any(error >= size * LOST and size > zero for error, size in parts)
 
 
 def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], end: Fraction) -> int:

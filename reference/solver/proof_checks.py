@@ -1,6 +1,6 @@
 """Checks of a proof against runs: the states of its approximant, and the transits that event detection finds.
 
-Nothing that is proved rests on them. A run that contradicts the proof refuses it; one that cannot be made is recorded.
+Nothing that is proved rests on them. A run that contradicts the proof refuses it; one that cannot be made is told.
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ from ..engines.plan import Plan, Run
 from ..engines.registry import run
 from ..errors import IntegrationError, UnreachableError
 from ..precision import cheapest_type
-from ..scene import Scene
 from ..table import Table, bits_in
-from .pilot import Pilot
+from .pilot import ESTIMATE_FACTOR, Pilot
 from .solution import CrossCheck, Solution
 
 USUAL_DIGITS, FINER_DIGITS = 9, 27  # of the run with event detection, at first and on a second try
@@ -40,45 +39,20 @@ def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -
     return gaps
 
 
-def cross_checked(solution: Solution, pilot: Pilot) -> Solution:
-    """Return a solution with the check of its transits, or with the reason why that could not be made.
+def guarded(solution: Solution, pilot: Pilot) -> Solution:
+    """Have a run with event detection, in the cheapest type that serves, see the transits of a proved solution.
 
-    Raises:
-        IntegrationError: the run finds other transits; names the first that differs.
-    """
-    if solution.transits is None:
-        return solution
-    check = _transit_check(
-        solution.scene,
-        solution.times,
-        solution.grid,
-        solution.transits,
-        solution.directions,
-        pilot,
-        bool(solution.possible),
-    )
-    if isinstance(check, CrossCheck):
-        return replace(solution, checks=(*solution.checks, check))
-    return replace(solution, not_checked=check)
-
-
-def _transit_check(
-    scene: Scene,
-    times: tuple[Fraction, ...],
-    grid: Table,
-    transits: Table,
-    directions: list[int],
-    pilot: Pilot,
-    any_undecided: bool,
-) -> CrossCheck | str:
-    """Check that heyoka's event detection finds the enclosed transits, and no others unless some are undecided.
+    What it measures is not the same on every machine, and goes into no dataset.
 
     Returns:
-        The check, or why it could not be made: the proof does not rest on it.
+        The solution with that run as its `guard`, or with the reason why it could not be made.
 
     Raises:
         IntegrationError: the run finds other transits; names the first that differs.
     """
+    scene, times, transits = solution.scene, solution.times, solution.transits
+    if transits is None:
+        return solution
     usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
     least = _bits_to_see(transits, times[-1], pilot)
     contradiction: IntegrationError | None = None
@@ -91,15 +65,16 @@ def _transit_check(
         except (UnreachableError, OverflowError) as error:
             reason = error
             break
+        gaps = solution.grid.distance(event_run.grid).largest()
         try:
-            gap = _transit_gap(event_run, transits, directions, pilot, any_undecided)
+            apart = _transit_gap(event_run, solution, ESTIMATE_FACTOR * gaps["vx"])
         except IntegrationError as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error
         else:
-            return CrossCheck.of(event_run, grid.distance(event_run.grid).largest(), gap)
+            return replace(solution, guard=CrossCheck.of(event_run, gaps, apart))
     if contradiction is not None:
         raise contradiction
-    return str(reason)
+    return replace(solution, not_checked=str(reason))
 
 
 def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
@@ -113,20 +88,25 @@ def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
     return pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS if least else MOST_CHECK_PREC + 1
 
 
-def _transit_gap(event_run: Run, transits: Table, directions: list[int], pilot: Pilot, any_undecided: bool) -> Fraction:
-    """Return how far the transits that a run found are from the enclosed ones, at most, in s."""
+def _transit_gap(event_run: Run, solution: Solution, xdot_error: Fraction) -> Fraction:
+    """Return how far the transits that a run found are from the enclosed ones, at most, in s.
+
+    `xdot_error` is how far its xdot may be from the truth, in m/s.
+    """
+    transits, directions = solution.transits, solution.directions
+    assert transits is not None
     seen = event_run.transits or Table(transits.columns, 0, [])
-    if len(seen) != len(directions) and not any_undecided:
+    if len(seen) != len(directions) and not solution.possible:
         raise IntegrationError(f"heyoka finds {len(seen)} transits, the enclosure {len(directions)}.")
     prec, bits = event_run.plan.number.prec, max(seen.bits, transits.bits)
     remaining = iter(zip(seen.whole("t", bits), event_run.directions, strict=True))
     # in integers over 2**bits, as there may be many
     rounding = math.ceil(event_run.plan.times[-1] * Fraction(2) ** (bits + EVALUATION_BITS - prec))
-    xdot_error, largest = math.ceil(pilot.estimates(prec)["vx"] * (1 << 2 * bits)), 0
+    off, largest = math.ceil(xdot_error * (1 << 2 * bits)), 0
     bounds = (math.ceil(bound * (1 << bits)) for bound in transits.bound("t"))
     rows = zip(*(transits.whole(name, bits) for name in ("t", "ax")), bounds, directions, strict=True)
     for k, (t, ax, bound, direction) in enumerate(rows, 1):
-        allowed = bound + xdot_error // abs(ax) + rounding
+        allowed = bound + off // abs(ax) + rounding
         gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= allowed), None)
         if gap is None:
             raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {t / (1 << bits)} s.")

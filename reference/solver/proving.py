@@ -1,7 +1,6 @@
 """One proof: enclosing balls, made smaller until each printed digit is decided.
 
-The approximant is a run by heyoka or limbs, whose states must lie in the balls; a second run with heyoka's event
-detection, in the cheapest type that serves, must find the same transits (`proof_checks`).
+The approximant is a run by heyoka or limbs, whose states must lie in the balls (`proof_checks`).
 """
 
 from __future__ import annotations
@@ -20,8 +19,8 @@ from ..scene import Scene
 from ..table import Table, bits_in
 from .approximant import COEFFICIENT_BITS, Feed, Replaced
 from .choice import first_radius, late_radius
-from .pilot import Pilot, run_pilot
-from .proof_checks import checked_states, cross_checked
+from .pilot import Pilot
+from .proof_checks import checked_states
 from .rounding import UndecidedRounding, check_decided
 from .solution import CrossCheck, Proof, Solution, Source
 
@@ -41,14 +40,12 @@ class Problem:
         times: output times in s.
         engine: name of the engine that makes the approximant; "auto" for the fastest.
         pilot: how rounding errors grow on the scene.
-        rough: the pilot's states as `begun_pilot` returns them, to be compared with the proof.
     """
 
     scene: Scene
     times: tuple[Fraction, ...]
     engine: str
     pilot: Pilot
-    rough: Table | None
 
 
 def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solution:
@@ -61,9 +58,9 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
 
     Raises:
         UnreachableError: no balls are small enough, and it tells the radius that was reached.
-        IntegrationError: a run lies outside the enclosure, or finds other transits.
+        IntegrationError: the run lies outside the enclosure.
     """
-    scene, times, pilot, rough = problem.scene, problem.times, problem.pilot, problem.rough
+    scene, times, pilot = problem.scene, problem.times, problem.pilot
     span = float(times[-1])
     radius = first = first_radius(pilot, scene.run.digits)
     feed = Feed(scene.exact, times, problem.engine, pilot.steps)
@@ -81,9 +78,6 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
             try:
                 solution = _solution(scene, times, enclosed, feed.finished(), pilot)
                 check_decided(solution)
-                if rough is not None:
-                    pilot = pilot.compared(rough, solution.grid, scene.exact.length) or run_pilot(scene.exact, times)
-                solution = cross_checked(solution, pilot)
             except UndecidedRounding as undecided:
                 tried, reason, advice = radius, str(undecided), "Ask for fewer digits."
                 if undecided.width < TIE:
@@ -121,7 +115,7 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     transits = None
     if enclosed.transits is not None:
         transits = Table.of_intervals(TRANSITS, [[getattr(z, name) for name in TRANSITS] for z in decided], bits)
-    size, gap = (max(of[name] for name in POSITION) for of in (pilot.largest, gaps))
+    size, gap = (max(of[name] for name in POSITION) for of in (grid.largest(), gaps))
     proof = Proof(
         method=enclosed.method,
         prec=enclosed.bits,

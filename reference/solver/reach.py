@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING
 
 from ..errors import UnreachableError
 from ..inputs import Inputs
 from ..model.constants import constants
 from ..precision import LONG_DOUBLE, context
-
-if TYPE_CHECKING:
-    from ..engines.heyoka.stepper import Stepper
 
 MAX_PREC = 8192  # bits; a run that needs more is refused
 MAX_RAISES = 6  # of the precision, before giving up
@@ -47,28 +43,30 @@ def check_reach(steps: int, prec: int, digits: int, advice: str = "") -> None:
         )
 
 
-def check_pace(inputs: Inputs, end: Fraction, stepper: Stepper) -> None:
-    """Measure the pace of the first steps, and put the stepper back where it was.
+class Pace:
+    """The pace of a run, which is called with the steps taken and the time reached in s.
 
     Args:
         inputs: the exact inputs of a scene.
         end: end of the run in s.
-        stepper: at the release.
 
     Raises:
         UnreachableError: at that pace the run takes more than `MAX_STEPS` steps.
     """
-    start, span, total, t = stepper.mark(), float(end), 0, 0.0
-    while t < span:
-        steps, t_before = stepper.propagate_steps(stepper.numbers.of(end), PACE_STEPS), t
-        total, t = total + steps, float(stepper.time)
-        pace = steps / (t - t_before) if t > t_before else math.inf
-        needed = total + (span - t) * pace
-        if needed <= MAX_STEPS:
-            break
-        if total >= MAX_STEPS or inputs.drag * Fraction(t) >= SETTLED or not inputs.drag:
-            raise UnreachableError(_reason(inputs, needed, pace), _advice(t + (MAX_STEPS - total) / pace))
-    stepper.back(start)
+
+    def __init__(self, inputs: Inputs, end: Fraction) -> None:
+        self._inputs, self._end, self._before, self._watching = inputs, float(end), (0, 0.0), True
+
+    def __call__(self, steps: int, t: float) -> None:
+        """Measure the pace once, or with drag again and again."""
+        steps_before, t_before = self._before
+        if not self._watching or steps - steps_before < PACE_STEPS:
+            return
+        self._before, pace = (steps, t), (steps - steps_before) / (t - t_before) if t > t_before else math.inf
+        needed, drag = steps + (self._end - t) * pace, self._inputs.drag
+        self._watching = needed > MAX_STEPS
+        if self._watching and (steps >= MAX_STEPS or drag * Fraction(t) >= SETTLED or not drag):
+            raise UnreachableError(_reason(self._inputs, needed, pace), _advice(t + (MAX_STEPS - steps) / pace))
 
 
 def _reason(inputs: Inputs, needed: float, pace: float) -> str:

@@ -101,8 +101,10 @@ class Solution:
         pilot_s: CPU seconds of the pilot runs, which the precision was chosen from.
         proof: the enclosure, at the level enclosed.
         possible: intervals in s, each with a parity, that may hold transits which the proof could not decide.
-        not_checked: why no run with event detection confirms a proof's transits; empty where one does. The proof does
-            not rest on it, and one that finds other transits is an error.
+        guard: at the level enclosed, where no run confirms every transit, one with event detection that found them
+            all, in the cheapest type that serves; it goes into no dataset.
+        not_checked: why there is neither. The proof does not rest on it, and a run that finds other transits is an
+            error.
 
     `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,); both tables have
     `table["x"]`, the same, `table.exact("x")` as fractions, and `table.bound("x")`.
@@ -118,6 +120,7 @@ class Solution:
     pilot_s: float = 0.0
     proof: Proof | None = None
     possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
+    guard: CrossCheck | None = None
     not_checked: str = ""
 
     @property

@@ -20,8 +20,8 @@ from ..precision import LONG_DOUBLE
 from ..scene import Scene
 from ..table import Table
 from .agreement import Agreement
-from .choice import confirming_plan, first_prec, published_plan, rounded_prec
-from .pilot import Pilot, begun_pilot, run_pilot
+from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
+from .pilot import Pilot
 from .reach import MAX_PREC, MAX_RAISES, check_reach, out_of_reach
 from .solution import CrossCheck, Solution, Source
 from .transit_errors import with_transit_errors
@@ -63,8 +63,7 @@ def solve(
     """
     requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits}
     scene = scene.with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
-    inputs, settings = scene.exact, scene.run
-    times = tuple(inputs.grid)
+    settings, times = scene.run, tuple(scene.exact.grid)
     engine = checked(engine)
     for wish, asked in (("audit", audit), ("confirm", confirm)):
         if asked and settings.level != "enclosed":
@@ -75,25 +74,15 @@ def solve(
         return solve_enclosed(scene, times, engine, report, audit, confirm)
     if settings.level == "computed":
         return _computed(scene, times, engine, report)
-    return _agreed(scene, times, run_pilot(inputs, times), engine, report)
+    return _agreed(scene, times, pilot_for(scene, times, engine), engine, report)
 
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:
-    """Solve by a single run, whose errors are estimated from the pilot's; that is made again if it has too few bits."""
-
-    def single(prec: int) -> Run:
-        check_reach(pilot.steps, prec, scene.run.digits)
-        return run(published_plan(scene, times, pilot, prec, engine), report)
-
-    pilot, rough = begun_pilot(scene.exact, times)
+    """Solve by a single run, whose errors are estimated from the pilot's."""
+    pilot = pilot_for(scene, times, engine)
     prec = first_prec(scene, pilot, engine)
-    published = single(prec)
-    if rough is not None:
-        compared = pilot.compared(rough, published.grid.only(GRID), scene.exact.length)
-        pilot = compared or run_pilot(scene.exact, times)
-        needed = first_prec(scene, pilot, engine)
-        if needed > prec:
-            published = single(needed)
+    check_reach(pilot.steps, prec, scene.run.digits)
+    published = run(published_plan(scene, times, pilot, prec, engine), report)
     return _assemble(scene, times, published, pilot.estimates(published.plan.number.prec), None, (), pilot)
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from fractions import Fraction
-from typing import Any
 
 from ...inputs import Inputs
 from ...precision import LONG_DOUBLE_BITS, cheapest_type
 from ...taylor_step import TaylorStep
 from ..engine import Engine
-from ..plan import Plan, Report, Run
+from ..plan import Pace, Plan, Report, Run
 
 STEP_S = 6e-4  # CPU seconds of a step at 160 bits; a step's cost grows with the square of the bits
 HARDWARE_STEP_S = 4e-5  # in double and long double
@@ -31,11 +30,11 @@ class Heyoka(Engine):
         """Return the run of `momentum` in the cheapest type with `prec` bits."""
         return Plan(inputs, self.formulation, cheapest_type(prec), times, transits, self.name)
 
-    def run(self, plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
+    def run(self, plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
         """Integrate a plan; see `Engine.run`."""
         from .run import run
 
-        return run(plan, report, look_ahead)
+        return run(plan, report, pace)
 
     def taylor_steps(
         self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int

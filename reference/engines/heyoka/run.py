@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
@@ -16,7 +15,7 @@ from ...model.start import Start
 from ...model.vanishing import xdot_vanishes, zero_at_release
 from ...precision import GUARD_BITS
 from ...table import Table
-from ..plan import Plan, Report, Run
+from ..plan import Pace, Plan, Report, Run
 from .log import watched_log
 from .numbers import Numbers
 from .stepper import Stepper, Zero
@@ -26,7 +25,7 @@ OTHER_STEPS = Fraction(5, 8)  # of the span: the longest step of a run that take
 SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord
 
 
-def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Stepper], None] | None = None) -> Run:
+def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
     """Integrate a plan; see `Engine.run`.
 
     Raises:
@@ -38,8 +37,6 @@ def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Stepper]
     formulation = carried(FORMULATIONS[plan.formulation], start, Numbers(plan.number).of)
     stepper = Stepper(formulation, start, plan.number, events=watching, span=plan.times[-1], longest=longest)
     times = [stepper.numbers.of(t) for t in plan.times]
-    if look_ahead is not None:
-        look_ahead(stepper)
     zeros: list[Zero] = []
     with watched_log() as watch:
         multiplicity = zero_at_release(start)
@@ -48,7 +45,7 @@ def run(plan: Plan, report: Report | None = None, look_ahead: Callable[[Stepper]
         if watching:
             states, zeros = march(stepper, times, watch, quiet, report)
         else:
-            states = stepper.propagate(times, report)
+            states = stepper.propagate(times, report, pace)
             if watch.fresh():
                 raise IntegrationError("heyoka wrote a warning to its log during a run without events.")
     return result(plan, stepper, states, zeros if watching else None, started)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -16,6 +16,7 @@ from ...errors import IntegrationError
 from ...model.formulations import Formulation
 from ...model.start import Start
 from ...precision import NumberType
+from ..plan import Pace, Report
 from .machine_code import compiling
 from .model import RoundedModel
 from .system import System
@@ -169,20 +170,7 @@ class Stepper:
         bits = 2 * self.number.prec + TIME_BITS
         return Fraction(sum(self.numbers.fixed(np.array(self._ta.dtime), bits)), 1 << bits)
 
-    def propagate_steps(self, end: Any, steps: int) -> int:
-        """Propagate towards `end` without output or checks; return the number of steps taken, at most `steps`.
-
-        Raises:
-            IntegrationError: heyoka reports a failure.
-        """
-        outcome, _, _, taken, _, _ = self._ta.propagate_until(end, max_steps=steps)
-        if outcome not in (hy.taylor_outcome.step_limit, hy.taylor_outcome.time_limit):
-            raise IntegrationError(
-                f"Lengths, forces or rates of the scene are too far apart for {self.number}: {outcome}."
-            )
-        return int(taken)
-
-    def propagate(self, times: Sequence[Any], report: Callable[[float], None] | None = None) -> Any:
+    def propagate(self, times: Sequence[Any], report: Report | None = None, pace: Pace | None = None) -> Any:
         """Return the states at increasing times from the one reached, shape (times, variables); not with events."""
         if len(times) == 1:
             return self._ta.state.copy()[None, :]
@@ -191,11 +179,15 @@ class Stepper:
         def progress(integrator: Any) -> bool:
             nonlocal count
             count += 1
-            if report is not None and count % STEPS_PER_REPORT == 0:
-                report(float(integrator.time))
+            if count % STEPS_PER_REPORT == 0:
+                time = float(integrator.time)
+                if pace is not None:
+                    pace(count, time)
+                if report is not None:
+                    report(time)
             return True
 
-        options = {"callback": None if report is None else progress, "max_delta_t": self._longest}
+        options = {"callback": progress if report or pace else None, "max_delta_t": self._longest}
         given = {name: value for name, value in options.items() if value is not None}
         states, steps = self.numbers.propagated(self._ta, times, **given)
         self.steps += steps

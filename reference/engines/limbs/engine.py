@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Generator
 from fractions import Fraction
-from typing import Any
 
 from ...inputs import Inputs
 from ...precision import NumberType
 from ...taylor_step import TaylorStep
 from ..engine import Engine
-from ..plan import Plan, Report, Run
+from ..plan import Pace, Plan, Report, Run
 from .size import LEAST_PREC, MOST_PREC
 
 STEP_S = 1.2e-5  # CPU seconds of a step at 160 bits: a fiftieth of heyoka's; it grows with the square of the bits
@@ -39,11 +38,11 @@ class Limbs(Engine):
             published, min(prec, highest_prec_of_fewer_limbs(published.inputs, published.number.prec))
         )
 
-    def run(self, plan: Plan, report: Report | None = None, look_ahead: Callable[[Any], None] | None = None) -> Run:
+    def run(self, plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
         """Integrate a plan; see `Engine.run`. It is in `inertial` whatever formulation the plan names."""
         from .run import run
 
-        return run(plan, report)
+        return run(plan, report, pace)
 
     def taylor_steps(
         self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int

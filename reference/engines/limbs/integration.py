@@ -11,11 +11,11 @@ import numpy.typing as npt
 
 from ...errors import InputError, IntegrationError
 from ...model.vanishing import xdot_vanishes, zero_at_release
-from ..plan import AT_REST, Plan, Report
+from ..plan import AT_REST, Pace, Plan, Report
 from .lanes import LANES
 from .limb import Array, aligned, joined
 from .march import DOUBTFUL, GOOD, STUCK, loaded, march
-from .march_state import COLUMNS, TIME, ZEROS, Outputs, state_at_release
+from .march_state import COLUMNS, STEPS, TIME, ZEROS, Outputs, state_at_release
 from .output_times import limbs_of_fractions
 from .problem import LimbProblem, limb_problem
 from .size import MOST_PREC, fraction_bits
@@ -63,13 +63,15 @@ class Integration:
         self.until = int(whole[-1]) + 1
         self._zeros: list[tuple[Any, Any, Any]] = []
 
-    def finish(self, report: Report | None) -> None:
+    def finish(self, report: Report | None, pace: Pace | None = None) -> None:
         """Advance to the last output time.
 
         Raises:
             IntegrationError: zeros of xdot stay in doubt, or no step is short enough.
         """
         while not self.advance(STEPS_PER_CALL):
+            if pace is not None:
+                pace(int(self.state.counts[STEPS]), self.time)
             if report is not None:
                 report(self.time)
 

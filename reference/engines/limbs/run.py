@@ -9,7 +9,7 @@ from typing import Any
 
 from ...columns import RUN
 from ...table import Table
-from ..plan import Plan, Report, Run
+from ..plan import Pace, Plan, Report, Run
 from .integration import Integration, integration_of
 from .march_state import STEPS
 from .size import fraction_bits
@@ -18,12 +18,13 @@ SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be 
 PRODUCTS, PRODUCTS_WITH_DRAG = 9, 25  # per coefficient: three or four convolutions, the others by constants
 
 
-def run(plan: Plan, report: Report | None = None) -> Run:
+def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:
     """Integrate a plan in limbs, in `inertial` whatever its formulation; `plan.number` tells the precision.
 
     Args:
         plan: what to run; times increasing from 0 on.
         report: called with the simulated time in s.
+        pace: as in `Engine.run`.
 
     Raises:
         InputError: more bits than limbs can hold.
@@ -31,7 +32,7 @@ def run(plan: Plan, report: Report | None = None) -> Run:
     """
     integration = integration_of(plan)
     cpu_start = time.process_time()
-    integration.finish(report)
+    integration.finish(report, pace)
     return result(integration, plan, cpu_start)
 
 
