@@ -79,7 +79,7 @@ def _accuracy(manifest: Manifest, transits: Sheet | None) -> list[str]:
     if count:
         lines += [f"  largest bound on a time {bounds.transit_s} s"]
     if count and all(check.transit_s is None for check in manifest.cross_checks):
-        lines += ["  no run with event detection confirms them: the proof alone does"]
+        lines += ["  the proof alone confirms them"]
     return lines + [
         f"  possible transit in [{one.from_s}, {one.to_s}] s ({one.parity} number of zeros): not decided"
         for one in manifest.possible

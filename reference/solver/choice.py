@@ -28,6 +28,8 @@ ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1
 def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> Pilot:
     """Return the pilot of a scene: in hardware only where its level promises no bytes and its numbers are hardware's.
 
+    That of a single run, which states what the pilot measured as its own errors, is of the same arithmetic.
+
     Raises:
         UnreachableError: as `run_pilot`.
     """
@@ -35,7 +37,11 @@ def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> 
         pilot = run_pilot(scene.exact, times, hardware=True)
         if published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine).number.hardware:
             return pilot
-    return run_pilot(scene.exact, times)
+    pilot = run_pilot(scene.exact, times)
+    if scene.run.level != "computed":
+        return pilot
+    published = published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine)
+    return pilot if published.engine == pilot.engine else run_pilot(scene.exact, times, published.engine)
 
 
 def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str = AUTO) -> Plan:

@@ -45,6 +45,7 @@ class Pilot:
         tension: least tension of the cord over l, in 1/s²; negative where a rod is pushed.
         cpu_s: CPU seconds of both runs.
         steps: steps of the coarser run.
+        engine: that of both runs.
     """
 
     prec: int
@@ -53,6 +54,7 @@ class Pilot:
     tension: float
     cpu_s: float
     steps: int
+    engine: str = ""
 
     @property
     def sizes(self) -> dict[str, Fraction]:
@@ -98,12 +100,13 @@ class Pilot:
         return needed
 
 
-def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], *, hardware: bool = False) -> Pilot:
+def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, *, hardware: bool = False) -> Pilot:
     """Measure rounding errors from two cheap runs, in higher precision if the first keep no digit.
 
     Args:
         inputs: the exact inputs of a scene.
         times: output times in s, from 0.
+        engine: which engine's errors to measure; "auto" for those of the fastest, which show how errors grow.
         hardware: begin with double and long double, for a result in these types; its errors are measured, and not the
             same on every machine.
 
@@ -118,8 +121,8 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], *, hardware: bool = F
     while pair[1] <= MAX_PREC and effort(steps, pair[1]) <= MAX_STEPS:
         prec = pair[0]
         try:
-            coarse = run(_plan(inputs, times, prec, hardware), pace=pace)
-            fine = run(_plan(inputs, times, pair[1], hardware))
+            coarse = run(_plan(inputs, times, prec, engine, hardware), pace=pace)
+            fine = run(_plan(inputs, times, pair[1], engine, hardware))
         except OverflowError:
             raise BeyondDoublesError from None
         pace, steps = None, coarse.steps
@@ -129,7 +132,8 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], *, hardware: bool = F
         if not _lost(errors, largest, inputs.length, prec):
             drifted = {name: largest[name] * steps / 2**prec for name in largest}
             errors = errors if hardware else {name: max(error, drifted[name]) for name, error in errors.items()}
-            return Pilot(prec, errors, largest, coarse.tension, coarse.cpu_s + fine.cpu_s, steps)
+            cpu_s = coarse.cpu_s + fine.cpu_s
+            return Pilot(prec, errors, largest, coarse.tension, cpu_s, steps, coarse.plan.engine)
         last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
         next_prec = max(2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1]))
         pair, last_prec, hardware = (next_prec, next_prec + LATER_GAP_BITS), prec, False
@@ -140,12 +144,12 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], *, hardware: bool = F
     )
 
 
-def _plan(inputs: Inputs, times: tuple[Fraction, ...], prec: int, hardware: bool) -> Plan:
-    """Return a pilot run; unless it is to be one in hardware, in exact arithmetic, by the engine that is fastest."""
+def _plan(inputs: Inputs, times: tuple[Fraction, ...], prec: int, engine: str, hardware: bool) -> Plan:
+    """Return a pilot run, in limbs or in heyoka's `real` unless it is to be one in hardware."""
     if hardware:
         return Plan(inputs, "momentum", DOUBLE if prec == DOUBLE.prec else LONG_DOUBLE, times, transits=False)
     radians = math.ceil(Start.of(inputs, LONG_DOUBLE.prec).fastest_rate * float(times[-1]))  # about one a step
-    plan = fastest(max(prec, LONG_DOUBLE.prec + 1), AUTO, 2 * radians).plan(inputs, prec, times, transits=False)
+    plan = fastest(max(prec, LONG_DOUBLE.prec + 1), engine, 2 * radians).plan(inputs, prec, times, transits=False)
     return replace(plan, number=real(prec)) if plan.number.hardware else plan
 
 

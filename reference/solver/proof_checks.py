@@ -56,6 +56,7 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
     least = _bits_to_see(transits, times[-1], pilot)
     contradiction: IntegrationError | None = None
+    units = {name: Fraction(1, 10**places) for name, places in pilot.decimals(USUAL_DIGITS).items()}
     for prec in (max(usual, least), max(finer, least + finer - usual)):
         if prec > MOST_CHECK_PREC:
             reason: Exception = UnreachableError(f"A run would take {prec} bits to see transits so flat.")
@@ -67,6 +68,8 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
             break
         gaps = solution.grid.distance(event_run.grid).largest()
         try:
+            if any(gaps[name] > unit for name, unit in units.items()):
+                raise IntegrationError(f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure.")
             apart = _transit_gap(event_run, solution, ESTIMATE_FACTOR * gaps["vx"])
         except IntegrationError as error:  # the motion may amplify errors too much for so few digits
             contradiction = reason = error

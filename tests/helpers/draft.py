@@ -15,7 +15,7 @@ from reference.columns import GRID, POSITION, VELOCITY
 from reference.dataset.invariant import invariant_drift
 from reference.dataset.manifest import MANIFEST, Manifest
 from reference.dataset.place import dataset_id
-from reference.dataset.record import command, equations_of, notes_of
+from reference.dataset.record import Making, command, equations_of, notes_of
 from reference.dataset.render import derived_texts
 from reference.dataset.sheets import GRID_HEADER, TRANSITS_HEADER, Sheet, scene_inputs
 from reference.errors import FoucaultError
@@ -142,7 +142,7 @@ class Draft:
             transits="complete" if named.run.transits else "not asked for",
             cross_checks=[],
             equations=equations,
-            command=command(named, "limbs", name),
+            command=command(named, name, Making(audit=False)),
         )
         self.refit(named)
 

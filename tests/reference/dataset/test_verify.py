@@ -59,7 +59,7 @@ def test_a_missing_file_is_found_and_a_foreign_one_is_mentioned(dataset):
     assert "transits.csv: No such file" in problems(dataset)
 
 
-@pytest.mark.parametrize("text", ["{", "[]", '{"schema_version": 2}', "nonsense", "", "\ufeff{}", '{"a":' * 100_000])
+@pytest.mark.parametrize("text", ["{", "[]", '{"schema_version": 3}', "nonsense", "", "\ufeff{}", '{"a":' * 100_000])
 def test_a_broken_manifest_is_found(dataset, text):
     (dataset / MANIFEST).write_text(text)
     assert problems(dataset).startswith("manifest.json")
@@ -67,8 +67,9 @@ def test_a_broken_manifest_is_found(dataset, text):
 
 def test_an_older_format_says_what_to_do(dataset):
     document = json.loads((dataset / MANIFEST).read_text())
-    (dataset / MANIFEST).write_text(json.dumps({**document, "schema_version": 1}))
-    assert "format 1: make the dataset again" in problems(dataset)
+    for older in (1, 2):
+        (dataset / MANIFEST).write_text(json.dumps({**document, "schema_version": older}))
+        assert f"format {older}: make the dataset again" in problems(dataset)
 
 
 def test_the_same_content_in_another_form_is_refused(dataset):

@@ -27,7 +27,7 @@ from reference.dataset.files import read_files
 from reference.dataset.manifest import ALWAYS, MANIFEST, OPTIONAL
 from reference.dataset.place import dataset_id, default_folder, golden_folder
 from reference.dataset.read import load
-from reference.dataset.record import command
+from reference.dataset.record import Making, command
 from reference.dataset.render import render
 from reference.dataset.sheets import Sheet, nearest_doubles
 from reference.dataset.verify import problems_of
@@ -316,7 +316,7 @@ def test_the_seal_of_a_dataset_of_the_project_is_kept_and_of_nothing_else(soluti
     write(solution, tmp_path / "golden" / "older" / "paris")
     assert kept == []
     ships = write(solution, tmp_path / "golden" / "paris")
-    assert kept == [("paris", load(ships).manifest.seal)]
+    assert kept == [("paris", load(ships).manifest.seal, "--engine heyoka")]
 
 
 FAILURES = [
@@ -454,16 +454,16 @@ def test_bounds_cover_the_rounding_to_the_printed_digits(dataset):
 def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     paris = paris.with_values(["run.level=confirmed"])
     plain = "foucault generate paris --t-end 86400 --digits 40 --level confirmed"
-    assert command(paris, "heyoka", "paris") == f"{plain} --engine heyoka"
-    assert command(paris, "limbs", "paris") == f"{plain} --engine limbs"
+    assert command(paris, "paris", Making("heyoka", audit=False)) == f"{plain} --engine heyoka"
+    assert command(paris, "paris", Making(audit=False)) == f"{plain} --engine limbs"
     changed = paris.with_values(["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"])
     sets = "--set site.latitude=0 --set release.vx=1 --set run.grid_step=600 --set inputs=binary64"
-    text = command(changed, "heyoka", dataset_id(changed))
+    text = command(changed, dataset_id(changed), Making("heyoka", audit=False))
     assert sets in text and text.startswith(plain)
     words = [word for word in text.split() if "=" in word]
     assert paris.with_values(words) == changed
-    assert command(make_scene("mine"), "heyoka", "mine").startswith("foucault generate mine.toml --t-end")
-    assert command(make_scene("mine"), "heyoka", "mine+site.latitude=1").endswith("--set site.latitude=1")
+    assert command(make_scene("mine"), "mine", Making()).startswith("foucault generate mine.toml --t-end")
+    assert command(make_scene("mine"), "mine+site.latitude=1", Making()).endswith("--set site.latitude=1")
 
 
 @pytest.mark.parametrize("name", ["separatrix", "damped"])

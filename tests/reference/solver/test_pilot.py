@@ -13,15 +13,15 @@ from small_scenes import make_scene
 import reference
 from reference.columns import STATE
 from reference.engines.plan import Plan
-from reference.engines.registry import run
+from reference.engines.registry import engines, run
 from reference.errors import IntegrationError, UnreachableError
 from reference.precision import DOUBLE
-from reference.scene import load_scene
+from reference.scene import LEVELS, load_scene
 from reference.solver import pilot as pilot_runs
 from reference.solver import reach
 from reference.solver.digits_lost import digits_lost
 from reference.solver.pilot import Pilot, run_pilot
-from reference.solver.reach import check_pace, effort
+from reference.solver.reach import Pace, effort
 from reference.table import bits_in
 
 METRE = {"length": "1"}
@@ -74,7 +74,7 @@ def test_perturbed_runs_that_diverge_at_every_precision_are_refused(monkeypatch)
 
 @pytest.mark.long
 def test_growth_faster_than_any_precision_is_refused_from_the_first_runs():
-    scene = load_scene("separatrix", ["run.t_end=1500", "run.grid_step=10"])
+    scene = load_scene("separatrix", ["run.t_end=1500", "run.grid_step=0.5"])
     with pytest.raises(UnreachableError, match=r"to the end it takes about (\d+) bits") as caught:
         run_pilot(scene.exact, tuple(scene.exact.grid))
     bits = int(re.findall(r"(\d+) bits", caught.value.reason)[0])
@@ -99,10 +99,10 @@ def test_a_velocity_that_shrinks_with_the_precision_is_zero_and_not_lost():
 def pace_of(scene):
     times = (Fraction(0), scene.exact.t_end)
     plan = Plan(scene.exact, "momentum", DOUBLE, times, transits=False)
-    return run(plan, look_ahead=lambda stepper: check_pace(scene.exact, scene.exact.t_end, stepper))
+    return run(plan, pace=Pace(scene.exact, scene.exact.t_end))
 
 
-def test_looking_ahead_changes_nothing(paris):
+def test_watching_the_pace_changes_nothing(paris):
     plan = Plan(paris.exact, "momentum", DOUBLE, (Fraction(0), Fraction(86400)), transits=False)
     assert pace_of(paris).grid == run(plan).grid
 
@@ -149,10 +149,11 @@ def test_a_fast_start_that_drag_brings_to_rest_is_waited_for(monkeypatch):
         pace_of(fast.with_values(["pendulum.drag=0"]))
 
 
+@pytest.mark.parametrize("level", ["computed", "confirmed", "enclosed"])
 @pytest.mark.parametrize("change", ["pendulum.drag=1e300", "site.gravity=1e300"])
-def test_rates_beyond_what_double_holds_are_refused(paris, change):
-    with pytest.raises(IntegrationError, match="too far apart for double"):
-        reference.solve(paris.with_values([change]))
+def test_rates_beyond_what_double_holds_are_refused(paris, change, level):
+    with pytest.raises(UnreachableError):
+        reference.solve(paris.with_values([change]), level=level, digits=10)
 
 
 def test_numbers_beyond_the_range_of_double_are_refused(paris):
@@ -170,71 +171,47 @@ def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(monkeypatc
     def longer(inputs, times):
         return replace(run_pilot(inputs, times), steps=reach.MAX_STEPS // 10)
 
-    for module in ("solve", "pilot"):
-        monkeypatch.setattr(f"reference.solver.{module}.run_pilot", longer)
+    monkeypatch.setattr("reference.solver.choice.run_pilot", longer)
     for level in ("computed", "confirmed"):
         with pytest.raises(UnreachableError, match=r"400 digits take \d+ bits over about \d+ steps"):
             reference.solve(paris, t_end="60", digits=400, level=level)
 
 
-def bits_of(solution):
-    return int(re.findall(r"\d+", solution.run.number)[0])
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("digits", [9, 25])
+def test_hardware_decides_nothing_but_for_results_of_its_own(monkeypatch, paris, level, digits):
+    """Of `confirmed` and `enclosed` it decides nothing at all, as they are to be the same everywhere."""
+    types = []
+
+    def noted(plan, *words, **options):
+        types.append(plan.number)
+        return run(plan, *words, **options)
+
+    monkeypatch.setattr(pilot_runs, "run", noted)
+    solution = reference.solve(paris, t_end="600", digits=digits, level=level)
+    result = solution.run.number in ("double", "long_double")
+    assert any(number.hardware for number in types) == (result and level in ("computed", "self_consistent"))
+    assert result == (digits == 9 and level != "enclosed")
 
 
-@pytest.fixture
-def in_parts(monkeypatch):
-    """Have short sheets begun as long ones are."""
-    monkeypatch.setattr(pilot_runs, "LEAST_TIMES", 8)
-    monkeypatch.setattr(pilot_runs, "FIRST_PART", 4)
+@pytest.mark.parametrize("engine", ["limbs", "heyoka"])
+@pytest.mark.parametrize("t_end", ["600", "20000"])
+def test_a_single_run_states_errors_that_its_own_arithmetic_makes(monkeypatch, paris, t_end, engine):
+    """heyoka's constants are rounded to the bits of the run, those of limbs are not: their errors differ by 2**15."""
+    monkeypatch.setattr("reference.solver.pilot.MARGIN_BITS", 0)
+    scene = paris.with_values([f"run.t_end={t_end}", "run.grid_step=100", "run.level=computed", "run.digits=25"])
+    solution = reference.solve(scene, engine=engine)
+    truth = run(engines()["limbs"].plan(scene.exact, 200, solution.times, transits=False)).grid.only(STATE)
+    assert solution.run.engine == engine
+    for name, error in truth.distance(solution.grid).largest().items():
+        assert error <= solution.grid.largest_bounds()[name] < Fraction(1, 10**20), name
 
 
-def test_a_single_run_measures_the_pilot_and_is_made_again_if_that_was_too_hopeful(monkeypatch, paris, in_parts):
-    scene = paris.with_values(["run.t_end=600", "run.grid_step=10"])
-    times = tuple(scene.exact.grid)
-    whole, (begun, rough) = run_pilot(scene.exact, times), pilot_runs.begun_pilot(scene.exact, times)
-    assert len(rough) == len(times)
-    assert whole.errors["x"] < begun.errors["x"] < 2**10 * whole.errors["x"]
-    needed = whole.bits_for(30, scene.exact.t_end, checked=False)
-    runs = []
-    monkeypatch.setattr("reference.solver.solve.run", lambda *words: runs.append(words) or run(*words))
-    for growth, made in ((pilot_runs.GROWTH, 1), (Fraction(1, 2**80), 2)):
-        monkeypatch.setattr(pilot_runs, "GROWTH", growth)
-        runs.clear()
-        solution = reference.solve(scene, level="computed", digits=30)
-        assert len(runs) == made
-        assert bits_of(solution) >= needed
-        assert Fraction(1, 2) < max(solution.grid.bound("x")) / whole.estimates(bits_of(solution))["x"] < 2
-
-
-def test_a_single_run_whose_bits_are_just_enough_is_not_made_again(monkeypatch, paris, in_parts):
-    runs = []
-    monkeypatch.setattr("reference.solver.solve.run", lambda *words: runs.append(words) or run(*words))
-    monkeypatch.setattr(Pilot, "compared", lambda pilot, *_: pilot)
-    reference.solve(paris.with_values(["run.t_end=600", "run.grid_step=10"]), level="computed", digits=30)
-    assert len(runs) == 1
-
-
-def test_a_proof_is_checked_by_what_its_pilot_lost_against_it(in_parts, paris):
-    scene = paris.with_values(["run.grid_step=1", "run.digits=15", "run.level=enclosed", "run.t_end=60"])
-    times = tuple(scene.exact.grid)
-    solution, pilot = reference.solve(scene), run_pilot(scene.exact, times)
-    begun, rough = pilot_runs.begun_pilot(scene.exact, times)
-    measured = begun.compared(rough, solution.grid, scene.exact.length)
-    assert len(solution.checks) == 2
-    for name, error in measured.errors.items():
-        assert abs(error - pilot.errors[name]) <= pilot.errors[name] / 64
-
-
-def test_a_start_that_promises_too_much_is_measured_to_the_end(monkeypatch, in_parts):
-    """From the top a swing loses its digits later than in the first quarter."""
-    scene = load_scene("separatrix", ["run.t_end=14", "run.grid_step=0.25"])
-    times = tuple(scene.exact.grid)
-    begun, _ = pilot_runs.begun_pilot(scene.exact, times)
-    assert begun.prec == DOUBLE.prec
-    whole = run_pilot(scene.exact, times)
-    solution = reference.solve(scene, level="computed", digits=20)
-    assert max(solution.grid.bound("z")) <= 2 * whole.estimates(bits_of(solution))["z"]
-    assert max(solution.grid.bound("z")) < Fraction(1, 10**19)
+def test_without_numba_the_pilot_is_as_exact(monkeypatch, paris):
+    monkeypatch.setattr(type(engines()["limbs"]), "installed", False)
+    solution = reference.solve(paris, t_end="600", digits=25, level="confirmed")
+    assert solution.run.number.startswith("real(")
+    assert max(solution.grid.bound("x")) < Fraction(1, 10**25)
 
 
 def test_a_column_that_is_only_rounding_is_measured_by_its_kind():

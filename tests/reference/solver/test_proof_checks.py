@@ -26,8 +26,8 @@ def gap(times, signs=(-1, 1, -1), *, bits=90, undecided=False):
     found = Table(("t",), bits, [(round(t * 2**bits),) for t in times])
     plan = SimpleNamespace(number=SimpleNamespace(prec=PREC), times=(Fraction(0), END))
     event_run = SimpleNamespace(transits=found, directions=list(signs), plan=plan)
-    pilot = SimpleNamespace(estimates=lambda prec: {"vx": XDOT_ERROR if prec == PREC else None})
-    return _transit_gap(event_run, proved(), [-1, 1, -1], pilot, undecided)
+    solution = SimpleNamespace(transits=proved(), directions=[-1, 1, -1], possible=("some",) if undecided else ())
+    return _transit_gap(event_run, solution, XDOT_ERROR)
 
 
 @pytest.mark.parametrize("bits", [90, 200])

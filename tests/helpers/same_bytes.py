@@ -1,0 +1,23 @@
+"""What ships, made again in a process of its own, whose environment stands for another processor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def differing(names: Iterable[str]) -> str:
+    """Return the kind of processor that numba compiles for, and all files that do not come out as they ship."""
+    import numba
+
+    from reference.dataset.place import default_folder
+    from reference.dataset.render import render
+    from reference.dataset.shipping import making_of, solved
+    from reference.scene import load_scene
+    from reference.shipped import golden_root
+
+    found = []
+    for name in names:
+        scene = load_scene(name)
+        texts = render(solved(scene, making_of(scene, name, default_folder(scene, name))), name)
+        found += [f"{name}/{file}" for file, text in texts.items() if (golden_root() / name / file).read_text() != text]
+    return f"{numba.config.CPU_NAME}: {found}"

@@ -1,0 +1,169 @@
+"""What ships has the same bytes on every machine: nothing that hardware floating point measures reaches them."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import re
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import reference
+from reference.dataset.place import default_folder
+from reference.dataset.record import Making, command
+from reference.dataset.render import render
+from reference.dataset.shipping import jobs, making_of, solved
+from reference.engines.heyoka.engine import Heyoka
+from reference.errors import InputError
+from reference.precision import LONG_DOUBLE
+from reference.scene import load_scene
+from reference.shipped import golden_root, index, keep_seal, seals
+from reference.table import Table
+
+SHORT = ("barely_over", "conical", "force_free", "near_inverted", "nearly_conical", "weightless")
+# another kind of processor, as far as software can make one: no FMA in numba's code and in libm, another BLAS kernel
+OTHER_PROCESSOR = {
+    "NUMBA_CPU_NAME": "generic",
+    "OPENBLAS_CORETYPE": "Prescott",
+    "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-AVX2_Usable,-FMA_Usable,-FMA4",
+}
+SCRIPT = "import sys; from same_bytes import differing; print(differing(sys.argv[1:]), end='')"
+
+
+def bytes_of(name: str) -> dict[str, str]:
+    return {path.name: path.read_text("utf-8") for path in (golden_root() / name).iterdir()}
+
+
+def made_again(name: str) -> dict[str, str]:
+    scene = load_scene(name)
+    return render(solved(scene, making_of(scene, name, default_folder(scene, name))), name)
+
+
+def jitter(monkeypatch, share: int) -> list[str]:
+    """Move every number that a run in double or long double computes by some units in the last place."""
+    honest, types = Heyoka.run, []
+
+    def moved(table: Table | None, prec: int) -> Table | None:
+        def noise(value: int, place: int) -> int:
+            return value + (value * (place * 7919 % 13 - 6) * share >> prec)
+
+        if table is None:
+            return None
+        rows = [tuple(noise(value, i + j) for j, value in enumerate(row)) for i, row in enumerate(table.values)]
+        return Table(table.columns, table.bits, rows)
+
+    def run(self, plan, *words):
+        found = honest(self, plan, *words)
+        types.append(str(plan.number))
+        if not plan.number.hardware:
+            return found
+        prec = plan.number.prec
+        return replace(found, grid=moved(found.grid, prec), transits=moved(found.transits, prec), steps=found.steps + 1)
+
+    monkeypatch.setattr(Heyoka, "run", run)
+    monkeypatch.setattr("reference.engines.side_by_side.usable_cores", lambda: 1)  # nothing escapes to a child
+    return types
+
+
+@pytest.mark.parametrize("share", [3, 40])
+@pytest.mark.parametrize("name", SHORT)
+def test_noise_in_hardware_changes_no_byte_of_what_ships(monkeypatch, name, share):
+    types = jitter(monkeypatch, share)
+    assert made_again(name) == bytes_of(name)
+    assert any(word.startswith("real(") for word in types)
+
+
+def test_the_noise_is_felt_where_hardware_computes_the_result_and_the_guard_writes_nothing(monkeypatch):
+    paris = load_scene("paris", ["run.t_end=600", "run.digits=12"])
+    rough, proof = replace_level(paris, "computed"), replace_level(paris, "enclosed")
+    before = [render(reference.solve(scene)) for scene in (rough, proof)]
+    types = jitter(monkeypatch, 40)
+    after = [render(reference.solve(scene)) for scene in (rough, proof)]
+    assert before[0] != after[0] and before[1] == after[1]
+    assert types[-1] == str(LONG_DOUBLE)  # of the guard
+    monkeypatch.undo()
+    jitter(monkeypatch, 1 << 50)  # so wrong a guard is made again with more digits
+    solution = reference.solve(proof)
+    assert solution.guard.number.startswith("real(") and render(solution) == before[1]
+
+
+def replace_level(scene, level):
+    return scene.with_values([f"run.level={level}"])
+
+
+def test_another_processor_gives_the_bytes_that_ship(tmp_path):
+    folders = {"NUMBA_CACHE_DIR": tmp_path / "numba", "HOME": tmp_path, "XDG_CACHE_HOME": tmp_path / "cache"}
+    path = os.pathsep.join([str(Path(__file__).parents[2] / "helpers"), os.environ.get("PYTHONPATH", "")])
+    environment = os.environ | OTHER_PROCESSOR | {"PYTHONPATH": path} | {key: str(at) for key, at in folders.items()}
+    words = [sys.executable, "-c", SCRIPT, *SHORT]
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == "generic: []"
+
+
+@pytest.mark.parametrize("name", sorted(seals()))
+def test_no_number_type_of_the_hardware_stands_in_what_ships(name):
+    manifest = reference.load(name).manifest
+    for run in (manifest.run, *manifest.cross_checks):
+        assert re.fullmatch(r"(real|limbs)\([0-9]+\)", run.number), run
+    assert set(manifest.generator) == {"foucault-data", "heyoka", "mpmath", "numba", "numpy", "python-flint"}
+
+
+def test_the_commands_of_what_ships_make_what_ships():
+    """Both `generate NAME` and `generate --all`, in place and elsewhere; of thirty days without a confirmation."""
+    everything = {job.name: job for job in jobs((), None)}
+    elsewhere = {job.name: job for job in jobs((), Path("elsewhere"))}
+    assert set(everything) == set(elsewhere) == set(index()) == set(seals())
+    for name, entry in index().items():
+        manifest = reference.load(name).manifest
+        for job in (everything[name], elsewhere[name]):
+            scene = job.load()
+            making = making_of(scene, name, job.folder)
+            assert command(scene, name, making) == manifest.command
+            assert making.options == entry["options"]
+        assert everything[name].folder == default_folder(scene, name) == golden_root() / name
+    assert [name for name, entry in index().items() if "--no-confirm" in entry["options"]] == ["paris_30d"]
+
+
+def test_options_are_read_as_they_are_written():
+    for making in (Making(), Making("heyoka", audit=False), Making("limbs", confirm=False)):
+        assert Making.of(f"foucault generate paris {making.options} --set site.latitude=0") == making
+
+
+def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch, foucault, tmp_path):
+    monkeypatch.setattr("reference.engines.engine.missing", lambda names: [name for name in names if name == "numba"])
+    for words in (("conical",), ("conical", "--out", tmp_path / "conical")):
+        status, out, err = foucault("generate", *words)
+        assert (status, out) == (2, "")
+        assert "--engine" in err and "numba" in err and "--engine heyoka" in err
+    scene = load_scene("conical")
+    with pytest.raises(InputError, match="numba"):
+        solved(scene, making_of(scene, "conical", tmp_path))
+    assert not list(tmp_path.iterdir())
+
+
+def keep_many(root: str, start: int) -> None:
+    from pathlib import Path
+
+    from reference import shipped
+
+    shipped.golden_root = lambda: Path(root)
+    for k in range(start, start + 20):
+        keep_seal(f"scene{k}", f"{k:064x}", "--engine limbs --audit")
+
+
+def test_seals_that_several_processes_keep_at_once_are_all_kept(tmp_path, monkeypatch):
+    context = multiprocessing.get_context("fork")
+    processes = [context.Process(target=keep_many, args=(str(tmp_path), 100 * k)) for k in range(6)]
+    for process in processes:
+        process.start()
+    for process in processes:
+        process.join()
+    monkeypatch.setattr("reference.shipped.golden_root", lambda: tmp_path)
+    assert [process.exitcode for process in processes] == [0] * 6
+    assert len(index()) == 120 and sorted(path.name for path in tmp_path.iterdir()) == ["index.json"]
+    assert seals()["scene503"] == f"{503:064x}"
