@@ -44,7 +44,7 @@ def recompute(folder: Path, report: Progress | None = None) -> tuple[list[str], 
     runs = [manifest.run, made.run, *manifest.cross_checks, *made.cross_checks]
     excused = manifest.generator != made.generator or any(run.number in HARDWARE for run in runs)
     if excused and all(place.startswith(MEASURED) for place, *_ in fields):
-        said = f"every digit and bound is the same; {len(fields)} measured figures differ"
+        said = f"every digit and bound is the same; {_differ(len(fields), 'measured figure')}"
         return [], [said, *lines]
     return lines, []
 
@@ -70,4 +70,8 @@ def _first_line(name: str, old: str | None, new: str) -> str:
     if not other:
         return ""
     number, one, two = other[0]
-    return f"{name}: {len(other)} lines differ; line {number} is {one}, recomputed {two}"
+    return f"{name}: {_differ(len(other), 'line')}; line {number} is {one}, recomputed {two}"
+
+
+def _differ(count: int, what: str) -> str:
+    return f"{count} {what}s differ" if count > 1 else f"1 {what} differs"

@@ -23,7 +23,8 @@ from ..precision import DOUBLE, LONG_DOUBLE, decimals_for, real
 from ..table import Table, bits_in, decimals_of, resolved
 from .reach import MAX_PREC, MAX_STEPS, Pace, effort
 
-PILOT_PREC, PILOT_GAP_BITS = 47, 22  # of the first pair of exact runs: three limbs beside four
+PILOT_PREC = 47  # of the first exact run: three limbs
+PILOT_GAP_BITS = 22  # bits between it and the second: a limb
 LATER_GAP_BITS = 64  # bits between two pilot runs of more precision
 MARGIN_BITS = 14  # a run's error stays this many bits below the last digit, so that rounding is rarely in doubt
 CLOSE_TRANSIT_BITS = 12  # bits that the time of a day's worst conditioned transit loses against xdot

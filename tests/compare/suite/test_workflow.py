@@ -32,3 +32,15 @@ def test_its_command_runs_and_its_scenes_are_there(foucault, tmp_path, monkeypat
     assert status == 0
     assert "paris.npz agrees with paris (1441 rows, t = 0 to 86400 of 86400 s: 100 %)" in out
     assert (tmp_path / "foucault.xml").is_file() and (tmp_path / "page/badge.svg").is_file()
+
+
+def test_the_workflow_of_the_project_itself_calls_what_there_is():
+    yaml = pytest.importorskip("yaml")
+    jobs = yaml.safe_load((ROOT / ".github/workflows/checks.yml").read_text(encoding="utf-8"))["jobs"]
+    assert set(jobs) == {"lint", "tests", "bytes"}
+    assert jobs["bytes"]["strategy"]["matrix"]["machine"] == ["ubuntu-24.04", "ubuntu-24.04-arm"]
+    commands = [step["run"] for job in jobs.values() for step in job["steps"] if "run" in step]
+    targets = re.findall(r"^(\w+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M)
+    assert {command.split()[1] for command in commands if command.startswith("make ")} <= set(targets)
+    (verify,) = (command.split() for command in commands if "verify" in command)
+    assert verify[:3] == [".venv/bin/foucault", "verify", "--recompute"] and set(verify[3:]) <= set(scene_ids())

@@ -6,6 +6,7 @@ import json
 import random
 import shutil
 from fractions import Fraction
+from importlib.metadata import version
 from itertools import repeat
 from pathlib import Path
 
@@ -394,10 +395,45 @@ def test_the_motion_is_integrated_in_the_bits_of_the_run_where_limbs_have_them_a
 
 
 def test_recomputing_gives_the_same_bytes(dataset):
-    assert recompute(dataset) == []
+    assert recompute(dataset) == ([], [])
 
 
-def test_recomputing_finds_what_no_physics_can_see(dataset):
-    forge(dataset, manifest=lambda document: document["run"].update(steps=document["run"]["steps"] + 1))
+def test_recomputing_finds_what_no_physics_can_see_and_names_it_with_both_values(dataset, foucault):
+    steps = read_files(dataset).manifest.run.steps
+    forge(dataset, manifest=lambda document: document["run"].update(steps=steps + 1))
     assert problems(dataset) == ""
-    assert recompute(dataset) == ["manifest.json: recomputing gives other bytes"]
+    line = f"manifest.json: run.steps = {steps + 1}, recomputed {steps}"
+    assert recompute(dataset) == ([line], [])
+    status, out, _ = foucault("verify", dataset, "--recompute")
+    assert status == 1 and "WRONG" in out and line in out
+
+
+def test_recomputing_names_the_first_line_of_a_table_that_differs(dataset):
+    text = read_files(dataset).texts["grid.csv"].splitlines()
+    last = text[2][-1]
+    forge(dataset, grid=lambda rows, _: rows[1].__setitem__(-1, rows[1][-1][:-1] + str(int(last) ^ 1)))
+    wrong, _ = recompute(dataset)
+    assert wrong[0].startswith("grid.csv: 1 line differs; line 3 is ") and wrong[0].endswith(f"recomputed {text[2]}")
+    (dataset / "vectors.json").unlink()
+    forge(dataset, manifest=lambda document: document["files"].pop("vectors.json"))
+    assert "vectors.json: recomputing gives this file too" in recompute(dataset)[0]
+
+
+def measured_otherwise(document):
+    document["run"].update(steps=document["run"]["steps"] + 1)
+    document["generator"].update(numpy="0")
+
+
+@pytest.mark.parametrize("level", ["computed", "confirmed"])
+def test_figures_that_another_machine_measures_otherwise_are_told_and_not_wrong(tmp_path, foucault, level):
+    """Those of runs in double or long double, and of other versions of the libraries; a digit or a bound is neither."""
+    solution = reference.solve(reference.load_scene("paris"), t_end="60", digits=8, level=level)
+    dataset = write(solution, tmp_path / "paris")
+    assert solution.run.number in ("double", "long_double")
+    forge(dataset, manifest=measured_otherwise)
+    status, out, _ = foucault("verify", dataset, "--recompute")
+    assert status == 0, out
+    assert "every digit and bound is the same; 2 measured figures differ" in out
+    assert f"generator.numpy = 0, recomputed {version('numpy')}" in out
+    forge(dataset, manifest=lambda document: document["invariant"].update(drift_m2_s2="1.0e-3"))
+    assert any("invariant.drift_m2_s2 = 1.0e-3" in line for line in recompute(dataset)[0])
