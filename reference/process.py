@@ -227,6 +227,10 @@ def serve() -> None:
         os._exit(0)
     except BrokenPipeError:
         os._exit(1)
+    except Exception:
+        if not ended.is_set():
+            raise
+        os._exit(0)  # code in C that is told to end while it is imported raises an ImportError
 
 
 def _receive(received: queue.SimpleQueue[Any], ended: threading.Event) -> None:

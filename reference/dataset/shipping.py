@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from ..process import Parent, Worker
 from ..scene import Scene, load_scene
 from ..shipped import index, scene_ids, seals
 from ..solver.rounding import grid_decimals
-from ..solver.solution import Solution
+from ..solver.solution import CrossCheck, Solution
 from ..solver.solve import solve
 from ..status import Status
 from .files import read_files
@@ -141,7 +142,7 @@ def isolated(job: Job) -> Made:
 
 
 def summary(solution: Solution, folder: Path) -> dict[str, Any]:
-    """Return what `generate --json` says of a dataset."""
+    """Return what `generate --json` says of a dataset, also what was measured on the way and stands in no file."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     proof_s = sum((solution.proof.cpu_s if solution.proof else {}).values())
     checks_s = sum(check.cpu_s for check in solution.checks) + proof_s
@@ -160,4 +161,10 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "compile_s": solution.run.compile_s,
         "number": solution.run.number,
         "steps": solution.run.steps,
+        "guard": None if solution.guard is None else _measured(solution.guard),
     }
+
+
+def _measured(guard: CrossCheck) -> dict[str, Any]:
+    """Return what a guard measured, its distances as floats."""
+    return {name: float(value) if isinstance(value, Fraction) else value for name, value in vars(guard).items()}

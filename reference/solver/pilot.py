@@ -124,6 +124,7 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, *
         try:
             coarse = run(_plan(inputs, times, prec, engine, hardware), pace=pace)
             fine = run(_plan(inputs, times, pair[1], engine, hardware))
+            tension = coarse.tension
         except OverflowError:
             raise BeyondDoublesError from None
         pace, steps = None, coarse.steps
@@ -134,7 +135,7 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, *
             drifted = {name: largest[name] * steps / 2**prec for name in largest}
             errors = errors if hardware else {name: max(error, drifted[name]) for name, error in errors.items()}
             cpu_s = coarse.cpu_s + fine.cpu_s
-            return Pilot(prec, errors, largest, coarse.tension, cpu_s, steps, coarse.plan.engine)
+            return Pilot(prec, errors, largest, tension, cpu_s, steps, coarse.plan.engine)
         last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
         next_prec = max(2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1]))
         pair, last_prec, hardware = (next_prec, next_prec + LATER_GAP_BITS), prec, False
