@@ -4,6 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+COUNTED = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "transits", "t_first_s", "t_last_s")
+
+
+def swept() -> list[str]:
+    """Return what octet finds of eight latitudes, without what passes through arctan2 and arcsin."""
+    import reference
+
+    over = ["site.latitude=10:80:10"]
+    rows = reference.sweep(reference.load_scene("paris", ["run.t_end=600"]), over=over, engine="octet")
+    return [f"{name} {rows[name].tolist()}" for name in COUNTED]
+
 
 def differing(names: Iterable[str]) -> str:
     """Return the kind of processor that numba compiles for, and all files that do not come out as they ship."""
