@@ -71,7 +71,8 @@ def command(
         typer.Option(
             "--engine",
             metavar="E",
-            help=f"Integrate with {in_words(engine_names())}; auto takes the fastest that is installed.",
+            help=f"Integrate with {in_words(engine_names())}; auto takes the fastest that is installed, "
+            "for a scene that ships the one that its dataset was made with.",
             autocompletion=completion(lambda: ENGINES),
         ),
     ] = AUTO,

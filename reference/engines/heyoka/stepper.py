@@ -180,11 +180,11 @@ class Stepper:
             nonlocal count
             count += 1
             if count % STEPS_PER_REPORT == 0:
-                time = float(integrator.time)
+                t = float(integrator.time)
                 if pace is not None:
-                    pace(count, time)
+                    pace(count, t)
                 if report is not None:
-                    report(time)
+                    report(t)
             return True
 
         options = {"callback": progress if report or pace else None, "max_delta_t": self._longest}
