@@ -20,6 +20,7 @@ from .pilot import Pilot, run_pilot
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
+SAMPLES = 3  # pilot runs where their errors are stated: in one alone the constants may be rounded luckily
 HARDWARE_ENGINE = "heyoka"  # computes in double and long double
 MOST_DIED = 1024  # bits by which a swing may die down: beyond them balls are made smaller step by step
 ROUNDING_BITS = 20  # balls are this many bits smaller than the last digit: of 1e5 numbers usually none is undecided
@@ -37,11 +38,11 @@ def pilot_for(scene: Scene, times: tuple[Fraction, ...], engine: str = AUTO) -> 
         pilot = run_pilot(scene.exact, times, hardware=True)
         if published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine).number.hardware:
             return pilot
-    pilot = run_pilot(scene.exact, times)
     if scene.run.level != "computed":
-        return pilot
-    published = published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine)
-    return pilot if published.engine == pilot.engine else run_pilot(scene.exact, times, published.engine)
+        return run_pilot(scene.exact, times)
+    pilot = run_pilot(scene.exact, times, samples=SAMPLES)
+    published = published_plan(scene, times, pilot, first_prec(scene, pilot, engine), engine).engine
+    return pilot if published == pilot.engine else run_pilot(scene.exact, times, published, samples=SAMPLES)
 
 
 def first_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str = AUTO) -> Plan:

@@ -101,13 +101,16 @@ class Pilot:
         return needed
 
 
-def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, *, hardware: bool = False) -> Pilot:
+def run_pilot(
+    inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, *, samples: int = 1, hardware: bool = False
+) -> Pilot:
     """Measure rounding errors from two cheap runs, in higher precision if the first keep no digit.
 
     Args:
         inputs: the exact inputs of a scene.
         times: output times in s, from 0.
-        engine: which engine's errors to measure; "auto" for those of the fastest, which show how errors grow.
+        engine: whose errors to measure; "auto" for the fastest, which shows how errors grow.
+        samples: how many coarser runs, a bit apart, the largest error of which counts.
         hardware: begin with double and long double, for a result in these types; its errors are measured, and not the
             same on every machine.
 
@@ -124,6 +127,7 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, *
         try:
             coarse = run(_plan(inputs, times, prec, engine, hardware), pace=pace)
             fine = run(_plan(inputs, times, pair[1], engine, hardware))
+            more = [run(_plan(inputs, times, prec + i, engine, hardware)) for i in range(1, samples)]
             tension = coarse.tension
         except OverflowError:
             raise BeyondDoublesError from None
@@ -131,10 +135,13 @@ def run_pilot(inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, *
         grid = fine.grid.only(GRID)
         gaps, largest = grid.distance(coarse.grid), grid.largest()
         errors = gaps.largest()
+        for i, other in enumerate(more, 1):
+            found = grid.distance(other.grid).largest()
+            errors = {name: max(error, found[name] * 2**i) for name, error in errors.items()}
         if not _lost(errors, largest, inputs.length, prec):
             drifted = {name: largest[name] * steps / 2**prec for name in largest}
             errors = errors if hardware else {name: max(error, drifted[name]) for name, error in errors.items()}
-            cpu_s = coarse.cpu_s + fine.cpu_s
+            cpu_s = sum(one.cpu_s for one in (coarse, fine, *more))
             return Pilot(prec, errors, largest, tension, cpu_s, steps, coarse.plan.engine)
         last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
         next_prec = max(2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1]))
