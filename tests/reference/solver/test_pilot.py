@@ -168,8 +168,8 @@ def test_effort_counts_steps_at_160_bits_and_grows_with_the_cube():
 
 
 def test_digits_that_take_too_many_bits_for_so_many_steps_are_refused(monkeypatch, paris):
-    def longer(inputs, times):
-        return replace(run_pilot(inputs, times), steps=reach.MAX_STEPS // 10)
+    def longer(*words, **options):
+        return replace(run_pilot(*words, **options), steps=reach.MAX_STEPS // 10)
 
     monkeypatch.setattr("reference.solver.choice.run_pilot", longer)
     for level in ("computed", "confirmed"):
