@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from hashlib import sha256
 
 COUNTED = ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s", "transits", "t_first_s", "t_last_s")
 
@@ -14,6 +15,15 @@ def swept() -> list[str]:
     over = ["site.latitude=10:80:10"]
     rows = reference.sweep(reference.load_scene("paris", ["run.t_end=600"]), over=over, engine="octet")
     return [f"{name} {rows[name].tolist()}" for name in COUNTED]
+
+
+def confirmed() -> list[str]:
+    """Return the hashes of the files of a dataset at the level confirmed, of two runs and no proof."""
+    import reference
+    from reference.dataset.render import render
+
+    texts = render(reference.solve(reference.load_scene("paris"), t_end="600", digits=20, level="confirmed"))
+    return [f"{file} {sha256(text.encode()).hexdigest()}" for file, text in texts.items()]
 
 
 def differing(names: Iterable[str]) -> str:

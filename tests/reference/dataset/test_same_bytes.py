@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from same_bytes import swept
+from same_bytes import confirmed, swept
 
 import reference
 from reference.dataset.place import default_folder
@@ -32,7 +32,11 @@ OTHER_PROCESSOR = {
     "OPENBLAS_CORETYPE": "Prescott",
     "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-AVX2,-AVX2_Usable,-FMA_Usable,-FMA4",
 }
-SCRIPT = "import sys; from same_bytes import differing, swept; print(differing(sys.argv[1:]), *swept(), sep='\\n')"
+SCRIPT = """
+import sys
+from same_bytes import confirmed, differing, swept
+print(differing(sys.argv[1:]), *swept(), *confirmed(), sep="\\n")
+"""
 
 
 def bytes_of(name: str) -> dict[str, str]:
@@ -105,7 +109,7 @@ def test_another_processor_gives_the_bytes_that_ship(tmp_path):
     assert done.returncode == 0, done.stderr
     first, *rows = done.stdout.splitlines()
     assert first == "generic: []"
-    assert rows == swept()
+    assert rows == [*swept(), *confirmed()]
 
 
 @pytest.mark.parametrize("name", sorted(seals()))
