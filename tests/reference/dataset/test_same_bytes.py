@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import re
 import subprocess
@@ -11,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from places import ROOT
 from same_bytes import confirmed, swept
 
 import reference
@@ -22,7 +22,7 @@ from reference.engines.heyoka.engine import Heyoka
 from reference.errors import InputError
 from reference.precision import LONG_DOUBLE
 from reference.scene import load_scene
-from reference.shipped import golden_root, index, keep_seal, seals
+from reference.shipped import golden_root, index, seals
 from reference.table import Table
 
 SHORT = ("barely_over", "conical", "force_free", "near_inverted", "nearly_conical", "weightless")
@@ -153,24 +153,20 @@ def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch,
     assert not list(tmp_path.iterdir())
 
 
-def keep_many(root: str, start: int) -> None:
-    from pathlib import Path
-
-    from reference import shipped
-
-    shipped.golden_root = lambda: Path(root)
-    for k in range(start, start + 20):
-        keep_seal(f"scene{k}", f"{k:064x}", "--engine limbs --audit")
+KEEPING = """
+import sys
+from pathlib import Path
+from reference import shipped
+shipped.golden_root = lambda: Path(sys.argv[1])
+for k in range(20):
+    shipped.keep_seal(f"scene_{sys.argv[2]}_{k}", f"{k:064x}", "--engine limbs --audit")
+"""
 
 
 def test_seals_that_several_processes_keep_at_once_are_all_kept(tmp_path, monkeypatch):
-    context = multiprocessing.get_context("fork")
-    processes = [context.Process(target=keep_many, args=(str(tmp_path), 100 * k)) for k in range(6)]
-    for process in processes:
-        process.start()
-    for process in processes:
-        process.join()
+    words = [[sys.executable, "-c", KEEPING, str(tmp_path), str(k)] for k in range(6)]
+    processes = [subprocess.Popen(command, cwd=ROOT) for command in words]
+    assert [process.wait() for process in processes] == [0] * 6
     monkeypatch.setattr("reference.shipped.golden_root", lambda: tmp_path)
-    assert [process.exitcode for process in processes] == [0] * 6
     assert len(index()) == 120 and sorted(path.name for path in tmp_path.iterdir()) == ["index.json"]
-    assert seals()["scene503"] == f"{503:064x}"
+    assert seals()["scene_5_3"] == f"{3:064x}"
