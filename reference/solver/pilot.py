@@ -32,6 +32,7 @@ ESTIMATE_FACTOR = 16  # safety factor from the pilot's error to that of a run wh
 LEAST_ULPS = 4  # and that error is never taken below this many units in the last place
 LEAST_TIMES = 64  # the pilot runs are compared at more times than this, so that no error is small by luck
 LOST = Fraction(1, 1 << 12)  # an error above this part of the largest position or speed leaves no digit
+STILL_PREC = 128  # bits from which a velocity that is exactly zero is that of rest
 ZERO_PREC = 512  # bits from which a position or velocity that shrinks with the precision is taken for zero
 
 
@@ -165,11 +166,11 @@ def _plan(inputs: Inputs, times: tuple[Fraction, ...], prec: int, engine: str, h
 def _lost(errors: dict[str, Fraction], largest: dict[str, Fraction], length: Fraction, prec: int) -> bool:
     """Return whether position or velocity keeps no digit; one that shrinks with the precision is zero, not lost.
 
-    Nor does a velocity keep one that is exactly zero: numbers with a fixed point may not show so slow a motion.
+    Nor does one keep it that is exactly zero in few bits: numbers with a fixed point may not show so slow a motion.
     """
     parts = [tuple(max(of[name] for name in kind) for of in (errors, largest)) for kind in (POSITION, VELOCITY)]
-    zero = length / 2 ** (prec // 2) if prec >= ZERO_PREC else Fraction(-1)
-    return any(error >= size * LOST and size > zero for error, size in parts)
+    zero = length / 2 ** (prec // 2) if prec >= ZERO_PREC else Fraction(0)
+    return any(error > size * LOST if size > zero else prec < STILL_PREC for error, size in parts)
 
 
 def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], end: Fraction) -> int:

@@ -96,6 +96,15 @@ def test_a_velocity_that_shrinks_with_the_precision_is_zero_and_not_lost():
         reference.solve(scene, transits=True)
 
 
+def test_exact_rest_is_no_growth_and_a_motion_slower_than_65_bits_show_is_seen():
+    """At 512 bits, as once, a month of rest took too many steps and was refused as if rounding grew."""
+    still = load_scene("pole", ["release.x=0", "release.y=0"])
+    pilot = run_pilot(still.exact, tuple(still.exact.grid))
+    assert (pilot.prec, max(pilot.largest[name] for name in STATE[3:])) == (pilot_runs.STILL_PREC, 0)
+    slow = load_scene("at_rest")
+    assert 0 < run_pilot(slow.exact, tuple(slow.exact.grid)).largest["vx"] < Fraction(1, 10**40)
+
+
 def pace_of(scene):
     times = (Fraction(0), scene.exact.t_end)
     plan = Plan(scene.exact, "momentum", DOUBLE, times, transits=False)
