@@ -52,7 +52,7 @@ class IntegrationError(UnreachableError):
 
 
 class BeyondDoublesError(UnreachableError):
-    """A number of a scene is too large for the runs in binary64 with which every solution begins."""
+    """A number of a scene is too large for what is computed in binary64, such as steps and sizes."""
 
     def __init__(self) -> None:
         super().__init__("A length, force, rate or time of the scene is beyond the range of binary64.")

@@ -69,7 +69,7 @@ def test_random_scenes_are_proved_and_right(size, tally):
     assert not wrong, wrong
     assert not slow, slow
     assert not refused, refused
-    parts = f"{possible} with undecided transits, {unchecked} without a finer run, {flat} without a cross-check"
+    parts = f"{possible} with undecided transits, {unchecked} without a finer run, {flat} without a guard"
     tally(f"random scenes: {proved} proved, {parts}")
 
 

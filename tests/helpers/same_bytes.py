@@ -26,19 +26,26 @@ def confirmed() -> list[str]:
     return [f"{file} {sha256(text.encode()).hexdigest()}" for file, text in texts.items()]
 
 
-def differing(names: Iterable[str]) -> str:
-    """Return the kind of processor that numba compiles for, and all files that do not come out as they ship."""
-    import numba
-
+def made_again(name: str) -> dict[str, str]:
+    """Return the files of a dataset that ships, made as `generate NAME` makes it."""
     from reference.dataset.place import default_folder
     from reference.dataset.render import render
     from reference.dataset.shipping import making_of, solved
     from reference.scene import load_scene
+
+    scene = load_scene(name)
+    return render(solved(scene, making_of(scene, name, default_folder(scene, name))), name)
+
+
+def shipped(name: str) -> dict[str, str]:
+    """Return the files of a dataset that ships."""
     from reference.shipped import golden_root
 
-    found = []
-    for name in names:
-        scene = load_scene(name)
-        texts = render(solved(scene, making_of(scene, name, default_folder(scene, name))), name)
-        found += [f"{name}/{file}" for file, text in texts.items() if (golden_root() / name / file).read_text() != text]
-    return f"{numba.config.CPU_NAME}: {found}"
+    return {path.name: path.read_text("utf-8") for path in (golden_root() / name).iterdir()}
+
+
+def differing(names: Iterable[str]) -> str:
+    """Return the kind of processor that numba compiles for, and the scenes that do not come out as they ship."""
+    import numba
+
+    return f"{numba.config.CPU_NAME}: {[name for name in names if made_again(name) != shipped(name)]}"

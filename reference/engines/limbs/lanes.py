@@ -1,7 +1,7 @@
 """SIMD lanes: eight doubles side by side, as a numba type that compiles to any machine's vector registers.
 
-The callers keep all sums and products exact (`limb`), so that it makes no difference whether the compiler fuses them:
-the same bits come out with and without FMA, on every machine.
+The same bits come out with and without FMA, on every machine. In limbs all sums and products are exact (`limb`), so that
+it makes no difference whether the compiler fuses them (`plus_product`); in octet each is rounded once (`fma`).
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from places import ROOT
-from same_bytes import confirmed, swept
+from same_bytes import confirmed, made_again, shipped, swept
 
 import reference
 from reference.dataset.place import default_folder
@@ -37,15 +37,6 @@ import sys
 from same_bytes import confirmed, differing, swept
 print(differing(sys.argv[1:]), *swept(), *confirmed(), sep="\\n")
 """
-
-
-def bytes_of(name: str) -> dict[str, str]:
-    return {path.name: path.read_text("utf-8") for path in (golden_root() / name).iterdir()}
-
-
-def made_again(name: str) -> dict[str, str]:
-    scene = load_scene(name)
-    return render(solved(scene, making_of(scene, name, default_folder(scene, name))), name)
 
 
 def jitter(monkeypatch, share: int) -> list[str]:
@@ -78,7 +69,7 @@ def jitter(monkeypatch, share: int) -> list[str]:
 @pytest.mark.parametrize("name", SHORT)
 def test_noise_in_hardware_changes_no_byte_of_what_ships(monkeypatch, name, share):
     types = jitter(monkeypatch, share)
-    assert made_again(name) == bytes_of(name)
+    assert made_again(name) == shipped(name)
     assert any(word.startswith("real(") for word in types)
 
 
