@@ -1,6 +1,6 @@
 """SIMD lanes: eight doubles side by side, as a numba type that compiles to any machine's vector registers.
 
-The same bits come out with and without FMA, on every machine. In limbs all sums and products are exact (`limb`), so that
+The same bits come out with and without FMA, on every machine. In limbs sums and products are exact (`limb`), so that
 it makes no difference whether the compiler fuses them (`plus_product`); in octet each is rounded once (`fma`).
 """
 
