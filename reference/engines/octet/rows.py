@@ -65,7 +65,7 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     turn_p, turn_u = numbers[:, TURN_P], numbers[:, TURN_U]
     x, p, u, w, v, s = r[:6]
     north, up = rows.pull[:, 1, 0], rows.pull[:, 2, 0]
-    size = np.hypot(north, up)
+    size = np.sqrt(north * north + up * up)  # not hypot, which differs from libm to libm
     sin, cos = _plumb_line(north, up, size, np.where(size == 0, 1.0, 0.0))
     n = (x, *_turned(p, u - 1.0, -sin, cos))
     velocity = (w - turn_p * u + turn_u * p, *_turned(v - turn_u * x, s + turn_p * x, -sin, cos))
