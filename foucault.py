@@ -53,7 +53,7 @@ def _version(asked: bool) -> None:
     if asked:
         from importlib.metadata import PackageNotFoundError, version
 
-        from reference.shipped import DATA_VERSION
+        from reference.scenes.shipped import DATA_VERSION
 
         try:
             code = f"foucault {version('foucault-reference')}"
@@ -74,9 +74,9 @@ def main() -> None:
 
 
 def _run() -> None:
-    from reference.errors import FoucaultError, Stopped
-    from reference.plain_text import plain_lines, plain_output
-    from reference.process import terminable
+    from reference.errors import FoucaultError, Stopped, plain_lines
+    from reference.system.plain_output import plain_output
+    from reference.system.process import terminable
 
     signals: list[int] = []
     try:

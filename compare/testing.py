@@ -20,7 +20,7 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .candidates.external import placeholders

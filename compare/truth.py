@@ -17,10 +17,9 @@ import numpy as np
 
 from reference import DatasetError, Golden, InputError, Scene, load
 from reference.dataset.dense import WITHIN, Dense, dense
-from reference.precision import Array
-from reference.shipped import data_root
-
-from . import cache
+from reference.numbers.precision import Array
+from reference.scenes.shipped import data_root
+from reference.system import cache
 
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
 DENSE_FORMAT = b"dense 4"  # changes with the results of `reference.dataset.dense`, so that older entries are made again

@@ -14,9 +14,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .errors import DatasetError, FoucaultError, InputError, IntegrationError, UnreachableError
-from .lazy import lazy
-from .scene import Scene, load_scene, parse_scene
-from .shipped import scene_ids
+from .scenes.scene import Scene, load_scene, parse_scene
+from .scenes.shipped import scene_ids
+from .system.lazy import lazy
 
 if TYPE_CHECKING:
     from .dataset.read import Golden, load

@@ -1,11 +1,30 @@
-"""The exceptions of this project: one small tree; each carries its payload and the exit status of the command line."""
+r"""Messages to users: the exceptions of this project, each with an exit status; plain text; names near a wrong one.
+
+Titles, file names and what programs print come from strangers; an escape sequence among them could rewrite a verdict
+on the screen, so control characters are written out, as in \x1b, and never obeyed.
+"""
 
 from __future__ import annotations
 
-from .plain_text import plain, plain_lines
-from .shortened import shortened
+import json
+import math
+import re
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from typing import Any
 
 LONGEST_VALUE = 120  # characters of a value that a message repeats
+MOST = 5  # names in a message at most
+VERY_ALIKE = (1.0, 0.8)  # of difflib, from 0 to 1: names that are as alike as this leave no room for others
+LEAST_PART = 3  # characters of a word that is looked for inside the names as well
+
+# controls, invisible and direction-changing characters, separators of lines, bytes that are not UTF-8 (surrogates)
+_UNSAFE = (
+    r"\x00-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff"
+    r"\U000e0000-\U000e007f"
+)
+_CONTROL = re.compile(f"[{_UNSAFE}]")
+_CONTROL_BUT_LINES = re.compile(rf"(?![\n\t])[{_UNSAFE}]")
 
 
 class FoucaultError(Exception):
@@ -73,3 +92,80 @@ class Stopped(FoucaultError):
 
     def __init__(self, outcome: str) -> None:
         super().__init__(f"stopped; {outcome}")
+
+
+def nearest(word: str, known: Iterable[str]) -> list[str]:
+    """Return at most five names: very like a word, else containing it, else like it; in any case."""
+    names = {name.lower(): name for name in known}
+    typed = word.lower()
+    for likeness in VERY_ALIKE:
+        if alike := get_close_matches(typed, names, n=MOST, cutoff=likeness):
+            return [names[name] for name in alike]
+    containing = sorted((name for name in names if len(typed) >= LEAST_PART and typed in name), key=len)
+    return [names[name] for name in (containing or get_close_matches(typed, names, n=MOST))][:MOST]
+
+
+def did_you_mean(word: str, known: Iterable[str], otherwise: str) -> str:
+    """Return the question whether one of the nearest names was meant; `otherwise` if no name is near."""
+    names = nearest(word, known)
+    return f"Did you mean {in_words(names)}?" if names else otherwise
+
+
+def in_words(names: Sequence[str]) -> str:
+    """Return names as a phrase: a, b or c."""
+    return " or ".join(part for part in (", ".join(names[:-1]), names[-1]) if part)
+
+
+def unknown(field: str, word: str, expected: str, known: Iterable[str], otherwise: str) -> InputError:
+    """Return the error for a word that is none of the known ones.
+
+    Args:
+        field: what the word was given for.
+        word: as typed.
+        expected: what it should have been.
+        known: the names that exist.
+        otherwise: advice if no name is near, such as the command that lists them.
+    """
+    return InputError(field, word, expected, did_you_mean(word, known, otherwise))
+
+
+def is_plain(text: str) -> bool:
+    """Return whether a text is one line without control characters."""
+    return _CONTROL.search(text) is None
+
+
+def plain(text: str) -> str:
+    """Return a text in one line, its control characters written out."""
+    return _CONTROL.sub(_written_out, text)
+
+
+def plain_lines(text: str) -> str:
+    """Return a text of several lines, all control characters but newline and tab written out."""
+    return _CONTROL_BUT_LINES.sub(_written_out, text)
+
+
+def plain_json(document: Any) -> str:
+    """Return a document as JSON, control characters as JSON writes them; NaN and infinity, which it lacks, as null."""
+    text = json.dumps(finite(document), indent=1, ensure_ascii=False, allow_nan=False)
+    return _CONTROL_BUT_LINES.sub(lambda match: json.dumps(match[0])[1:-1], text)
+
+
+def finite(value: Any) -> Any:
+    """Return a document of dictionaries, lists and values with None for each NaN and infinity."""
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(item) for item in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _written_out(match: re.Match[str]) -> str:
+    code = ord(match[0])
+    if 0xDC80 <= code <= 0xDCFF:  # how Python holds a byte that is not UTF-8
+        return f"\\x{code - 0xDC00:02x}"
+    return match[0].encode("unicode_escape").decode()
+
+
+def shortened(text: str, most: int) -> str:
+    """Return a text of at most `most` characters, which ends in … if it was longer."""
+    return text if len(text) <= most else f"{text[: most - 1]}…"

@@ -15,7 +15,7 @@ import pytest
 from hypothesis import settings
 from small_scenes import make_scene
 
-from reference.scene import Scene, load_scene
+from reference.scenes.scene import Scene, load_scene
 
 COSTLY = 15  # files named at the end of a test run, with the CPU seconds that they took
 

@@ -32,6 +32,7 @@ EQUIVALENTS = Path(__file__).parent / "equivalent_mutants.toml"
 SPARE_S, LONGER = 30, 5  # what the tests of a mutant may take: some CPU seconds, and times what they take without it
 DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/test_", "tests/reference/solver/test_"
 LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
+NUMBERS = "tests/reference/numbers/test_"
 TIGHT = f"{DATASET}tight_checks.py"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: physics": f"{TIGHT} {DATASET}verify.py",
@@ -44,7 +45,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "compare/score: transits": f"{SCORE}transit_errors.py",
     "compare/score: errors": f"{SCORE}errors.py",
     "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py",
-    "reference: precision": f"tests/reference/test_precision.py tests/reference/test_table.py {BITS}",
+    "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
     "reference/solver: rounding": f"{SOLVER}rounding.py {FILES} {SOLVER}solve.py",
     "reference/solver: agreement transit_errors": f"{SOLVER}agreement.py {SOLVER}solve.py",
     "reference/solver: solve": f"{BITS} {SOLVER}solve.py {SOLVER}pilot.py",

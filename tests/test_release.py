@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
-from reference.shipped import data_root, scene_ids, seals
+from reference.scenes.shipped import data_root, scene_ids, seals
 
 WHEEL_BYTES, DATA_BYTES = 12_000_000, 25_000_000
 COMMANDS = [

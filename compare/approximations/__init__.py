@@ -12,7 +12,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..registry import Registry
+from reference.system.declarations import Registry
+
 from .approximation import Approximation, Motion, Order, Printed, Quantity
 
 __all__ = [

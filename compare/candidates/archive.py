@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 
 from reference import InputError
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .candidate import COLUMNS, Candidate, candidate_of, checked_transits
 from .layout import Layout, Naming, guessed, layout, unnamed

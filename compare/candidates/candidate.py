@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from reference import InputError
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 LARGEST = 1e100  # a larger number means that the run has blown up; below, squares cannot overflow

@@ -13,7 +13,7 @@ from typing import BinaryIO
 import numpy as np
 
 from reference import InputError
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .candidate import Convention
 from .decimals import low_part, low_part_of_time

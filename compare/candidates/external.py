@@ -21,7 +21,7 @@ from typing import BinaryIO
 
 from reference import InputError, Scene
 from reference.model.start import Start
-from reference.process import terminable
+from reference.system.process import terminable
 
 from .lines import MAX_BYTES
 from .process_tree import ProcessTree

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from reference import InputError
-from reference.nearest import did_you_mean, in_words
+from reference.errors import did_you_mean, in_words
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from fractions import Fraction
 import numpy as np
 
 from reference import InputError
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .candidate import COLUMNS, Convention
 from .names import Meaning, meaning, unquoted

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import BinaryIO
 
 from reference import InputError
-from reference.opening import open_at_once
-from reference.plain_text import plain
-from reference.precision import Array
+from reference.errors import plain
+from reference.numbers.precision import Array
+from reference.system.opening import open_at_once
 
 from .archive import read_archive, read_array
 from .candidate import Candidate, checked_transits

@@ -9,7 +9,7 @@ import typer
 
 from reference.commands.progress import progress
 from reference.commands.terminal import AsJson, emit, stoppable
-from reference.shipped import golden_root
+from reference.scenes.shipped import golden_root
 
 
 def command(

@@ -12,18 +12,18 @@ import numpy as np
 from reference import InputError, Scene, load_scene
 from reference.commands.progress import progress
 from reference.commands.terminal import stoppable
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import COLUMNS, Candidate, candidate_of
 from ..candidates.external import arguments, timed
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
+from ..report.suite import page
+from ..report.suite.files import Entry, entries
+from ..report.suite.outcome import Outcome, outcome
 from ..score.judge import judge
 from ..score.scored import Score
-from ..suite import page
-from ..suite.files import Entry, entries
-from ..suite.outcome import Outcome, outcome
 from .options import announce
 
 

@@ -10,8 +10,8 @@ import typer
 from reference import InputError, load_scene, scene_ids
 from reference.commands.progress import progress
 from reference.commands.terminal import Assignments, EndTime, completion, refuse, replacements, stoppable
-from reference.nearest import did_you_mean, in_words
-from reference.shipped import seals
+from reference.errors import did_you_mean, in_words
+from reference.scenes.shipped import seals
 
 from .options import announce, completion_of_lists, listed
 

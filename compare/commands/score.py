@@ -13,7 +13,7 @@ from reference.commands.terminal import AsJson, Assignments, chosen, completion,
 from .options import listed
 
 if TYPE_CHECKING:
-    from ..suite.outcome import Outcome
+    from ..report.suite.outcome import Outcome
 
 MAX_REPEATS = 1000
 TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats
@@ -243,8 +243,8 @@ def command(
 
 def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
     """Print and write outcomes in the forms that were asked for."""
-    from ..suite.outcome import text_lines
-    from ..suite.page import suite_document
+    from ..report.suite.outcome import text_lines
+    from ..report.suite.page import suite_document
 
     scores = [one.score for one in outcomes if one.score is not None]
     if plot is not None and scores:
@@ -252,7 +252,7 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
 
         error_picture(scores, plot)
     if junit is not None:
-        from ..suite.junit import write
+        from ..report.suite.junit import write
 
         write(outcomes, junit)
     if as_json:
@@ -261,7 +261,7 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
     for line in text_lines(outcomes):
         typer.echo(line)
     if github:
-        from ..suite.github import annotation, append_summary, summary
+        from ..report.suite.github import annotation, append_summary, summary
 
         for one in outcomes:
             typer.echo(annotation(one))

@@ -21,7 +21,7 @@ from reference.commands.terminal import (
     replacements,
     stoppable,
 )
-from reference.scene import LEVELS
+from reference.scenes.scene import LEVELS
 from reference.status import Status
 
 if TYPE_CHECKING:

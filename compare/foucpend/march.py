@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from reference import InputError, IntegrationError
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ..approximations.mathar_items import VARIABLES, derivatives, truncated
 from ..methods import METHODS, available

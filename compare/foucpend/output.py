@@ -9,8 +9,8 @@ import numpy as np
 from reference import InputError, Scene, solve
 from reference.model.constants import constants
 from reference.model.start import Start
-from reference.precision import Array, context
-from reference.scene import MAX_ROWS
+from reference.numbers.precision import Array, context
+from reference.scenes.scene import MAX_ROWS
 
 from .options import METHOD_OF, Options
 

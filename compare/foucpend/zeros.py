@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 
 def parabola_zero(t: Array, v: Array) -> float:

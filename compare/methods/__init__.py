@@ -20,8 +20,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from reference import InputError
+from reference.system.declarations import Registry
 
-from ..registry import Registry
 from ..rhs.problem import Problem
 from .external import LONGEST_NAME, SETTING, external, file_name
 from .method import Family, Method, Outcome, Work, available

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from reference import InputError, Scene
-from reference.shortened import shortened
+from reference.errors import shortened
 from reference.status import Status
 
 from ..rhs.problem import Array, Problem

@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from reference.precision import context
+from reference.numbers.precision import context
 
 from ..rhs.problem import Array, Problem
-from ..runge_kutta.fixed_step import steps_between
-from ..runge_kutta.tableau import TableauError
 from .method import Family, Outcome, Work, fixed_step, outcome
+from .runge_kutta.fixed_step import steps_between
+from .runge_kutta.tableau import TableauError
 
 STAGES = 8
 MOST_ITERATIONS = 60

@@ -13,13 +13,13 @@ from fractions import Fraction
 from functools import partial
 
 from reference import IntegrationError
-from reference.columns import STATE
 from reference.model.carried import carried
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
-from reference.precision import DOUBLE, DOUBLE_BITS, GUARD_BITS, LONG_DOUBLE, LONG_DOUBLE_BITS, NumberType, real
+from reference.numbers.columns import STATE
+from reference.numbers.precision import DOUBLE, DOUBLE_BITS, GUARD_BITS, LONG_DOUBLE, LONG_DOUBLE_BITS, NumberType, real
+from reference.numbers.table import Table
 from reference.status import Status
-from reference.table import Table
 
 from ..rhs.problem import Problem
 from .method import Family, Method, Outcome, Work, failed

@@ -13,14 +13,14 @@ from typing import Literal
 import numpy as np
 
 from reference import Scene
-from reference.packages import missing, switched_off
+from reference.numbers.table import Table
 from reference.status import Status
-from reference.table import Table
+from reference.system.packages import missing, switched_off
 
-from ..native.library import Library
 from ..rhs.problem import Array, Problem
-from ..runge_kutta.fixed_step import steps_through
-from ..runge_kutta.steps import Step
+from .native.library import Library
+from .runge_kutta.fixed_step import steps_through
+from .runge_kutta.steps import Step
 
 Setting = Literal["step", "tolerance", "precision"]
 

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any
 
-from reference.columns import STATE
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
-from reference.precision import GUARD_BITS, context, to_fraction, to_mpf
+from reference.numbers.columns import STATE
+from reference.numbers.precision import GUARD_BITS, context, to_fraction, to_mpf
+from reference.numbers.table import Table
 from reference.status import Status
-from reference.table import Table
 
 from ..rhs.problem import Array, Problem
 from .method import Family, Method, Outcome, Work

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ..runge_kutta.steps import runge_kutta
-from ..runge_kutta.tableau import Tableau, fractions, triangle
 from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
+from .runge_kutta.steps import runge_kutta
+from .runge_kutta.tableau import Tableau, fractions, triangle
 
 TABLEAU = Tableau(
     name="rk4",

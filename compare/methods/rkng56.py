@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ..runge_kutta.steps import nystrom
-from ..runge_kutta.tableau import NystromTableau, fractions, triangle
 from .method import Family, explicit, fixed_step
+from .runge_kutta.steps import nystrom
+from .runge_kutta.tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(
     name="RKN-G-5(6)-8",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ..runge_kutta.steps import nystrom
-from ..runge_kutta.tableau import NystromTableau, fractions, triangle
 from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
+from .runge_kutta.steps import nystrom
+from .runge_kutta.tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(
     name="RKN-G-6(7)-10",

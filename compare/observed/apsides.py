@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from reference import Scene, UnreachableError, trajectory
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .swing_plane import Gauge
 

@@ -22,7 +22,7 @@ from reference import Scene, UnreachableError
 from reference.model.constants import Vector
 from reference.model.force import tension
 from reference.model.start import Start, scaled
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 PREC = 200  # bits in which a rest position is computed before it becomes doubles
 _ROUND = 1e-6  # an ellipse with |Z² + S²| below this part of |Z|² + |S|² is nearly a circle and has no direction

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 BLOCKS = 48  # parts of the run at most, in each of which turn and delay are fitted
 FEWEST = 3  # rows of a run at least: one row has as many equations as unknowns, so that nothing checks the fit

@@ -17,7 +17,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from reference.precision import fixed_decimal, to_fraction
+from reference.numbers.precision import fixed_decimal, to_fraction
 
 from .digits import AGREE_DIGITS, MP, Value, distance, mpf, shown, size
 from .points import Point, points

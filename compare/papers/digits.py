@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from reference.precision import bits_of, context
+from reference.numbers.precision import bits_of, context
 
 DIGITS = 60  # decimal digits in which every comparison is made
 SHOWN_DIGITS = 18  # decimal digits of every recomputed value on the page

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 
 from reference import InputError, load_scene
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ..approximations import APPROXIMATIONS, Motion
 from ..methods import METHODS, available
+from ..observed.position_error import difference, distance
 from ..observed.swing_plane import rest_in_metres
-from ..position_error import difference, distance
 from ..report.charts.drawing import COLOURS, FAINT, GUIDE
 from ..report.charts.labels import Line
 from ..report.charts.panels import Panel, dots, drawn, line

@@ -11,9 +11,9 @@ from fractions import Fraction
 from functools import cache, cached_property
 from typing import Any
 
-from reference.inputs import Inputs
 from reference.model.constants import Constants, constants
-from reference.precision import to_fraction
+from reference.numbers.precision import to_fraction
+from reference.scenes.inputs import Inputs
 
 from ..approximations.case import Case
 from .digits import MP, Vector, cos, mpf, radians, sin, sqrt

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from reference import Golden, Scene, Solution, load, load_scene, solve, trajectory
-from reference.precision import LONG_DOUBLE, Array
+from reference.numbers.precision import LONG_DOUBLE, Array
 
 from ..observed.swing_plane import Gauge
 from .digits import mpf

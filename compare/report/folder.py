@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
-from reference.plain_text import plain_json, plain_lines
-from reference.workspace import workspace
+from reference.errors import plain_json, plain_lines
+from reference.system.workspace import workspace
 
 from .page import MARK
 

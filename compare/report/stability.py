@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from reference import load_scene
-from reference.shortened import shortened
+from reference.errors import shortened
 from reference.status import Status
 
 from ..studies.long_runs import LongRun, laws

@@ -7,7 +7,7 @@ from collections.abc import Collection, Mapping, Sequence
 from textwrap import wrap
 from typing import Any
 
-from reference.shortened import shortened
+from reference.errors import shortened
 from reference.status import Status
 
 from ..methods import METHODS

@@ -16,9 +16,9 @@ from string import Template
 from types import ModuleType
 from typing import Any
 
-from reference.workspace import replace_file
+from reference.system.cache import entry, store
+from reference.system.workspace import replace_file
 
-from ..cache import entry, store
 from .program import FUNCTIONS, Program
 
 HEADER = f"""import numba as nb
@@ -66,7 +66,7 @@ def compiled(body: str) -> ModuleType:
     path = _stored(on_disk.encode())
     if path is None:
         return _in_memory(HEADER.replace("CACHE", "False") + body)
-    from reference.machine_code import kept
+    from reference.system.machine_code import kept
 
     with kept():
         return _executed(on_disk, path.stem, str(path))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import lru_cache
 
-from reference.inputs import Inputs
 from reference.model.constants import Constants, constants
-from reference.precision import DOUBLE_BITS, GUARD_BITS, context
+from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS, context
+from reference.scenes.inputs import Inputs
 
 
 @lru_cache(maxsize=64)

@@ -15,7 +15,7 @@ from reference import InputError, Scene
 from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
-from reference.precision import DOUBLE_BITS, GUARD_BITS
+from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS
 
 from .program import Program
 from .swing import Swing

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from reference import Scene
 from reference.errors import BeyondDoublesError
 from reference.model.start import Start
-from reference.precision import DOUBLE_BITS, GUARD_BITS
+from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS
 
 Array = npt.NDArray[np.float64]
 

@@ -11,10 +11,9 @@ import json
 import numpy as np
 
 from reference import Scene
-from reference.precision import Array
+from reference.numbers.precision import Array
 from reference.solver.sensitivity import sensitivity
-
-from ..cache import arrays
+from reference.system.cache import arrays
 
 TIMES = 577  # in a span, at least half of them up to the end asked for: some in every swing, or hundreds of swings
 _FORMAT = "floor 3"  # changes with the content of the cached entries, so that older ones are computed again

@@ -17,7 +17,7 @@ import numpy as np
 
 from reference import Golden, InputError, Scene, UnreachableError, load_scene
 from reference.dataset.dense import WITHIN
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ..candidates.against_scene import beyond_the_cord, check_times
 from ..candidates.candidate import Candidate

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 MOST_EXTRA = 1000  # extra transits at which the truth is evaluated; if there are more, none is excused
 

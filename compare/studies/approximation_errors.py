@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 
 from reference import FoucaultError, InputError, Scene, UnreachableError, trajectory
-from reference.precision import Array
+from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..approximations import APPROXIMATIONS, Motion, Quantity, motions, quantities
+from ..observed.position_error import difference, distance
 from ..observed.swing_plane import Gauge
-from ..position_error import difference, distance
 from .failure import failure
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day

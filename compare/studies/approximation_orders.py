@@ -9,8 +9,8 @@ import numpy as np
 from reference import Scene, parse_scene, trajectory
 
 from ..approximations.approximation import Approximation, Motion, Order, Quantity
-from ..position_error import difference, distance
-from ..power_law import LEAST_POINTS, power_law
+from ..observed.position_error import difference, distance
+from ..observed.power_law import LEAST_POINTS, power_law
 from .variation import released, varied
 
 BASE = parse_scene(

@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from reference import InputError, IntegrationError
-from reference.plain_text import finite
-from reference.process import Worker, alarm
+from reference.errors import finite
 from reference.status import Status
+from reference.system import cache
+from reference.system.process import Worker, alarm
 
-from .. import cache
 from ..methods import METHODS, available
 from .machine import load_per_core, machine, single_thread
 from .row import Record

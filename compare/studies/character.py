@@ -15,7 +15,7 @@ from reference import Scene, UnreachableError
 from reference.model.constants import Constants
 from reference.model.force import tension
 from reference.model.formulations import FORMULATIONS
-from reference.precision import Array
+from reference.numbers.precision import Array
 from reference.solver.digits_lost import digits_lost
 from reference.solver.sensitivity import sensitivity
 

@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, load, load_scene, parse_scene
-from reference.process import Emit
 from reference.status import Status
+from reference.system.process import Emit
 
 from ..methods import METHODS, Problem, available
-from ..power_law import power_of_time
+from ..observed.power_law import power_of_time
 from ..truth import golden_of
 from .campaign import Counted, campaign
 from .failure import FAILURES, failure

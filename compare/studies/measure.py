@@ -20,9 +20,9 @@ from typing import Any
 import numpy as np
 
 from reference import Scene, load, parse_scene
-from reference.precision import Array
-from reference.process import Emit
+from reference.numbers.precision import Array
 from reference.status import Status
+from reference.system.process import Emit
 
 from ..methods import METHODS, Method, Outcome, Problem, Work, available, external
 from ..rhs.swing import suited

@@ -11,11 +11,11 @@ import numpy as np
 from reference import Golden, InputError, Scene
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
-from reference.precision import Array, context, to_mpf
+from reference.numbers.precision import Array, context, to_mpf
 
 from ..candidates.candidate import COLUMNS
 from ..methods import Outcome
-from ..position_error import Column, difference, distance
+from ..observed.position_error import Column, difference, distance
 from ..rhs.constants import constants_in_double
 
 H_ROWS = 64  # rows at which h is evaluated

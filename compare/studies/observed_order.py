@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from reference.status import Status
 
 from ..methods import METHODS
-from ..power_law import LEAST_POINTS, PowerLaw, power_law
+from ..observed.power_law import LEAST_POINTS, PowerLaw, power_law
 from .row import Row
 
 TOLD_APART = 0.25  # standard error up to which an order is told from its neighbours: twice that is half an order

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from reference import InputError, Scene
-from reference.precision import DOUBLE_BITS
+from reference.numbers.precision import DOUBLE_BITS
 
 from ..methods import METHODS
 

@@ -14,9 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from reference import Golden, InputError, Scene
-from reference.plain_text import plain
-from reference.precision import Array
-from reference.shortened import shortened
+from reference.errors import plain, shortened
+from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..candidates.candidate import Candidate, NotFiniteError
@@ -24,7 +23,7 @@ from ..candidates.external import FailedError, OutOfTimeError, arguments, run_pr
 from ..candidates.read import read, read_stream
 from ..methods import METHODS
 from ..methods.external import LONGEST_NAME, SETTING
-from ..position_error import difference, distance
+from ..observed.position_error import difference, distance
 from ..truth import truth_at
 from .machine import load_per_core
 from .row import Row

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from reference import Golden, Scene, UnreachableError, load, load_scene, parse_scene, scene_ids
-from reference.columns import STATE
-from reference.process import Emit
+from reference.numbers.columns import STATE
 from reference.status import Status
+from reference.system.process import Emit
 
 from ..methods import METHODS
 from ..rhs.constants import constants_in_double

@@ -73,7 +73,7 @@ def generate_all(
 
 def _made(left: list[Job], workers: int | None, cluster: str | None, report: Callable[[Row, int], None]) -> list[Row]:
     """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
-    from ..pool import WorkerDied, next_done
+    from ..system.pool import WorkerDied, next_done
 
     rows: list[Row] = []
     done: queue.SimpleQueue[Any] = queue.SimpleQueue()
@@ -100,8 +100,8 @@ def _executor(
 ) -> tuple[Callable[[Job], Any], Any]:
     """Return what begins a dataset, and what tells whether anything can still come."""
     from ..dataset.shipping import isolated, serve
-    from ..pool import Pool
-    from ..process import usable_cores
+    from ..system.pool import Pool
+    from ..system.process import usable_cores
 
     if cluster is not None:
         from ..sweeps.cluster import Scheduler, solving_versions

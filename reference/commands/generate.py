@@ -9,10 +9,9 @@ from typing import Annotated
 import typer
 
 from ..engines import AUTO, engine_names
-from ..errors import InputError
-from ..nearest import in_words
-from ..scene import LEVELS, load_scene
-from ..shipped import scene_ids
+from ..errors import InputError, in_words
+from ..scenes.scene import LEVELS, load_scene
+from ..scenes.shipped import scene_ids
 from .everything import generate_all
 from .progress import progress
 from .terminal import (

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import typer
 
-from ..scene import load_scene
-from ..shipped import scene_ids
+from ..scenes.scene import load_scene
+from ..scenes.shipped import scene_ids
 from .terminal import AsJson, emit
 
 

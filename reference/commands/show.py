@@ -7,8 +7,8 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import UnreachableError
-from ..scene import Scene, load_scene
-from ..shipped import flag_meanings
+from ..scenes.scene import Scene, load_scene
+from ..scenes.shipped import flag_meanings
 from .terminal import AsJson, Assignments, SceneWord, emit
 
 FORMS = {  # of the forms that an engine publishes: what its letters mean

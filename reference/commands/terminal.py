@@ -8,11 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError, Stopped
-from ..nearest import did_you_mean, in_words
-from ..plain_text import plain_json
-from ..scene import field_names
-from ..shipped import scene_ids
+from ..errors import InputError, Stopped, did_you_mean, in_words, plain_json
+from ..scenes.scene import field_names
+from ..scenes.shipped import scene_ids
 
 
 def completion(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ..errors import InputError
-from ..shipped import golden_root, seals
+from ..scenes.shipped import golden_root, seals
 from .progress import progress
 from .terminal import AsJson, completion, emit
 

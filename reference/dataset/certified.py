@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..scene import LEVELS
+from ..scenes.scene import LEVELS
 from .manifest import Manifest
 from .sheets import GRID_HEADER, Sheet
 

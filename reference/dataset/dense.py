@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ..columns import STATE
 from ..errors import InputError
 from ..model.constants import Constants, constants
 from ..model.formulations import FORMULATIONS
-from ..precision import GUARD_BITS, LONG_DOUBLE, Array, NumberType, context, real
+from ..numbers.columns import STATE
+from ..numbers.precision import GUARD_BITS, LONG_DOUBLE, Array, NumberType, context, real
 from .read import Golden
 
 TYPES = (LONG_DOUBLE, real(128), real(192), real(256))  # if one loses too many digits, the next is tried

@@ -14,10 +14,9 @@ from pathlib import Path
 
 from pydantic import ValidationError
 
-from ..errors import DatasetError, FoucaultError, InputError
-from ..nearest import did_you_mean
-from ..scene import Scene, parse_scene
-from ..shipped import seals
+from ..errors import DatasetError, FoucaultError, InputError, did_you_mean
+from ..scenes.scene import Scene, parse_scene
+from ..scenes.shipped import seals
 from .manifest import FORMAT, MANIFEST, OPTIONAL, Manifest
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 

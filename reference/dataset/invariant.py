@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from ..columns import STATE
-from ..fixed_point import FixedPoint, Integers
 from ..model.constants import constants
 from ..model.force import invariant
-from ..precision import bits_of, context, fixed_decimal, rounded_up
-from ..scene import Scene
+from ..numbers.columns import STATE
+from ..numbers.fixed_point import FixedPoint, Integers
+from ..numbers.precision import bits_of, context, fixed_decimal, rounded_up
+from ..scenes.scene import Scene
 from .sheets import Sheet
 
 INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less

@@ -10,8 +10,8 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from ..columns import GRID, TRANSITS
-from ..scene import Level, Reading
+from ..numbers.columns import GRID, TRANSITS
+from ..scenes.scene import Level, Reading
 
 MANIFEST = "manifest.json"
 FORMAT = 3

@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 from pathlib import Path
 
-from ..scene import Scene, load_scene
-from ..shipped import golden_root, in_checkout, scene_ids
+from ..scenes.scene import Scene, load_scene
+from ..scenes.shipped import golden_root, in_checkout, scene_ids
 from .sheets import scene_inputs
 
 GOLDEN = "golden"

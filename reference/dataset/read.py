@@ -9,9 +9,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..lazy import no_attribute
-from ..precision import Array
-from ..scene import Scene
+from ..numbers.precision import Array
+from ..scenes.scene import Scene
+from ..system.lazy import no_attribute
 from .files import read_files
 from .manifest import Manifest
 from .place import golden_folder

@@ -7,7 +7,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
-from ..precision import DOUBLE, LONG_DOUBLE
+from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from .checks.motion import Progress
 from .files import read_files
 from .manifest import MANIFEST, Manifest

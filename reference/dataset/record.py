@@ -8,11 +8,11 @@ from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from ..columns import POSITION, UNITS, VELOCITY
 from ..engines.equations import lines_and_left_out
-from ..precision import outward, rounded_up
-from ..scene import Scene
-from ..shipped import DATA_VERSION, flag_meanings, scene_ids
+from ..numbers.columns import POSITION, UNITS, VELOCITY
+from ..numbers.precision import outward, rounded_up
+from ..scenes.scene import Scene
+from ..scenes.shipped import DATA_VERSION, flag_meanings, scene_ids
 from ..solver.solution import Proof, Solution
 from .invariant import invariant_drift
 from .manifest import (

@@ -6,13 +6,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
-from ..columns import GRID, TRANSITS
-from ..fixed_point import Integers, integers
-from ..precision import fixed_decimal, rounded_up
-from ..scene import Scene
+from ..numbers.columns import GRID, TRANSITS
+from ..numbers.fixed_point import Integers, integers
+from ..numbers.precision import fixed_decimal, rounded_up
+from ..numbers.table import Table
+from ..scenes.scene import Scene
 from ..solver.rounding import exact_decimals, grid_decimals, transit_decimals
 from ..solver.solution import Solution
-from ..table import Table
 
 GRID_HEADER = ("t", *GRID)
 TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")

@@ -8,17 +8,17 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..columns import POSITION
 from ..engines import AUTO
 from ..engines.plan import Report
 from ..errors import FoucaultError, IntegrationError, UnreachableError
-from ..process import Parent, Worker
-from ..scene import Scene, load_scene
-from ..shipped import index, scene_ids, seals
+from ..numbers.columns import POSITION
+from ..scenes.scene import Scene, load_scene
+from ..scenes.shipped import index, scene_ids, seals
 from ..solver.rounding import grid_decimals
 from ..solver.solution import CrossCheck, Solution
 from ..solver.solve import solve
 from ..status import Status
+from ..system.process import Parent, Worker
 from .files import read_files
 from .place import dataset_id, default_folder, is_of_shipped_scene, ships
 from .record import Making

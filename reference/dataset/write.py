@@ -10,9 +10,9 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import DatasetError, InputError
-from ..shipped import keep_seal
+from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution
-from ..workspace import OLD, workspace
+from ..system.workspace import OLD, workspace
 from .manifest import MANIFEST
 from .place import ships
 from .record import Making

@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import ctx, fmpz, fmpz_poly
 
-from ..taylor_step import EARTH, TaylorStep
+from ..numbers.taylor_step import EARTH, TaylorStep
 from .balls import dot, fixed
 from .bound import World, scaled
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from flint import arb, fmpz
 
-from ..packing import Digits
+from ..numbers.packing import Digits
 
 
 def audit(piece: Any) -> None:

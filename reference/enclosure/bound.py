@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
-from ..packing import DIGIT_BITS, Digits
-from ..taylor_step import TaylorStep
+from ..numbers.packing import DIGIT_BITS, Digits
+from ..numbers.taylor_step import TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, demand, dot, fixed, interval, norm, size, times, upper
 from .shapes import Covered, Interval, Sizes, Tube
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 
-from ..taylor_step import TaylorStep
+from ..numbers.taylor_step import TaylorStep
 from .balls import demand
 from .bound import Piece, Radius, World, output
 from .columns import Columns

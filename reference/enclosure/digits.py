@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from flint import arb, fmpz, fmpz_poly
 
-from ..machine_code import compiled_and_kept
-from ..packing import DIGIT_BITS
+from ..numbers.packing import DIGIT_BITS
+from ..system.machine_code import compiled_and_kept
 from .balls import demand
 
 MASK = (1 << DIGIT_BITS) - 1

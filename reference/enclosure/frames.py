@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from flint import arb, fmpz_poly
 
-from ..taylor_step import TaylorStep
+from ..numbers.taylor_step import TaylorStep
 from .bound import World
 from .columns import FINE
 

@@ -8,7 +8,7 @@ from math import ceil
 from typing import Any, NamedTuple
 
 from ..errors import UnreachableError
-from ..precision import log2
+from ..numbers.precision import log2
 from .bound import World
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris

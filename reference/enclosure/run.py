@@ -16,7 +16,7 @@ from typing import Any, cast
 from flint import arb
 
 from ..errors import UnreachableError
-from ..taylor_step import TaylorStep
+from ..numbers.taylor_step import TaylorStep
 from .audit import audit
 from .bound import World
 from .course import Course

@@ -8,9 +8,9 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import ClassVar
 
-from ..inputs import Inputs
-from ..packages import missing, switched_off
-from ..taylor_step import TaylorStep
+from ..numbers.taylor_step import TaylorStep
+from ..scenes.inputs import Inputs
+from ..system.packages import missing, switched_off
 from .plan import Pace, Plan, Report, Run
 
 

@@ -6,8 +6,8 @@ from ..model.carried import constant_variables
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
 from ..model.vanishing import xdot_vanishes
-from ..precision import DOUBLE, LONG_DOUBLE
-from ..scene import Scene
+from ..numbers.precision import DOUBLE, LONG_DOUBLE
+from ..scenes.scene import Scene
 from .heyoka.system import equations_text
 
 _PREC = 128  # bits; only exact zeros matter here

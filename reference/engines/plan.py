@@ -9,12 +9,12 @@ from functools import cached_property
 
 import numpy as np
 
-from ..columns import STATE
-from ..inputs import Inputs
 from ..model.force import tension
 from ..model.start import Start
-from ..precision import DOUBLE_BITS, GUARD_BITS, NumberType
-from ..table import Table
+from ..numbers.columns import STATE
+from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, NumberType
+from ..numbers.table import Table
+from ..scenes.inputs import Inputs
 
 Report = Callable[[float], None]  # called with the simulated time reached, in s
 Pace = Callable[[int, float], None]  # called with the steps taken and the time reached; raises to end a run

@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from ..errors import FoucaultError
-from ..process import Emit, Worker, usable_cores
+from ..system.process import Emit, Worker, usable_cores
 from .plan import Plan, Report, Run
 from .registry import engines, run
 

@@ -17,8 +17,8 @@ from ..model.carried import carried
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
-from ..precision import DOUBLE, GUARD_BITS, Array, NumberType
-from ..scene import Scene
+from ..numbers.precision import DOUBLE, GUARD_BITS, Array, NumberType
+from ..scenes.scene import Scene
 
 STEPS_PER_RADIAN = 100  # most steps while the scene's fastest rate goes through a radian: a run takes one or two
 LEAST_STEPS = 10_000  # and of a whole run

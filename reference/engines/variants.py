@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputError
-from ..inputs import Inputs
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
-from ..precision import DOUBLE, GUARD_BITS, Array
+from ..numbers.precision import DOUBLE, GUARD_BITS, Array
+from ..scenes.inputs import Inputs
 
 MAX_STEPS = 3_000_000  # of one run, so that a variant much stiffer than the scene comes to an end
 

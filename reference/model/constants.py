@@ -12,8 +12,8 @@ from dataclasses import dataclass, fields
 from typing import Any, Self
 
 from ..errors import BeyondDoublesError
-from ..inputs import Inputs
-from ..precision import to_mpf
+from ..numbers.precision import to_mpf
+from ..scenes.inputs import Inputs
 from .earth import axis_distance
 
 Vector = tuple[Any, Any, Any]

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from ..errors import UnreachableError
-from ..inputs import Inputs
-from ..precision import context, to_mpf
+from ..numbers.precision import context, to_mpf
+from ..scenes.inputs import Inputs
 from .constants import Constants, Vector, constants
 from .force import rest_position
 

@@ -16,9 +16,9 @@ from ..engines.plan import Run
 from ..engines.registry import MANY_STEPS, engines, fastest
 from ..engines.side_by_side import WORTH_A_PROCESS
 from ..errors import IntegrationError
-from ..inputs import Inputs
-from ..process import Emit, Worker
-from ..taylor_step import TaylorStep
+from ..numbers.taylor_step import TaylorStep
+from ..scenes.inputs import Inputs
+from ..system.process import Emit, Worker
 
 COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
 BATCH = 32  # steps sent at once

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..engines.side_by_side import Beside, beside, reports
 from ..errors import IntegrationError
-from ..process import Emit
+from ..system.process import Emit
 from .proving import Problem, proved
 from .rounding import grid_decimals, transit_decimals
 from .solution import Solution

@@ -8,13 +8,13 @@ from __future__ import annotations
 from fractions import Fraction
 from math import ceil, e, sqrt
 
-from ..columns import POSITION, VELOCITY
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
-from ..inputs import Inputs
-from ..precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
-from ..scene import Scene
+from ..numbers.columns import POSITION, VELOCITY
+from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
+from ..scenes.inputs import Inputs
+from ..scenes.scene import Scene
 from .approximant import COEFFICIENT_BITS
 from .pilot import Pilot, run_pilot
 

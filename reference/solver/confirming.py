@@ -6,14 +6,14 @@ from contextlib import AbstractContextManager
 from dataclasses import replace
 from fractions import Fraction
 
-from ..columns import GRID, TRANSITS
 from ..engines import AUTO
 from ..engines.plan import Run
 from ..engines.registry import run
 from ..engines.side_by_side import WORTH_A_PROCESS, Beside, beside, expected_s, send_run
 from ..errors import IntegrationError
-from ..precision import LONG_DOUBLE
-from ..scene import Scene
+from ..numbers.columns import GRID, TRANSITS
+from ..numbers.precision import LONG_DOUBLE
+from ..scenes.scene import Scene
 from .agreement import bits_lacking
 from .choice import confirming_plan, first_prec, rounded_prec
 from .pilot import Pilot

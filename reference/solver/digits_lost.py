@@ -8,12 +8,12 @@ from dataclasses import replace
 from fractions import Fraction
 from typing import cast
 
-from ..columns import GRID
 from ..engines.plan import Plan
 from ..engines.registry import run
 from ..errors import UnreachableError
-from ..inputs import Inputs
-from ..precision import DOUBLE, LONG_DOUBLE, real
+from ..numbers.columns import GRID
+from ..numbers.precision import DOUBLE, LONG_DOUBLE, real
+from ..scenes.inputs import Inputs
 from .pilot import Pilot, run_pilot
 from .reach import MAX_PREC
 

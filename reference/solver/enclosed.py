@@ -8,7 +8,7 @@ from fractions import Fraction
 from ..engines.plan import Report
 from ..engines.side_by_side import Beside, slowest
 from ..errors import InputError
-from ..scene import Scene
+from ..scenes.scene import Scene
 from .auditing import audit_of, audited
 from .confirming import Confirmation
 from .pilot import run_pilot

@@ -12,15 +12,15 @@ import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from ..columns import GRID, HORIZONTAL, POSITION, VELOCITY
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest, run
 from ..errors import BeyondDoublesError, UnreachableError
-from ..inputs import Inputs
 from ..model.start import Start
-from ..precision import DOUBLE, LONG_DOUBLE, decimals_for, real
-from ..table import Table, bits_in, decimals_of, resolved
+from ..numbers.columns import GRID, HORIZONTAL, POSITION, VELOCITY
+from ..numbers.precision import DOUBLE, LONG_DOUBLE, decimals_for, real
+from ..numbers.table import Table, bits_in, decimals_of, resolved
+from ..scenes.inputs import Inputs
 from .reach import MAX_PREC, MAX_STEPS, Pace, effort
 
 PILOT_PREC = 47  # of the first exact run: three limbs

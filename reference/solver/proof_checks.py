@@ -13,8 +13,8 @@ from itertools import pairwise
 from ..engines.plan import Plan, Run
 from ..engines.registry import run
 from ..errors import IntegrationError, UnreachableError
-from ..precision import cheapest_type
-from ..table import Table, bits_in
+from ..numbers.precision import cheapest_type
+from ..numbers.table import Table, bits_in
 from .pilot import ESTIMATE_FACTOR, Pilot
 from .solution import CrossCheck, Solution
 

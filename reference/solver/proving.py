@@ -11,12 +11,12 @@ from fractions import Fraction
 from math import ceil
 from typing import Any
 
-from ..columns import GRID, POSITION, TRANSITS
 from ..engines.plan import Report, Run
 from ..errors import UnreachableError
-from ..precision import rounded_up
-from ..scene import Scene
-from ..table import Table, bits_in
+from ..numbers.columns import GRID, POSITION, TRANSITS
+from ..numbers.precision import rounded_up
+from ..numbers.table import Table, bits_in
+from ..scenes.scene import Scene
 from .approximant import COEFFICIENT_BITS, Feed, Replaced
 from .choice import first_radius, late_radius
 from .pilot import Pilot

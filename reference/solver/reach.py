@@ -6,9 +6,9 @@ import math
 from fractions import Fraction
 
 from ..errors import UnreachableError
-from ..inputs import Inputs
 from ..model.constants import constants
-from ..precision import LONG_DOUBLE, context
+from ..numbers.precision import LONG_DOUBLE, context
+from ..scenes.inputs import Inputs
 
 MAX_PREC = 8192  # bits; a run that needs more is refused
 MAX_RAISES = 6  # of the precision, before giving up

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from ..errors import UnreachableError
-from ..table import Table, decimals_of, resolved
+from ..numbers.table import Table, decimals_of, resolved
 from .solution import Solution
 
 

@@ -14,12 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from ..inputs import Inputs
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
-from ..precision import DOUBLE, Array, to_fraction
-from ..scene import Scene
+from ..numbers.precision import DOUBLE, Array, to_fraction
+from ..scenes.inputs import Inputs
+from ..scenes.scene import Scene
 
 _SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
 _POSITION = ("x", "y", "vx", "vy")

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from ..columns import GRID, POSITION, VELOCITY
 from ..engines.plan import Run
-from ..lazy import no_attribute
-from ..precision import Array
-from ..scene import Level, Scene
-from ..table import Table
+from ..numbers.columns import GRID, POSITION, VELOCITY
+from ..numbers.precision import Array
+from ..numbers.table import Table
+from ..scenes.scene import Level, Scene
+from ..system.lazy import no_attribute
 
 
 @dataclass(frozen=True)

@@ -11,14 +11,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
-from ..columns import GRID
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
 from ..engines.side_by_side import run_both
 from ..errors import InputError, UnreachableError
-from ..precision import LONG_DOUBLE
-from ..scene import Scene
-from ..table import Table
+from ..numbers.columns import GRID
+from ..numbers.precision import LONG_DOUBLE
+from ..numbers.table import Table
+from ..scenes.scene import Scene
 from .agreement import Agreement
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
 from .pilot import Pilot

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from ..double_double import DoubleDouble
 from ..errors import InputError
-from ..precision import with_decimal_point
-from ..scene import Reading, checked_value
+from ..numbers.double_double import DoubleDouble
+from ..numbers.precision import with_decimal_point
+from ..scenes.scene import Reading, checked_value
 from .lists import column_of_csv
 from .values import TEXTS, check_key, numbers_of
 

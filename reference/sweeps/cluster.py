@@ -21,7 +21,7 @@ import distributed
 from distributed.scheduler import KilledWorker
 
 from ..errors import FoucaultError, InputError
-from ..pool import WorkerDied
+from ..system.pool import WorkerDied
 from .driver import Piece, work
 from .isolated import Isolated
 from .local import prepared
@@ -188,7 +188,7 @@ def versions(engine: str) -> str:
     from importlib.metadata import version
 
     from ..engines.registry import batches
-    from ..packages import missing
+    from ..system.packages import missing
 
     arrow = "" if missing(["pyarrow"]) else f"; pyarrow {version('pyarrow')}"
     return f"{batches()[engine].identity}{arrow}"

@@ -14,8 +14,8 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..pool import WorkerDied, next_done
 from ..status import Status
+from ..system.pool import WorkerDied, next_done
 from .part import Part, Promote, solve_part
 from .promote import promoted
 from .request import Request

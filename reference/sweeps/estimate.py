@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ..engines.batch import STOPPED, Batch, Outcomes, Rows, Wanted
-from ..precision import Array
+from ..numbers.precision import Array
 
 FACTOR = 16.0
 WILD_FACTOR = 64.0  # where there are three runs

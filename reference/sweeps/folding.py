@@ -12,15 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from ..double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
 from ..engines.batch import Rows
-from ..inputs import GravityIs, Inputs
 from ..model.algebra import add, cross
 from ..model.constants import Constants, Vector, turn_and_pull
 from ..model.earth import axis_distance
 from ..model.force import force
 from ..model.start import at_angles
-from ..precision import Array
+from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
+from ..numbers.precision import Array
+from ..scenes.inputs import GravityIs, Inputs
 
 Columns = Mapping[str, DoubleDouble]
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from ..errors import IntegrationError
-from ..process import Parent, Worker
+from ..system.process import Parent, Worker
 from .promote import Promoted, promoted
 from .request import Request
 

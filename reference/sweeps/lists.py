@@ -10,10 +10,10 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from ..double_double import DoubleDouble
 from ..errors import InputError
-from ..packages import missing
-from ..scene import Reading, checked_value
+from ..numbers.double_double import DoubleDouble
+from ..scenes.scene import Reading, checked_value
+from ..system.packages import missing
 from .values import TEXTS, check_key, numbers_of
 
 PARQUET = (".parquet", ".pq")

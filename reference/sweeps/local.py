@@ -10,8 +10,8 @@ from types import TracebackType
 from typing import Any, Self
 
 from ..engines.registry import batches
-from ..pool import Pool
-from ..process import Parent
+from ..system.pool import Pool
+from ..system.process import Parent
 from .driver import Piece, work
 from .estimate import MOVED
 from .isolated import Isolated

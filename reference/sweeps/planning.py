@@ -9,11 +9,10 @@ from pathlib import Path
 from ..engines import AUTO
 from ..engines.batch import Batch
 from ..engines.registry import batches
-from ..errors import InputError
+from ..errors import InputError, unknown
 from ..model.start import Start
-from ..nearest import unknown
-from ..precision import DOUBLE_BITS, GUARD_BITS
-from ..scene import LEVELS, Scene
+from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
+from ..scenes.scene import LEVELS, Scene
 from .axes import Grid, axis
 from .lists import Listed, listed
 from .request import ANGULAR, CARTESIAN, LEAST_PART, MOST_PART, PART_S, Request

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..columns import POSITION, STATE, VELOCITY
 from ..errors import FoucaultError
-from ..scene import LEVELS, Level
+from ..numbers.columns import POSITION, STATE, VELOCITY
+from ..scenes.scene import LEVELS, Level
 from ..status import Status
 from .row import STATE_COLUMNS
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from ..double_double import DoubleDouble
 from ..engines.batch import Rows, Wanted
-from ..scene import Level, Scene, parse_scene
+from ..numbers.double_double import DoubleDouble
+from ..scenes.scene import Level, Scene, parse_scene
 from .axes import Axis, Grid, Values, axis
 from .folding import columns_of, fold
 from .lists import Listed

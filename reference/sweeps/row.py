@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..columns import POSITION, VELOCITY
+from ..numbers.columns import POSITION, VELOCITY
 
 FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = "frequency", "precession", "transits", "state", "amplitude"
 TIMES = "transit-times"

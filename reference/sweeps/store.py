@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..workspace import replace_file
+from ..system.workspace import replace_file
 from .parquet import PYARROW, arrays, footer, parquet
 from .part import Part
 from .request import Request

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from ..engines import AUTO
 from ..errors import InputError
-from ..packages import missing
-from ..process import usable_cores
-from ..scene import Scene
+from ..scenes.scene import Scene
+from ..system.packages import missing
+from ..system.process import usable_cores
 from .audit import Audit
 from .audit import audit as audited
 from .driver import Executor, Tally, drive, joined

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..nearest import unknown
-from ..packages import missing
+from ..errors import unknown
 from ..status import Status
+from ..system.packages import missing
 from .audit import Audit
 from .axes import Grid
 from .driver import Tally

@@ -7,9 +7,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..double_double import DoubleDouble
-from ..nearest import unknown
-from ..scene import Reading, field_names
+from ..errors import unknown
+from ..numbers.double_double import DoubleDouble
+from ..scenes.scene import Reading, field_names
 
 TEXTS = ("inputs", "site.gravity_is")  # the fields that can be varied and are not numbers
 _FIXED = ("id", "title", "source", "flags", "run.grid_step", "run.digits", "run.level", "run.transits")

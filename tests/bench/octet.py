@@ -18,14 +18,14 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from reference.double_double import DoubleDouble
 from reference.engines.batch import Rows, Wanted
 from reference.engines.heyoka.batch import BATCH as HEYOKA
 from reference.engines.octet.batch import BATCH as OCTET
 from reference.engines.octet.rows import RESULTS, outcomes, packed
 from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
-from reference.scene import load_scene
+from reference.numbers.double_double import DoubleDouble
+from reference.scenes.scene import load_scene
 from reference.sweeps.estimate import MOVED, errors, judged
 from reference.sweeps.folding import columns_of, fold
 from reference.sweeps.part import solve_part

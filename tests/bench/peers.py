@@ -24,12 +24,12 @@ import heyoka as hy
 import numpy as np
 from octet import SPAN, ScalarLoop, cpu_s, many_rows
 
-from compare.native.library import BOOST, compiler
+from compare.methods.native.library import BOOST, compiler
 from reference.engines.batch import Rows, Wanted
 from reference.engines.heyoka.batch import BATCH as HEYOKA
 from reference.engines.octet.batch import BATCH as OCTET
 from reference.engines.registry import engines
-from reference.scene import load_scene
+from reference.scenes.scene import load_scene
 
 ROUNDS = 5
 TOLERANCES = (1e-11, 1e-12, 1e-13)

@@ -21,7 +21,7 @@ from statistics import median
 import reference
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, run
-from reference.precision import real
+from reference.numbers.precision import real
 from reference.solver.pilot import run_pilot
 
 DIGITS = (32, 45, 60)  # of a day that limbs and heyoka compute

@@ -14,13 +14,13 @@ import pytest
 from forgery import bound_of, forge, moved
 
 import reference
-from reference.columns import GRID, TRANSITS
 from reference.dataset.files import read_files
 from reference.dataset.verify import verify
 from reference.dataset.write import write
 from reference.model.constants import constants
 from reference.model.force import acceleration
-from reference.precision import context, fixed_decimal, to_fraction, to_mpf
+from reference.numbers.columns import GRID, TRANSITS
+from reference.numbers.precision import context, fixed_decimal, to_fraction, to_mpf
 
 BOUNDS = 30  # a forgery changes some number by more than this many bounds
 SCENES = {

@@ -12,8 +12,8 @@ import reference
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, run
 from reference.errors import InputError, IntegrationError, UnreachableError
-from reference.precision import real
-from reference.scene import parse_scene
+from reference.numbers.precision import real
+from reference.scenes.scene import parse_scene
 
 FINER = 72  # bits that the truth has more than the proof
 CLEARLY = 60  # CPU seconds above which a proof must have the steps to show for it

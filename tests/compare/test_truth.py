@@ -10,9 +10,9 @@ import pytest
 from interruption import gone_within, interrupted
 from small_scenes import make_scene
 
-from compare import cache
 from compare.truth import golden_of, shipped, solves, truth_at
 from reference import load, load_scene, solve, write
+from reference.system import cache
 
 RUN = {"t_end": "20", "grid_step": "5", "digits": 22}
 

@@ -11,7 +11,7 @@ from random_rows import rows_of
 
 from reference.engines.batch import OK, Batch, Outcomes, Rows, Wanted
 from reference.engines.registry import engines
-from reference.inputs import Inputs
+from reference.scenes.inputs import Inputs
 from reference.sweeps.estimate import DEGREES_PER_HOUR, Errors, judged
 
 BITS = 110

@@ -7,8 +7,8 @@ import signal
 from dataclasses import dataclass
 
 from compare.studies.row import Record
-from reference.process import Emit
 from reference.status import Status
+from reference.system.process import Emit
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,6 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from reference.columns import GRID, POSITION, VELOCITY
 from reference.dataset.invariant import invariant_drift
 from reference.dataset.manifest import MANIFEST, Manifest
 from reference.dataset.place import dataset_id
@@ -20,8 +19,9 @@ from reference.dataset.render import derived_texts
 from reference.dataset.sheets import GRID_HEADER, TRANSITS_HEADER, Sheet, scene_inputs
 from reference.errors import FoucaultError
 from reference.model.start import Start
-from reference.precision import GUARD_BITS, bits_of, fixed_decimal, rounded_up, to_fraction
-from reference.scene import Scene, parse_scene
+from reference.numbers.columns import GRID, POSITION, VELOCITY
+from reference.numbers.precision import GUARD_BITS, bits_of, fixed_decimal, rounded_up, to_fraction
+from reference.scenes.scene import Scene, parse_scene
 from reference.solver.rounding import exact_decimals
 
 MADE_UP_ROWS = 1000

@@ -15,7 +15,7 @@ from reference.enclosure.approximant import pair
 from reference.enclosure.bound import Piece, Radius, World, output
 from reference.enclosure.columns import Columns
 from reference.enclosure.frames import ColumnSource
-from reference.inputs import Inputs
+from reference.scenes.inputs import Inputs
 
 PARIS = Inputs(
     length=Fraction(67), drag=Fraction(0), latitude=Fraction("48.846111"), altitude=Fraction(0),

@@ -13,8 +13,8 @@ from reference.enclosure.approximant import GRAIN, pair, stretched
 from reference.enclosure.balls import cross, fixed
 from reference.enclosure.bound import World
 from reference.enclosure.run import SCENE_GUARD_BITS
-from reference.inputs import Inputs
-from reference.taylor_step import TaylorStep
+from reference.numbers.taylor_step import TaylorStep
+from reference.scenes.inputs import Inputs
 
 GUARD_BITS = 16  # carried below the last bit of the coefficients, for the rounding of the recurrence
 SLACK_BITS = 12  # rounding of coefficient k enters the defect k times: the last terms need not be smaller than that

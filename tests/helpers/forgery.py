@@ -15,7 +15,7 @@ from reference.dataset.invariant import invariant_drift
 from reference.dataset.manifest import MANIFEST, Manifest
 from reference.dataset.render import derived_texts
 from reference.dataset.sheets import NUMBERS, Sheet, binary64_sheet
-from reference.precision import fixed_decimal
+from reference.numbers.precision import fixed_decimal
 
 Rows = list[list[str]]
 Change = Callable[[Rows, list[str]], object]  # of a table's rows of text, given the header

@@ -30,7 +30,7 @@ from compare.candidates.external import arguments, placeholders, run_program
 from compare.candidates.read import read, read_transits
 from reference.commands.show import command as show
 from reference.errors import FoucaultError, UnreachableError
-from reference.scene import load_scene
+from reference.scenes.scene import load_scene
 
 LIMIT_S = 10  # CPU seconds: others use the machine too
 HANG_S = 100

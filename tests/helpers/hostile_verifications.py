@@ -22,8 +22,7 @@ from draft import Draft
 from hostile_datasets import CASES
 
 import reference
-from reference.errors import FoucaultError
-from reference.plain_text import is_plain
+from reference.errors import FoucaultError, is_plain
 
 LIMIT_S = 10  # CPU seconds: others use the machine too
 HANG_S = 100

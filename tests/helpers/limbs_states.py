@@ -13,7 +13,7 @@ from reference.engines.limbs.limb import RADIX, UNIT, Array
 from reference.engines.limbs.problem import limb_problem
 from reference.engines.limbs.size import LIMB_BITS
 from reference.errors import InputError
-from reference.inputs import Inputs
+from reference.scenes.inputs import Inputs
 
 STATES_BITS = 93  # the precision that five limbs hold of a swing of half a metre below 67 m
 

@@ -9,10 +9,10 @@ from fractions import Fraction
 
 import numpy as np
 
-from reference.double_double import DoubleDouble
 from reference.engines.batch import Rows
-from reference.inputs import Inputs
-from reference.scene import load_scene
+from reference.numbers.double_double import DoubleDouble
+from reference.scenes.inputs import Inputs
+from reference.scenes.scene import load_scene
 from reference.sweeps.folding import ANGLES, POSITION, SITE, fold
 
 KINDS = ("small", "wide", "meridian", "planet", "over")

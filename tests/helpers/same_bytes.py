@@ -31,7 +31,7 @@ def made_again(name: str) -> dict[str, str]:
     from reference.dataset.place import default_folder
     from reference.dataset.render import render
     from reference.dataset.shipping import making_of, solved
-    from reference.scene import load_scene
+    from reference.scenes.scene import load_scene
 
     scene = load_scene(name)
     return render(solved(scene, making_of(scene, name, default_folder(scene, name))), name)
@@ -39,7 +39,7 @@ def made_again(name: str) -> dict[str, str]:
 
 def shipped(name: str) -> dict[str, str]:
     """Return the files of a dataset that ships."""
-    from reference.shipped import golden_root
+    from reference.scenes.shipped import golden_root
 
     return {path.name: path.read_text("utf-8") for path in (golden_root() / name).iterdir()}
 

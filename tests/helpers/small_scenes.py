@@ -8,8 +8,8 @@ from reference.engines.plan import Run
 from reference.engines.registry import engines
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
-from reference.precision import GUARD_BITS, NumberType
-from reference.scene import Scene, parse_scene
+from reference.numbers.precision import GUARD_BITS, NumberType
+from reference.scenes.scene import Scene, parse_scene
 
 
 def make_scene(scene_id: str = "test", **sections: Any) -> Scene:

@@ -11,7 +11,7 @@ from reference import load_scene
 
 from ...foucpend.zeros import Transits
 from ...methods import rk4, rkng56, rkng67
-from ...runge_kutta.tableau import NystromTableau, Tableau, TableauError
+from ...methods.runge_kutta.tableau import NystromTableau, Tableau, TableauError
 from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, mpf, pi, shown
 from ..points import paris

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from reference import Golden
-from reference.columns import STATE
 from reference.dataset.certified import MEANING
+from reference.numbers.columns import STATE
 from reference.status import Status
 
 from ..page import Column, Html, TableRow, facts, table, text

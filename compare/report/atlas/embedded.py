@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 from reference import Golden
-from reference.columns import STATE
-from reference.precision import DOUBLE_BITS, Array
+from reference.numbers.columns import STATE
+from reference.numbers.precision import DOUBLE_BITS, Array
 
 from ...candidates import names, units
-from ...position_error import distance
+from ...observed.position_error import distance
 from ...score.errors import swing_rate
 from ...score.judge import unjudged_transits
 

@@ -8,7 +8,7 @@ from functools import cache
 from importlib.resources import files
 from typing import Any
 
-from reference.scene import LEVELS
+from reference.scenes.scene import LEVELS
 
 from ..page import Html, facts, page, paragraph, section, text
 from . import blocks

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from reference import InputError
-from reference.shipped import data_root, in_checkout
+from reference.scenes.shipped import data_root, in_checkout
 from reference.status import Status
 
 

@@ -9,9 +9,9 @@ from operator import itemgetter
 import numpy as np
 
 from reference import InputError
-from reference.precision import Array
+from reference.numbers.precision import Array
 
-from ...power_law import largest_so_far
+from ...observed.power_law import largest_so_far
 from .drawing import COLOURS, GUIDE, line_style, logarithmic, sheet, svg_text
 from .labels import Line, draw, place
 from .ladders import band

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from reference import InputError
-from reference.shortened import shortened
+from reference.errors import shortened
 from reference.status import Status
 
 from .drawing import BAND, FAINT, INK, PAPER, sheet, svg_text

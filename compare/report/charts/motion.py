@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from reference.precision import Array
-from reference.shortened import shortened
+from reference.errors import shortened
+from reference.numbers.precision import Array
 
 from ..motion import POINTS, Motion
 from .drawing import BLUE, COLOURS, FAINT, INK, picture, sheet, svg_text

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from reference import InputError
-from reference.precision import Array
-from reference.shortened import shortened
-from reference.workspace import replace_file
+from reference.errors import shortened
+from reference.numbers.precision import Array
+from reference.system.workspace import replace_file
 
 from ...score.scored import Score
 from .drawing import COLOURS, GUIDE, check_matplotlib, line_style, logarithmic, picture, sheet

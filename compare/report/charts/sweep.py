@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from reference import InputError
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .drawing import BLUE, RULE, picture, sheet
 from .score import check_target, write_picture

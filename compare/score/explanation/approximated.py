@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference import Scene
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ...approximations import APPROXIMATIONS, Motion
 from .findings import Model, SizedCause

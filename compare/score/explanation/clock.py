@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ...candidates.candidate import Convention
 from .phasors import as_angles, fit_phasors

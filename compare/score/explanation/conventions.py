@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .axes import axes
 from .clock import clock, shifted, unit_of_time

@@ -9,7 +9,7 @@ import numpy as np
 
 from reference import FoucaultError, Scene
 from reference.engines.variants import Variants
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .approximated import approximated
 from .causes import NAMED

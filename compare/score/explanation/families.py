@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .pendulum import NAMES, Fit, Pendulum, fit_pendulum
 from .phasors import Phasors, as_angles, fit_phasors

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .causes import Cause, causes
 from .families import Family, families_of, positions_of

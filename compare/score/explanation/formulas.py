@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .causes import NAMED, Cause
 from .pendulum import NAMES, Fit

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ...candidates.candidate import Convention
 from .rows import Rows

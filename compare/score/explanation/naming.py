@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .causes import Cause
 from .families import positions_of

@@ -15,7 +15,7 @@ import numpy as np
 from reference import FoucaultError
 from reference.engines.variants import Variants
 from reference.model.constants import Constants
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 NAMES = (
     "turn_x", "turn_y", "turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy", "length", "gradient",

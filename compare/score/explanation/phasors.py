@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 ComplexArray = npt.NDArray[np.complex128]
 STEPS = 30  # Gauss-Newton steps at most

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ...candidates.candidate import Convention
 

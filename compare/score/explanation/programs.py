@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from reference.inputs import Inputs
-from reference.precision import Array
+from reference.numbers.precision import Array
+from reference.scenes.inputs import Inputs
 
 from .integrators import Method
 from .phasors import Phasors

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .causes import Cause
 from .pendulum import Fit

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ...candidates.candidate import Convention
 

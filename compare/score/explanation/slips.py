@@ -15,7 +15,7 @@ import numpy as np
 from reference import Scene
 from reference.model.constants import Constants
 from reference.model.force import acceleration
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from ...rhs.constants import constants_in_double
 

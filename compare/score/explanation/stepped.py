@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from reference.model.constants import Constants
 from reference.model.force import acceleration
-from reference.precision import Array
+from reference.numbers.precision import Array
 
 from .causes import FITTED, NAMED
 from .families import pendulum_of, positions_of

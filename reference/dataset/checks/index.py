@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ...errors import FoucaultError
-from ...shipped import golden_root, seals
+from ...scenes.shipped import golden_root, seals
 from ..files import Files, read_manifest
 from ..manifest import MANIFEST, Manifest
 from ..record import AUDIT, generator

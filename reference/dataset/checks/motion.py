@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import islice
 
-from ...columns import GRID, TRANSITS
 from ...engines.limbs.size import LEAST_PREC, LIMB_BITS, MOST_PREC
 from ...engines.plan import Run
 from ...engines.registry import engines
 from ...errors import IntegrationError, UnreachableError
 from ...model.start import Start
-from ...precision import DOUBLE_BITS, GUARD_BITS, bits_of
-from ...table import Table
+from ...numbers.columns import GRID, TRANSITS
+from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
+from ...numbers.table import Table
 from ..files import Files
 from ..manifest import Manifest
 from ..sheets import Sheet

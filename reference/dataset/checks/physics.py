@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from ...columns import GRID
-from ...fixed_point import FixedPoint, Integers, integers
 from ...model.constants import Constants, constants
 from ...model.force import acceleration, invariant
-from ...precision import GUARD_BITS, Array, bits_of, context
-from ...table import bits_in
+from ...numbers.columns import GRID
+from ...numbers.fixed_point import FixedPoint, Integers, integers
+from ...numbers.precision import GUARD_BITS, Array, bits_of, context
+from ...numbers.table import bits_in
 from ..files import Files
 from ..invariant import INVARIANT_BITS
 from ..sheets import Sheet

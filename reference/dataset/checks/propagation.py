@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from ...inputs import Inputs
 from ...model.constants import Constants, constants
 from ...model.formulations import FORMULATIONS
-from ...precision import GUARD_BITS, Array, context
+from ...numbers.precision import GUARD_BITS, Array, context
+from ...scenes.inputs import Inputs
 from .completion import deep, depth, vertical_velocity
 
 NUDGE = 1e-4  # of a unit vector

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from fractions import Fraction
 from itertools import product
 
-from ...columns import POSITION, VELOCITY
 from ...engines import engine_names
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start
 from ...model.vanishing import xdot_vanishes
+from ...numbers.columns import POSITION, VELOCITY
 from ..files import Files
 from ..invariant import invariant_drift
 from ..manifest import MANIFEST, CrossCheckRecord, Manifest

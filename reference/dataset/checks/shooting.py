@@ -13,13 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from ...columns import GRID, POSITION, TRANSITS
 from ...engines.limbs.restarts import runs_from
 from ...engines.limbs.size import LEAST_PREC, MOST_PREC
 from ...engines.plan import Run
 from ...model.constants import constants
 from ...model.force import acceleration
-from ...precision import GUARD_BITS, Array, bits_of, context, to_fraction, to_mpf
+from ...numbers.columns import GRID, POSITION, TRANSITS
+from ...numbers.precision import GUARD_BITS, Array, bits_of, context, to_fraction, to_mpf
 from ..files import Files
 from .completion import deep, depth, vertical_velocity
 from .propagation import spreads

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
 
-from ...columns import GRID, VELOCITY
 from ...model.start import Start
-from ...precision import GUARD_BITS, bits_of, decimals_for, to_fraction
+from ...numbers.columns import GRID, VELOCITY
+from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
 from ...solver.rounding import exact_decimals
 from ..files import Files
 from ..manifest import MANIFEST

@@ -15,7 +15,7 @@ import numpy as np
 from ...model.algebra import cross, dot
 from ...model.constants import Constants
 from ...model.formulations import FORMULATIONS
-from ...precision import DOUBLE, Array
+from ...numbers.precision import DOUBLE, Array
 from ..batch import DOUBTFUL, OK, STOPPED, Batch, Outcomes, Rows, Wanted
 from .batch_tolerances import MOVED_TOLERANCE, TOLERANCE
 from .batch_zeros import TRANSIT, TURNING, by_lane, describe

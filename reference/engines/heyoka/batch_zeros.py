@@ -11,7 +11,7 @@ import numpy as np
 from ...model.algebra import cross, subtract
 from ...model.constants import Constants
 from ...model.force import acceleration
-from ...precision import Array
+from ...numbers.precision import Array
 from ..batch import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, Rows, Wanted
 
 TRANSIT, TURNING = 0, 1  # kinds of zeros: xdot = 0; zdot along the plumb line from + to -

@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from ...capture import Capture, captured
+from ...system.capture import Capture, captured
 
 
 @contextmanager

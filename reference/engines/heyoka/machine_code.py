@@ -9,7 +9,7 @@ from pathlib import Path
 
 import heyoka as hy
 
-from ...precision import NumberType
+from ...numbers.precision import NumberType
 from .log import watched_log
 
 FOLDER = "foucault"  # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from ...columns import RUN
 from ...model.constants import Constants
 from ...model.force import acceleration
 from ...model.formulations import Formulation
 from ...model.start import Start
-from ...precision import Array, NumberType
-from ...table import Table
+from ...numbers.columns import RUN
+from ...numbers.precision import Array, NumberType
+from ...numbers.table import Table
 from .numbers import Numbers
 from .propagator import Propagator
 from .system import rates

@@ -14,7 +14,7 @@ import heyoka as hy
 import numpy as np
 
 from ...errors import IntegrationError
-from ...precision import DOUBLE, LONG_DOUBLE, Array, NumberType
+from ...numbers.precision import DOUBLE, LONG_DOUBLE, Array, NumberType
 
 hy.install_custom_numpy_mem_handler()
 

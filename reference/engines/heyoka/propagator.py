@@ -10,7 +10,7 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from ...precision import NumberType
+from ...numbers.precision import NumberType
 from .machine_code import compiling
 from .numbers import Numbers
 from .system import as_pairs

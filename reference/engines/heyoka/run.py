@@ -13,8 +13,8 @@ from ...model.carried import carried
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start
 from ...model.vanishing import xdot_vanishes, zero_at_release
-from ...precision import GUARD_BITS
-from ...table import Table
+from ...numbers.precision import GUARD_BITS
+from ...numbers.table import Table
 from ..plan import Pace, Plan, Report, Run
 from .log import watched_log
 from .numbers import Numbers

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from typing import TypeVar
 
-from ...capture import Capture
+from ...system.capture import Capture
 from .log import watched_log
 
 Result = TypeVar("Result")

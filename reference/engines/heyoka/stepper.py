@@ -15,7 +15,7 @@ import numpy as np
 from ...errors import IntegrationError
 from ...model.formulations import Formulation
 from ...model.start import Start
-from ...precision import NumberType
+from ...numbers.precision import NumberType
 from ..plan import Pace, Report
 from .machine_code import compiling
 from .model import RoundedModel

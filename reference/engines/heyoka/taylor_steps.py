@@ -11,11 +11,11 @@ from typing import Any
 
 import numpy as np
 
-from ...inputs import Inputs
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start
-from ...precision import GUARD_BITS, real
-from ...taylor_step import LOCAL, TaylorStep
+from ...numbers.precision import GUARD_BITS, real
+from ...numbers.taylor_step import LOCAL, TaylorStep
+from ...scenes.inputs import Inputs
 from ..plan import MOST_TURN, Plan, Run
 from .run import result
 from .stepper import Stepper

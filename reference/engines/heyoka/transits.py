@@ -31,7 +31,7 @@ from ...errors import IntegrationError
 from ..plan import AT_REST
 
 if TYPE_CHECKING:
-    from ...capture import Capture
+    from ...system.capture import Capture
     from .stepper import Stepper, Zero
 
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up

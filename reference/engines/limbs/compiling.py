@@ -17,7 +17,7 @@ import numba.extending
 from numba import _dynfunc
 from numba.core import codegen, compiler
 
-from ...machine_code import kept
+from ...system.machine_code import kept
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

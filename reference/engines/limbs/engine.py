@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Generator
 from fractions import Fraction
 
-from ...inputs import Inputs
-from ...precision import NumberType
-from ...taylor_step import TaylorStep
+from ...numbers.precision import NumberType
+from ...numbers.taylor_step import TaylorStep
+from ...scenes.inputs import Inputs
 from ..engine import Engine
 from ..plan import Pace, Plan, Report, Run
 from .size import LEAST_PREC, MOST_PREC

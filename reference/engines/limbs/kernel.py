@@ -13,7 +13,7 @@ from typing import Any, get_type_hints
 from numba import types
 from numba.core import cgutils
 
-from ...machine_code import missing
+from ...system.machine_code import missing
 from .compiling import entry
 from .lanes import instruction
 from .limb import Array

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...precision import to_fraction
+from ...numbers.precision import to_fraction
 from .compiling import compiled, inlined
 from .lanes import LANES, load, nearest, plus_product, spread, store
 from .size import LIMB_BITS, fraction_bits

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from functools import cache
 
-from ...process import Emit, Worker, usable_cores
+from ...system.process import Emit, Worker, usable_cores
 from .compiling import compiled
 from .kernel import Kernel
 from .lanes import LANES, load, store

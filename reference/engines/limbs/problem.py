@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from ...inputs import Inputs
 from ...model.algebra import add, cross
 from ...model.constants import Constants, Vector
 from ...model.start import Start
-from ...precision import GUARD_BITS
+from ...numbers.precision import GUARD_BITS
+from ...scenes.inputs import Inputs
 from ..plan import MOST_TURN
 from .limb import Array, rows_of
 from .series import LinearTerms

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
 
-from ...inputs import Inputs
 from ...model.algebra import dot
 from ...model.start import Start
 from ...model.vanishing import xdot_vanishes
-from ...precision import NumberType, to_mpf
+from ...numbers.precision import NumberType, to_mpf
+from ...scenes.inputs import Inputs
 from ..plan import Plan, Run
 from .integration import Integration
 from .output_times import limbs_of_fractions

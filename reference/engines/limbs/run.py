@@ -7,8 +7,8 @@ from bisect import bisect_right
 from fractions import Fraction
 from typing import Any
 
-from ...columns import RUN
-from ...table import Table
+from ...numbers.columns import RUN
+from ...numbers.table import Table
 from ..plan import Pace, Plan, Report, Run
 from .integration import Integration, integration_of
 from .march_state import STEPS

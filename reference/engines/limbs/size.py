@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...precision import LONG_DOUBLE_BITS
+from ...numbers.precision import LONG_DOUBLE_BITS
 
 LIMB_BITS = 22
 MOST_LIMBS = 18  # with more, and the order that goes with them, sums could pass 2**53

@@ -9,8 +9,8 @@ from functools import partial
 
 import numpy as np
 
-from ...packing import Digits
-from ...taylor_step import TaylorStep
+from ...numbers.packing import Digits
+from ...numbers.taylor_step import TaylorStep
 from ..plan import Plan, Run
 from .integration import integration_of
 from .lanes import LANES

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...precision import Array
+from ...numbers.precision import Array
 from ..batch import Batch, Outcomes, Rows, Wanted
 from .rows import COLUMNS, COMPILE_S, READ_S, RESULTS, TOLERANCE, outcomes, packed
 

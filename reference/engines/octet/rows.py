@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ...double_double import DoubleDouble, square_root
-from ...precision import Array
+from ...numbers.double_double import DoubleDouble, square_root
+from ...numbers.precision import Array
 from ..batch import CLOSE_PAIR, OK, Outcomes, Rows, Wanted
 from ..batch import LEAST_BEND as LEAST
 

@@ -20,7 +20,7 @@ from compare.approximations.planar import sn_cn
 from reference import integrate, load_scene, parse_scene, trajectory
 from reference.model.constants import constants
 from reference.model.formulations import FORMULATIONS
-from reference.precision import LONG_DOUBLE, context
+from reference.numbers.precision import LONG_DOUBLE, context
 
 DAY = np.linspace(0.0, 86400.0, 2001)
 PARIS = load_scene("paris")

@@ -104,7 +104,7 @@ def test_a_picture_stays_as_it_was(disk, foucault, candidate):
 @pytest.mark.parametrize("tried_first", [pytest.param(True, marks=pytest.mark.long), False])
 def test_a_score_stands_when_its_cache_is_full(tried_first, disk, foucault, candidate, tmp_path, monkeypatch):
     if not tried_first:  # it is found out in the middle of an entry
-        monkeypatch.setattr("compare.cache._ROOM", b"")
+        monkeypatch.setattr("reference.system.cache._ROOM", b"")
     words = ["score", "paris", candidate, "--json", "--set", "site.latitude=40", "--set", "run.t_end=60"]
     monkeypatch.setenv("FOUCAULT_SPARE_CACHE", "")
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))

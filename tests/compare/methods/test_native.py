@@ -10,8 +10,8 @@ from method_cases import case
 from small_scenes import make_scene
 
 from compare.methods import METHODS, Problem, available
-from compare.native import library, program
-from compare.native.library import BOOST, GSL, Library
+from compare.methods.native import library, program
+from compare.methods.native.library import BOOST, GSL, Library
 from reference import IntegrationError
 
 HOST = r"""
@@ -87,7 +87,7 @@ def test_what_does_not_compile_is_said_in_the_compilers_words(here, tmp_path):
 def test_a_program_that_crashes_is_an_outcome(here, tmp_path, monkeypatch):
     crash = tmp_path / "crash.cpp"
     crash.write_text("#include <cstdlib>\nstatic void integrate(Run &) { std::abort(); }\n")
-    from compare.methods import native
+    from compare.methods import c_libraries as native
 
     outcome = native.prepare(case("paris").problem("gsl_rk8pd"), 1e-9, here, [str(crash)])()
     assert outcome.status == "gave_up"

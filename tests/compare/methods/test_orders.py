@@ -10,7 +10,7 @@ from small_scenes import make_scene
 
 import reference
 from compare.methods import METHODS, Problem, available, gauss_legendre
-from reference.precision import real
+from reference.numbers.precision import real
 
 SPAN = 3.0
 EXPLICIT = [name for name, method in METHODS.items() if method.setting == "step" and name != "gauss_legendre"]

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from compare.methods import METHODS, Problem, available, rk4
-from compare.runge_kutta.fixed_step import traced_step
-from compare.runge_kutta.steps import runge_kutta
+from compare.methods.runge_kutta.fixed_step import traced_step
+from compare.methods.runge_kutta.steps import runge_kutta
 from reference import load_scene
 
 pytestmark = pytest.mark.skipif(available(METHODS["rk4"]) is not None, reason="numba is not installed")

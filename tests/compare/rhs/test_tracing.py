@@ -20,7 +20,7 @@ from compare.rhs.tracing import TracingError, record
 from reference import InputError, load_scene
 from reference.model.constants import constants
 from reference.model.formulations import FORMULATIONS
-from reference.precision import context
+from reference.numbers.precision import context
 
 TRACED = ["momentum", "space", "spin", "plane", "angles"]
 

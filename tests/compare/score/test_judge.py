@@ -19,7 +19,7 @@ from compare.score.judge import _flung_off, _reading, _transits, judge
 from reference import InputError, load, load_scene, solve, trajectory
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.variants import Variants
-from reference.plain_text import plain
+from reference.errors import plain
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")
 OWN = """id = "mine"

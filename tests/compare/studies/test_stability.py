@@ -13,16 +13,16 @@ import pytest
 from typer.testing import CliRunner
 
 from compare.methods import METHODS, Problem, gauss_legendre, rk4, rkng56, rkng67
+from compare.methods.runge_kutta.tableau import TableauError
 from compare.report.stability import document_of, headlines, page_text, text_table
 from compare.rhs.swing import suited
-from compare.runge_kutta.tableau import TableauError
 from compare.studies.character import Character, character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.row import Row
 from compare.studies.stability import Cell, _judged, cut, default_scenes, digits_asked, stability
 from foucault import commands
 from reference import InputError, load_scene, trajectory
-from reference.shipped import data_root
+from reference.scenes.shipped import data_root
 from reference.status import Status
 
 

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 
 from foucault import commands
 from reference.dataset.shipping import is_done, jobs
-from reference.shipped import data_root, index, scene_ids, seals
+from reference.scenes.shipped import data_root, index, scene_ids, seals
 
 SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
 FEW = ["conical", "pantheon", "paris"]
@@ -119,7 +119,7 @@ def test_a_seal_of_a_dataset_that_ships_is_kept(foucault, tmp_path, monkeypatch)
     shutil.copytree(data_root() / "scenes", data / "scenes")
     shutil.copy(data_root() / "flags.toml", data)
     (data / "golden").mkdir()
-    monkeypatch.setattr("reference.shipped.data_root", lambda: data)
+    monkeypatch.setattr("reference.scenes.shipped.data_root", lambda: data)
     monkeypatch.setattr("reference.dataset.shipping.scene_ids", lambda: FEW[1:])
     foucault("generate", "--all", *SHORT, "--out", data / "golden", "--workers", 2)
     assert sorted(seals()) == FEW[1:]

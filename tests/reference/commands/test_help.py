@@ -20,7 +20,7 @@ from compare.studies.precisions import SPAN_S
 from compare.studies.stability import LIMIT_S as STABILITY_LIMIT_S
 from compare.studies.study import LIMIT_S as STUDY_LIMIT_S
 from reference.commands import app as computing
-from reference.shipped import DATA_VERSION
+from reference.scenes.shipped import DATA_VERSION
 
 COMMANDS = [str(one.name) for part in (computing, comparing) for one in part.registered_commands]
 

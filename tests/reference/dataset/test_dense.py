@@ -9,10 +9,10 @@ import pytest
 from small_scenes import make_scene
 
 from reference import InputError, load, solve
-from reference.columns import STATE
 from reference.dataset.dense import dense
 from reference.dataset.write import write
-from reference.precision import LONG_DOUBLE
+from reference.numbers.columns import STATE
+from reference.numbers.precision import LONG_DOUBLE
 
 
 @pytest.fixture(scope="module")

@@ -16,8 +16,8 @@ from compare.studies.stability import Cell
 from reference import errors
 from reference.dataset import manifest, vectors
 from reference.dataset.sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER
-from reference.scene import LEVELS
-from reference.shipped import DATA_VERSION
+from reference.scenes.scene import LEVELS
+from reference.scenes.shipped import DATA_VERSION
 
 PAGE = (ROOT / "docs/format.md").read_text("utf-8")
 
@@ -108,7 +108,7 @@ def test_promised_keys_of_studies_and_scores_are_there():
     assert promised("study") - study <= {one.name for one in fields(Row)}
     assert promised("stability") - {"rows"} <= {one.name for one in fields(Cell)}
     assert promised("paper") - {"rows"} <= {one.name for one in fields(JudgedRow)}
-    schema = json.loads((ROOT / "compare/suite/score.schema.json").read_text("utf-8"))
+    schema = json.loads((ROOT / "compare/report/suite/score.schema.json").read_text("utf-8"))
     assert promised("score") <= set(schema["$defs"]["score"]["required"])
 
 

@@ -20,10 +20,10 @@ from reference.dataset.render import render
 from reference.dataset.shipping import jobs, making_of, solved
 from reference.engines.heyoka.engine import Heyoka
 from reference.errors import InputError
-from reference.precision import LONG_DOUBLE
-from reference.scene import load_scene
-from reference.shipped import golden_root, index, seals
-from reference.table import Table
+from reference.numbers.precision import LONG_DOUBLE
+from reference.numbers.table import Table
+from reference.scenes.scene import load_scene
+from reference.scenes.shipped import golden_root, index, seals
 
 SHORT = ("barely_over", "conical", "force_free", "near_inverted", "nearly_conical", "weightless")
 # another kind of processor, as far as software can make one: no FMA in numba's code and in libm, another BLAS kernel
@@ -147,7 +147,7 @@ def test_without_numba_what_ships_is_refused_and_not_made_otherwise(monkeypatch,
 KEEPING = """
 import sys
 from pathlib import Path
-from reference import shipped
+from reference.scenes import shipped
 shipped.golden_root = lambda: Path(sys.argv[1])
 for k in range(20):
     shipped.keep_seal(f"scene_{sys.argv[2]}_{k}", f"{k:064x}", "--engine limbs --audit")
@@ -158,6 +158,6 @@ def test_seals_that_several_processes_keep_at_once_are_all_kept(tmp_path, monkey
     words = [[sys.executable, "-c", KEEPING, str(tmp_path), str(k)] for k in range(6)]
     processes = [subprocess.Popen(command, cwd=ROOT) for command in words]
     assert [process.wait() for process in processes] == [0] * 6
-    monkeypatch.setattr("reference.shipped.golden_root", lambda: tmp_path)
+    monkeypatch.setattr("reference.scenes.shipped.golden_root", lambda: tmp_path)
     assert len(index()) == 120 and sorted(path.name for path in tmp_path.iterdir()) == ["index.json"]
     assert seals()["scene_5_3"] == f"{3:064x}"

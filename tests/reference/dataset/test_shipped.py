@@ -6,13 +6,13 @@ import pytest
 from sampled import one_in
 
 import reference
-from reference.columns import STATE
 from reference.dataset.recompute import recompute
 from reference.dataset.record import AUDIT, NO_CONFIRM
 from reference.dataset.verify import problems_of
 from reference.engines import AUTO
 from reference.engines.registry import engines, run
-from reference.shipped import data_root, seals
+from reference.numbers.columns import STATE
+from reference.scenes.shipped import data_root, seals
 from reference.solver.choice import confirming_plan, first_prec
 from reference.solver.pilot import run_pilot
 

@@ -14,15 +14,15 @@ from sampled import one_in
 from small_scenes import make_scene
 
 import reference
-from reference.columns import GRID
 from reference.dataset.checks import motion, shooting
 from reference.dataset.checks.propagation import spreads
 from reference.dataset.files import read_files
 from reference.dataset.sheets import Sheet
 from reference.dataset.verify import verify
 from reference.dataset.write import write
-from reference.precision import context, fixed_decimal
-from reference.scene import Scene
+from reference.numbers.columns import GRID
+from reference.numbers.precision import context, fixed_decimal
+from reference.scenes.scene import Scene
 
 WIDE = {"angle": "80", "azimuth": "30", "azimuth_rate": "20"}
 SCENES = {

@@ -16,7 +16,6 @@ from sampled import one_in
 from small_scenes import make_scene
 
 import reference
-from reference.columns import TRANSITS
 from reference.dataset.checks import motion
 from reference.dataset.files import read_files
 from reference.dataset.manifest import MANIFEST
@@ -28,7 +27,8 @@ from reference.engines.limbs import integration
 from reference.engines.limbs.size import MOST_PREC
 from reference.engines.registry import engines
 from reference.errors import DatasetError
-from reference.precision import fixed_decimal
+from reference.numbers.columns import TRANSITS
+from reference.numbers.precision import fixed_decimal
 
 
 def problems(dataset: Path) -> str:

@@ -33,7 +33,7 @@ from reference.dataset.sheets import Sheet, nearest_doubles
 from reference.dataset.verify import problems_of
 from reference.dataset.write import check_target, write
 from reference.errors import DatasetError, InputError
-from reference.table import Table
+from reference.numbers.table import Table
 
 NAMES = {MANIFEST, *ALWAYS, *OPTIONAL}
 

@@ -12,7 +12,7 @@ from reference.enclosure.bound import Piece, Radius, World, output, tube
 from reference.enclosure.course import Course
 from reference.enclosure.shapes import Covered, Tube
 from reference.enclosure.transits import MOST_LEAVES, Scan
-from reference.taylor_step import TaylorStep
+from reference.numbers.taylor_step import TaylorStep
 
 TIMES = [Fraction(0), Fraction(7), Fraction(20)]
 

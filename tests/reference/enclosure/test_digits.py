@@ -15,8 +15,8 @@ pytest.importorskip("numba")
 from reference.enclosure.audit import compare
 from reference.enclosure.bound import Piece, World, polynomials
 from reference.enclosure.digits import check, norms, split
-from reference.packing import DIGIT_BITS, Digits
-from reference.taylor_step import TaylorStep
+from reference.numbers.packing import DIGIT_BITS, Digits
+from reference.numbers.taylor_step import TaylorStep
 
 MOST = 1 << (DIGIT_BITS - 1)
 WORLDS = [World(PARIS, 400), World(scene(drag="0.3", rotation_rate="-0.7", equatorial_radius="5"), 400)]

@@ -15,7 +15,7 @@ from reference.enclosure.approximant import pair
 from reference.enclosure.balls import fixed
 from reference.enclosure.bound import World
 from reference.errors import UnreachableError
-from reference.taylor_step import LOCAL, TaylorStep
+from reference.numbers.taylor_step import LOCAL, TaylorStep
 
 WANTED = Fraction(1, 10**40)
 HARD = {

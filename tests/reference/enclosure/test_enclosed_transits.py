@@ -16,7 +16,7 @@ from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, World
 from reference.enclosure.shapes import Covered, Leaf, Tube
 from reference.enclosure.transits import Scan, Slope, narrowed
-from reference.taylor_step import TaylorStep
+from reference.numbers.taylor_step import TaylorStep
 
 
 def scan(inputs, proposal, columns=False):

@@ -13,8 +13,8 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 from reference.enclosure.bound import Piece, Radius, Scaled, World
 from reference.enclosure.columns import CUT, FINE, Columns, cut, residuals
 from reference.enclosure.shapes import Sizes
-from reference.packing import DIGIT_BITS, Digits
-from reference.taylor_step import TaylorStep
+from reference.numbers.packing import DIGIT_BITS, Digits
+from reference.numbers.taylor_step import TaylorStep
 
 
 def exact(x):

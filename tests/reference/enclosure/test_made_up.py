@@ -14,7 +14,7 @@ from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, World
 from reference.enclosure.shapes import Covered, Leaf, Tube
 from reference.enclosure.transits import Scan, Slope, touched
-from reference.taylor_step import TaylorStep
+from reference.numbers.taylor_step import TaylorStep
 
 BITS = 200
 MOVING = scene(vx="1")

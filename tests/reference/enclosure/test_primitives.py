@@ -10,7 +10,7 @@ from flint import arb, ctx, fmpz, fmpz_poly
 from reference.enclosure.balls import ball, fixed, interval, norm, size, upper
 from reference.enclosure.bound import Piece, Radius, World, output
 from reference.enclosure.shapes import Covered, Tube
-from reference.taylor_step import TaylorStep
+from reference.numbers.taylor_step import TaylorStep
 
 WIDE = arb(1, 0.5)  # all of [1/2, 3/2]
 

@@ -9,10 +9,10 @@ import pytest
 pytest.importorskip("flint")
 
 import reference
-from reference.columns import GRID
 from reference.dataset.render import render
 from reference.enclosure.printed import check_grid, check_transits
 from reference.errors import FoucaultError
+from reference.numbers.columns import GRID
 
 
 @pytest.fixture(scope="module")

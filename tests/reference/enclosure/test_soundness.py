@@ -13,7 +13,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from reference.columns import TRANSITS
 from reference.enclosure.approximant import pair
 from reference.enclosure.balls import add, ball, cross
 from reference.enclosure.bound import Piece, Radius, World
@@ -23,8 +22,9 @@ from reference.enclosure.frames import ColumnSource
 from reference.enclosure.transits import Scan
 from reference.engines.plan import Plan
 from reference.engines.registry import run
-from reference.packing import DIGIT_BITS, Digits
-from reference.precision import real
+from reference.numbers.columns import TRANSITS
+from reference.numbers.packing import DIGIT_BITS, Digits
+from reference.numbers.precision import real
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth

@@ -11,7 +11,6 @@ import pytest
 from small_scenes import make_scene, model_at, stepper_of
 
 import reference.engines.heyoka.run as module
-from reference.columns import STATE
 from reference.engines.heyoka import machine_code
 from reference.engines.heyoka import stepper as stepper_module
 from reference.engines.heyoka.log import watched_log
@@ -19,7 +18,8 @@ from reference.engines.heyoka.system import System, equations_text
 from reference.engines.plan import Plan
 from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
-from reference.precision import DOUBLE, LONG_DOUBLE, real
+from reference.numbers.columns import STATE
+from reference.numbers.precision import DOUBLE, LONG_DOUBLE, real
 
 
 def end_of(scene, number, name="momentum", t_end=60):

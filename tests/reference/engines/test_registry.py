@@ -8,11 +8,11 @@ from itertools import pairwise
 import pytest
 from places import ROOT
 
-from reference.columns import RUN
 from reference.engines import AUTO, engine_names
 from reference.engines.registry import checked, engines, fastest, run
 from reference.errors import InputError
-from reference.taylor_step import EARTH, LOCAL
+from reference.numbers.columns import RUN
+from reference.numbers.taylor_step import EARTH, LOCAL
 
 TIMES = (Fraction(0), Fraction(7), Fraction(60))
 

@@ -18,7 +18,7 @@ from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.model.vanishing import xdot_vanishes, zero_at_release
-from reference.precision import DOUBLE, LONG_DOUBLE, real
+from reference.numbers.precision import DOUBLE, LONG_DOUBLE, real
 
 
 def bare_heyoka(scene, number, t_end, first_step=None):

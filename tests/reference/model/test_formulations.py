@@ -19,7 +19,7 @@ from reference.model.earth import axis_distance
 from reference.model.force import acceleration, force, invariant, rest_position, tension
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start, release
-from reference.precision import context, real
+from reference.numbers.precision import context, real
 
 PREC = 400  # bits; 60 digits need 200
 

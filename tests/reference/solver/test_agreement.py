@@ -11,18 +11,18 @@ from mpmath import findroot, mpf, sqrt
 from small_scenes import make_scene
 
 import reference
-from reference.columns import GRID, TRANSITS
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.model.force import acceleration, force, tension
 from reference.model.start import Start
-from reference.precision import DOUBLE, real
+from reference.numbers.columns import GRID, TRANSITS
+from reference.numbers.precision import DOUBLE, real
+from reference.numbers.table import Table
 from reference.solver import solve as solver
 from reference.solver.agreement import Agreement, bits_lacking
 from reference.solver.pilot import MARGIN_BITS
 from reference.solver.transit_errors import with_transit_errors
-from reference.table import Table
 
 # in both runs these two once had the same number of limbs and, as steps were at their longest, the same steps
 ONE_RUN_TWICE = make_scene(

@@ -19,8 +19,8 @@ from hypothesis import strategies as st
 from sampled import one_in
 
 from reference import Scene, load_scene, parse_scene, solve
+from reference.numbers.table import Table
 from reference.solver.solution import Solution
-from reference.table import Table
 
 MP = mpmath.mp.clone()
 MP.dps = 100

@@ -22,7 +22,7 @@ from reference.dataset.write import write
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
-from reference.precision import real
+from reference.numbers.precision import real
 from reference.solver import approximant, auditing
 from reference.solver.approximant import Feed
 from reference.solver.enclosed import solve_enclosed

@@ -16,7 +16,7 @@ from sampled import one_in
 
 from foucault import main
 from reference import Scene, Solution, load_scene, parse_scene, scene_ids, solve
-from reference.inputs import Inputs
+from reference.scenes.inputs import Inputs
 
 MP = mpmath.mp.clone()
 MP.dps = 60

@@ -11,18 +11,18 @@ import pytest
 from small_scenes import make_scene
 
 import reference
-from reference.columns import STATE
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, run
 from reference.errors import IntegrationError, UnreachableError
-from reference.precision import DOUBLE
-from reference.scene import LEVELS, load_scene
+from reference.numbers.columns import STATE
+from reference.numbers.precision import DOUBLE
+from reference.numbers.table import bits_in
+from reference.scenes.scene import LEVELS, load_scene
 from reference.solver import pilot as pilot_runs
 from reference.solver import reach
 from reference.solver.digits_lost import digits_lost
 from reference.solver.pilot import Pilot, run_pilot
 from reference.solver.reach import Pace, effort
-from reference.table import bits_in
 
 METRE = {"length": "1"}
 STILL = {"rotation_rate": "0"}

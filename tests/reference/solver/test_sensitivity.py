@@ -9,7 +9,7 @@ import pytest
 from small_scenes import make_scene
 
 from reference import load, trajectory
-from reference.precision import LONG_DOUBLE
+from reference.numbers.precision import LONG_DOUBLE
 from reference.solver.sensitivity import sensitivity, with_value
 
 TIMES = np.linspace(0.0, 600.0, 31)

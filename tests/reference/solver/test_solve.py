@@ -15,14 +15,14 @@ from sampled import one_in
 from small_scenes import make_scene
 
 import reference
-from reference.columns import GRID
 from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.engines import registry, side_by_side
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.engines.side_by_side import run_both
 from reference.errors import InputError, IntegrationError, UnreachableError
-from reference.precision import DOUBLE, real
+from reference.numbers.columns import GRID
+from reference.numbers.precision import DOUBLE, real
 from reference.solver import pilot as pilot_runs
 from reference.solver import reach
 from reference.solver import solve as solver

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 import reference
 from foucault import commands
-from reference.shipped import golden_root
+from reference.scenes.shipped import golden_root
 
 
 @pytest.fixture(scope="session")

@@ -15,7 +15,7 @@ from compare import judge
 from compare.report.atlas.entry import Entry, entries
 from compare.report.atlas.pages import scene_page
 from compare.report.atlas.studied import Kept, kept_studies, studies_folder
-from reference.shipped import golden_root
+from reference.scenes.shipped import golden_root
 
 CHROMIUM = next(
     (path for name in ("chromium", "chromium-browser", "google-chrome") if (path := shutil.which(name))), None

@@ -13,7 +13,7 @@ import pytest
 from places import ROOT
 from small_scenes import make_scene, run_in_limbs
 
-from reference.process import usable_cores
+from reference.system.process import usable_cores
 
 pytest.importorskip("numba")
 
@@ -73,7 +73,7 @@ from fractions import Fraction
 from numba.core import event
 from small_scenes import make_scene, run_in_limbs
 from reference.engines.limbs.march import march, taylor_coefficients, write_outputs
-from reference.machine_code import missing
+from reference.system.machine_code import missing
 
 with event.install_recorder("numba:compile") as recorder:
     found = run_in_limbs(make_scene(release={"x": "0.3", "y": "0.4"}), 120, (0, Fraction(60)))

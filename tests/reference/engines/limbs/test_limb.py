@@ -25,7 +25,7 @@ from reference.engines.limbs.limb import (
     split,
 )
 from reference.engines.limbs.size import LIMB_BITS, fraction_bits
-from reference.precision import context
+from reference.numbers.precision import context
 
 LIMB_COUNT = 7
 

@@ -17,12 +17,12 @@ from limbs_states import states
 from sampled import one_in
 from small_scenes import make_scene, run_in_limbs
 
-from reference.columns import POSITION, STATE, VELOCITY
 from reference.engines.limbs.size import MOST_PREC
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import InputError, IntegrationError
-from reference.precision import real
+from reference.numbers.columns import POSITION, STATE, VELOCITY
+from reference.numbers.precision import real
 
 PARIS = {"release": {"x": "0.3", "y": "0.4"}}
 SCENES = {

@@ -20,8 +20,8 @@ from reference.engines.octet.rows import UNIT, packed
 from reference.engines.octet.series import taylor_coefficients
 from reference.engines.registry import engines
 from reference.model.start import Start
-from reference.precision import to_fraction
-from reference.taylor_step import EARTH
+from reference.numbers.precision import to_fraction
+from reference.numbers.taylor_step import EARTH
 
 ORDER = 24
 BITS = 150

@@ -1,0 +1,82 @@
+"""Integration at a fixed step size: a step is traced to code and compiled in a loop over the output times."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...rhs.problem import Array, Problem
+from ...rhs.program import Program
+from .steps import Step
+
+# a step may be longer than the setting by this part: 60 s then hold 600 steps of 0.1 s, although 0.1 is not a double
+ROUNDING = 1e-9
+
+_MARCH = """
+@nb.njit("int64(float64[::1], float64[::1], float64[::1], int64[::1], float64[:, ::1])", **OPTIONS)
+def march(y, k, times, counts, states):
+    ${unpack_state}
+    ${unpack_parameters}
+    for row in range(1, len(times)):
+        h = (times[row] - times[row - 1]) / counts[row]
+        for _ in range(counts[row]):
+            ${x}= step(${x}${c}h)
+        ${out}= ${x}
+        if not np.isfinite(states[row]).all():
+            return row + 1
+    return len(times)
+"""
+
+
+def traced_step(problem: Problem, step: Step) -> Program:
+    """Trace a step to straight-line code: its inputs are state, parameters and h, its outputs the new state."""
+
+    def whole_step(state: Sequence[Any], functions: Any, parameters: Any) -> Sequence[Any]:
+        constants = {name: number for name, number in parameters.items() if name != "h"}
+        return step(state, parameters["h"], lambda at: problem.system.rates(at, functions, constants))
+
+    return problem.system.traced(whole_step, "h")
+
+
+def steps_through(problem: Problem, length: float, step: Step) -> Callable[[], tuple[Array, int]]:
+    """Compile a step for a problem's system; the returned function takes all steps.
+
+    Args:
+        problem: to be solved.
+        length: of a step in s; shortened where output times are not a whole number of steps apart.
+        step: `step(state, h, derivatives)` in the model's generic style.
+
+    Returns:
+        A function that returns the states at the output times, up to the first that is not finite, shape
+        (rows, variables), and the number of steps that led there.
+    """
+    from ...rhs.compiled import compiled, elements, fill, function_text, names, unpacked
+
+    variables, parameters = len(problem.start), len(problem.system.parameters)
+    loop = fill(
+        _MARCH,
+        unpack_state=unpacked("x", "y", variables),
+        unpack_parameters=unpacked("c", "k", parameters),
+        x=names("x", variables),
+        c=names("c", parameters),
+        out=elements("states", variables, "row"),
+    )
+    march = compiled(function_text(traced_step(problem, step), "step") + loop).march
+    counts = steps_between(problem.times, length)
+
+    def run() -> tuple[Array, int]:
+        states = np.empty((len(problem.times), variables))
+        states[0] = problem.start
+        rows = march(problem.start, problem.parameters, problem.times, counts, states)
+        return states[:rows], int(counts[:rows].sum())
+
+    return run
+
+
+def steps_between(times: Array, step: float) -> Any:
+    """Return the number of steps that lead to each time from the one before (0 for the first), shape (rows,)."""
+    counts = np.ceil(np.diff(times, prepend=times[0]) / step * (1 - ROUNDING)).astype(np.int64)
+    counts[1:] = np.maximum(counts[1:], 1)
+    return counts

@@ -1,0 +1,280 @@
+"""Scenes: the inputs of a run, read from TOML files, checked, and kept as exact decimals.
+
+Numbers stay strings until they are needed, and then become exact fractions: "48.846111" is the
+decimal 48.846111 and not the double next to it, unless the scene says `inputs = "binary64"`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Annotated, Any, Literal, get_args
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError
+
+from ..errors import InputError, unknown
+from .fields import Line, NotNegative, Number, NumberOrInf, Positive, Refused, as_read, explained, within
+from .inputs import GravityIs, Inputs
+from .shipped import data_root, scene_ids
+from .toml_document import toml_document
+
+MAX_DIGITS = 1000
+MAX_ROWS = 2_000_000
+LEAST_T_END = Fraction(1, 10**300)
+
+Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
+LEVELS: tuple[Level, ...] = get_args(Level)
+Reading = Literal["decimal", "binary64"]
+
+_ID = re.compile(r"[a-z][a-z0-9_]*")
+
+
+def is_scene_id(word: str) -> bool:
+    """Return whether a word can be a scene's id, and so a folder and a command-line argument."""
+    return _ID.fullmatch(word) is not None and len(word) <= 64
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class Pendulum(_Table):
+    """Cord length in m, linear drag in 1/s."""
+
+    length: Positive = "67"
+    drag: NotNegative = "0"
+
+
+class Site(_Table):
+    """Where the suspension stands (degrees, m), gravity (m/s²), what it means, the Earth's rotation rate (rad/s)."""
+
+    latitude: Annotated[Number, within("-90", "90")] = "48.846111"
+    altitude: Number = "0"
+    gravity: NotNegative = "9.80665"
+    gravity_is: GravityIs = "ellipsoid"
+    rotation_rate: Number = "7.292115e-5"
+    equatorial_radius: NotNegative = "6378137"
+    inverse_flattening: Annotated[NumberOrInf, within("1", open_low=True)] = "298.257223564"
+
+
+class Release(_Table):
+    """Either x, y (m, below the suspension) with vx, vy (m/s), or angles (degrees) and their rates (degrees/s)."""
+
+    x: Number | None = None
+    y: Number | None = None
+    vx: Number | None = None
+    vy: Number | None = None
+    angle: Annotated[Number, within("0", "180")] | None = None
+    azimuth: Annotated[Number, within("-360", "360")] | None = None
+    angle_rate: Number | None = None
+    azimuth_rate: Number | None = None
+
+
+def _digits(value: int) -> int:
+    if not 1 <= value <= MAX_DIGITS:
+        raise Refused(f"a whole number from 1 to {MAX_DIGITS}")
+    return value
+
+
+class RunTable(_Table):
+    """Time span and grid (s), digits, level of trust, transits or not."""
+
+    t_end: Annotated[Number, within("0", "1e15", open_low=True)] = "86400"
+    grid_step: Positive = "60"
+    digits: Annotated[int, AfterValidator(_digits)] = 40
+    level: Level = "confirmed"
+    transits: bool = True
+
+
+def _identifier(text: str) -> str:
+    if not is_scene_id(text):
+        raise Refused("a lower-case letter followed by letters, digits or _ (at most 64)")
+    return text
+
+
+class Scene(_Table):
+    """A pendulum, its site, its release and its run; frozen.
+
+    `exact` gives the numbers as fractions, in the reading that `inputs` names.
+    """
+
+    id: Annotated[str, AfterValidator(_identifier)]
+    title: Line = ""
+    source: Line = ""
+    flags: tuple[Line, ...] = ()
+    inputs: Reading = "decimal"
+    pendulum: Pendulum = Pendulum()
+    site: Site = Site()
+    release: Release
+    run: RunTable = RunTable()
+
+    @property
+    def exact(self) -> Inputs:
+        """The scene's numbers as exact fractions, each rounded to binary64 first if `inputs` says so."""
+
+        def read(text: str | None) -> Fraction:
+            return as_read(text or "0", self.inputs)
+
+        site, release = self.site, self.release
+        inverse = site.inverse_flattening
+        cartesian = release.angle is None
+        position = read(release.x), read(release.y), read(release.vx), read(release.vy)
+        angles = read(release.angle), read(release.azimuth), read(release.angle_rate), read(release.azimuth_rate)
+        return Inputs(
+            length=read(self.pendulum.length),
+            drag=read(self.pendulum.drag),
+            latitude=read(site.latitude),
+            altitude=read(site.altitude),
+            gravity=read(site.gravity),
+            rotation_rate=read(site.rotation_rate),
+            equatorial_radius=read(site.equatorial_radius),
+            flattening=Fraction(0) if inverse == "inf" else 1 / read(inverse),
+            position=position if cartesian else None,
+            angles=None if cartesian else angles,
+            t_end=read(self.run.t_end),
+            grid_step=read(self.run.grid_step),
+            gravity_is=site.gravity_is,
+        )
+
+    def with_values(self, assignments: Iterable[str]) -> Scene:
+        """Return the scene with fields replaced, each assignment written `section.key=value`."""
+        document = self.model_dump(exclude_none=True)
+        for assignment in assignments:
+            _assign(document, assignment)
+        return parse_scene(document)
+
+
+def _assign(document: dict[str, Any], assignment: str) -> None:
+    key, sign, value = assignment.partition("=")
+    parts = key.strip().split(".")
+    if not sign or len(parts) > 2 or not all(parts):
+        raise InputError("--set", assignment, "section.key=value, such as site.latitude=0")
+    table = document
+    for part in parts[:-1]:
+        inner = table.setdefault(part, {})
+        if not isinstance(inner, dict):
+            raise InputError("--set", assignment, f"a section, and {part} is a single field")
+        table = inner
+    if parts == ["flags"]:
+        document["flags"] = [flag for flag in value.split(",") if flag]
+    else:
+        table[parts[-1]] = value.strip()
+
+
+def field_names() -> list[str]:
+    """Return the names of a scene's fields, as `--set` takes them: inputs, site.latitude and so on."""
+    names = []
+    for top, field in Scene.model_fields.items():
+        kind = field.annotation
+        inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, _Table) else ()
+        names += [f"{top}.{key}" for key in inside] or [top]
+    return names
+
+
+def checked_value(name: str, value: str, reading: Reading) -> str:
+    """Return the value of one field, checked as it is in a scene whose numbers are read like this.
+
+    Args:
+        name: the field, one of `field_names`.
+        value: as text.
+        reading: how the scene reads numbers.
+
+    Raises:
+        InputError: the value is wrong, whatever the other fields are.
+    """
+    try:
+        _field(name).validate_python(value, context={"inputs": reading})
+    except ValidationError as error:
+        wrong = explained(error, ())
+        raise InputError(name, value, wrong.expected, wrong.advice) from None
+    return value
+
+
+@cache
+def _field(name: str) -> TypeAdapter[Any]:
+    """Return what checks one field."""
+    table, _, key = name.rpartition(".")
+    fields = Scene.model_fields
+    for part in (table,) if table else ():
+        fields = fields[part].annotation.model_fields  # type: ignore[union-attr]
+    return TypeAdapter(fields[key].rebuild_annotation())
+
+
+def parse_scene(document: Mapping[str, Any]) -> Scene:
+    """Check a scene given as nested mappings.
+
+    Raises:
+        InputError: names the first wrong field, what it got and what was expected.
+    """
+    try:
+        scene = Scene.model_validate(dict(document), context={"inputs": document.get("inputs")})
+    except ValidationError as error:
+        raise explained(error, [*Scene.model_fields, *field_names()]) from None
+    _check_release(scene)
+    _check_grid(scene)
+    return scene
+
+
+def _check_release(scene: Scene) -> None:
+    release = scene.release
+    fields = release.model_fields_set & {n for n in type(release).model_fields if getattr(release, n) is not None}
+    cartesian, angular = fields & {"x", "y", "vx", "vy"}, fields & {"angle", "azimuth", "angle_rate", "azimuth_rate"}
+    if cartesian and angular:
+        raise InputError(
+            "release", ", ".join(sorted(fields)), "either x, y (vx, vy) or angle, azimuth (and rates)", "Keep one kind."
+        )
+    for kind, needed in ((cartesian, ("x", "y")), (angular, ("angle", "azimuth"))):
+        for name in needed:
+            if kind and name not in kind:
+                raise InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
+    if not fields:
+        raise InputError("release", "nothing", "x and y, or angle and azimuth")
+    position, length = scene.exact.position, scene.exact.length
+    if position and position[0] ** 2 + position[1] ** 2 >= length**2:
+        raise InputError(
+            "release",
+            f"x = {release.x}, y = {release.y}",
+            f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²",
+            "For a release at or above the horizontal give angle and azimuth.",
+        )
+
+
+def _check_grid(scene: Scene) -> None:
+    if scene.exact.t_end < LEAST_T_END:
+        raise InputError("run.t_end", scene.run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide")
+    rows = scene.exact.t_end / scene.exact.grid_step
+    if rows > MAX_ROWS:
+        raise InputError(
+            "run.grid_step", scene.run.grid_step, f"at most {MAX_ROWS} grid times up to t_end", "Take a longer step."
+        )
+
+
+def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
+    """Read a scene by id, or from the path of a TOML file, with `section.key=value` replacements.
+
+    Raises:
+        InputError: no such scene, broken TOML, or a wrong field.
+    """
+    word = str(name)
+    if not word.strip():
+        raise _no_scene(word)
+    path = data_root() / "scenes" / f"{word}.toml" if is_scene_id(word) else Path(word)
+    try:
+        document = toml_document(path)
+    except FileNotFoundError:
+        raise _no_scene(word) from None
+    except OSError as error:
+        raise InputError("SCENE", word, "a readable file", f"{error.strerror}.") from None
+    except Refused as refusal:
+        raise InputError("SCENE", word, refusal.expected, refusal.advice) from None
+    for assignment in assignments:
+        _assign(document, assignment)
+    return parse_scene(document)
+
+
+def _no_scene(word: str) -> InputError:
+    expected = "a scene's id or the path of a TOML file"
+    return unknown("SCENE", word, expected, scene_ids(), "`foucault scenes` lists the ids.")

@@ -1,0 +1,81 @@
+"""The data that come with the project: their folders, the scenes' ids, the datasets' seals, the flags' meaning."""
+
+from __future__ import annotations
+
+import json
+import time
+import tomllib
+from functools import partial
+from pathlib import Path
+from typing import BinaryIO
+
+from ..system.file_lock import Taken, locked
+from ..system.workspace import replace_file
+
+INDEX = "index.json"
+POLL_S = 0.01
+PACKAGE = Path(__file__).resolve().parents[1]
+DATA_VERSION = "1.1"  # of what datasets hold, apart from the code's: docs/format.md says when it is raised
+
+
+def data_root() -> Path:
+    """Return the folder that holds `scenes` and `golden`: in the installed package, or beside it in a checkout."""
+    return PACKAGE / "data" if (PACKAGE / "data").is_dir() else PACKAGE.parent / "data"
+
+
+def golden_root() -> Path:
+    """Return the folder of the golden datasets that come with the project."""
+    return data_root() / "golden"
+
+
+def in_checkout() -> bool:
+    """Return whether scenes and golden datasets are those of a source checkout, which `generate` may replace."""
+    return data_root().parent != PACKAGE
+
+
+def scene_ids() -> list[str]:
+    """Return the ids of the scenes that come with the project, sorted."""
+    return sorted(path.stem for path in (data_root() / "scenes").glob("*.toml"))
+
+
+def index() -> dict[str, dict[str, str]]:
+    """Return what `golden/index.json` says of each golden dataset that comes with the project, by id.
+
+    `seal` is that of its manifest, `options` are those of its command that say how it is made.
+    """
+    try:
+        text = (golden_root() / INDEX).read_text("utf-8")
+    except FileNotFoundError:
+        return {}
+    found: dict[str, dict[str, str]] = json.loads(text)
+    return found
+
+
+def seals() -> dict[str, str]:
+    """Return the seal of each golden dataset that comes with the project, by id."""
+    return {name: entry["seal"] for name, entry in index().items()}
+
+
+def keep_seal(name: str, seal: str, options: str) -> None:
+    """Write the seal of a dataset that ships into `golden/index.json`, whole or not at all, one process at a time."""
+    path = golden_root() / INDEX
+    lock = path.with_suffix(".lock")
+    while True:
+        try:
+            with locked(lock):
+                every = index() | {name: {"seal": seal, "options": options}}
+                data = (json.dumps(dict(sorted(every.items())), indent=1) + "\n").encode()
+                replace_file(path, partial(_write, data))
+                lock.unlink(missing_ok=True)
+                return
+        except Taken:
+            time.sleep(POLL_S)
+
+
+def _write(data: bytes, stream: BinaryIO) -> None:
+    stream.write(data)
+
+
+def flag_meanings() -> dict[str, str]:
+    """Return why a scene with a flag is difficult: a sentence for each flag, from `data/flags.toml`."""
+    return {flag: str(text) for flag, text in tomllib.loads((data_root() / "flags.toml").read_text("utf-8")).items()}

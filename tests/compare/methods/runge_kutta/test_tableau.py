@@ -1,0 +1,75 @@
+"""A tableau proves its order when it is made: a misprint, any wrong digit and a higher claim are refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+
+from compare.methods import rk4, rkng56, rkng67
+from compare.methods.runge_kutta.tableau import Tableau, TableauError, fractions, triangle
+from compare.methods.runge_kutta.trees import trees
+
+NYSTROM = {"rkng56": rkng56, "rkng67": rkng67}
+
+
+@pytest.mark.parametrize("name", NYSTROM)
+def test_a_misprint_of_a_public_copy_is_refused(name):
+    tableau = NYSTROM[name].TABLEAU
+    for table, row, column, printed in NYSTROM[name].MISPRINTS:
+        rows = [list(line) for line in getattr(tableau, table)]
+        if len(rows[row]) > column and rows[row][column] == 0:  # an entry in the wrong column leaves its own empty
+            where = rows[row].index(Fraction(printed))
+            rows[row][where] = Fraction(0)
+        rows[row][column] = Fraction(printed)
+        with pytest.raises(TableauError, match="misprint"):
+            replace(tableau, **{table: tuple(map(tuple, rows))})
+
+
+@pytest.mark.parametrize("name", NYSTROM)
+def test_any_wrong_coefficient_is_refused_even_where_row_sums_hide_it(name):
+    tableau, wrong = NYSTROM[name].TABLEAU, Fraction("1e-20")
+    for table in ("velocity", "position"):
+        for i, line in enumerate(getattr(tableau, table)):
+            if len(line) < 3 or (table, i, len(line)) == ("position", 0, 0):
+                continue
+            rows = [list(row) for row in getattr(tableau, table)]
+            rows[i][0] += wrong
+            rows[i][2] -= wrong
+            with pytest.raises(TableauError):
+                replace(tableau, **{table: tuple(map(tuple, rows))})
+    for table in ("velocity_weights", "position_weights"):
+        for i in range(len(tableau.c)):
+            weights = list(getattr(tableau, table))
+            weights[i] += wrong
+            with pytest.raises(TableauError):
+                replace(tableau, **{table: tuple(weights)})
+
+
+@pytest.mark.parametrize("name", NYSTROM)
+def test_a_nystrom_tableau_has_no_higher_order_than_it_claims(name):
+    tableau = NYSTROM[name].TABLEAU
+    with pytest.raises(TableauError) as caught:
+        replace(tableau, order=tableau.order + 1)
+    assert caught.value.order == tableau.order + 1
+
+
+def test_a_runge_kutta_tableau_is_checked_by_the_same_trees():
+    replace(rk4.TABLEAU, b=fractions("1/6", "1/3", "1/3", "1/6"))
+    with pytest.raises(TableauError):
+        replace(rk4.TABLEAU, b=fractions("1/6", "1/6", "1/2", "1/6"))
+    with pytest.raises(TableauError):
+        replace(rk4.TABLEAU, order=5)
+    with pytest.raises(TableauError):
+        Tableau(
+            "3/8 rule with a sign lost",
+            4,
+            triangle("", "1/3", "1/3 1", "1 -1 1"),
+            fractions("1/8", "3/8", "3/8", "1/8"),
+        )
+    Tableau("3/8 rule", 4, triangle("", "1/3", "-1/3 1", "1 -1 1"), fractions("1/8", "3/8", "3/8", "1/8"))
+
+
+def test_there_are_as_many_rooted_trees_as_cayley_counted():
+    assert [len(trees(order, second=False)) for order in range(1, 8)] == [1, 1, 2, 4, 9, 20, 48]

@@ -1,0 +1,130 @@
+"""Folders in which something is made: one of a killed process goes, one in use stays, whatever its number says."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from reference.system import workspace as module
+from reference.system.workspace import OLD, workspace
+
+HOLDER = """
+import sys, time
+from pathlib import Path
+from reference.system.workspace import workspace
+with workspace(Path(sys.argv[1]), "pp") as work:
+    print(work, flush=True)
+    time.sleep(600)
+"""
+
+
+def left(parent: Path) -> list[str]:
+    return sorted(path.name for path in parent.iterdir())
+
+
+def test_the_folder_is_there_for_the_work_and_gone_after_it(tmp_path):
+    with workspace(tmp_path, "pp") as work:
+        assert work.parent == tmp_path
+        assert work.name.startswith(".pp.partial-")
+        (work / "half").write_text("done")
+    assert left(tmp_path) == []
+    with pytest.raises(KeyboardInterrupt), workspace(tmp_path, "pp") as work:
+        (work / "half").write_text("done")
+        raise KeyboardInterrupt
+    assert left(tmp_path) == []
+
+
+def test_a_folder_with_the_number_of_this_very_process_is_in_nobodys_way(tmp_path):
+    (tmp_path / f".pp.partial-{os.getpid()}").mkdir()
+    with workspace(tmp_path, "pp") as work:
+        assert left(tmp_path) == [work.name]
+    assert left(tmp_path) == []
+
+
+def test_a_living_process_keeps_its_folder_and_a_killed_one_does_not(tmp_path):
+    with subprocess.Popen([sys.executable, "-c", HOLDER, str(tmp_path)], stdout=subprocess.PIPE) as process:
+        assert process.stdout is not None
+        held = Path(process.stdout.readline().decode().strip())
+        with workspace(tmp_path, "pp") as work:
+            assert left(tmp_path) == sorted([held.name, work.name])
+        process.send_signal(signal.SIGKILL)
+    assert held.is_dir()
+    with workspace(tmp_path, "pp"):
+        assert not held.exists()
+
+
+def test_folders_of_other_names_stay(tmp_path):
+    for name in (".other.partial-1", ".pp.backup", "pp.partial-1"):
+        (tmp_path / name).mkdir()
+    with workspace(tmp_path, "pp"):
+        pass
+    assert left(tmp_path) == [".other.partial-1", ".pp.backup", "pp.partial-1"]
+
+
+def test_a_name_may_hold_any_letters(tmp_path):
+    for name in ("a[b]*?", "-x", "ü ü"):
+        (tmp_path / f".{name}.partial-1").mkdir()
+        with workspace(tmp_path, name):
+            pass
+    assert left(tmp_path) == []
+
+
+def test_what_was_moved_away_by_a_killed_process_comes_back(tmp_path):
+    stale = tmp_path / ".pp.partial-1"
+    (stale / OLD).mkdir(parents=True)
+    (stale / OLD / "grid.csv").write_text("years of work")
+    with workspace(tmp_path, "pp"):
+        pass
+    assert (tmp_path / "pp" / "grid.csv").read_text() == "years of work"
+    assert left(tmp_path) == ["pp"]
+
+
+def test_what_was_replaced_does_not_come_back(tmp_path):
+    stale = tmp_path / ".pp.partial-1"
+    (stale / OLD).mkdir(parents=True)
+    (tmp_path / "pp").mkdir()
+    with workspace(tmp_path, "pp"):
+        pass
+    assert left(tmp_path) == ["pp"]
+    assert left(tmp_path / "pp") == []
+
+
+def _no_locks(*_: object) -> None:
+    raise OSError
+
+
+@pytest.mark.parametrize("attribute", ["fcntl", "fcntl.flock"])
+def test_without_locks_only_what_was_not_touched_for_a_day_goes(tmp_path, monkeypatch, attribute):
+    monkeypatch.setattr(f"reference.system.file_lock.{attribute}", None if attribute == "fcntl" else _no_locks)
+    young, old = tmp_path / ".pp.partial-young", tmp_path / ".pp.partial-old"
+    for folder in (young, old):
+        folder.mkdir()
+        (folder / "lock").touch()
+    os.utime(old, (time.time() - 90_000,) * 2)
+    with workspace(tmp_path, "pp") as work:
+        assert left(tmp_path) == sorted([young.name, work.name])
+    assert left(tmp_path) == [young.name]
+
+
+def test_a_folder_that_is_cleared_before_it_is_locked_is_made_anew(tmp_path, monkeypatch):
+    """Another process may find a folder between its making and its locking."""
+    made, make = [], module.tempfile.mkdtemp
+
+    def cleared(*args, **keywords):
+        path = make(*args, **keywords)
+        made.append(Path(path))
+        if len(made) == 1:
+            made[0].rmdir()
+        return path
+
+    monkeypatch.setattr(module.tempfile, "mkdtemp", cleared)
+    with workspace(tmp_path, "pp") as work:
+        assert work == made[1]
+        assert work.is_dir()
+    assert left(tmp_path) == []
