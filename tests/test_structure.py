@@ -34,8 +34,8 @@ FLOORS = {
         ["registry", "trajectory", "variants", "equations"],
         ["octet"],
         [*engine_names()],
-        ["engine"],
-        ["plan", "batch"],
+        ["interface"],
+        ["plan", "batch_interface"],
     ],
     "compare": [
         ["commands", "fixture"],

@@ -17,8 +17,8 @@ from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 
 from .approximation import Array, Motion, Order
-from .carried import integrated
 from .case import Case
+from .truncated import integrated
 
 
 def uniform(k: Constants) -> Constants:

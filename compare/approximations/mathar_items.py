@@ -18,8 +18,8 @@ from reference.model.algebra import Functions, State, minus, plus, product
 from reference.model.constants import Constants
 
 from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Array, Motion, Order
-from .carried import integrated
 from .case import Case, hung, lowest_point
+from .truncated import integrated
 
 VARIABLES = ("x", "y", "vx", "vy")
 VARIANT = "variant of item 1"

@@ -9,7 +9,7 @@ from reference import InputError
 
 from .layout import SKIPPED, Layout, Naming, advice, guessed, layout, unnamed
 from .names import meaning
-from .rows import Spelling, words
+from .row_format import Spelling, words
 
 MOST = 1000  # lines above the first row that are looked at
 FEW = 2  # names of columns in a comment, and half of its words, from which on it is meant as the header

@@ -21,7 +21,7 @@ from reference.system.opening import open_at_once
 
 from .archive import read_archive, read_array
 from .candidate import Candidate, checked_transits
-from .columns import ColumnReader
+from .column_reader import ColumnReader
 from .layout import Naming
 from .text import read_text
 

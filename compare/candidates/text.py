@@ -15,7 +15,7 @@ import numpy as np
 from reference import InputError
 
 from .candidate import COLUMNS, Candidate, checked_transits
-from .columns import ColumnReader
+from .column_reader import ColumnReader
 from .layout import Naming
 
 

@@ -19,7 +19,7 @@ from ..candidates.candidate import COLUMNS, Candidate, candidate_of
 from ..candidates.external import arguments, timed
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
-from ..report.suite import page
+from ..report.suite import suite_page
 from ..report.suite.files import Entry, entries
 from ..report.suite.outcome import Outcome, outcome
 from ..score.judge import judge
@@ -95,11 +95,11 @@ class Judging:
     def suite(self, folder: Path, out: Path | None) -> list[Outcome]:
         """Judge the files of a folder by the scenes that they are named after, and write the page."""
         if out is not None:
-            page.check(out)
+            suite_page.check(out)
 
         outcomes = [outcome(one.name, Path(one.scene).stem, partial(self._entry, one)) for one in entries(folder)]
         if out is not None:
-            page.write(outcomes, out)
+            suite_page.write(outcomes, out)
         return outcomes
 
     def _entry(self, one: Entry) -> Score:

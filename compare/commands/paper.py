@@ -28,7 +28,7 @@ def command(
     Every formula and number is computed again; with --out the figures are drawn again too.
     """
     from ..papers import build, rows
-    from ..papers.page import document
+    from ..papers.papers_page import document
     from ..report.folder import PAGE
 
     with stoppable("nothing half was written"), progress() as show:

@@ -50,7 +50,7 @@ def command(
 
     A scene without a dataset is solved first. A file alone gives path and swing plane.
     """
-    from ..report.charts.motion import motion_picture, panels
+    from ..report.charts.motion_pictures import motion_picture, panels
     from ..report.charts.score import check_target, write_picture
 
     wanted = listed(what, "--what")

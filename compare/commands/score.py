@@ -244,7 +244,7 @@ def command(
 def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
     """Print and write outcomes in the forms that were asked for."""
     from ..report.suite.outcome import text_lines
-    from ..report.suite.page import suite_document
+    from ..report.suite.suite_page import suite_document
 
     scores = [one.score for one in outcomes if one.score is not None]
     if plot is not None and scores:

@@ -48,7 +48,7 @@ def command(
     """
     from ..candidates.external import arguments
     from ..methods import SETTING, named_programs
-    from ..report.stability import REPORT, document_of
+    from ..report.stability_page import REPORT, document_of
     from ..studies.campaign import declared
     from ..studies.long_runs import long_runs
     from ..studies.stability import stability as measure

@@ -119,10 +119,10 @@ def command(
     check_limit(LIMIT_S if limit is None else limit)
     from ..candidates.external import arguments
     from ..methods import SETTING, named_programs
-    from ..report.study import REPORT
-    from ..studies.program import files_of
+    from ..report.study_page import REPORT
     from ..studies.study import plan
     from ..studies.study import study as measure
+    from ..studies.users_program import files_of
 
     REPORT.check(out)
     problem, digits = scene, None

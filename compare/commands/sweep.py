@@ -127,7 +127,7 @@ def command(
     """
     from reference.sweeps.sweep import parts_between, run
 
-    from ..report.sweep import document, text
+    from ..report.sweep_report import document, text
 
     request = _request(
         scene_word, out,
@@ -143,7 +143,7 @@ def command(
     if chosen is not None:
         refuse({"--plot": plot}, "together with --rows-range")
     if plot is not None:
-        from ..report.charts.sweep import check
+        from ..report.charts.sweep_chart import check
 
         check(request, plot)
     kept = (
@@ -158,7 +158,7 @@ def command(
 
         swept = run(request, out, workers, cluster, report, chosen)
     if plot is not None:
-        from ..report.charts.sweep import draw
+        from ..report.charts.sweep_chart import draw
 
         draw(swept, plot)
     if as_json:

@@ -15,8 +15,8 @@ from reference import InputError
 
 from ..rhs.problem import Problem
 from .method import HIGH_ORDER, SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
+from .native.cpp_program import prepared
 from .native.library import BOOST, GSL, SUNDIALS, Library
-from .native.program import prepared
 
 DENSE = ("sundials_nvecserial", "sundials_sunmatrixdense", "sundials_sunlinsoldense")
 

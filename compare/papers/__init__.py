@@ -69,7 +69,7 @@ def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
     from ..report.charts.drawing import check_matplotlib
     from ..report.folder import PAGE, check_folder, write_files
     from .figures import FIGURES, check_methods, svg
-    from .page import files_of
+    from .papers_page import files_of
 
     check_matplotlib("--out")  # so that a missing package is reported before the work
     check_folder(out, [PAGE])

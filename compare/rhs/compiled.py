@@ -19,7 +19,7 @@ from typing import Any
 from reference.system.cache import entry, store
 from reference.system.workspace import replace_file
 
-from .program import FUNCTIONS, Program
+from .straight_line import FUNCTIONS, Program
 
 HEADER = f"""import numba as nb
 import numpy as np

@@ -17,7 +17,7 @@ from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS
 
-from .program import Program
+from .straight_line import Program
 from .swing import Swing
 from .tangent import differentiated
 from .tracing import record

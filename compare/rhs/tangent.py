@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from .program import Program
+from .straight_line import Program
 from .tracing import RecordingFunctions, Tape
 
 

@@ -31,7 +31,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from .program import FUNCTIONS, CodeLine, Program
+from .straight_line import FUNCTIONS, CodeLine, Program
 
 
 class TracingError(TypeError):

@@ -28,7 +28,7 @@ from ..truth import DIGITS, FINE, Report, golden_of, truth_at
 from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
 from .explanation.explain import explain as explained
 from .scored import Score
-from .transits import TransitErrors, transit_errors
+from .transit_matching import TransitErrors, transit_errors
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 

@@ -14,7 +14,7 @@ from ..observed.turn_and_delay import SwingErrors
 from .errors import TrajectoryErrors
 from .explanation.findings import Explanation
 from .input_floor import input_floor
-from .transits import TransitErrors
+from .transit_matching import TransitErrors
 
 WHOLE = 1e-6  # a program that counts its steps ends this near to the end, as a part of the span, and has covered it
 

@@ -25,7 +25,7 @@ from reference.system.process import Emit
 from ..methods import METHODS
 from ..rhs.constants import constants_in_double
 from ..truth import golden_of
-from . import program
+from . import users_program
 from .campaign import Counted, campaign, declared
 from .character import Character, character
 from .grid import on_doubles
@@ -119,7 +119,7 @@ def stability(
         InputError: an unknown scene or method, or one that declares no such runs.
     """
     commands = dict(programs or {})
-    runs = [*declared(methods, "stability"), *((name, None, 1 / program.STEPS) for name in commands)]
+    runs = [*declared(methods, "stability"), *((name, None, 1 / users_program.STEPS) for name in commands)]
     cuts = {name: cut(load_scene(name)) for name in (default_scenes() if scenes is None else scenes)}
     problems: Problems = {}
     unsolved: dict[str, str] = {}
@@ -172,7 +172,7 @@ def _failed(item: Item, status: Status, reason: str) -> Cell:
 
 def _precision(method: str, formulation: str | None) -> str:
     if method not in METHODS:
-        return program.NUMBER
+        return users_program.NUMBER
     return METHODS[method].number + (f", {formulation}" if formulation else "")
 
 
@@ -185,7 +185,7 @@ def cells_of(emit: Emit, problems: Problems, limit_s: float, programs: dict[str,
         truth = GridTruth(golden, float(scene.exact.t_end))
         step = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
         if name in programs:
-            run = program.measured(name, programs[name], step, scene, golden, limit_s)
+            run = users_program.measured(name, programs[name], step, scene, golden, limit_s)
             emit(_of_program(item, run, traits, float(scene.exact.length), limit_s))
             continue
         method = METHODS[name]
@@ -219,10 +219,10 @@ def _judged(item: Item, row: Row, traits: Character, length: float, limit_s: flo
     )
 
 
-def _of_program(item: Item, run: program.Measured, traits: Character, length: float, limit_s: float) -> Cell:
+def _of_program(item: Item, run: users_program.Measured, traits: Character, length: float, limit_s: float) -> Cell:
     """Return the cell of a program, whose reason says from when on it is off."""
     cell = _judged(item, run.row, traits, length, limit_s)
-    since = run.breaks_at(WRONG * 10**-program.DIGITS * (traits.amplitude * length or length))
+    since = run.breaks_at(WRONG * 10**-users_program.DIGITS * (traits.amplitude * length or length))
     if cell.status != Status.SILENTLY_WRONG or since is None:
         return cell
     return replace(cell, reason=f"From t = {since:g} s on it is wrong. {cell.reason}", wrong_from_s=since)
@@ -231,7 +231,7 @@ def _of_program(item: Item, run: program.Measured, traits: Character, length: fl
 def digits_asked(method: str, setting: float) -> float:
     """Return the digits that a method is asked for by a setting; of a fixed step, those that its order gives."""
     if method not in METHODS:
-        return program.DIGITS
+        return users_program.DIGITS
     kind, order = METHODS[method].setting, METHODS[method].order
     if kind == "precision":
         return (setting - LOST_BITS) * math.log10(2)

@@ -24,8 +24,8 @@ from .grid import on_doubles
 from .machine import machine
 from .measure import ladder
 from .observed_order import orders
-from .program import file_row
 from .row import Row
+from .users_program import file_row
 
 LIMIT_S = 8.0  # CPU seconds of one run; a longer one is extrapolated from a part of the span
 PATIENCE = 12  # wall-clock limit of one run, in multiples of the CPU limit

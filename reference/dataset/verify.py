@@ -7,7 +7,7 @@ from itertools import islice
 from pathlib import Path
 
 from ..errors import BeyondDoublesError, DatasetError
-from .checks import index, motion, physics, record, tables
+from .checks import index, manifest_check, motion, physics, tables
 from .files import Files, read_files
 
 MAX_PROBLEMS = 20  # sentences returned at most
@@ -74,7 +74,7 @@ def problems_of(folder: Path) -> list[str]:
 
 def _row_by_row(files: Files) -> list[str]:
     """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
-    for check in (tables, record, physics):
+    for check in (tables, manifest_check, physics):
         try:
             problems = list(islice(check.problems(files), MAX_PROBLEMS))
         except (ArithmeticError, BeyondDoublesError):

@@ -10,9 +10,9 @@ from typing import Any
 from ..numbers.taylor_step import TaylorStep
 from .balls import demand
 from .bound import Piece, Radius, World, output
-from .columns import Columns
+from .enclosed_transits import Scan
 from .shapes import EnclosedTransit, Interval, Proposal
-from .transits import Scan
+from .six_columns import Columns
 
 
 class Course:

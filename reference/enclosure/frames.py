@@ -14,7 +14,7 @@ from flint import arb, fmpz_poly
 
 from ..numbers.taylor_step import TaylorStep
 from .bound import World
-from .columns import FINE
+from .six_columns import FINE
 
 ORDER = 27  # of the columns' polynomials
 ILL = 13  # condition number (Frobenius) above which the frame is made orthogonal

@@ -8,8 +8,8 @@ from importlib import import_module
 from ..errors import InputError
 from ..system.packages import switched_off
 from . import AUTO, batch_names, engine_names
-from .batch import Batch
-from .engine import Engine
+from .batch_interface import Batch
+from .interface import Engine
 from .plan import Pace, Plan, Report, Run
 
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps

@@ -15,8 +15,8 @@ from ..numbers.columns import POSITION, VELOCITY
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
-from .approximant import COEFFICIENT_BITS
 from .pilot import Pilot, run_pilot
+from .proof_steps import COEFFICIENT_BITS
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show

@@ -17,10 +17,10 @@ from ..numbers.columns import GRID, POSITION, TRANSITS
 from ..numbers.precision import rounded_up
 from ..numbers.table import Table, bits_in
 from ..scenes.scene import Scene
-from .approximant import COEFFICIENT_BITS, Feed, Replaced
 from .choice import first_radius, late_radius
 from .pilot import Pilot
 from .proof_checks import checked_states
+from .proof_steps import COEFFICIENT_BITS, Feed, Replaced
 from .rounding import UndecidedRounding, check_decided
 from .solution import CrossCheck, Proof, Solution, Source
 

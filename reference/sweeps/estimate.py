@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch import STOPPED, Batch, Outcomes, Rows, Wanted
+from ..engines.batch_interface import STOPPED, Batch, Outcomes, Rows, Wanted
 from ..numbers.precision import Array
 
 FACTOR = 16.0

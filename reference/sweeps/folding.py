@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch import Rows
+from ..engines.batch_interface import Rows
 from ..model.algebra import add, cross
 from ..model.constants import Constants, Vector, turn_and_pull
 from ..model.earth import axis_distance

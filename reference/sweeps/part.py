@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch import OK, STOPPED, Batch, Outcomes, Rows, Wanted
+from ..engines.batch_interface import OK, STOPPED, Batch, Outcomes, Rows, Wanted
 from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status

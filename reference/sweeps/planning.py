@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from ..engines import AUTO
-from ..engines.batch import Batch
+from ..engines.batch_interface import Batch
 from ..engines.registry import batches
 from ..errors import InputError, unknown
 from ..model.start import Start

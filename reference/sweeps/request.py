@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch import Rows, Wanted
+from ..engines.batch_interface import Rows, Wanted
 from ..numbers.double_double import DoubleDouble
 from ..scenes.scene import Level, Scene, parse_scene
 from .axes import Axis, Grid, Values, axis

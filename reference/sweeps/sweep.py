@@ -14,13 +14,13 @@ from ..errors import InputError
 from ..scenes.scene import Scene
 from ..system.packages import missing
 from ..system.process import usable_cores
-from .audit import Audit
-from .audit import audit as audited
 from .driver import Executor, Tally, drive, joined
 from .local import LocalExecutor
 from .part import Part
 from .planning import default_audit, request
 from .request import Request
+from .resolved import Audit
+from .resolved import audit as audited
 from .swept import Swept
 
 if TYPE_CHECKING:

@@ -12,10 +12,10 @@ import numpy as np
 from ..errors import unknown
 from ..status import Status
 from ..system.packages import missing
-from .audit import Audit
 from .axes import Grid
 from .driver import Tally
 from .request import Request
+from .resolved import Audit
 from .values import TEXTS
 
 if TYPE_CHECKING:

@@ -18,7 +18,7 @@ from typing import Any
 import heyoka as hy
 import numpy as np
 
-from reference.engines.batch import Rows, Wanted
+from reference.engines.batch_interface import Rows, Wanted
 from reference.engines.heyoka.batch import BATCH as HEYOKA
 from reference.engines.octet.batch import BATCH as OCTET
 from reference.engines.octet.rows import RESULTS, outcomes, packed

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from random_rows import rows_of
 
-from reference.engines.batch import OK, Batch, Outcomes, Rows, Wanted
+from reference.engines.batch_interface import OK, Batch, Outcomes, Rows, Wanted
 from reference.engines.registry import engines
 from reference.scenes.inputs import Inputs
 from reference.sweeps.estimate import DEGREES_PER_HOUR, Errors, judged

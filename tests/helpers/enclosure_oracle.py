@@ -13,8 +13,8 @@ from enclosure_recurrence import Recurrence
 
 from reference.enclosure.approximant import pair
 from reference.enclosure.bound import Piece, Radius, World, output
-from reference.enclosure.columns import Columns
 from reference.enclosure.frames import ColumnSource
+from reference.enclosure.six_columns import Columns
 from reference.scenes.inputs import Inputs
 
 PARIS = Inputs(

@@ -12,7 +12,7 @@ from reference.enclosure import Enclosure, enclose
 from reference.enclosure.approximant import GRAIN, pair, stretched
 from reference.enclosure.balls import cross, fixed
 from reference.enclosure.bound import World
-from reference.enclosure.run import SCENE_GUARD_BITS
+from reference.enclosure.prove import SCENE_GUARD_BITS
 from reference.numbers.taylor_step import TaylorStep
 from reference.scenes.inputs import Inputs
 

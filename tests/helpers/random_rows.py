@@ -9,7 +9,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from reference.engines.batch import Rows
+from reference.engines.batch_interface import Rows
 from reference.numbers.double_double import DoubleDouble
 from reference.scenes.inputs import Inputs
 from reference.scenes.scene import load_scene

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...rhs.problem import Array, Problem
-from ...rhs.program import Program
+from ...rhs.straight_line import Program
 from .steps import Step
 
 # a step may be longer than the setting by this part: 60 s then hold 600 steps of 0.1 s, although 0.1 is not a double

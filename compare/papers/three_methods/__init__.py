@@ -1,3 +1,3 @@
 """The third source paper, which solves the linear pendulum by three methods: its sections in the order of print."""
 
-SECTIONS = ("setting", "methods")
+SECTIONS = ("equations", "solutions")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..charts.drawing import check_matplotlib
-from ..charts.motion import motion_svgs
+from ..charts.motion_pictures import motion_svgs
 from ..folder import PAGE, check_folder, write_files
 from ..motion import Motion
 from .entry import entries

@@ -158,7 +158,7 @@ function suspicions(columns, matched, errors, truth) {
   return ways.filter(([, rest]) => rest <= EXPLAINED * top).map(([text, rest]) => `${text}, ${rest.toPrecision(2)} m are left.`);
 }
 
-// Match transits in order; name the missed and the extra ones, as compare/score/transits.py does.
+// Match transits in order; name the missed and the extra ones, as compare/score/transit_matching.py does.
 function transitErrors(times, truth, until, tolerance) {
   const possible = (time) => truth.possible.some(([from, to]) => time >= from && time <= to);
   const mine = times.filter((time) => time > 0 && time <= truth.t_end && !possible(time));

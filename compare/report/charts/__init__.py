@@ -7,10 +7,10 @@ bytes. The colours are Okabe and Ito's; markers, dashes and labels repeat their 
 from __future__ import annotations
 
 from .error_growth import ErrorHistory, error_growth
-from .errors import achieved_tolerance, formulations, right_hand_sides
 from .heat_map import Field, heat_map
 from .overview import by_family, overview
 from .precision import precision_ladder
+from .single_panels import achieved_tolerance, formulations, right_hand_sides
 
 __all__ = [
     "ErrorHistory",

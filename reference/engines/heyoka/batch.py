@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib.metadata import version
 
-from ..batch import Batch, Outcomes, Rows, Wanted
+from ..batch_interface import Batch, Outcomes, Rows, Wanted
 from .batch_tolerances import MOVED_TOLERANCE, TOLERANCE
 
 COMPILE_S = 1.5  # CPU seconds, cold

@@ -16,7 +16,7 @@ from ...model.algebra import cross, dot
 from ...model.constants import Constants
 from ...model.formulations import FORMULATIONS
 from ...numbers.precision import DOUBLE, Array
-from ..batch import DOUBTFUL, OK, STOPPED, Batch, Outcomes, Rows, Wanted
+from ..batch_interface import DOUBTFUL, OK, STOPPED, Batch, Outcomes, Rows, Wanted
 from .batch_tolerances import MOVED_TOLERANCE, TOLERANCE
 from .batch_zeros import TRANSIT, TURNING, by_lane, describe
 from .machine_code import keep_on_disk

@@ -12,7 +12,7 @@ from ...model.algebra import cross, subtract
 from ...model.constants import Constants
 from ...model.force import acceleration
 from ...numbers.precision import Array
-from ..batch import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, Rows, Wanted
+from ..batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, Rows, Wanted
 
 TRANSIT, TURNING = 0, 1  # kinds of zeros: xdot = 0; zdot along the plumb line from + to -
 QUIET = 1e-4  # of a small swing's period after the release: zeros there are those of the release itself

@@ -8,7 +8,7 @@ from fractions import Fraction
 from ...numbers.precision import LONG_DOUBLE_BITS, cheapest_type
 from ...numbers.taylor_step import TaylorStep
 from ...scenes.inputs import Inputs
-from ..engine import Engine
+from ..interface import Engine
 from ..plan import Pace, Plan, Report, Run
 
 STEP_S = 6e-4  # CPU seconds of a step at 160 bits; a step's cost grows with the square of the bits

@@ -16,10 +16,10 @@ from ...model.vanishing import xdot_vanishes, zero_at_release
 from ...numbers.precision import GUARD_BITS
 from ...numbers.table import Table
 from ..plan import Pace, Plan, Report, Run
+from .events import march, quiet_start
 from .log import watched_log
 from .numbers import Numbers
 from .stepper import Stepper, Zero
-from .transits import march, quiet_start
 
 OTHER_STEPS = Fraction(5, 8)  # of the span: the longest step of a run that takes other steps, if one would do
 SMALL_SWING_BITS = 80  # results carry this many bits below the run's epsilon, for swings much smaller than the cord

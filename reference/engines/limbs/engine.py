@@ -8,7 +8,7 @@ from fractions import Fraction
 from ...numbers.precision import NumberType
 from ...numbers.taylor_step import TaylorStep
 from ...scenes.inputs import Inputs
-from ..engine import Engine
+from ..interface import Engine
 from ..plan import Pace, Plan, Report, Run
 from .size import LEAST_PREC, MOST_PREC
 

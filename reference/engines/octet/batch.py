@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ...numbers.precision import Array
-from ..batch import Batch, Outcomes, Rows, Wanted
+from ..batch_interface import Batch, Outcomes, Rows, Wanted
 from .rows import COLUMNS, COMPILE_S, READ_S, RESULTS, TOLERANCE, outcomes, packed
 
 ORDER, MOVED_ORDER = 24, 22  # of a run, and of the run that tells the error

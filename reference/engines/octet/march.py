@@ -8,17 +8,17 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..batch import DOUBTFUL, STOPPED
+from ..batch_interface import DOUBTFUL, STOPPED
 from ..limbs.compiling import SOURCES, compiled, entry, hashed
 from ..limbs.lanes import LANES, at_least, load, occupied, spread, store, where
 from ..limbs.limb import Array, aligned
 from . import rows
-from .apsides import CONVERGED as TURNED
-from .apsides import place_highest, seek_highest
+from .bisection import DOUBT, MOST_ZEROS, Bisection, all_zeros, empty_bisection
 from .found import Moments, note_highest, note_transit
-from .long_way import DOUBT, MOST_ZEROS, LongWay, all_zeros, empty_long_way
+from .highest_points import CONVERGED as TURNED
+from .highest_points import place_highest, seek_highest
+from .lane_zeros import CONVERGED, Zeros, empty_zeros, refine, seek
 from .series import Series, empty_series, step_length, sum_series, taylor_coefficients, udot_of, xdot_of
-from .zeros import CONVERGED, Zeros, empty_zeros, refine, seek
 
 SHORTEST = 2.0**-40  # of a row's unit of time: a step that is shorter stops the row
 NEXT, DONE, ROW = range(3)  # in `March.counts`
@@ -43,7 +43,7 @@ class March(NamedTuple):
     c: Series
     transits: Zeros
     highest: Zeros
-    w: LongWay
+    w: Bisection
     time: Array
     time_low: Array
     length: Array
@@ -55,7 +55,7 @@ class March(NamedTuple):
 def empty_march() -> March:
     """Return lanes without rows."""
     own, time, low, length, last, top = (aligned(size * LANES) for size in (rows.COLUMNS, 1, 1, 1, 1, 3))
-    working = empty_series(), empty_zeros(), empty_zeros(), empty_long_way()
+    working = empty_series(), empty_zeros(), empty_zeros(), empty_bisection()
     return March(own, *working, time, low, length, last, top, np.zeros(ROW + LANES, dtype=np.int64))
 
 

@@ -13,12 +13,14 @@ from compare.approximations import (
     Approximation,
     Motion,
     Quantity,
-    carried,
     mathar_items,
     motions,
     quantities,
 )
-from compare.foucpend.march import ITEMS
+from compare.approximations import (
+    truncated as carried,
+)
+from compare.foucpend.fixed_steps import ITEMS
 from reference import InputError, IntegrationError, UnreachableError, load_scene
 
 PARIS = load_scene("paris")

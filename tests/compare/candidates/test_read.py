@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from places import ROOT
 
 from compare.candidates.archive import MAX_UNPACKED
-from compare.candidates.columns import MAX_ROWS
+from compare.candidates.column_reader import MAX_ROWS
 from compare.candidates.read import read, read_stream, read_transits
 from reference import InputError
 
@@ -463,7 +463,7 @@ def test_a_gigabyte_of_nothing_is_refused_in_bounded_memory(head, piece, said):
 
 
 def test_more_rows_than_are_judged_are_refused(monkeypatch):
-    monkeypatch.setattr("compare.candidates.columns.MAX_ROWS", 2)
+    monkeypatch.setattr("compare.candidates.column_reader.MAX_ROWS", 2)
     refused(csv(), "more than 2 rows")
     assert MAX_ROWS >= 1_000_000
 

@@ -85,7 +85,7 @@ def test_the_papers_page_is_written_whole_or_not_at_all(disk, foucault, monkeypa
     pytest.importorskip("matplotlib")
     monkeypatch.setattr("compare.papers.rows", lambda report: [])
     monkeypatch.setattr("compare.papers.figures.FIGURES", {})
-    monkeypatch.setattr("compare.papers.page.FIGURES", {})
+    monkeypatch.setattr("compare.papers.papers_page.FIGURES", {})
     fill(disk)
     assert refused(foucault("paper", "--out", disk / "page"), "--out")
     assert os.listdir(disk) in (["filler"], ["filler", "page"], ["page", "filler"])

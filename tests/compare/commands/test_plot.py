@@ -8,7 +8,7 @@ import pytest
 import reference
 from compare.candidates.candidate import candidate_of
 from compare.observed.swing_plane import Gauge
-from compare.report.charts.motion import length_unit, time_unit
+from compare.report.charts.motion_pictures import length_unit, time_unit
 from compare.report.motion import Motion
 
 pytest.importorskip("matplotlib")

@@ -10,7 +10,7 @@ from method_cases import case
 from small_scenes import make_scene
 
 from compare.methods import METHODS, Problem, available
-from compare.methods.native import library, program
+from compare.methods.native import cpp_program, library
 from compare.methods.native.library import BOOST, GSL, Library
 from reference import IntegrationError
 
@@ -56,7 +56,7 @@ def test_the_equations_in_cpp_are_those_in_python(formulation, here, part):
         release={"angle": "50", "azimuth": "20", "angle_rate": "40", "azimuth_rate": "100"},
     )
     problem = Problem.of(lively, formulation, np.arange(9.0))
-    answer = program.prepared(problem, 1e-9, here, [part])()
+    answer = cpp_program.prepared(problem, 1e-9, here, [part])()
     parameters = list(problem.system.parameters.values())
     rates = problem.system.program.function()(*problem.start, *parameters)
     slopes = problem.system.jacobian.function()(*problem.start, *parameters)
@@ -67,10 +67,10 @@ def test_the_equations_in_cpp_are_those_in_python(formulation, here, part):
 
 @needs_compiler
 def test_a_program_is_compiled_once_and_serves_scenes_with_the_same_terms(here, part, tmp_path, monkeypatch):
-    program.prepared(case("paris").problem("gsl_rk8pd"), 1e-9, here, [part])
+    cpp_program.prepared(case("paris").problem("gsl_rk8pd"), 1e-9, here, [part])
     (kept,) = (tmp_path / "cache" / "native").glob("[0-9a-f]*")
-    monkeypatch.setattr(program, "workspace", None)  # what compiles needs it
-    other = program.prepared(case("steep").problem("gsl_rk8pd", formulation="space"), 1e-6, here, [part])
+    monkeypatch.setattr(cpp_program, "workspace", None)  # what compiles needs it
+    other = cpp_program.prepared(case("steep").problem("gsl_rk8pd", formulation="space"), 1e-6, here, [part])
     assert other().reason == "as asked"
     assert kept.is_file()
 
@@ -80,7 +80,7 @@ def test_what_does_not_compile_is_said_in_the_compilers_words(here, tmp_path):
     wrong = tmp_path / "wrong.cpp"
     wrong.write_text("static void integrate(Run &) { no_such_thing(); }\n")
     with pytest.raises(IntegrationError, match=r"Own does not compile here.*no_such_thing"):
-        program.prepared(case("paris").problem("gsl_rk8pd"), 1e-9, here, [str(wrong)])
+        cpp_program.prepared(case("paris").problem("gsl_rk8pd"), 1e-9, here, [str(wrong)])
 
 
 @needs_compiler

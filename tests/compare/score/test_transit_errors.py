@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from compare.score.transits import TransitErrors, transit_errors
+from compare.score.transit_matching import TransitErrors, transit_errors
 
 TRUTH = np.arange(1, 21) * 8.2
 AX = 0.05 * (-1.0) ** np.arange(20)

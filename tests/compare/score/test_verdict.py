@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from compare.score.explanation.findings import Explanation, Model, SizedCause
-from compare.score.transits import TransitErrors
+from compare.score.transit_matching import TransitErrors
 from compare.score.verdict import lines, percent
 
 WIND = Explanation(causes=(SizedCause("wind", "leaves out the wind", 0.25, "input"),), corrected_m=1e-9)

@@ -18,7 +18,7 @@ import compare.studies.measure as measure
 from compare.methods import METHODS, Problem
 from compare.report.pareto import front
 from compare.report.tables import transit_error
-from compare.studies import program
+from compare.studies import users_program
 from compare.studies.measure import Bench
 from compare.studies.method_errors import GridTruth
 from compare.studies.precisions import bits_of, precision_items, precision_scene
@@ -235,7 +235,7 @@ def test_somebodys_files_are_rows_of_the_study_with_the_time_that_is_stated(
     assert re.search(r"still\.csv +– +\d\.\d\de-01$", still.rstrip())
     document = json.loads((out / "study.json").read_text())
     stated, unknown = document["rows"][-2:]
-    assert (stated["kind"], stated["cpu_s"], stated["reason"]) == ("file", 0.25, program.STATED)
+    assert (stated["kind"], stated["cpu_s"], stated["reason"]) == ("file", 0.25, users_program.STATED)
     assert (unknown["status"], unknown["cpu_s"]) == ("ok", None)
     assert document["candidates"] == ["good.csv", "still.csv"]
     page = (out / "index.html").read_text()
@@ -246,13 +246,13 @@ def test_a_file_that_ends_early_or_has_nothing_after_the_start_is_a_row_with_its
     files: tuple[Path, Path],
 ) -> None:
     scene = load_scene("paris", ["inputs=binary64", "run.t_end=600"])
-    golden, (candidate, _) = golden_of(scene), program.files_of([str(files[0])], None, ())["good.csv"]
-    row = program.file_row("short", candidate, 1.0, scene, golden)
+    golden, (candidate, _) = golden_of(scene), users_program.files_of([str(files[0])], None, ())["good.csv"]
+    row = users_program.file_row("short", candidate, 1.0, scene, golden)
     assert (row.status, row.reached_t) == ("gave_up", 120)
     assert "ends at t = 120 s of 600 s" in row.reason
     files[1].write_text("t,x,y\n0,0.3,0.4\n")
-    (candidate, _) = program.files_of([str(files[1])], None, ())["still.csv"]
-    assert "no row after t = 0" in program.file_row("short", candidate, None, scene, golden).reason
+    (candidate, _) = users_program.files_of([str(files[1])], None, ())["still.csv"]
+    assert "no row after t = 0" in users_program.file_row("short", candidate, None, scene, golden).reason
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset import files as reading
-from reference.dataset.checks import record
+from reference.dataset.checks import manifest_check
 from reference.dataset.checks.tables import _order, _signs_on_grid
 from reference.dataset.files import read_files, scene_of
 from reference.dataset.manifest import ALWAYS, MANIFEST, Manifest
@@ -166,7 +166,7 @@ def test_where_a_manifest_makes_no_sense_nothing_else_is_said(dataset, change, s
     found = read_files(dataset)
     changed = replace(found, manifest=found.manifest.model_copy(deep=True))
     change(changed.manifest)
-    assert list(record.problems(changed)) == [f"{MANIFEST}: {said}"]
+    assert list(manifest_check.problems(changed)) == [f"{MANIFEST}: {said}"]
 
 
 @pytest.mark.parametrize(("part", "found"), [("0.5", False), ("0.49", True)])
@@ -176,7 +176,7 @@ def test_a_bound_is_at_least_half_a_unit_of_the_last_digit(dataset, kind, part, 
     decimals = manifest.decimals[kind]["y"]
     bounds = getattr(manifest.bounds, kind) | {"y": f"{part}e-{decimals}"}
     changed = manifest.model_copy(update={"bounds": manifest.bounds.model_copy(update={kind: bounds})})
-    said = [line for line in record._bounds(changed) if f"bounds.{kind}.y" in line and "half a unit" in line]
+    said = [line for line in manifest_check._bounds(changed) if f"bounds.{kind}.y" in line and "half a unit" in line]
     assert bool(said) is found
 
 

@@ -10,8 +10,8 @@ from flint import arb
 
 from reference.enclosure.bound import Piece, Radius, World, output, tube
 from reference.enclosure.course import Course
+from reference.enclosure.enclosed_transits import MOST_LEAVES, Scan
 from reference.enclosure.shapes import Covered, Tube
-from reference.enclosure.transits import MOST_LEAVES, Scan
 from reference.numbers.taylor_step import TaylorStep
 
 TIMES = [Fraction(0), Fraction(7), Fraction(20)]

@@ -12,9 +12,9 @@ from flint import fmpz_poly
 
 pytest.importorskip("numba")
 
-from reference.enclosure.audit import compare
 from reference.enclosure.bound import Piece, World, polynomials
 from reference.enclosure.digits import check, norms, split
+from reference.enclosure.sums_checked import compare
 from reference.numbers.packing import DIGIT_BITS, Digits
 from reference.numbers.taylor_step import TaylorStep
 

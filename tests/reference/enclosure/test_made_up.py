@@ -12,8 +12,8 @@ from flint import arb, ctx, fmpq, fmpq_poly
 
 from reference.enclosure.balls import ball
 from reference.enclosure.bound import Piece, World
+from reference.enclosure.enclosed_transits import Scan, Slope, touched
 from reference.enclosure.shapes import Covered, Leaf, Tube
-from reference.enclosure.transits import Scan, Slope, touched
 from reference.numbers.taylor_step import TaylorStep
 
 BITS = 200

@@ -16,10 +16,10 @@ from scipy.integrate import solve_ivp
 from reference.enclosure.approximant import pair
 from reference.enclosure.balls import add, ball, cross
 from reference.enclosure.bound import Piece, Radius, World
-from reference.enclosure.columns import Columns
 from reference.enclosure.digits import split
+from reference.enclosure.enclosed_transits import Scan
 from reference.enclosure.frames import ColumnSource
-from reference.enclosure.transits import Scan
+from reference.enclosure.six_columns import Columns
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.numbers.columns import TRANSITS

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from small_scenes import make_scene, start_for, stepper_of
 
+from reference.engines.heyoka.events import march, quiet_start
 from reference.engines.heyoka.log import watched_log
 from reference.engines.heyoka.numbers import Numbers
 from reference.engines.heyoka.stepper import Stepper
 from reference.engines.heyoka.system import System
-from reference.engines.heyoka.transits import march, quiet_start
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import IntegrationError

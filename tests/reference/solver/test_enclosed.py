@@ -23,9 +23,9 @@ from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.precision import real
-from reference.solver import approximant, auditing
-from reference.solver.approximant import Feed
+from reference.solver import auditing, proof_steps
 from reference.solver.enclosed import solve_enclosed
+from reference.solver.proof_steps import Feed
 
 SHORT = {"t_end": "300", "digits": 30, "level": "enclosed"}
 
@@ -259,7 +259,7 @@ def test_all_that_a_proof_tries_is_of_the_engine_that_it_names(monkeypatch):
         tried.append((engine.name, prec))
         return engine
 
-    monkeypatch.setattr(approximant, "fastest", watched)
+    monkeypatch.setattr(proof_steps, "fastest", watched)
     by_limbs = reference.solve(scene, engine="limbs")
     assert by_limbs.run.engine == "heyoka"
     names, precs = zip(*tried, strict=True)

@@ -10,7 +10,7 @@ import pytest
 from against_limbs import compare
 from random_rows import KINDS, random_kinds, rows_of
 
-from reference.engines.batch import Wanted
+from reference.engines.batch_interface import Wanted
 from reference.engines.registry import batches
 from reference.sweeps.estimate import judged
 

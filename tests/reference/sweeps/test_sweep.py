@@ -149,14 +149,14 @@ def test_an_audit_finds_what_is_wrong(paris, monkeypatch):
     good = sweep(scene, ["site.latitude=0,10,20"], engine="heyoka", audit_rows=2)
     assert (good.audit.rows, good.audit.wrong) == (2, ())
     assert 0 < good.audit.worst_ratio < 1
-    from reference.sweeps import audit
+    from reference.sweeps import resolved
 
     def other(*arguments, **options):
         result = promoted(*arguments, **options)
         return Promoted(result.values | {"x_m": result.values["x_m"] + 1e-9}, result.times)
 
-    promoted = audit.promoted
-    monkeypatch.setattr(audit, "promoted", other)
+    promoted = resolved.promoted
+    monkeypatch.setattr(resolved, "promoted", other)
     assert len(sweep(scene, ["site.latitude=0,10,20"], engine="heyoka", audit_rows=2).audit.wrong) == 2
 
 

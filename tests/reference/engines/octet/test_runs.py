@@ -13,7 +13,7 @@ pytest.importorskip("numba")
 from against_limbs import compare
 from random_rows import KINDS, random_kinds, rows_of
 
-from reference.engines.batch import DOUBTFUL, OK, STOPPED, Outcomes, Rows, Wanted
+from reference.engines.batch_interface import DOUBTFUL, OK, STOPPED, Outcomes, Rows, Wanted
 from reference.engines.octet.batch import BATCH
 from reference.engines.octet.march import march
 

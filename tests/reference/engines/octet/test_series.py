@@ -13,7 +13,7 @@ pytest.importorskip("numba")
 import numba
 from random_rows import KINDS, random_inputs, rows_of
 
-from reference.engines.batch import Wanted
+from reference.engines.batch_interface import Wanted
 from reference.engines.limbs.lanes import LANES
 from reference.engines.octet.march import empty_march
 from reference.engines.octet.rows import UNIT, packed

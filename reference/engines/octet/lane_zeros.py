@@ -2,7 +2,7 @@
 
 A half is free of zeros if the rate's value in its middle outweighs slope, bend and the third derivative's bound; it is
 monotone, with one zero if the signs at its ends differ, if the slope does. Lanes that are neither, or have two zeros,
-go the long way (`long_way`).
+go the long way (`bisection`).
 """
 
 from __future__ import annotations

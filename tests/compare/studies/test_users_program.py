@@ -9,8 +9,8 @@ import sys
 import numpy as np
 import pytest
 
-from compare.studies.program import measured
 from compare.studies.stability import cut
+from compare.studies.users_program import measured
 from compare.truth import golden_of
 from reference import load_scene, trajectory
 from reference.status import Status

@@ -20,7 +20,7 @@ from .decimals import low_part, low_part_of_time
 from .header import Header
 from .layout import Layout, Naming
 from .lines import chunks, is_number
-from .rows import MARKS, Spelling, comment, spelling
+from .row_format import MARKS, Spelling, comment, spelling
 
 MAX_ROWS = 2_000_000
 SAMPLE = 50  # rows of a chunk that are searched for numbers with more digits than a double's

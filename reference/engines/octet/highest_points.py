@@ -8,8 +8,8 @@ from __future__ import annotations
 from ..limbs.compiling import compiled
 from ..limbs.lanes import LANES, at_least, fma, load, magnitude, spread, store, where
 from ..limbs.limb import Array
+from .lane_zeros import NOISE, Zeros, keep
 from .series import Series
-from .zeros import NOISE, Zeros, keep
 
 CONVERGED = 2.0**-20  # of a step: a zero of u' is so nearly symmetric that the next correction would be none
 

@@ -17,12 +17,12 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..numbers.taylor_step import TaylorStep
-from .audit import audit
 from .bound import World
 from .course import Course
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, plan_for, short
 from .shapes import EnclosedTransit, Interval
+from .sums_checked import audit
 
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
 ATTEMPTS = 4  # at rising precision

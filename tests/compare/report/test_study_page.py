@@ -16,7 +16,7 @@ import pytest
 from places import ROOT
 
 from compare.report import page as parts
-from compare.report import study as report
+from compare.report import study_page
 from compare.report.page import Column, Html, TableRow
 from compare.report.tables import cpu, setting, tidy
 from compare.studies.row import Row
@@ -90,7 +90,7 @@ class Reader(HTMLParser):
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     out = tmp_path_factory.mktemp("report") / "new" / "folder"
-    assert report.REPORT.write(study_document(), out) == out / "index.html"
+    assert study_page.REPORT.write(study_document(), out) == out / "index.html"
     return out
 
 
@@ -193,19 +193,19 @@ def test_the_page_says_where_and_how_it_was_measured(read):
 
 
 def test_title_and_limit_are_used_where_they_are_given():
-    html = report.page_text(study_document(title="A & B", limit_s=8.0))
+    html = study_page.page_text(study_document(title="A & B", limit_s=8.0))
     assert "<title>Error against run time: A &amp; B</title>" in html
     assert "8 CPU seconds" in html
 
 
 def test_the_same_document_makes_the_same_bytes(written, tmp_path):
-    report.REPORT.write(json.loads((written / "study.json").read_text()), tmp_path)
+    study_page.REPORT.write(json.loads((written / "study.json").read_text()), tmp_path)
     for path in written.iterdir():
         assert (tmp_path / path.name).read_bytes() == path.read_bytes(), path.name
 
 
 def test_a_study_in_which_everything_failed_still_has_a_page():
-    html = report.page_text(study_document([row("my_program", 0.1, None, None, Status.GAVE_UP, reason="broken")]))
+    html = study_page.page_text(study_document([row("my_program", 0.1, None, None, Status.GAVE_UP, reason="broken")]))
     assert "No method reached an error of 1e-3 m." in html
     assert "broken" in html
     Reader(html)
@@ -216,13 +216,13 @@ def test_without_matplotlib_the_page_says_what_is_missing(monkeypatch):
     monkeypatch.setattr(
         importlib.util, "find_spec", lambda name, *more: None if name == "matplotlib" else real(name, *more)
     )
-    html = report.page_text(study_document())
+    html = study_page.page_text(study_document())
     assert "<svg" not in html
     assert "foucault-reference[plot]" in html
 
 
 def test_an_interrupted_write_leaves_the_old_report(tmp_path, monkeypatch):
-    report.REPORT.write(study_document(), tmp_path)
+    study_page.REPORT.write(study_document(), tmp_path)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
     def interrupted(descriptor):
@@ -230,18 +230,18 @@ def test_an_interrupted_write_leaves_the_old_report(tmp_path, monkeypatch):
 
     monkeypatch.setattr("os.fsync", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        report.REPORT.write(study_document(title="another"), tmp_path)
+        study_page.REPORT.write(study_document(title="another"), tmp_path)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_a_place_that_cannot_be_written_is_a_message(tmp_path):
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(InputError, match="--out"):
-        report.REPORT.write(study_document(), tmp_path / "file")
+        study_page.REPORT.write(study_document(), tmp_path / "file")
 
 
 def test_the_text_table_has_every_row_and_the_sentences():
-    text = report.REPORT.text(study_document())
+    text = study_page.REPORT.text(study_document())
     for word in ("rk4", "scipy_dop853", "mpmath_odefun", "~40.0", "At 1e-6 m", "1 of 9 transits is missed"):
         assert word in text
     marked = [line for line in text.splitlines() if line.startswith("* ") and "Pareto" not in line]
@@ -285,7 +285,7 @@ def test_a_row_of_a_table_has_a_cell_for_every_column():
 
 
 def test_neither_the_report_nor_its_parts_load_matplotlib():
-    modules = "compare.report.study, compare.report.page, compare.report.charts"
+    modules = "compare.report.study_page, compare.report.page, compare.report.charts"
     code = f"import {modules}, sys; print('matplotlib' in sys.modules)"
     process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert process.stdout.strip() == "False"
@@ -296,9 +296,9 @@ def test_the_declared_order_stands_beside_the_observed_one():
         row("rk4", 0.1 / 2**i, 1e-3 / 16**i, 0.1, formulation="plane", kind="step", steps=100 * 2**i) for i in range(5)
     ]
     document = study_document([*rows, row("scipy_dop853", 1e-6, 1e-5, 4.0), row("heyoka_double", 1e-8, 2e-7, 0.01)])
-    read = Reader(report.page_text(document))
+    read = Reader(study_page.page_text(document))
     head, *body = table_of(read, "order", "observed")
     place = {title: i for i, title in enumerate(head[1])}
     found = {cells[0]: (cells[place["order"]], cells[place["observed"]]) for _, cells in body}
     assert found == {"rk4": ("4", "4.00 ± 0.00"), "scipy_dop853": ("8", "–"), "heyoka_double": ("–", "–")}
-    assert "rk4 4: 4.00 ± 0.00; scipy_dop853 8: –" in report.REPORT.text(document)
+    assert "rk4 4: 4.00 ± 0.00; scipy_dop853 8: –" in study_page.REPORT.text(document)

@@ -20,7 +20,7 @@ from reference.system.workspace import workspace
 
 from ...candidates.external import run_program
 from ...rhs.problem import Array, Problem
-from ...rhs.program import Program
+from ...rhs.straight_line import Program
 from .library import Library, compiler, library_folders
 
 FLAGS = ("-std=c++17", "-O3", "-march=native", "-w")

@@ -10,8 +10,8 @@ from ..limbs.compiling import compiled
 from ..limbs.lanes import LANES
 from ..limbs.limb import Array
 from ..limbs.polynomial import FREE, MONOTONE, classify, crossing, value_at
+from .lane_zeros import NOISE, Zeros
 from .series import MOST_ORDER
-from .zeros import NOISE, Zeros
 
 MOST_ZEROS = 16  # of one step
 DOUBT = -1  # returned where a sign is lost in rounding
@@ -20,7 +20,7 @@ _NARROWEST = 2.0**-40
 _DEEPEST = 64  # halves of a step, one in another, down to the narrowest
 
 
-class LongWay(NamedTuple):
+class Bisection(NamedTuple):
     """Working arrays: the polynomial, the ends of intervals still to be examined, the zeros and the slopes there."""
 
     f: Array
@@ -29,13 +29,13 @@ class LongWay(NamedTuple):
     slopes: Array
 
 
-def empty_long_way() -> LongWay:
+def empty_bisection() -> Bisection:
     """Return working arrays."""
-    return LongWay(np.zeros(MOST_ORDER + 1), np.zeros(2 * _DEEPEST), np.zeros(MOST_ZEROS), np.zeros(MOST_ZEROS))
+    return Bisection(np.zeros(MOST_ORDER + 1), np.zeros(2 * _DEEPEST), np.zeros(MOST_ZEROS), np.zeros(MOST_ZEROS))
 
 
 @compiled
-def all_zeros(w: LongWay, z: Zeros, f: Array, lane: int, length: float, multiplicity: int, order: int) -> int:
+def all_zeros(w: Bisection, z: Zeros, f: Array, lane: int, length: float, multiplicity: int, order: int) -> int:
     """Write the zeros on 0 < s <= length, in order; return their number, or DOUBT.
 
     Args:

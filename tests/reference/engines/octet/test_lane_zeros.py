@@ -15,9 +15,9 @@ import flint
 import numba
 
 from reference.engines.limbs.lanes import LANES
-from reference.engines.octet.long_way import all_zeros
+from reference.engines.octet.bisection import all_zeros
+from reference.engines.octet.lane_zeros import CONVERGED, refine, seek
 from reference.engines.octet.march import empty_march
-from reference.engines.octet.zeros import CONVERGED, refine, seek
 
 ORDER = 24
 
@@ -69,16 +69,16 @@ def polynomials(generator, count):
         yield f, generator.uniform(0.3, 1.5, size=LANES)
 
 
-def test_lanes_are_right_about_the_zeros_they_are_sure_of_and_the_long_way_finds_the_others(search, size, tally):
+def test_lanes_are_right_about_the_zeros_they_are_sure_of_and_bisection_finds_the_others(search, size, tally):
     generator, sure, long = np.random.default_rng(7), 0, 0
     for many, lengths in polynomials(generator, size(12, 300)):
-        m, the_long_way = search(many, lengths)
+        m, bisected = search(many, lengths)
         z = m.transits
         assert not (z.hit * z.doubt).any()  # a lane in doubt that crosses would be counted twice
         for lane in range(LANES):
             exact = real_zeros(many[lane], lengths[lane])
             if z.doubt[lane]:
-                count = the_long_way(lane)
+                count = bisected(lane)
                 found, slopes, long = m.w.places[:count].copy(), m.w.slopes[:count].copy(), long + 1
             else:
                 found, slopes, sure = z.place[[lane]][z.hit[[lane]] > 0], z.slope[[lane]][z.hit[[lane]] > 0], sure + 1
@@ -95,11 +95,11 @@ def test_a_zero_of_a_half_that_newton_overshoots_stays_in_its_half(search):
     k = np.arange(ORDER)
     factorials = np.array([float(math.factorial(int(i))) for i in k])
     wave = np.sin(0.2 + k * np.pi / 2) * 3.0**k / factorials
-    m, the_long_way = search(np.tile(wave, (LANES, 1)), np.linspace(0.9, 1.3, LANES))
+    m, bisected = search(np.tile(wave, (LANES, 1)), np.linspace(0.9, 1.3, LANES))
     for lane in range(LANES):
         places = m.transits.place[[lane]]
         if m.transits.doubt[lane]:
-            assert the_long_way(lane) == (1 if m.length[lane] > (np.pi - 0.2) / 3 else 0)
+            assert bisected(lane) == (1 if m.length[lane] > (np.pi - 0.2) / 3 else 0)
             places = m.w.places[:1]
         if m.length[lane] > (np.pi - 0.2) / 3:
             assert abs(places[0] - (np.pi - 0.2) / 3) < 1e-12  # the series is cut off at order 24
@@ -108,9 +108,9 @@ def test_a_zero_of_a_half_that_newton_overshoots_stays_in_its_half(search):
 def test_what_rounding_hides_is_doubtful(search):
     touching = np.zeros(ORDER)
     touching[:3] = 0.25, -1.0, 1.0  # (s - 1/2)²
-    m, the_long_way = search(np.tile(touching, (LANES, 1)), np.full(LANES, 0.9))
+    m, bisected = search(np.tile(touching, (LANES, 1)), np.full(LANES, 0.9))
     assert (m.transits.doubt == 1).all()
-    assert the_long_way(0) == -1
+    assert bisected(0) == -1
 
 
 @pytest.mark.parametrize("multiplicity", [1, 2])
@@ -118,5 +118,5 @@ def test_an_exact_zero_at_the_start_is_not_counted(search, multiplicity):
     f = np.zeros(ORDER)
     f[multiplicity : multiplicity + 2] = 1.0, -2.0
     f[0] = -1e-18  # what rounding leaves of the zero
-    _, the_long_way = search(np.tile(f, (LANES, 1)), np.full(LANES, 0.9))
-    assert the_long_way(0, multiplicity) == 1
+    _, bisected = search(np.tile(f, (LANES, 1)), np.full(LANES, 0.9))
+    assert bisected(0, multiplicity) == 1

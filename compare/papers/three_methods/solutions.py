@@ -9,15 +9,7 @@ from ..checks import Approximate, Check, Finding, Identity, Statement, section
 from ..digits import MP, Vector, add, cos, cross, derivative, j, mpf, norm, scale, shown, sin, sqrt, vector_derivative
 from ..first_principles import coupled, linearised, motion, rate_up
 from ..points import Point, paris, points
-from .setting import (
-    axes_rate,
-    generic_path,
-    measured_rate,
-    primed,
-    printed_rate,
-    stiffness,
-    unprimed_equation,
-)
+from .equations import axes_rate, generic_path, measured_rate, primed, printed_rate, stiffness, unprimed_equation
 
 
 def _own_rate(p: Point) -> Any:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from compare.papers import figures, page
+from compare.papers import figures, papers_page
 from compare.papers.checks import VERDICTS, JudgedRow
 from compare.papers.figures import FIGURES
 from reference import InputError
@@ -35,7 +35,7 @@ def test_json_and_csv_hold_the_same_rows(built: Built) -> None:
         as_csv = list(csv.DictReader(handle))
     for row in as_csv:  # what a spreadsheet would run begins with an apostrophe there
         row.update({key: cell[1:] if cell[:1] == "'" and cell[1:2] in "=+-@" else cell for key, cell in row.items()})
-    assert as_json == as_csv == [page.document(row) for row in rows]
+    assert as_json == as_csv == [papers_page.document(row) for row in rows]
     assert {"id", "place", "printed", "recomputed", "verdict"} <= set(as_json[0])
 
 
@@ -85,7 +85,9 @@ def test_the_same_figure_has_the_same_bytes(built: Built) -> None:
 
 
 def test_what_stands_in_a_row_cannot_break_the_page() -> None:
-    text = page.page_text([replace(ROW, printed="<script>alert(1)</script>")], dict.fromkeys(range(10), "<svg/>"))
+    text = papers_page.page_text(
+        [replace(ROW, printed="<script>alert(1)</script>")], dict.fromkeys(range(10), "<svg/>")
+    )
     assert "<script>alert" not in text
     assert "&lt;script&gt;alert" in text
 

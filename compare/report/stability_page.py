@@ -16,8 +16,8 @@ from reference.status import Status
 
 from ..studies.long_runs import LongRun, laws
 from ..studies.machine import machine
-from ..studies.program import NUMBER
 from ..studies.stability import WRONG, Cell
+from ..studies.users_program import NUMBER
 from .busy import busy
 from .charts import ErrorHistory, Field, error_growth, heat_map
 from .charts.heat_map import LETTERS
