@@ -126,7 +126,7 @@ def class_names(root: Path) -> dict[str, list[str]]:
 
 
 def code_lines(path: Path) -> int:
-    """The lines of a source file that hold code: neither blank, nor comments, nor docstrings."""
+    """The lines of a source file that hold code: neither blank, nor comments, nor docstrings, nor imports."""
     text, skipped = path.read_text(encoding="utf-8"), {"COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENDMARKER"}
     tokens = tokenize.generate_tokens(io.StringIO(text).readline)
     held = {
@@ -138,7 +138,20 @@ def code_lines(path: Path) -> int:
     for node in ast.walk(tree(path)):
         if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node) is not None:
             held -= set(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
+        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+            held -= set(range(node.lineno, (node.end_lineno or 0) + 1))
     return len(held)
+
+
+def importers(root: Path) -> dict[Path, list[Path]]:
+    """Return for each source file those that import it; what an `__init__` hands on counts as imported by it."""
+    found: dict[Path, list[Path]] = {path: [] for path in sources(root)}
+    for path in found:
+        for target in imported(path, root):
+            for file in (target.with_suffix(".py"), target / "__init__.py"):
+                if file in found and file != path:
+                    found[file].append(path)
+    return found
 
 
 def main(root: Path) -> None:
@@ -151,16 +164,24 @@ def main(root: Path) -> None:
             f"{place or 'project':10} {len(rooms):3} rooms, {len(stack):2} floors, {len(found):3} arrows, "
             f"{len(rings)} circles ({inside} arrows in them)"
         )
+    files = sources(root)
     rings = circles(*modules(root))
-    print(f"files      {len(sources(root))}, circles of files: {len(rings)} {[sorted(ring) for ring in rings] or ''}")
+    print(f"files      {len(files)}, circles of files: {len(rings)} {[sorted(ring) for ring in rings] or ''}")
     repeated = class_names(root)
     print(f"class names used more than once: {len(repeated)}: {', '.join(repeated)}")
-    names = Counter(path.name for path in sources(root) if path.name != "__init__.py")
-    again = {name: count for name, count in sorted(names.items()) if count > 1}
+    names = Counter(path.name for path in files if path.name != "__init__.py")
+    again = {f"{name} ({count})": count for name, count in sorted(names.items()) if count > 1}
     print(f"file names used more than once: {len(again)}: {', '.join(again)}")
+    single = [path for path, users in importers(root).items() if len(users) == 1 and path.name != "__init__.py"]
+    print(f"files that one other file imports: {len(single)}")
+    for path in single:
+        print(f"  {len(path.read_text(encoding='utf-8').splitlines()):4} {path.relative_to(root).as_posix()}")
     for name in PACKAGES:
-        lines = sum(len(path.read_text().splitlines()) for path in (root / name).rglob("*.py"))
-        print(f"lines of {name}: {lines}")
+        paths = [path for path in files if root / name in path.parents]
+        raw = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in paths)
+        print(f"lines of {name}: {raw}, {sum(map(code_lines, paths))} of them code")
+    tests = sum(len(path.read_text(encoding="utf-8").splitlines()) for path in (root / "tests").rglob("*.py"))
+    print(f"lines of tests: {tests}")
 
 
 if __name__ == "__main__":
