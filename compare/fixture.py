@@ -15,7 +15,7 @@ import pytest
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from .score.scored import Score
+    from . import Score
     from .testing import SceneCase
 
 MARKER, FIXTURE = "foucault_scenes", "foucault_scene"

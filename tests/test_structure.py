@@ -139,7 +139,7 @@ PUBLIC = {
     "shortened",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.carried": "carried",
-    "reference.model.constants": "Constants Vector constants is_zero",
+    "reference.model.constants": "Constants Vector constants constants_in_double is_zero",
     "reference.model.earth": "axis_distance",
     "reference.model.force": "acceleration invariant rest_position tension",
     "reference.model.formulations": "FORMULATIONS",

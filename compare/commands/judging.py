@@ -14,6 +14,7 @@ from reference.commands.progress import progress
 from reference.commands.terminal import stoppable
 from reference.numbers.precision import Array
 
+from .. import Score, judge
 from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import COLUMNS, Candidate, candidate_of
 from ..candidates.external import arguments, timed
@@ -22,8 +23,6 @@ from ..candidates.read import read, read_stream, read_transits
 from ..report.suite import suite_page
 from ..report.suite.files import Entry, entries
 from ..report.suite.outcome import Outcome, outcome
-from ..score.judge import judge
-from ..score.scored import Score
 from .options import announce
 
 

@@ -13,8 +13,7 @@ from reference import InputError, IntegrationError
 from reference.numbers.precision import Array
 
 from ..approximations.mathar_items import VARIABLES, derivatives, truncated
-from ..methods import METHODS, available
-from ..rhs.problem import FirstOrderSystem, Problem
+from ..methods import METHODS, FirstOrderSystem, Problem, available
 from .options import Options
 
 BLOCK = 100_000  # steps whose states are in memory at a time

@@ -22,7 +22,8 @@ from collections.abc import Mapping, Sequence
 from reference import InputError
 from reference.system.declarations import Registry
 
-from ..rhs.problem import Problem
+from ..rhs.problem import FirstOrderSystem, Problem
+from ..rhs.swing import suited
 from .external import LONGEST_NAME, SETTING, external, file_name
 from .method import Family, Method, Outcome, Work, available
 
@@ -30,6 +31,7 @@ __all__ = [
     "METHODS",
     "SETTING",
     "Family",
+    "FirstOrderSystem",
     "Method",
     "Outcome",
     "Problem",
@@ -37,6 +39,7 @@ __all__ = [
     "available",
     "external",
     "named_programs",
+    "suited",
 ]
 
 METHODS: Mapping[str, Method] = Registry(__name__, "METHODS", "method", lambda method: [*Family].index(method.family))

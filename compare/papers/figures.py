@@ -12,13 +12,12 @@ from reference import InputError, load_scene
 from reference.numbers.precision import Array
 
 from ..approximations import APPROXIMATIONS, Motion
-from ..methods import METHODS, available
+from ..methods import METHODS, Problem, available
 from ..observed.position_error import difference, distance
 from ..observed.swing_plane import rest_in_metres
 from ..report.charts.drawing import COLOURS, FAINT, GUIDE
 from ..report.charts.labels import Line
 from ..report.charts.panels import Panel, dots, drawn, line
-from ..rhs.problem import Problem
 from .digits import degrees, mpf
 from .first_principles import rest_angle
 from .mathar.paris import estimate

@@ -13,7 +13,7 @@ import numpy as np
 
 from reference import Golden, Scene
 from reference.dataset.dense import Dense
-from reference.model.constants import Constants
+from reference.model.constants import Constants, constants_in_double
 from reference.model.force import acceleration, invariant
 from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
@@ -22,7 +22,6 @@ from ..candidates.candidate import COLUMNS, Candidate
 from ..observed.position_error import difference, distance
 from ..observed.power_law import power_of_time
 from ..observed.turn_and_delay import SwingErrors, swing_errors
-from ..rhs.constants import constants_in_double
 
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
 

@@ -17,13 +17,13 @@ import numpy as np
 
 from reference import Golden, InputError, Scene, UnreachableError, load_scene
 from reference.dataset.dense import WITHIN
+from reference.model.constants import constants_in_double
 from reference.numbers.precision import Array
 
 from ..candidates.against_scene import beyond_the_cord, check_times
 from ..candidates.candidate import Candidate
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
-from ..rhs.constants import constants_in_double
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
 from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
 from .explanation.explain import explain as explained

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference import Scene, UnreachableError
-from reference.model.constants import Constants
+from reference.model.constants import Constants, constants_in_double
 from reference.model.force import tension
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import Array
 from reference.solver.digits_lost import digits_lost
 from reference.solver.sensitivity import sensitivity
-
-from ..rhs.constants import constants_in_double
 
 SAMPLES = 64  # states of the trajectory at which rates are measured
 IN_DOUBLE = 1e6  # what is magnified no more than this is followed in double

@@ -24,8 +24,7 @@ from reference.numbers.precision import Array
 from reference.status import Status
 from reference.system.process import Emit
 
-from ..methods import METHODS, Method, Outcome, Problem, Work, available, external
-from ..rhs.swing import suited
+from ..methods import METHODS, Method, Outcome, Problem, Work, available, external, suited
 from .failure import FAILURES, failure
 from .machine import load_per_core
 from .method_errors import GridTruth, h_drift

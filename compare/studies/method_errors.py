@@ -9,14 +9,13 @@ from functools import cached_property
 import numpy as np
 
 from reference import Golden, InputError, Scene
-from reference.model.constants import constants
+from reference.model.constants import constants, constants_in_double
 from reference.model.force import acceleration, invariant
 from reference.numbers.precision import Array, context, to_mpf
 
 from ..candidates.candidate import COLUMNS
 from ..methods import Outcome
 from ..observed.position_error import Column, difference, distance
-from ..rhs.constants import constants_in_double
 
 H_ROWS = 64  # rows at which h is evaluated
 _ROUNDINGS = 8  # of a double, in the difference of two times and in vx over ax

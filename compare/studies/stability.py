@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 
 from reference import Golden, Scene, UnreachableError, load, load_scene, parse_scene, scene_ids
+from reference.model.constants import constants_in_double
 from reference.numbers.columns import STATE
 from reference.status import Status
 from reference.system.process import Emit
 
 from ..methods import METHODS
-from ..rhs.constants import constants_in_double
 from ..truth import golden_of
 from . import users_program
 from .campaign import Counted, campaign, declared

@@ -16,8 +16,7 @@ from reference import Golden, Scene, load_scene
 from reference.status import Status
 
 from ..candidates.candidate import Candidate
-from ..methods import METHODS
-from ..rhs.swing import suited
+from ..methods import METHODS, suited
 from ..truth import Report, golden_of
 from .campaign import Counted, campaign, check_usable
 from .grid import on_doubles

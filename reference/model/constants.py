@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from typing import Any, Self
 
 from ..errors import BeyondDoublesError
-from ..numbers.precision import to_mpf
+from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, context, to_mpf
 from ..scenes.inputs import Inputs
 from .earth import axis_distance
 
@@ -115,6 +116,12 @@ def constants(inputs: Inputs, ctx: Any) -> Constants:
         sin=sin,
         cos=cos,
     )
+
+
+@lru_cache(maxsize=64)
+def constants_in_double(inputs: Inputs) -> Constants:
+    """Return the constants that follow from a scene's exact inputs as doubles, each rounded once."""
+    return constants(inputs, context(DOUBLE_BITS + GUARD_BITS)).converted(float)
 
 
 def turn_and_pull(length: Any, gravity: Any, rate: Any, distance: Any, sin: Any, cos: Any) -> tuple[Any, Any, Any, Any]:

@@ -13,11 +13,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from reference import Scene
-from reference.model.constants import Constants
+from reference.model.constants import Constants, constants_in_double
 from reference.model.force import acceleration
 from reference.numbers.precision import Array
-
-from ...rhs.constants import constants_in_double
 
 FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # stencils of order 6
 SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180

@@ -13,12 +13,11 @@ from hypothesis import strategies as st
 from small_scenes import make_scene
 
 import compare.rhs.tracing
-from compare.rhs.constants import constants_in_double
 from compare.rhs.problem import FirstOrderSystem, Problem
 from compare.rhs.tangent import differentiated
 from compare.rhs.tracing import TracingError, record
 from reference import InputError, load_scene
-from reference.model.constants import constants
+from reference.model.constants import constants, constants_in_double
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import context
 

@@ -24,13 +24,13 @@ from typer.testing import CliRunner
 
 from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
-from compare.rhs.constants import constants_in_double
 from compare.score.explanation.explain import explain
 from compare.score.judge import judge
 from compare.score.scored import Score
 from foucault import commands
 from reference import Scene, load_scene
 from reference.engines.variants import Variants
+from reference.model.constants import constants_in_double
 from reference.solver.sensitivity import sensitivity, with_value
 
 SOURCE = PENDULUM_C
