@@ -25,7 +25,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from reference.system.lazy import lazy
+from reference.system.imports import lazy
 
 if TYPE_CHECKING:
     from .approximations import APPROXIMATIONS

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from .errors import DatasetError, FoucaultError, InputError, IntegrationError, UnreachableError
 from .scenes.scene import Scene, load_scene, parse_scene
 from .scenes.shipped import scene_ids
-from .system.lazy import lazy
+from .system.imports import lazy
 
 if TYPE_CHECKING:
     from .dataset.read import Golden, load

@@ -161,11 +161,9 @@ PUBLIC = {
     "reference.system": "cache",
     "reference.system.cache": "arrays entry store",
     "reference.system.capture": "captured",
-    "reference.system.declarations": "Registry",
-    "reference.system.lazy": "lazy",
+    "reference.system.imports": "Registry lazy missing switched_off",
     "reference.system.machine_code": "kept",
     "reference.system.opening": "open_at_once",
-    "reference.system.packages": "missing switched_off",
     "reference.system.process": "Emit Worker alarm terminable usable_cores",
     "reference.system.workspace": "replace_file workspace",
 }

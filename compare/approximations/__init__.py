@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from reference.system.declarations import Registry
+from reference.system.imports import Registry
 
 from .approximation import Approximation, Motion, Order, Printed, Quantity
 

@@ -20,7 +20,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from reference import InputError
-from reference.system.declarations import Registry
+from reference.system.imports import Registry
 
 from ..rhs.problem import FirstOrderSystem, Problem
 from ..rhs.swing import suited

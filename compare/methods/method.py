@@ -15,7 +15,7 @@ import numpy as np
 from reference import Scene
 from reference.numbers.table import Table
 from reference.status import Status
-from reference.system.packages import missing, switched_off
+from reference.system.imports import missing, switched_off
 
 from ..rhs.problem import Array, Problem
 from .native.library import Library

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..numbers.precision import Array
 from ..scenes.scene import Scene
-from ..system.lazy import no_attribute
+from ..system.imports import no_attribute
 from .files import read_files
 from .manifest import Manifest
 from .place import golden_folder

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..model.constants import Constants
 from ..numbers.precision import Array
-from ..system.packages import missing, switched_off
+from ..system.imports import missing, switched_off
 
 OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
 CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart

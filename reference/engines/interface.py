@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from ..numbers.taylor_step import TaylorStep
 from ..scenes.inputs import Inputs
-from ..system.packages import missing, switched_off
+from ..system.imports import missing, switched_off
 from .plan import Pace, Plan, Report, Run
 
 

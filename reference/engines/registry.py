@@ -6,7 +6,7 @@ from functools import cache
 from importlib import import_module
 
 from ..errors import InputError
-from ..system.packages import switched_off
+from ..system.imports import switched_off
 from . import AUTO, batch_names, engine_names
 from .batch_interface import Batch
 from .interface import Engine

@@ -14,7 +14,7 @@ from ..numbers.columns import GRID, POSITION, VELOCITY
 from ..numbers.precision import Array
 from ..numbers.table import Table
 from ..scenes.scene import Level, Scene
-from ..system.lazy import no_attribute
+from ..system.imports import no_attribute
 
 
 @dataclass(frozen=True)

@@ -188,7 +188,7 @@ def versions(engine: str) -> str:
     from importlib.metadata import version
 
     from ..engines.registry import batches
-    from ..system.packages import missing
+    from ..system.imports import missing
 
     arrow = "" if missing(["pyarrow"]) else f"; pyarrow {version('pyarrow')}"
     return f"{batches()[engine].identity}{arrow}"

@@ -13,7 +13,7 @@ from typing import Any
 from ..errors import InputError
 from ..numbers.double_double import DoubleDouble
 from ..scenes.scene import Reading, checked_value
-from ..system.packages import missing
+from ..system.imports import missing
 from .values import TEXTS, check_key, numbers_of
 
 PARQUET = (".parquet", ".pq")

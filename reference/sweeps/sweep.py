@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from ..engines import AUTO
 from ..errors import InputError
 from ..scenes.scene import Scene
-from ..system.packages import missing
+from ..system.imports import missing
 from ..system.process import usable_cores
 from .driver import Executor, Tally, drive, joined
 from .local import LocalExecutor

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import unknown
 from ..status import Status
-from ..system.packages import missing
+from ..system.imports import missing
 from .axes import Grid
 from .driver import Tally
 from .request import Request

@@ -1,14 +1,46 @@
-"""Declarations by id: a file put into a folder of them is found, and imported when an id is first looked up."""
+"""Imports made late: public names at their first use, declarations found in a folder, packages that may be missing."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cached_property
 from importlib import import_module
+from importlib.util import find_spec
 from pkgutil import iter_modules
 from typing import Any, Protocol, TypeVar
 
-from ..errors import unknown
+from ..errors import nearest, unknown
+
+
+def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
+    """Return the functions `__getattr__` and `__dir__` of a package, which import its names at their first use.
+
+    Args:
+        package: the package's own name.
+        homes: the module that defines each name, relative to the package.
+    """
+
+    def attribute(name: str) -> Any:
+        if name in homes:
+            return getattr(import_module(f".{homes[name]}", package), name)
+        raise no_attribute(f"module {package!r}", name, {*homes, *getattr(sys.modules[package], "__all__", ())})
+
+    def names() -> list[str]:
+        return sorted({*vars(sys.modules[package]), *homes})
+
+    return attribute, names
+
+
+def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
+    """Return the error for an unknown attribute, which says what there is, the nearest names first."""
+    text = f"{owner} has no attribute {name!r}"
+    if name.startswith("_"):  # Python itself asks for such names, and wants no advice
+        return AttributeError(text)
+    known = sorted(names)
+    near = nearest(name, known)
+    return AttributeError(f"{text}; it has {', '.join([*near, *(one for one in known if one not in near)])}")
 
 
 class Declaration(Protocol):
@@ -68,3 +100,22 @@ class Registry(Mapping[str, D]):
 
     def __repr__(self) -> str:
         return f"{len(self)} {self._what}s: {', '.join(self)}"
+
+
+def missing(modules: Iterable[str]) -> list[str]:
+    """Return the modules that are not installed."""
+    return [name for name in modules if not _installed(name)]
+
+
+def switched_off(modules: Iterable[str]) -> str | None:
+    """Return the environment variable that stops one of the modules from compiling, or None."""
+    variable = "NUMBA_DISABLE_JIT"
+    return variable if "numba" in modules and os.environ.get(variable, "0") not in ("", "0") else None
+
+
+def _installed(module: str) -> bool:
+    try:
+        spec = find_spec(module)
+    except ModuleNotFoundError:  # its parent package is missing
+        return False
+    return spec is not None and spec.origin is not None  # a folder without code has no origin

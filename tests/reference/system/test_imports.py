@@ -12,11 +12,11 @@ import pytest
 from compare.approximations import APPROXIMATIONS
 from compare.methods import METHODS
 from reference import InputError
-from reference.system.declarations import Registry
+from reference.system.imports import Registry
 
 INTERFACES = {
     "compare.methods": ("METHODS", {"external", "method", "native", "runge_kutta"}),
-    "compare.approximations": ("APPROXIMATIONS", {"approximation", "carried", "case"}),
+    "compare.approximations": ("APPROXIMATIONS", {"approximation", "case", "truncated"}),
 }
 FILE = """
 from types import SimpleNamespace
