@@ -1,6 +1,8 @@
 """Run somebody's program (--run): limited in time and output, killed with its descendants, timed (CPU and wall).
 
-The limit on its output is that on any candidate's text (`lines.MAX_BYTES`).
+The limit on its output is that on any candidate's text (`lines.MAX_BYTES`). Its descendants normally stay in its
+process group. One that forks into a session of its own leaves the group, and its parent may have exited: it is
+recognised by a mark in the environment that it inherited.
 """
 
 from __future__ import annotations
@@ -8,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import secrets
 import shlex
 import signal
 import statistics
@@ -15,22 +18,25 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import BinaryIO
+
+import psutil
 
 from reference import InputError, Scene
 from reference.model.start import Start
 from reference.system.process import terminable
 
 from .lines import MAX_BYTES
-from .process_tree import ProcessTree
 
 MAX_COMMAND = 1 << 14  # characters; the time to split it into words grows with the square
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
 TIMEOUT_S = 600.0
 REPEATS = 3
 LONG_S = 20.0  # a program that takes longer than this, in s, is timed once, by the run that is scored
+MARK = "FOUCAULT_RUN"  # the variable of the environment that holds the marks of a run and of those around it
+ROUNDS = 100  # searches for descendants at most: a process may be started while the others are killed
 _TAIL = 400  # characters of stderr that a message quotes
 _FOR_A_SHELL = re.compile(r"\|.*|&&?|;|(\d*|&)[<>].*")  # unquoted words that only a shell obeys
 _NO_SHELL = "No shell is used. Put the words into quotes if they are meant as they stand, or run sh -c '...'."
@@ -128,7 +134,7 @@ def run_program(
     Raises:
         InputError: it cannot be started, fails, takes too long or writes too much; no process of it is left running.
     """
-    start, tree = time.monotonic(), ProcessTree()
+    start, mark = time.monotonic(), secrets.token_hex(16)
     with tempfile.TemporaryFile() as errors, contextlib.ExitStack() as stack:
         output = stack.enter_context(tempfile.TemporaryFile())
         try:
@@ -137,7 +143,7 @@ def run_program(
                 stdin=subprocess.DEVNULL,
                 stdout=output,
                 stderr=errors,
-                env=tree.environment,
+                env={**os.environ, MARK: f"{os.environ.get(MARK, '')} {mark}".strip()},
                 start_new_session=True,
             )
         except (OSError, ValueError) as error:  # ValueError: a word with a zero byte, or that is no text
@@ -155,7 +161,7 @@ def run_program(
         finally:
             limits.end()
             wall = time.monotonic() - start
-            tree.end(process.pid)  # processes that it left running in the background
+            _end_all(process.pid, mark)  # what it left running in the background
         tail = _tail(errors)
         if limits.reason:
             kind = OutOfTimeError if limits.timed_out else InputError
@@ -165,6 +171,28 @@ def run_program(
         output.seek(0)
         stack.pop_all()  # the caller closes it
     return output, usage.ru_utime + usage.ru_stime, wall
+
+
+def _end_all(leader: int, mark: str) -> None:
+    """Kill a process group, and every process with the mark, until none is left."""
+    with contextlib.suppress(ProcessLookupError, PermissionError):
+        os.killpg(leader, signal.SIGKILL)
+    for _ in range(ROUNDS):
+        left = list(_marked(mark))
+        for process in left:
+            with contextlib.suppress(psutil.Error):
+                process.kill()
+        if not left:
+            return
+        psutil.wait_procs(left, timeout=0.1)
+
+
+def _marked(mark: str) -> Iterator[psutil.Process]:
+    """Yield the processes of this user that have the mark."""
+    for process in psutil.process_iter(["environ", "status"]):
+        ended = process.info["status"] == psutil.STATUS_ZOMBIE
+        if not ended and mark in (process.info["environ"] or {}).get(MARK, ""):
+            yield process
 
 
 class _Limits:

@@ -15,8 +15,7 @@ import pytest
 from interruption import PATIENCE_S, gone_within, interrupted
 from small_scenes import make_scene
 
-from compare.candidates.external import arguments, placeholders, run_program, timed
-from compare.candidates.process_tree import MARK
+from compare.candidates.external import MARK, arguments, placeholders, run_program, timed
 from reference import InputError
 
 
@@ -172,7 +171,6 @@ while not (os.path.exists(sys.argv[1]) and open(sys.argv[1]).read()):
 """
 
 
-@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the mark is looked for in /proc")
 @pytest.mark.parametrize(("then", "late"), [("signal.pause()", True), ("print('done')", False)])
 def test_what_forks_into_a_session_of_its_own_is_ended_as_well(tmp_path, then, late):
     note = tmp_path / "pid"
@@ -187,7 +185,6 @@ def test_what_forks_into_a_session_of_its_own_is_ended_as_well(tmp_path, then, l
     assert not alive(pid)  # at once: nothing of it runs on when this returns
 
 
-@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="the mark is looked for in /proc")
 def test_nobody_elses_processes_are_ended_with_a_program():
     with subprocess.Popen(python("import signal; signal.pause()"), start_new_session=True) as bystander:
         run_program(python("print(1)"))[0].close()
