@@ -252,16 +252,16 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
 
         error_picture(scores, plot)
     if junit is not None:
-        from ..report.suite.junit import write
+        from ..report.suite.ci_servers import write_junit
 
-        write(outcomes, junit)
+        write_junit(outcomes, junit)
     if as_json:
         emit(outcomes[0].document() if len(outcomes) == 1 else suite_document(outcomes))
         return
     for line in text_lines(outcomes):
         typer.echo(line)
     if github:
-        from ..report.suite.github import annotation, append_summary, summary
+        from ..report.suite.ci_servers import annotation, append_summary, summary
 
         for one in outcomes:
             typer.echo(annotation(one))

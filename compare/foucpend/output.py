@@ -60,8 +60,7 @@ def _order(method: str) -> str:
 
 def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
     """Yield the snapshots of each block and the transits in it."""
-    from .fixed_steps import blocks
-    from .parabola_zeros import Transits
+    from .fixed_steps import Transits, blocks
 
     transits, first = Transits(), 0
     for times, states in blocks(options):

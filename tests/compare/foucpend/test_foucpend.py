@@ -17,9 +17,9 @@ from compare.approximations import APPROXIMATIONS, Motion
 from compare.candidates.read import read_stream
 from compare.commands.pend import command
 from compare.foucpend import Options, lines
+from compare.foucpend.fixed_steps import Transits, parabola_zero
 from compare.foucpend.options import DEFAULTS
 from compare.foucpend.output import SiteFrame
-from compare.foucpend.parabola_zeros import Transits, parabola_zero
 from compare.papers.digits import degrees, norm
 from compare.papers.first_principles import place
 from compare.papers.points import paris
