@@ -31,7 +31,7 @@ FLOORS = {
     ],
     "reference/engines": [
         ["side_by_side"],
-        ["registry", "trajectory", "variants", "equations"],
+        ["registry", "trajectory", "equations"],
         ["octet"],
         [*engine_names()],
         ["interface"],
@@ -134,7 +134,7 @@ PUBLIC = {
     "reference.engines.heyoka.model": "RoundedModel",
     "reference.engines.heyoka.numbers": "Numbers",
     "reference.engines.registry": "batches engines",
-    "reference.engines.variants": "Variants",
+    "reference.engines.trajectory": "Variants",
     "reference.errors": "BeyondDoublesError Stopped did_you_mean finite in_words plain plain_json plain_lines "
     "shortened",
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
@@ -151,8 +151,7 @@ PUBLIC = {
     "reference.scenes.inputs": "Inputs",
     "reference.scenes.scene": "LEVELS MAX_ROWS RunTable",
     "reference.scenes.shipped": "DATA_VERSION data_root golden_root in_checkout seals",
-    "reference.solver.digits_lost": "digits_lost",
-    "reference.solver.sensitivity": "sensitivity",
+    "reference.solver.sensitivity": "digits_lost sensitivity",
     "reference.status": "Status",
     "reference.sweeps.axes": "Grid",
     "reference.sweeps.request": "Request",

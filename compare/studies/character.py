@@ -16,8 +16,7 @@ from reference.model.constants import Constants, constants_in_double
 from reference.model.force import tension
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import Array
-from reference.solver.digits_lost import digits_lost
-from reference.solver.sensitivity import sensitivity
+from reference.solver.sensitivity import digits_lost, sensitivity
 
 SAMPLES = 64  # states of the trajectory at which rates are measured
 IN_DOUBLE = 1e6  # what is magnified no more than this is followed in double

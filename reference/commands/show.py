@@ -41,7 +41,7 @@ def command(
     if equations:
         document |= _compiled(scene)
     if sensitivity:
-        from ..solver.digits_lost import digits_lost
+        from ..solver.sensitivity import digits_lost
 
         document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
     if as_json:

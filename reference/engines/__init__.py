@@ -1,11 +1,11 @@
 """The engines, integrators of the model, each in a folder; one run of a scene with its transits, and two at a time.
 
-- `batch`: many scenes side by side in double, what goes in and what comes out.
-- `plan`: the input of an engine, `Plan`, and its output, `Run`; `engine`: the interface.
+- `batch_interface`: many scenes side by side in double, what goes in and what comes out.
+- `plan`: the input of an engine, `Plan`, and its output, `Run`; `interface`: what an engine declares.
 - `registry`: the engines by name, which of them a run takes, and the run itself.
 - `side_by_side`: two runs at the same time.
 - `equations`: the compiled equations of a scene, as text.
-- `trajectory`, `variants`: single unconfirmed runs as binary64, of any system and with changed constants.
+- `trajectory`: single unconfirmed runs as binary64, of any system and with changed constants.
 - `heyoka/`: everything that uses heyoka, in any number type.
 - `limbs/`: an integrator in machine code for many digits; needs numba.
 """

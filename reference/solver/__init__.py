@@ -5,7 +5,7 @@
 - `choice`: the run that is published: its bits, engine and form.
 - `pilot`: pilot runs, which measure how rounding errors grow; `reach`: the limits of a run.
 - `agreement`: how far two runs of a scene are apart, and the errors that follow; `transit_errors`: those of transits.
-- `enclosed`: the level enclosed; `approximant`: the run whose Taylor polynomials its proof takes.
+- `enclosed`: the level enclosed; `proof_steps`: the run whose Taylor polynomials its proof takes.
 - `rounding`: decimals of every printed column, and whether a proof decides each digit.
-- `sensitivity`: response of a trajectory to each input; `digits_lost`: how many digits that costs.
+- `sensitivity`: response of a trajectory to each input, and how many digits that costs.
 """

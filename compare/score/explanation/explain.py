@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from reference import FoucaultError, Scene
-from reference.engines.variants import Variants
+from reference.engines.trajectory import Variants
 from reference.numbers.precision import Array
 
 from ...approximations import APPROXIMATIONS, Motion

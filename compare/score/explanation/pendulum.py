@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from reference import FoucaultError
-from reference.engines.variants import Variants
+from reference.engines.trajectory import Variants
 from reference.model.constants import Constants
 from reference.numbers.precision import Array
 

@@ -8,7 +8,7 @@ from small_scenes import make_scene
 
 from compare.observed.swing_plane import Gauge
 from compare.observed.turn_and_delay import swing_errors
-from reference.engines.variants import Variants
+from reference.engines.trajectory import Variants
 
 TIMES = np.linspace(0.0, 3600.0, 1801)
 REST = (0.0, -0.115)

@@ -29,7 +29,7 @@ from compare.score.judge import judge
 from compare.score.scored import Score
 from foucault import commands
 from reference import Scene, load_scene
-from reference.engines.variants import Variants
+from reference.engines.trajectory import Variants
 from reference.model.constants import constants_in_double
 from reference.solver.sensitivity import sensitivity, with_value
 

@@ -18,7 +18,7 @@ from compare.score.explanation.findings import Explanation, Model
 from compare.score.judge import _flung_off, _reading, _transits, judge
 from reference import InputError, load, load_scene, solve, trajectory
 from reference.engines.heyoka.numbers import Numbers
-from reference.engines.variants import Variants
+from reference.engines.trajectory import Variants
 from reference.errors import plain
 
 COLUMNS = ("x", "y", "z", "vx", "vy", "vz")

@@ -11,7 +11,7 @@ from small_scenes import make_scene
 
 from reference import InputError, IntegrationError, integrate, trajectory
 from reference.engines import trajectory as trajectories
-from reference.engines.variants import Variants
+from reference.engines.trajectory import Variants
 from reference.numbers.precision import DOUBLE, LONG_DOUBLE, real
 
 TIMES = np.linspace(0.0, 100.0, 57)

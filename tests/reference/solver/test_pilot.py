@@ -20,9 +20,9 @@ from reference.numbers.table import bits_in
 from reference.scenes.scene import LEVELS, load_scene
 from reference.solver import pilot as pilot_runs
 from reference.solver import reach
-from reference.solver.digits_lost import digits_lost
 from reference.solver.pilot import Pilot, run_pilot
 from reference.solver.reach import Pace, effort
+from reference.solver.sensitivity import digits_lost
 
 METRE = {"length": "1"}
 STILL = {"rotation_rate": "0"}
@@ -67,7 +67,7 @@ def test_perturbed_runs_that_diverge_at_every_precision_are_refused(monkeypatch)
     scene = load_scene("separatrix")
     times = tuple(scene.exact.grid)
     measured = run_pilot(scene.exact, times)
-    monkeypatch.setattr("reference.solver.digits_lost.MAX_PREC", 130)
+    monkeypatch.setattr("reference.solver.sensitivity.MAX_PREC", 130)
     with pytest.raises(UnreachableError, match="perturbed runs diverge completely"):
         digits_lost(scene.exact, times, measured)
 
