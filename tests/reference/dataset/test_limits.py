@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import shutil
 import sys
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -27,7 +29,7 @@ from reference.dataset.sheets import Sheet
 from reference.dataset.vectors import _closest_pair
 from reference.dataset.verify import problems_of, verify
 from reference.dataset.write import write
-from reference.errors import DatasetError
+from reference.errors import DatasetError, InputError
 
 
 def problems(dataset):
@@ -94,6 +96,41 @@ def test_without_files_relative_to_a_folder_a_dataset_is_read_by_its_path(datase
     whole = read_files(dataset)
     monkeypatch.setattr(reading.os, "supports_dir_fd", set())
     assert read_files(dataset) == whole
+
+
+KINDS = {
+    "a named pipe": os.mkfifo,
+    "a folder": Path.mkdir,
+    "a device": lambda path: path.symlink_to("/dev/zero"),
+    "a link to itself": lambda path: path.symlink_to(path.name),
+    "a link to nothing": lambda path: path.symlink_to("nothing"),
+}
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there are no such files")
+@pytest.mark.parametrize("name", ["grid.csv", MANIFEST])
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_no_file_is_found_and_not_waited_for(dataset, kind, name):
+    (dataset / name).unlink()
+    KINDS[kind](dataset / name)
+    with suppress(InputError):  # without a manifest it is no dataset
+        (problem,) = problems(dataset).splitlines()
+        assert problem.startswith(name)
+        if kind in ("a named pipe", "a folder", "a device"):
+            assert "not a regular file" in problem
+
+
+@pytest.mark.xfail(reason="files are opened by the system's own numbers", strict=True)
+def test_every_file_is_read_once(dataset, monkeypatch):
+    opened, honest = [], io.open
+
+    def noted(path, *more, **how):
+        opened.append(Path(path).name)
+        return honest(path, *more, **how)
+
+    monkeypatch.setattr(io, "open", noted)
+    files = read_files(dataset)
+    assert sorted(opened) == sorted([MANIFEST, *files.texts])
 
 
 @pytest.mark.parametrize("size, said", [(1 << 28, "a byte was changed"), ((1 << 28) + 1, "at most 268435456 are read")])
