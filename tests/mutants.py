@@ -38,7 +38,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: physics": f"{TIGHT} {DATASET}verify.py",
     "reference/dataset/checks: tables": f"{LIMITS} {TIGHT} {DATASET}verify.py",
     "reference/dataset/checks: manifest_check": f"{LIMITS} {BITS} {DATASET}verify.py {SOLVER}confirming.py",
-    "reference/dataset/checks: motion shooting": f"{BITS} {TIGHT} {DATASET}verify.py {DATASET}shooting.py",
+    "reference/dataset/checks: motion": f"{BITS} {TIGHT} {DATASET}verify.py",
     "reference/dataset/checks: index": f"{DATASET}index.py",
     "reference/dataset: verify files place vectors manifest": f"{LIMITS} {FILES} {DATASET}verify.py",
     "reference/dataset: read sheets write": f"{FILES} {DATASET}verify.py",

@@ -1,9 +1,8 @@
 """The checks of `verify`, one idea a file; each yields a sentence for every problem that it finds in a dataset.
 
-- `record`: what follows from the scene is made again: names, frame, equations, command, counts, bounds, page, vectors.
+- `manifest_check`: what follows from the scene is made again: frame, equations, command, bounds, page, vectors, …
 - `tables`: grid times, the first row, doubles, the digits of each column, order and directions of the transits.
 - `physics`: each row by itself: sphere, velocity along it, invariant, the acceleration at a transit.
 - `index`: the seal of a dataset that ships, against the one inside the package.
-- `motion`: the rows together: the scene is integrated again from its release; where that does not decide,
-  `shooting`: from every row to the next, within what `propagation` says of the bounds meanwhile.
+- `motion`: the rows together: the scene is integrated again from its release.
 """

@@ -22,8 +22,8 @@ from ...numbers.table import bits_in
 from ..files import Files
 from ..invariant import INVARIANT_BITS
 from ..sheets import Sheet
-from .completion import deep, depth, vertical_velocity
 
+STEEP = 4  # where |z| is below l/4, z does not follow well enough from x and y
 NEAR = 64  # a nudge of z is at most its size over this
 NUDGE = 1e-5  # of a column's size: differences over it are right to four digits, which is plenty
 SLACK = Fraction(21, 20)
@@ -147,10 +147,10 @@ class _Moments:
         rows = self._deep
         side = np.where(self.columns[2][rows] > 0, 1, -1)
         x, y = (column[rows] for column in columns[:2])
-        columns[2].values[rows] = depth(x, y, k.length, side, FixedPoint.sqrt).values
+        columns[2].values[rows] = _depth(x, y, k.length, side, FixedPoint.sqrt).values
         follows = self._follows & np.asarray(columns[2].values != 0, dtype=bool)  # beyond the sphere, z comes out 0
         x, y, z, vx, vy = (column[follows] for column in columns[:5])
-        columns[5].values[follows] = vertical_velocity(x, y, z, vx, vy).values
+        columns[5].values[follows] = _vertical_velocity(x, y, z, vx, vy).values
         return list(quantity(columns, k).fractions())
 
     @np.errstate(all="ignore")
@@ -166,8 +166,8 @@ class _Moments:
 
         def of(changed: list[Array]) -> Array:
             x, y, z, vx, vy, vz = changed
-            z = np.where(self._deep, depth(x, y, k.length, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0))), z)
-            vz = np.where(self._follows, vertical_velocity(x, y, np.where(z, z, 1.0), vx, vy), vz)
+            z = np.where(self._deep, _depth(x, y, k.length, np.sign(z), lambda q: np.sqrt(np.maximum(q, 0.0))), z)
+            vz = np.where(self._follows, _vertical_velocity(x, y, np.where(z, z, 1.0), vx, vy), vz)
             return np.asarray(quantity([x, y, z, vx, vy, vz], k) + 0.0 * z)
 
         value, total, largest = of(columns), np.zeros(len(self.names)), max(bounds)
@@ -196,7 +196,7 @@ class _Moments:
     @property
     def _deep(self) -> Array:
         """Whether z follows well from x and y, for each state."""
-        return np.asarray(deep(self.columns[2], self.length), dtype=bool)
+        return np.asarray(abs(self.columns[2]) * STEEP > self.length, dtype=bool)
 
     @property
     def _whole(self) -> Array:
@@ -208,6 +208,16 @@ class _Moments:
     def _follows(self) -> Array:
         """Whether vz is taken as it follows from the others."""
         return np.asarray(self.columns[2] != 0, dtype=bool) if self.transits is not None else self._deep
+
+
+def _depth(x: Any, y: Any, length: Any, side: Any, sqrt: Callable[[Any], Any]) -> Any:
+    """Return z on the side of the pivot, -1 or 1, where it is."""
+    return sqrt(length * length - x * x - y * y) * side
+
+
+def _vertical_velocity(x: Any, y: Any, z: Any, vx: Any, vy: Any) -> Any:
+    """Return vz, which keeps the velocity along the sphere."""
+    return -(x * vx + y * vy) / z
 
 
 def _invariant(columns: list[Any], k: Constants) -> Any:

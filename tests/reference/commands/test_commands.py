@@ -101,7 +101,7 @@ def test_verify_says_what_it_left_out_unless_it_solves_the_scene_again(foucault,
         monkeypatch.setattr(motion, name, 0.0)
     target = tmp_path / "paris"
     foucault("generate", "paris", *SHORT, "--out", str(target))
-    assert "the motion was not integrated again" in foucault("verify", str(target))[1]
+    assert "motion not decided without --recompute" in foucault("verify", str(target))[1]
     assert foucault("verify", str(target), "--recompute")[1] == f"{target}: ok\n"
 
 

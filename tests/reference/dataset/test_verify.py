@@ -7,7 +7,6 @@ import random
 import shutil
 from fractions import Fraction
 from importlib.metadata import version
-from itertools import repeat
 from pathlib import Path
 
 import pytest
@@ -369,14 +368,13 @@ def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(datase
     monkeypatch.setattr(motion, "ROW_S", 0.0)
     monkeypatch.setattr(motion, "TRANSIT_S", 0.0)
     (note,) = verify(dataset).notes
-    assert "--recompute does it" in note
+    assert note.startswith("motion not decided without --recompute: ") and "would take about" in note
     monkeypatch.setattr(motion, "_steps", lambda _: 0)
     monkeypatch.setattr(integration, "STEPS_PER_CALL", 8)
     (note,) = verify(dataset).notes
     assert "takes more than 0 s" in note
 
 
-@pytest.mark.xfail(reason="each row is shot to the next one where the whole motion does not decide", strict=True)
 def test_where_the_most_bits_do_not_decide_the_motion_that_is_a_note_and_no_failure(dataset, foucault, monkeypatch):
     monkeypatch.setattr(motion, "_compared", lambda *_: None)
     status, out, _ = foucault("verify", dataset)
@@ -386,12 +384,6 @@ def test_where_the_most_bits_do_not_decide_the_motion_that_is_a_note_and_no_fail
     (row,) = json.loads(foucault("verify", dataset, "--json")[1])["rows"]
     assert row == {"path": str(dataset), "ok": True, "problems": [], "notes": [note.strip()]}
     assert foucault("verify", dataset, "--recompute")[:2] == (0, f"{dataset}: ok\n")
-
-
-def test_twenty_numbers_that_the_row_before_does_not_lead_to_are_named(dataset, monkeypatch):
-    monkeypatch.setattr(motion, "_compared", lambda *_: None)
-    monkeypatch.setattr("reference.dataset.checks.shooting.problems", lambda *_: repeat("off"))
-    assert motion.problems(read_files(dataset)) == (["off"] * 20, [])
 
 
 @pytest.mark.parametrize(
