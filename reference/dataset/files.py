@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
 import re
-import stat
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -22,11 +21,7 @@ from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 
 MAX_MANIFEST = 1 << 20  # bytes
 MAX_FILE = 1 << 28
-MAX_FILES = 1 << 29  # all together
-MAX_MISTAKES = 1000  # of a manifest, for each of which pydantic would make a text
 HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER}
-_NOT_BLOCKING = getattr(os, "O_NONBLOCK", 0)
-_AS_BYTES = getattr(os, "O_BINARY", 0)
 _BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
 _PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND}
 _DOUBLE = r"-?[0-9][.][0-9]{16}e[+-][0-9]{2,3}"
@@ -61,34 +56,28 @@ def read_files(folder: Path) -> Files:
         InputError: there is no dataset, or it cannot be read.
         DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
     """
-    with _opened(folder) as directory:
-        manifest = _manifest(folder, directory)
+    manifest = read_manifest(folder)
+    try:
+        scene = scene_of(manifest)
+    except FoucaultError as error:
+        raise DatasetError(str(folder), [f"the manifest's scene is refused: {error}"]) from None
+    texts: dict[str, str] = {}
+    problems = []
+    for name, record in manifest.files.items():
         try:
-            scene = scene_of(manifest)
-        except FoucaultError as error:
-            raise DatasetError(str(folder), [f"the manifest's scene is refused: {error}"]) from None
-        size = sum(record.bytes for record in manifest.files.values())
-        if size > MAX_FILES:
-            raise DatasetError(str(folder), [f"{MANIFEST}: files of {size} bytes, at most {MAX_FILES} are read"])
-        texts: dict[str, str] = {}
-        problems = []
-        for name, record in manifest.files.items():
-            try:
-                data = _read(directory, name, record.bytes)
-            except OSError as error:
-                problems.append(f"{name}: {error.strerror}")
-                continue
+            data = _read(folder / name, MAX_FILE, record.bytes)
             if hashlib.sha256(data).hexdigest() != record.sha256:
                 problems.append(f"{name}: a byte was changed (sha256 differs)")
-                continue
-            try:
+            else:
                 texts[name] = data.decode()
-            except UnicodeDecodeError:
-                problems.append(f"{name}: not UTF-8")
-        foreign = sorted(set(os.listdir(folder)) - {MANIFEST, *manifest.files})
+        except OSError as error:
+            problems.append(f"{name}: {error.strerror}")
+        except UnicodeDecodeError:
+            problems.append(f"{name}: not UTF-8")
     if problems:
         raise DatasetError(str(folder), problems)
     tables = _tables(folder, manifest, texts)
+    foreign = sorted(set(os.listdir(folder)) - {MANIFEST, *manifest.files})
     return Files(folder, manifest, scene, texts, tables, foreign)
 
 
@@ -99,8 +88,37 @@ def read_manifest(folder: Path) -> Manifest:
         InputError: there is no dataset, or it cannot be read.
         DatasetError: the manifest is missing or malformed, or breaks its schema or its seal.
     """
-    with _opened(folder) as directory:
-        return _manifest(folder, directory)
+
+    def refused(problem: str) -> DatasetError:
+        return DatasetError(str(folder), [f"{MANIFEST} {problem}"])
+
+    try:
+        if MANIFEST not in os.listdir(folder):
+            raise _no_dataset(folder)
+    except (FileNotFoundError, NotADirectoryError, ValueError):
+        raise _no_dataset(folder) from None
+    except OSError as error:
+        raise InputError("PATH", str(folder), "a readable folder", f"{error.strerror}.") from None
+    try:
+        text = _read(folder / MANIFEST, MAX_MANIFEST).decode()
+        document = json.loads(text)
+        manifest = Manifest.model_validate(document)
+    except OSError as error:
+        raise refused(f"cannot be read: {error.strerror}") from None
+    except ValidationError as error:
+        older = document.get("schema_version") if isinstance(document, dict) else None
+        if older in range(1, FORMAT):
+            raise refused(f"is of format {older}: make the dataset again with `foucault generate`") from None
+        details = error.errors()[0]
+        where = ".".join(map(str, details["loc"]))
+        raise refused(f"breaks the schema{' at ' + where if where else ''}: {details['msg']}") from None
+    except (ValueError, RecursionError) as error:
+        raise refused(f"is not JSON in UTF-8: {error}") from None
+    if manifest.text() != text:
+        raise refused("is not in the form in which it is written: spaces, the order of keys, or a key twice")
+    if manifest.expected_seal() != manifest.seal:
+        raise refused("does not fit its seal: a byte was changed")
+    return manifest
 
 
 def scene_of(manifest: Manifest) -> Scene:
@@ -114,86 +132,25 @@ def scene_of(manifest: Manifest) -> Scene:
     return parse_scene({"id": name, **top, **manifest.scene})
 
 
-@dataclass(frozen=True)
-class _Directory:
-    """An open folder: what is put in its place meanwhile is not read."""
-
-    path: Path
-    number: int | None  # None where the system cannot open files relative to a folder
-
-
-@contextmanager
-def _opened(folder: Path) -> Iterator[_Directory]:
-    try:
-        if os.open not in os.supports_dir_fd:
-            yield _Directory(folder, None)
-            return
-        number = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    except (FileNotFoundError, NotADirectoryError, ValueError):
-        raise _no_dataset(folder) from None
-    except OSError as error:
-        raise InputError("PATH", str(folder), "a readable folder", f"{error.strerror}.") from None
-    try:
-        yield _Directory(folder, number)
-    finally:
-        os.close(number)
-
-
 def _no_dataset(folder: Path) -> InputError:
     advice = did_you_mean(folder.name, seals(), "Make it with `foucault generate`.")
     return InputError("PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", advice)
 
 
-def _read(directory: _Directory, name: str, size: int | None) -> bytes:
-    """Return the bytes of a regular file of the size that the manifest says; of the manifest, any up to `MAX_MANIFEST`.
+def _read(path: Path, most: int, size: int | None = None) -> bytes:
+    """Return the bytes of a regular file: at most so many, and as many as the manifest says, if it does.
 
     Raises:
         OSError: it is something else; nothing of it is read then.
     """
-    path = name if directory.number is not None else directory.path / name
-    # without blocking, because a named pipe would wait for a writer
-    number = os.open(path, os.O_RDONLY | _NOT_BLOCKING | _AS_BYTES, dir_fd=directory.number)
-    status = os.fstat(number)
-    if not stat.S_ISREG(status.st_mode):
-        os.close(number)  # `open` leaves that of a folder open
+    found = path.stat().st_size
+    if not path.is_file():  # a named pipe would wait for a writer
         raise OSError(0, "not a regular file")
-    with open(number, "rb") as stream:
-        if size is not None and status.st_size != size:
-            raise OSError(0, f"{status.st_size} bytes, the manifest says {size}")
-        most = MAX_MANIFEST if size is None else MAX_FILE
-        if status.st_size > most:
-            raise OSError(0, f"{status.st_size} bytes, at most {most} are read")
-        return stream.read(status.st_size + 1)  # which is also what is taken of the memory
-
-
-def _manifest(folder: Path, directory: _Directory) -> Manifest:
-    def refused(problem: str) -> DatasetError:
-        return DatasetError(str(folder), [f"{MANIFEST} {problem}"])
-
-    try:
-        text = _read(directory, MANIFEST, None).decode()
-        document = json.loads(text)
-        manifest = Manifest.model_validate(document)
-    except FileNotFoundError:
-        raise _no_dataset(folder) from None
-    except OSError as error:
-        raise refused(f"cannot be read: {error.strerror}") from None
-    except ValidationError as error:
-        older = document.get("schema_version") if isinstance(document, dict) else None
-        if older in range(1, FORMAT):
-            raise refused(f"is of format {older}: make the dataset again with `foucault generate`") from None
-        if error.error_count() > MAX_MISTAKES:
-            raise refused(f"breaks the schema in {error.error_count()} places") from None
-        details = error.errors()[0]
-        where = ".".join(map(str, details["loc"]))
-        raise refused(f"breaks the schema{' at ' + where if where else ''}: {details['msg']}") from None
-    except (ValueError, RecursionError) as error:
-        raise refused(f"is not JSON in UTF-8: {error}") from None
-    if manifest.text() != text:
-        raise refused("is not in the form in which it is written: spaces, the order of keys, or a key twice")
-    if manifest.expected_seal() != manifest.seal:
-        raise refused("does not fit its seal: a byte was changed")
-    return manifest
+    if size is not None and found != size:
+        raise OSError(0, f"{found} bytes, the manifest says {size}")
+    if found > most:
+        raise OSError(0, f"{found} bytes, at most {most} are read")
+    return path.read_bytes()
 
 
 def _tables(folder: Path, manifest: Manifest, texts: Mapping[str, str]) -> dict[str, Sheet]:
@@ -234,20 +191,18 @@ def _pattern(header: tuple[str, ...], decimals: Mapping[str, int], name: str) ->
 
 def _parsed(text: str, header: tuple[str, ...], count: int, columns: list[tuple[str, str]]) -> Sheet:
     """Return a table from its text; ValueError says what is wrong with it."""
-    if not text.startswith(",".join(header) + "\n"):
+    lines = io.StringIO(text)
+    if next(lines, "") != ",".join(header) + "\n":
         raise ValueError(f"the header must be {','.join(header)}")
     if text.count("\n") != count + 1 or not text.endswith("\n"):
         raise ValueError(f"{text.count(chr(10)) - 1} rows, the manifest counts {count}")
     whole = re.compile(",".join(f"(?:{pattern})" for _, pattern in columns), re.ASCII)
-    rows: list[tuple[str, ...]] = []
-    start = text.index("\n") + 1
-    while start < len(text):
-        end = text.index("\n", start)
-        line = text[start:end]
-        if not whole.fullmatch(line):
-            raise ValueError(f"row {len(rows) + 1}: {_wrong_cell(line, columns)}")
-        rows.append(tuple(line.split(",")))
-        start = end + 1
+    rows = []
+    for number, line in enumerate(lines, 1):
+        row = line[:-1]
+        if not whole.fullmatch(row):
+            raise ValueError(f"row {number}: {_wrong_cell(row, columns)}")
+        rows.append(tuple(row.split(",")))
     return Sheet(header, rows, {})
 
 

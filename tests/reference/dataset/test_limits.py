@@ -120,7 +120,6 @@ def test_what_is_no_file_is_found_and_not_waited_for(dataset, kind, name):
             assert "not a regular file" in problem
 
 
-@pytest.mark.xfail(reason="files are opened by the system's own numbers", strict=True)
 def test_every_file_is_read_once(dataset, monkeypatch):
     opened, honest = [], io.open
 
