@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import math
+from collections.abc import Iterator
 from fractions import Fraction
 from typing import Annotated, Any, Literal, Self
 
@@ -207,6 +208,18 @@ class Manifest(Part):
     def bound(self, table: Literal["grid", "transits"], column: str) -> Fraction:
         """Return the bound on a column's printed numbers, the largest of all rows."""
         return Fraction(getattr(self.bounds, table)[column])
+
+
+def differences(old: Any, new: Any, place: str = "") -> Iterator[tuple[str, Any, Any]]:
+    """Yield each field in which two documents differ: where it stands, and both values."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        for key in {**old, **new}:
+            yield from differences(old.get(key), new.get(key), f"{place}.{key}" if place else key)
+    elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
+        for i, (one, other) in enumerate(zip(old, new, strict=True)):
+            yield from differences(one, other, f"{place}[{i}]")
+    elif old != new:
+        yield place, old, new
 
 
 def json_schema() -> dict[str, Any]:

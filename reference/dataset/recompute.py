@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import zip_longest
 from pathlib import Path
-from typing import Any
 
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from .checks.motion import Progress
 from .files import read_files
-from .manifest import MANIFEST, Manifest
+from .manifest import MANIFEST, Manifest, differences
 from .record import Making
 from .render import render
 from .shipping import solved
@@ -36,7 +34,7 @@ def recompute(folder: Path, report: Progress | None = None) -> tuple[list[str], 
     solution = solved(files.scene, Making.of(manifest.command), report and (lambda t: report(t, end)))
     texts = render(solution, manifest.id)
     made = Manifest.model_validate_json(texts.pop(MANIFEST))
-    fields = [*_fields(manifest.model_dump(exclude={*FOLLOWS}), made.model_dump(exclude={*FOLLOWS}))]
+    fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), made.model_dump(exclude={*FOLLOWS}))]
     lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
     wrong = [line for name, text in texts.items() if (line := _first_line(name, files.texts.get(name), text))]
     if wrong or not fields:
@@ -47,18 +45,6 @@ def recompute(folder: Path, report: Progress | None = None) -> tuple[list[str], 
         said = f"every digit and bound is the same; {_differ(len(fields), 'measured figure')}"
         return [], [said, *lines]
     return lines, []
-
-
-def _fields(old: Any, new: Any, place: str = "") -> Iterator[tuple[str, Any, Any]]:
-    """Yield each field in which two documents differ: where it stands, and both values."""
-    if isinstance(old, dict) and isinstance(new, dict):
-        for key in {**old, **new}:
-            yield from _fields(old.get(key), new.get(key), f"{place}.{key}" if place else key)
-    elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
-        for i, (one, other) in enumerate(zip(old, new, strict=True)):
-            yield from _fields(one, other, f"{place}[{i}]")
-    elif old != new:
-        yield place, old, new
 
 
 def _first_line(name: str, old: str | None, new: str) -> str:

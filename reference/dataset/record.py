@@ -64,7 +64,6 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
     """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id."""
     scene, run = solution.scene, solution.run
     name = name or dataset_id(scene)
-    initial, drift = invariant_drift(scene, grid)
     return Manifest.model_construct(
         schema_version=3,
         seal="",
@@ -72,23 +71,17 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
         title=scene.title,
         source=scene.source,
         flags=list(scene.flags),
-        notes=notes_of(scene),
-        scene=scene_inputs(scene),
         inputs=scene.inputs,
-        frame=frame_of(scene),
-        units=UNIT_OF,
         level=scene.run.level,
         digits=scene.run.digits,
         decimals={"grid": grid.decimals, "transits": transits.decimals},
         bounds=_bounds(solution, grid, transits),
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
-        transits=_completeness(solution),
+        transits=completeness(scene, solution.transits is None, bool(solution.possible)),
         possible=[
             Possible.model_validate({"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity})
             for low, high, parity in solution.possible
         ],
-        invariant=Invariant(h_m2_s2=initial, drift_m2_s2=drift),
-        equations=equations_of(scene, run.formulation, run.number),
         run=RunRecord(formulation=run.formulation, number=run.number, order=run.order, steps=run.steps),
         cross_checks=[
             CrossCheckRecord(
@@ -106,25 +99,24 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
         generator=generator(),
         command=command(scene, name, _making(solution)),
         files={},
+        **following(scene, run.formulation, run.number, grid),
     )
 
 
-def frame_of(scene: Scene) -> str:
-    """Return the frame of a dataset's numbers, in words."""
-    up = _UP[scene.site.gravity_is]
-    return f"topocentric, axes x east, y north, {up}, origin at the suspension, z < 0 below it"
-
-
-def notes_of(scene: Scene) -> dict[str, str]:
-    """Return a sentence for each flag of a scene: why it is difficult."""
+def following(scene: Scene, formulation: str, number: str, grid: Sheet) -> dict[str, Any]:
+    """Return the fields of a manifest that follow from its scene, its run's formulation and number, and its grid."""
     meanings = flag_meanings()
-    return {flag: meanings.get(flag, "not a flag of the scenes that ship") for flag in scene.flags}
-
-
-def equations_of(scene: Scene, formulation: str, number: str) -> Equations:
-    """Return the compiled equations of a scene in a formulation and a number type, and what they leave out."""
     lines, left_out = lines_and_left_out(scene, formulation, number)
-    return Equations(formulation=formulation, lines=lines, left_out=left_out)
+    initial, drift = invariant_drift(scene, grid)
+    up = _UP[scene.site.gravity_is]
+    return {
+        "notes": {flag: meanings.get(flag, "not a flag of the scenes that ship") for flag in scene.flags},
+        "scene": scene_inputs(scene),
+        "frame": f"topocentric, axes x east, y north, {up}, origin at the suspension, z < 0 below it",
+        "units": UNIT_OF,
+        "invariant": Invariant.model_construct(h_m2_s2=initial, drift_m2_s2=drift),
+        "equations": Equations(formulation=formulation, lines=lines, left_out=left_out),
+    }
 
 
 def generator() -> dict[str, str]:
@@ -168,12 +160,17 @@ def _bounds(solution: Solution, grid: Sheet, transits: Sheet) -> Bounds:
     if solution.transits is not None and transits.rows:
         largest = max((row[-1] for row in transits.rows), key=Fraction)
         of_transits = column_bounds(solution.transits, transits.decimals) | {"t": largest}
+    return bounds_of(of_grid, of_transits)
+
+
+def bounds_of(grid: dict[str, str], transits: dict[str, str]) -> Bounds:
+    """Return the bounds of columns, and the largest of each kind."""
     return Bounds(
-        position_m=_largest(of_grid, POSITION),
-        velocity_m_s=_largest(of_grid, VELOCITY),
-        transit_s=of_transits.get("t"),
-        grid=of_grid,
-        transits=of_transits,
+        position_m=_largest(grid, POSITION),
+        velocity_m_s=_largest(grid, VELOCITY),
+        transit_s=transits.get("t"),
+        grid=grid,
+        transits=transits,
     )
 
 
@@ -181,13 +178,13 @@ def _largest(bounds: dict[str, str], columns: tuple[str, ...]) -> str:
     return max((bounds[name] for name in columns), key=Fraction)
 
 
-def _completeness(solution: Solution) -> Any:
-    """Return the manifest's word on its transits: whether all are there, and otherwise why not."""
-    if not solution.scene.run.transits:
+def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:
+    """Return a manifest's word on its transits: whether all are there, and otherwise why not."""
+    if not scene.run.transits:
         return "not asked for"
-    if solution.transits is None:
+    if vanishes:
         return "xdot is identically zero"
-    return "undecided intervals" if solution.possible else "complete"
+    return "undecided intervals" if undecided else "complete"
 
 
 def _enclosure(proof: Proof) -> EnclosureRecord:

@@ -14,7 +14,7 @@ from typing import Any
 from reference.dataset.invariant import invariant_drift
 from reference.dataset.manifest import MANIFEST, Manifest
 from reference.dataset.place import dataset_id
-from reference.dataset.record import Making, command, equations_of, notes_of
+from reference.dataset.record import Making, command, following
 from reference.dataset.render import derived_texts
 from reference.dataset.sheets import GRID_HEADER, TRANSITS_HEADER, Sheet, scene_inputs
 from reference.errors import FoucaultError
@@ -111,13 +111,14 @@ class Draft:
         with contextlib.suppress(FoucaultError):
             start = Start.of(inputs, bits_of(2 * digits) + GUARD_BITS)
             numbers = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
-        equations = self.document["equations"]
-        with contextlib.suppress(FoucaultError):
-            equations = equations_of(named, "inertial", self.document["run"]["number"]).model_dump()
         places = {name: min(1000, digits) for name in GRID}
         decimals = {"t": min(1000, exact_decimals(tuple(times))), **places}
         state = [fixed_decimal(value, places[name]) for name, value in zip(GRID, numbers, strict=True)]
         sheet = Sheet(GRID_HEADER, [(fixed_decimal(t, decimals["t"]), *state) for t in times], {})
+        follows = {name: self.document[name] for name in ("notes", "equations")}
+        with contextlib.suppress(FoucaultError, ArithmeticError):
+            made = following(named, "inertial", self.document["run"]["number"], sheet)
+            follows = {"notes": made["notes"], "equations": made["equations"].model_dump()}
         bounds = {name: bound or rounded_up(Fraction(1, 2 * 10**place)) for name, place in places.items()}
         name = dataset_id(named)
         self.texts = {"grid.csv": sheet.csv().encode(), "certified.txt": b""}
@@ -125,7 +126,6 @@ class Draft:
             self.texts["transits.csv"] = (",".join(TRANSITS_HEADER) + "\n").encode()
         self.document.update(
             id=name,
-            notes=notes_of(named),
             scene=scene_inputs(named),
             inputs=named.inputs,
             level="computed",
@@ -141,8 +141,8 @@ class Draft:
             counts={"grid": len(sheet.rows), "transits": 0, "possible": 0},
             transits="complete" if named.run.transits else "not asked for",
             cross_checks=[],
-            equations=equations,
             command=command(named, name, Making(audit=False)),
+            **follows,
         )
         self.refit(named)
 

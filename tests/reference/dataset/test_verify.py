@@ -110,9 +110,10 @@ WORDS = {
     "checks that are left out": (lambda m: m.update(cross_checks=[]), "no run agrees"),
     "a level with more than it has": (lambda m: level(m, "computed"), "a single run has no cross-checks"),
     "more digits": (lambda m: m.update(digits=21), "digits: the scene asks for another number"),
-    "another frame": (lambda m: m.update(frame="z down"), "frame does not follow"),
-    "other units": (lambda m: m["units"].update(t="h"), "units does not follow"),
-    "other equations": (lambda m: m["equations"]["lines"].pop(), "equations does not follow"),
+    "another frame": (lambda m: m.update(frame="z down"), "frame = z down does not follow"),
+    "other units": (
+        lambda m: m["units"].update(t="h"), "units.t = h does not follow from the scene and the tables, which give s"),
+    "other equations": (lambda m: m["equations"]["lines"].pop(), "equations.lines = "),
     "another command": (lambda m: m.update(command="rm -rf /"), "command does not follow"),
     "another id": (lambda m: m.update(id="paris+site.latitude=0"), "id = paris+site.latitude=0 does not follow"),
     "another formulation": (lambda m: m["run"].update(formulation="guess"), "run.formulation = guess is none"),
@@ -124,11 +125,13 @@ WORDS = {
         lambda m: m["cross_checks"][0].update(position_m="1.0e-10"), "the runs are 1.0e-10 apart"),
     "a smaller bound": (lambda m: m["bounds"]["grid"].update(x="1.0e-25"), "less than half a unit"),
     "a smaller largest bound": (
-        lambda m: m["bounds"].update(position_m=m["bounds"]["grid"]["x"]), "is not the largest of its columns"),
+        lambda m: m["bounds"].update(position_m=m["bounds"]["grid"]["x"]), "bounds.position_m = "),
     "a larger bound on times": (lambda m: m["bounds"]["transits"].update(t="1.0e-03"), "is that of no column"),
-    "another invariant": (lambda m: m["invariant"].update(drift_m2_s2="0"), "the invariant is not that of grid.csv"),
+    "another invariant": (
+        lambda m: m["invariant"].update(drift_m2_s2="0"), "invariant.drift_m2_s2 = 0 does not follow"),
     "an unfinished list": (lambda m: m.update(transits="undecided intervals"), "belong together"),
-    "nothing to find": (lambda m: m.update(transits="xdot is identically zero"), "xdot is not identically zero"),
+    "nothing to find": (
+        lambda m: m.update(transits="xdot is identically zero"), "transits = xdot is identically zero does not follow"),
     "another release": (lambda m: m["scene"]["release"].update(x="0.4"), "x of the first row"),
     "another gravity": (lambda m: m["scene"]["site"].update(gravity="9.80666"), "does not follow from the scene"),
     "another time": (lambda m: m["scene"]["run"].update(t_end="600"), "times are not those of the scene"),
