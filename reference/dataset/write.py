@@ -1,8 +1,7 @@
-"""Write a dataset: its files are checked in a temporary folder and put in place at once, whole or not at all."""
+"""Write a dataset: its files are checked in a temporary folder and put in place together, whole or not at all."""
 
 from __future__ import annotations
 
-import ctypes
 import json
 import os
 from collections.abc import Iterator, Mapping
@@ -18,8 +17,6 @@ from .place import ships
 from .record import Making
 from .render import render
 from .verify import problems_of
-
-_AT_FDCWD, _RENAME_EXCHANGE = -100, 2
 
 
 def check_target(folder: Path) -> None:
@@ -54,7 +51,7 @@ def _place(folder: Path) -> Iterator[tuple[Path, Path]]:
 
 
 def write(solution: Solution, folder: str | Path, name: str | None = None) -> Path:
-    """Write a solution as a golden dataset: beside `folder`, where it is checked, and then put in place at once.
+    """Write a solution as a golden dataset: beside `folder`, where it is checked, and then put in its place.
 
     Args:
         solution: what to write.
@@ -95,19 +92,7 @@ def write_texts(texts: Mapping[str, str], folder: Path) -> None:
 
 
 def _put_in_place(new: Path, target: Path) -> None:
-    """Replace `target` by `new`, in one step where the system can."""
-    if not target.exists():
-        new.rename(target)
-    elif not _exchange(new, target):
-        target.rename(new.with_name(OLD))  # two steps; after an end between them, `workspace` puts it back
-        new.rename(target)
-
-
-def _exchange(a: Path, b: Path) -> bool:
-    """Swap two folders in one step (Linux); return False where the system cannot."""
-    try:
-        renameat2 = ctypes.CDLL(None, use_errno=True).renameat2
-    except (OSError, AttributeError):
-        return False
-    status: int = renameat2(_AT_FDCWD, os.fsencode(a), _AT_FDCWD, os.fsencode(b), _RENAME_EXCHANGE)
-    return status == 0
+    """Replace `target` by `new`."""
+    if target.exists():
+        target.rename(new.with_name(OLD))  # after an end between the two renames, `workspace` puts it back
+    new.rename(target)
