@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import errno
 import json
 import math
@@ -485,35 +484,6 @@ def test_no_proof_goes_to_the_golden_folder_unaudited(monkeypatch, tmp_path):
     with pytest.raises(InputError, match="audit"):
         write(SimpleNamespace(proof=SimpleNamespace(audited=False)), tmp_path / "unaudited")
     assert not (tmp_path / "unaudited").exists()
-
-
-@pytest.fixture
-def two_folders(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for name in "ab":
-        Path(name).mkdir()
-        Path(name, f"of_{name}").touch()
-    return Path("a"), Path("b")
-
-
-@pytest.mark.skipif(sys.platform != "linux", reason="renameat2 is Linux's")
-def test_two_folders_are_swapped_in_one_step(two_folders):
-    a, b = two_folders
-    if ctypes.CDLL(None).renameat2(-100, os.fsencode(a), -100, os.fsencode(b), 2):
-        pytest.skip("this disk cannot")
-    assert writer._exchange(a, b)
-    assert (a / "of_a").exists() and (b / "of_b").exists()  # swapped twice
-
-
-@pytest.mark.parametrize("missing", [OSError, AttributeError])
-def test_where_the_system_cannot_swap_folders_that_is_said(monkeypatch, two_folders, missing):
-    def no_library(*_, **__):
-        raise missing
-
-    a, b = two_folders
-    monkeypatch.setattr(writer.ctypes, "CDLL", no_library)
-    assert writer._exchange(a, b) is False
-    assert (a / "of_a").exists() and (b / "of_b").exists()
 
 
 def test_a_number_that_its_error_reaches_gets_the_double_of_the_printed_one():
