@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import socket
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -39,16 +37,6 @@ def raw(edit: Callable[[bytes], bytes]) -> Case:
 def on_disk(change: Callable[[Path], object]) -> Case:
     """Change the folder."""
     return lambda draft: draft.on_disk.append(change)
-
-
-def instead(make: Callable[[Path], object], name: str = "grid.csv") -> Case:
-    """Put something else in a file's place."""
-
-    def change(folder: Path) -> None:
-        (folder / name).unlink()
-        make(folder / name)
-
-    return on_disk(change)
 
 
 def text(edit: Callable[[bytes], bytes], *names: str) -> Case:
@@ -94,26 +82,6 @@ def all_bounds(value: str) -> Case:
     return change
 
 
-def sparse(size: int, recorded: bool) -> Case:
-    """Have a table of a size that is nowhere on the disk."""
-
-    def change(draft: Draft) -> None:
-        if recorded:
-            draft.late.append(lambda document: document["files"]["grid.csv"].update(bytes=size))
-        draft.on_disk.append(lambda folder: os.truncate(folder / "grid.csv", size))
-
-    return change
-
-
-def a_socket(path: Path) -> None:
-    """Make a socket."""
-    before = Path.cwd()
-    os.chdir(path.parent)  # the path of a socket is short
-    with socket.socket(socket.AF_UNIX) as made:
-        made.bind(path.name)
-    os.chdir(before)
-
-
 def rows(count: int, row: bytes) -> Case:
     """Have so many equal rows, and count them."""
 
@@ -153,13 +121,6 @@ def beyond_doubles(document: dict[str, Any]) -> None:
     document.update(inputs="binary64", id=f"{document['id']}.binary64")
 
 
-def large_files(draft: Draft) -> None:
-    """Record 100 MB for every file, and have them of that size."""
-    size = 100_000_000
-    draft.late.append(lambda document: [record.update(bytes=size) for record in document["files"].values()])
-    draft.on_disk.append(lambda folder: [os.truncate(folder / name, size) for name in draft.texts])
-
-
 def large_numbers(draft: Draft) -> None:
     """Rows of 308 digits before the point."""
     draft.another_scene(bound="1e+308")
@@ -169,12 +130,6 @@ def large_numbers(draft: Draft) -> None:
     draft.document["scene"]["run"]["t_end"] = "60"
     draft.document["command"] = draft.document["command"].replace("--t-end 180", "--t-end 60")
     draft.refit()
-
-
-def unreadable(folder: Path) -> None:
-    """Take all permissions away."""
-    for path in (*folder.iterdir(), folder):
-        path.chmod(0)
 
 
 def without_site(draft: Draft) -> None:
