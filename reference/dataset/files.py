@@ -164,13 +164,8 @@ def _tables(folder: Path, manifest: Manifest, texts: Mapping[str, str]) -> dict[
         kind = name.partition(".")[0]
         if name not in texts or kind not in HEADERS:
             continue
-        header, decimals = HEADERS[kind], manifest.decimals.get(kind, {})  # type: ignore[call-overload]
-        if name.endswith(".binary64.csv"):
-            header = (*header, *(f"{column}_hex" for column in NUMBERS[kind]))
         try:
-            tables[name] = _parsed(
-                texts[name], header, getattr(manifest.counts, kind), _pattern(header, decimals, name)
-            )
+            tables[name] = _parsed(texts[name], _patterns(name, kind, manifest), getattr(manifest.counts, kind))
         except ValueError as error:
             problems.append(f"{name}: {error}")
     if problems:
@@ -178,39 +173,37 @@ def _tables(folder: Path, manifest: Manifest, texts: Mapping[str, str]) -> dict[
     return tables
 
 
-def _pattern(header: tuple[str, ...], decimals: Mapping[str, int], name: str) -> list[tuple[str, str]]:
-    """Return each column's name and the pattern of its numbers."""
-    found = []
-    for column in header:
+def _patterns(name: str, kind: str, manifest: Manifest) -> dict[str, str]:
+    """Return the pattern of each column's numbers, in the order of the columns."""
+    doubles, decimals = name.endswith(".binary64.csv"), manifest.decimals.get(kind, {})  # type: ignore[call-overload]
+    found = {}
+    for column in HEADERS[kind]:
         places = decimals.get(column)
         plain = "-?[0-9]{1,308}" + (f"[.][0-9]{{{places}}}" if places else "")
-        number = _HEXFLOAT if column.endswith("_hex") else _DOUBLE if "binary64" in name else plain
-        found.append((column, _PATTERNS.get(column, number)))
-    return found
+        found[column] = _PATTERNS.get(column, _DOUBLE if doubles else plain)
+    return found | ({f"{column}_hex": _HEXFLOAT for column in NUMBERS[kind]} if doubles else {})
 
 
-def _parsed(text: str, header: tuple[str, ...], count: int, columns: list[tuple[str, str]]) -> Sheet:
+def _parsed(text: str, patterns: dict[str, str], count: int) -> Sheet:
     """Return a table from its text; ValueError says what is wrong with it."""
-    lines = io.StringIO(text)
+    lines, header = io.StringIO(text), tuple(patterns)
     if next(lines, "") != ",".join(header) + "\n":
         raise ValueError(f"the header must be {','.join(header)}")
     if text.count("\n") != count + 1 or not text.endswith("\n"):
         raise ValueError(f"{text.count(chr(10)) - 1} rows, the manifest counts {count}")
-    whole = re.compile(",".join(f"(?:{pattern})" for _, pattern in columns), re.ASCII)
+    whole = re.compile(",".join(f"(?:{pattern})" for pattern in patterns.values()), re.ASCII)
     rows = []
     for number, line in enumerate(lines, 1):
         row = line[:-1]
         if not whole.fullmatch(row):
-            raise ValueError(f"row {number}: {_wrong_cell(row, columns)}")
+            raise ValueError(f"row {number}: {_wrong_cell(row.split(','), patterns)}")
         rows.append(tuple(row.split(",")))
     return Sheet(header, rows, {})
 
 
-def _wrong_cell(line: str, columns: list[tuple[str, str]]) -> str:
-    count = line.count(",") + 1
-    if count != len(columns):
-        return f"{count} numbers, not {len(columns)}"
-    cells = line.split(",")
-    wrong = [(n, c) for c, (n, p) in zip(cells, columns, strict=True) if not re.fullmatch(p, c, re.ASCII)]
-    name, cell = wrong[0]
+def _wrong_cell(cells: list[str], patterns: dict[str, str]) -> str:
+    if len(cells) != len(patterns):
+        return f"{len(cells)} numbers, not {len(patterns)}"
+    pairs = zip(patterns.items(), cells, strict=True)
+    name, cell = next((name, cell) for (name, form), cell in pairs if not re.fullmatch(form, cell, re.ASCII))
     return f"{name} = {cell[:80]!r} is not a number of this column's form"
