@@ -15,7 +15,7 @@ from flint import ctx, fmpz, fmpz_poly
 
 from ..numbers.taylor_step import EARTH, TaylorStep
 from .balls import dot, fixed
-from .bound import World, scaled
+from .bound import SceneBalls, scaled
 
 AXES_GUARD_BITS = 16  # precision of the scene's constants beyond the coefficients that they turn
 GRAIN = 64  # step sizes are rescaled by multiples of 1/GRAIN
@@ -24,24 +24,24 @@ LOPSIDED = Fraction(33, 32)  # largest ratio of the time step before to its own 
 
 def turned(inputs: Any, chain: Iterable[TaylorStep]) -> Iterator[TaylorStep]:
     """Turn Taylor steps whose rows are n east, north and up to the axes of the proof, with the λ that fits them."""
-    world: World | None = None
+    balls: SceneBalls | None = None
     for e in chain:
         if e.columns == EARTH:
             yield e
             continue
-        world = world or World(inputs, e.bits + AXES_GUARD_BITS)
-        yield e._replace(rows=partial(_turned_rows, e, world), columns=EARTH)
+        balls = balls or SceneBalls(inputs, e.bits + AXES_GUARD_BITS)
+        yield e._replace(rows=partial(_turned_rows, e, balls), columns=EARTH)
 
 
-def _turned_rows(e: TaylorStep, world: World) -> tuple[list[int], ...]:
+def _turned_rows(e: TaylorStep, balls: SceneBalls) -> tuple[list[int], ...]:
     """Return four rows, x, m, w and h² λ."""
     bits, (east, north, up) = e.bits, e.coefficients[:3]
-    with ctx.workprec(world.prec):
-        sin, cos = map(int, fixed(list(world.tilt), bits)[0])
+    with ctx.workprec(balls.prec):
+        sin, cos = map(int, fixed(list(balls.tilt), bits)[0])
     m = [(y * sin - z * cos) >> bits for y, z in zip(north, up, strict=True)]
     w = [(y * cos + z * sin) >> bits for y, z in zip(north, up, strict=True)]
     p, unit = [fmpz_poly(row) for row in (east, m, w)], fmpz(1) << bits
-    turn, _, _, cm, cw = scaled(world, e.h, bits).whole
+    turn, _, _, cm, cw = scaled(balls, e.h, bits).whole
     V = [f.derivative() + g // unit for f, g in zip(p, (-turn * p[1], turn * p[0], fmpz_poly()), strict=True)]
     tension = ((dot(V, V) + cm * p[1] + cw * p[2]) // unit).truncate(len(east))
     return east, m, w, [int(c) for c in tension.coeffs()]

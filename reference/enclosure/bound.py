@@ -16,15 +16,15 @@ from .balls import SHORT, Vector, add, ball, cross, demand, dot, fixed, interval
 from .shapes import Covered, Interval, Sizes, Tube
 
 
-class World:
+class SceneBalls:
     """The scene's constants and release as balls at `prec` bits, from its exact inputs alone; exact zeros stay exact.
 
     Axes: x east, w along the Earth's axis, m in the meridian; without rotation x, y, z.
     """
 
-    def __init__(self, inputs: Any, prec: int, by_flint: bool = False) -> None:
+    def __init__(self, inputs: Any, prec: int, flint_only: bool = False) -> None:
         demand(inputs.drag >= 0 and inputs.length > 0, "not a pendulum: the theorems take a length > 0 and a drag >= 0")
-        self.prec, self.by_flint = prec, by_flint  # by FLINT's polynomials alone, not by sums of digits
+        self.prec, self.flint_only = prec, flint_only  # by FLINT's polynomials alone, not by sums of digits
         with ctx.workprec(prec):
             turn = fmpq(inputs.latitude.numerator, inputs.latitude.denominator) / 180
             sin, cos, rate = arb.sin_pi_fmpq(turn), arb.cos_pi_fmpq(turn), ball(inputs.rotation_rate)
@@ -68,13 +68,13 @@ class World:
 class Scaled:
     """Constants in the time of a step: balls, integers over 2^bits that are off by at most `off` in all, and sizes."""
 
-    def __init__(self, world: World, h: Fraction, bits: int) -> None:
-        with ctx.workprec(world.prec):
-            self.h, self.w = ball(h), world.w0 * ball(h)
-            self.c, self.omega, self.drag = times(self.h**2, world.c), times(self.h, world.omega), self.h * world.drag
+    def __init__(self, balls: SceneBalls, h: Fraction, bits: int) -> None:
+        with ctx.workprec(balls.prec):
+            self.h, self.w = ball(h), balls.w0 * ball(h)
+            self.c, self.omega, self.drag = times(self.h**2, balls.c), times(self.h, balls.omega), self.h * balls.drag
             self.whole, self.off = fixed([self.omega[2], self.omega[2] ** 2, self.drag, *self.c[1:]], bits)
             self.c_size, self.omega_size, self.drag_size = size(self.c), size(self.omega), upper(self.drag)
-            self.speed, self.below, self.above = world.speed * self.h, world.below * self.h**2, world.above * self.h**2
+            self.speed, self.below, self.above = balls.speed * self.h, balls.below * self.h**2, balls.above * self.h**2
 
 
 scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each other
@@ -83,9 +83,9 @@ scaled = lru_cache(maxsize=16)(Scaled)  # steps of the same length follow each o
 class Piece:
     """A step with its polynomials p, p' and λ, used from `begin` to `end` (in s)."""
 
-    def __init__(self, world: World, step: TaylorStep) -> None:
+    def __init__(self, balls: SceneBalls, step: TaylorStep) -> None:
         demand(-1 <= step.low < step.high <= 1 and step.h > 0, "a step must lie in -1 <= s <= 1, where its sizes hold")
-        self.world, self.step, self.k = world, step, scaled(world, step.h, step.bits)
+        self.balls, self.step, self.k = balls, step, scaled(balls, step.h, step.bits)
         self.unit, self.rows = fmpz(1) << step.bits, step.coefficients
         self.p = polynomials(self.rows, slice(3))
         self.v = [f.derivative() for f in self.p]
@@ -109,7 +109,7 @@ class Piece:
 
     def defects(self) -> list[arb]:
         """Return the norms of d (three components), τ, τ': by sums of digits, or by FLINT's polynomials."""
-        if isinstance(self.rows, Digits) and not self.world.by_flint:
+        if isinstance(self.rows, Digits) and not self.balls.flint_only:
             from .digits import norms
 
             return norms(self.rows.table, self.k.whole)
@@ -154,13 +154,13 @@ def tube(k: Scaled, d: Sizes, eta: arb, gamma: arb) -> Tube:
 class Carried:
     """State carried from step to step: the time reached, and p and K there (K in 1/s); at t = 0 balls of r and H."""
 
-    def __init__(self, world: World) -> None:
-        self.world, self.time, self.last = world, Fraction(0), [*world.r, *world.H]
+    def __init__(self, balls: SceneBalls) -> None:
+        self.balls, self.time, self.last = balls, Fraction(0), [*balls.r, *balls.H]
 
     def join(self, piece: Piece) -> Vector:
         """Return bounds of the jumps in p and K from the end of the step before to the start of `piece`."""
-        demand(piece.begin == self.time and piece.world is self.world, "steps must join, and be of one scene")
-        with ctx.workprec(self.world.prec):
+        demand(piece.begin == self.time and piece.balls is self.balls, "steps must join, and be of one scene")
+        with ctx.workprec(self.balls.prec):
             ends = (piece.values(ball(s)) for s in (piece.step.low, piece.step.high))
             start, end = ([*p, *times(1 / piece.k.h, cross(p, add(v, cross(piece.k.omega, p))))] for p, v in ends)
             self.time, self.last, before = piece.end, end, self.last
@@ -177,7 +177,7 @@ class Radius(Carried):
         k, jump, d = piece.k, self.join(piece), piece.sizes
         with ctx.workprec(SHORT):
             span, gw, ck = ball(piece.step.high - piece.step.low), k.drag_size * k.omega_size, k.c_size + d.k**2
-            start, source = upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.world.w0), d.d2 / k.w + d.d1
+            start, source = upper(self.eta + size(jump[:3]) + size(jump[3:]) / self.balls.w0), d.d2 / k.w + d.d1
             # Theorem N: |e| <= far
             far = upper(((1 + d.k / k.w) * start + span * source) * (span * error_rate(k, d.p)).exp())
             rate = (k.below.max(k.above + (k.speed + k.w * far) ** 2) + ck * far + gw * d.p) / (2 * k.w)
@@ -193,9 +193,9 @@ def state(covered: Covered, s: arb) -> tuple[Vector, Vector]:
 
 def output(covered: Covered, time: Fraction) -> list[Interval]:
     """Return position and velocity at an output time, in m and m/s; at 0 those of the release itself."""
-    piece, world = covered.piece, covered.piece.world
-    with ctx.workprec(world.prec):
+    piece, balls = covered.piece, covered.piece.balls
+    with ctx.workprec(balls.prec):
         demand(piece.begin <= time <= piece.end, "the tube holds on its own step only")
         r, v = state(covered, ball((time - piece.step.centre) / piece.step.h))
-        moving = [world.turned(r, -1), world.turned(times(1 / piece.k.h, v), -1)]
-        return [interval(x * world.length) for part in (moving if time else world.release) for x in part]
+        moving = [balls.turned(r, -1), balls.turned(times(1 / piece.k.h, v), -1)]
+        return [interval(x * balls.length) for part in (moving if time else balls.release) for x in part]

@@ -9,7 +9,7 @@ from typing import Any
 
 from ..numbers.taylor_step import TaylorStep
 from .balls import demand
-from .bound import Piece, Radius, World, output
+from .bound import Piece, Radius, SceneBalls, output
 from .enclosed_transits import Scan
 from .shapes import EnclosedTransit, Interval, Proposal
 from .six_columns import Columns
@@ -18,14 +18,14 @@ from .six_columns import Columns
 class Course:
     """The states at `times` (increasing, from 0 on) and, with `transits`, all zeros of xdot up to the last of them."""
 
-    def __init__(self, world: World, times: list[Fraction], columns: bool, transits: bool) -> None:
-        self.world, self.times, self.states = world, tuple(times), list[list[Interval]]()
-        self.bound: Any = Columns(world) if columns else Radius(world)
-        self.scan = Scan(world) if transits and not world.still else None
+    def __init__(self, balls: SceneBalls, times: list[Fraction], columns: bool, transits: bool) -> None:
+        self.balls, self.times, self.states = balls, tuple(times), list[list[Interval]]()
+        self.bound: Any = Columns(balls) if columns else Radius(balls)
+        self.scan = Scan(balls) if transits and not balls.still else None
 
     def advance(self, step: TaylorStep, proposal: tuple[Proposal, ...], lap: Callable[[str], None]) -> Piece:
         """Take the next step, and columns if it is proved by them; `lap` is told which part of the work is done."""
-        piece = Piece(self.world, step)
+        piece = Piece(self.balls, step)
         lap("defect" if piece.sizes else "")
         covered = self.bound.advance(piece, *proposal)
         while len(self.states) < len(self.times) and self.times[len(self.states)] <= piece.end:

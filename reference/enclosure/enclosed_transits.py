@@ -8,7 +8,7 @@ from typing import Any
 from flint import arb, arb_poly, ctx
 
 from .balls import SHORT, ball, demand, interval
-from .bound import World, state
+from .bound import SceneBalls, state
 from .guess import around_zero
 from .shapes import Covered, EnclosedTransit, Interval, Leaf
 
@@ -46,16 +46,16 @@ class Slope:
 class Scan:
     """Bisects the steps into leaves and closes clusters of those that are not E, also across steps (section 8)."""
 
-    def __init__(self, world: World) -> None:
-        self.world, self.left, self.time, self.leaves = world, 0, Fraction(0), 0
+    def __init__(self, balls: SceneBalls) -> None:
+        self.balls, self.left, self.time, self.leaves = balls, 0, Fraction(0), 0
         self.end: tuple[Slope, arb] | None = None
         self.found, self.cluster = list[EnclosedTransit](), list[Leaf]()
 
     def advance(self, covered: Covered) -> None:
         """Sort the leaves of the next step."""
         piece = covered.piece
-        demand(piece.begin == self.time and piece.world is self.world, "steps must join, and be of one scene")
-        with ctx.workprec(self.world.prec):
+        demand(piece.begin == self.time and piece.balls is self.balls, "steps must join, and be of one scene")
+        with ctx.workprec(self.balls.prec):
             slope, low, high = Slope(covered), ball(piece.step.low), ball(piece.step.high)
             self.left = self.left if self.time else sign(slope.at(0, low))
             self.end, self.time, self.leaves = (slope, high), piece.end, 0
@@ -66,18 +66,18 @@ class Scan:
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
         self.leaves += 1
         # most leaves are decided at low precision, and only a few need all bits
-        with ctx.workprec(SHORT if depth < 4 else self.world.prec):
+        with ctx.workprec(SHORT if depth < 4 else self.balls.prec):
             whole, middle = low.union(high), ((low + high) / 2).mid()
             demand(low < middle < high, "a step is too short for the precision")
             rate = slope.at(1, whole) if depth < 4 else slope.rate(whole)
             speed = slope.at(0, middle) + rate * (whole - middle)  # the mean value form
             way, bend = sign(speed), sign(rate)
-            if not way and self.world.slow and not (self.left or self.cluster):
+            if not way and self.balls.slow and not (self.left or self.cluster):
                 # this is the first leaf: from rest, xdot takes the sign of its first derivative that is not 0
-                way = bend or (slope.push(whole) if self.world.flat else 0)
+                way = bend or (slope.push(whole) if self.balls.flat else 0)
             elif not way and bend and sign(slope.at(0, low)) == (last := sign(slope.at(0, high))):
                 way = last
-        deep = 2 * depth >= self.world.prec or self.leaves > MOST_LEAVES
+        deep = 2 * depth >= self.balls.prec or self.leaves > MOST_LEAVES
         if way:
             self._close(way)
         elif bend or deep or not speed.abs_upper() > 3 * slope.tube.u:
@@ -88,7 +88,7 @@ class Scan:
 
     def finish(self) -> list[EnclosedTransit]:
         """Close the cluster that is open at T; return all transits in order."""
-        with ctx.workprec(self.world.prec):
+        with ctx.workprec(self.balls.prec):
             self._close(sign(self.end[0].at(0, self.end[1])) if self.end else 0)
         return self.found
 
@@ -106,9 +106,9 @@ class Scan:
         self.found.append(EnclosedTransit(parity, way, interval(t), *self._values(leaves, t)))
 
     def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:
-        turned, parts = self.world.turned, [(f, f.piece.k.h, s, *state(f.covered, s)) for f, s in touched(leaves, t)]
+        turned, parts = self.balls.turned, [(f, f.piece.k.h, s, *state(f.covered, s)) for f, s in touched(leaves, t)]
         rows = [[*turned(r, -1), turned(v, -1)[1] / h, f.at(1, s) / h**2] for f, h, s, r, v in parts]
-        return [interval(reduce(arb.union, x) * self.world.length) for x in zip(*rows, strict=True)]
+        return [interval(reduce(arb.union, x) * self.balls.length) for x in zip(*rows, strict=True)]
 
 
 def touched(leaves: list[Leaf], t: arb) -> list[tuple[Slope, arb]]:

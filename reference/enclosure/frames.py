@@ -13,7 +13,7 @@ import numpy as np
 from flint import arb, fmpz_poly
 
 from ..numbers.taylor_step import TaylorStep
-from .bound import World
+from .bound import SceneBalls
 from .six_columns import FINE
 
 ORDER = 27  # of the columns' polynomials
@@ -23,11 +23,11 @@ ILL = 13  # condition number (Frobenius) above which the frame is made orthogona
 class ColumnSource:
     """Six columns a step: the linearised flow about (p, K), from a well-conditioned frame at the step's start."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, balls: SceneBalls) -> None:
         """Read the constants as floats."""
-        self.w = np.array([float(x) for x in world.omega])
-        self.c = np.array([float(x) for x in world.c])
-        self.g, self.w0 = float(world.drag), float(world.w0)
+        self.w = np.array([float(x) for x in balls.omega])
+        self.c = np.array([float(x) for x in balls.c])
+        self.g, self.w0 = float(balls.drag), float(balls.w0)
         self.end: Any = np.eye(6)
 
     def propose(self, step: TaylorStep, widths: Iterable[float]) -> list[list[list[int]]]:

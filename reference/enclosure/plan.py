@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from ..errors import UnreachableError
 from ..numbers.precision import log2
-from .bound import World
+from .bound import SceneBalls
 
 MARGIN_BITS = 18  # lost to the rounding of coefficients and to norms; measured on Paris
 COLUMN_MARGIN_BITS = 14  # lost besides where the error is carried in columns
@@ -31,9 +31,9 @@ def plan_for(inputs: Any, end: Fraction, radius: Fraction, method: str | None) -
     Raises:
         UnreachableError: it would take more than MAX_BITS.
     """
-    world = World(inputs, 128)
-    w, span = float(world.w0), float(end)
-    loss = span * float(max(world.below, world.above + world.speed**2, key=float)) / (2 * w) / 0.693
+    balls = SceneBalls(inputs, 128)
+    w, span = float(balls.w0), float(end)
+    loss = span * float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * w) / 0.693
     ratio = inputs.length / radius
     target = ratio.numerator.bit_length() - ratio.denominator.bit_length() + log2(2 + span * w)
     cheap = target + MARGIN_BITS + loss <= RADIUS_BITS or loss <= RADIUS_SHARE * target + MARGIN_BITS

@@ -17,12 +17,12 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..numbers.taylor_step import TaylorStep
-from .bound import World
+from .bound import SceneBalls
 from .course import Course
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, plan_for, short
 from .shapes import EnclosedTransit, Interval
-from .sums_checked import audit
+from .sums_checked import check_sums
 
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
 ATTEMPTS = 4  # at rising precision
@@ -84,7 +84,7 @@ def enclose(
     transits: bool = True,
     progress: Callable[[float], None] | None = None,
     method: str | None = None,
-    audit: bool = False,
+    flint_only: bool = False,
 ) -> Enclosure:
     """Prove where the pendulum is at `times` (s, increasing), and every transit up to the last of them.
 
@@ -97,7 +97,7 @@ def enclose(
         transits: also enclose all zeros of xdot.
         progress: called with the part of the time span that is proved.
         method: "radius" or "columns"; None for the one that is likely to be cheaper.
-        audit: prove by FLINT alone, and have the sums of digits compared with its integers.
+        flint_only: prove by FLINT alone, and have the sums of digits compared with its integers.
 
     Raises:
         UnreachableError: no bound of this width was reached; says how wide it is.
@@ -111,7 +111,7 @@ def enclose(
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
     for _ in range(ATTEMPTS):
         try:
-            run = _Run(inputs, plan, list(times), radius, transits, progress, audit)
+            run = _Run(inputs, plan, list(times), radius, transits, progress, flint_only)
             return run.prove(approximant)
         except _TooWide as error:
             reason, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
@@ -151,10 +151,10 @@ class _Run:
         radius: Fraction,
         transits: bool,
         progress: Callable[[float], None] | None,
-        audit: bool,
+        flint_only: bool,
     ) -> None:
         self.inputs, self.plan, self.times, self.radius, self.progress = inputs, plan, times, radius, progress
-        self.transits, self.audited = transits, audit
+        self.transits, self.flint_only = transits, flint_only
         self.end = times[-1]
         self.clock = _Clock()
 
@@ -166,17 +166,17 @@ class _Run:
             raise UnreachableError("enclosure: the approximant is empty.")
         bits, order = first.bits, len(first.coefficients[0]) - 1
         self.clock.lap("candidate")
-        world = World(self.inputs, bits + SCENE_GUARD_BITS, self.audited)
-        columns = ColumnSource(world) if self.plan.method == "columns" else None
-        course = Course(world, self.times, columns is not None, self.transits)
+        balls = SceneBalls(self.inputs, bits + SCENE_GUARD_BITS, self.flint_only)
+        columns = ColumnSource(balls) if self.plan.method == "columns" else None
+        course = Course(balls, self.times, columns is not None, self.transits)
         count = known = 0
         self.clock.lap("bound")
         for step in self._until(chain([first], steps)):
             proposal = (columns.propose(step, [_log(z) for z in course.bound.z]),) if columns else ()
             self.clock.lap("candidate")
             piece = course.advance(step, proposal, self.clock.lap)
-            if self.audited:
-                audit(piece)
+            if self.flint_only:
+                check_sums(piece)
             count += 1
             if len(course.states) > known:
                 known = len(course.states)
@@ -189,7 +189,7 @@ class _Run:
         rows = cast("list[State]", [tuple(row) for row in states])
         cost = ProofCost(**self.clock.parts)
         return Enclosure(
-            self.times, rows, transits, world.still, bits, order, count, self.plan.method, position, velocity, cost
+            self.times, rows, transits, balls.still, bits, order, count, self.plan.method, position, velocity, cost
         )
 
     def _check_widths(self, states: list[list[Interval]], time: Fraction, factor: int, bits: int) -> list[Fraction]:

@@ -6,7 +6,7 @@ The columns are proposals: integers over 2^FINE, so they are exact whatever floa
 from flint import arb, arb_mat, arb_poly, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, dot, size, times, upper
-from .bound import Carried, Piece, World, error_rate, tube
+from .bound import Carried, Piece, SceneBalls, error_rate, tube
 from .shapes import Covered, Proposal
 
 FINE = 50  # a column's coefficients are integers over 2^FINE
@@ -16,8 +16,8 @@ CUT = 48  # terms of p and K in the residuals, which are multiplied by the small
 class Columns(Carried):
     """Theorem E: (r, H) = (p + Wp ζ, K + WK ζ) + (e, g) with |ζ_j| <= z_j; `rest` bounds e and g (g in 1/s)."""
 
-    def __init__(self, world: World) -> None:
-        super().__init__(world)
+    def __init__(self, balls: SceneBalls) -> None:
+        super().__init__(balls)
         self.rest, self.z, self.carried = [arb(0)] * 6, [arb(0)] * 6, arb_mat(6, 6)
 
     def advance(self, piece: Piece, proposal: Proposal) -> Covered:
@@ -35,7 +35,7 @@ class Columns(Carried):
             zp, zk, d1, d2 = add([arb(0), arb(0), d.d1, d.d2], *rows)
             d1, d2, span = d1 + zp * zk, d2 + k.drag_size * k.omega_size * zp**2, ball(step.high - step.low)
             left = upper(span * (d2 / k.w + d1) * (span * error_rate(k, d.p + zp)).exp())
-            self.rest = [left] * 3 + [upper(left * self.world.w0)] * 3
+            self.rest = [left] * 3 + [upper(left * self.balls.w0)] * 3
             return Covered(piece, tube(k, d, zp + left, zk + left * k.w))
 
 

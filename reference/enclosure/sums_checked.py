@@ -1,4 +1,4 @@
-"""An audit of the sums of digits: they must be the integers that FLINT finds for the same polynomials."""
+"""The sums of digits checked: they must be the integers that FLINT finds for the same polynomials."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from flint import arb, fmpz
 from ..numbers.packing import Digits
 
 
-def audit(piece: Any) -> None:
-    """Raise ArithmeticError unless sums of a piece's digits are FLINT's; what did not come as digits needs no audit."""
+def check_sums(piece: Any) -> None:
+    """Raise ArithmeticError unless sums of a piece's digits are FLINT's; what did not come as digits needs no check."""
     if isinstance(piece.rows, Digits):
         from .digits import norms
 

@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 LOCAL = ("x", "y", "z")  # n east, north and up
-EARTH = ("x", "m", "w", "tension")  # n in the axes of the proof (`World` in enclosure/bound.py), and h² λ
+EARTH = ("x", "m", "w", "tension")  # n in the axes of the proof (`SceneBalls` in enclosure/bound.py), and h² λ
 
 
 class TaylorStep(NamedTuple):

@@ -37,7 +37,7 @@ def audited(solution: Solution, digits: Any) -> Solution:
 def _send_digits(emit: Emit, problem: Problem) -> None:
     from ..enclosure import enclose
 
-    emit(_digits(proved(problem, partial(enclose, audit=True), reports(emit))))
+    emit(_digits(proved(problem, partial(enclose, flint_only=True), reports(emit))))
 
 
 def _digits(solution: Solution) -> Any:

@@ -24,7 +24,7 @@ COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsil
 BATCH = 32  # steps sent at once
 
 
-class Replaced(Exception):
+class EngineChanged(Exception):
     """The engine that a proof began with is not the one to go on with: that is `engine`."""
 
     def __init__(self, engine: str) -> None:
@@ -58,14 +58,14 @@ class Feed:
         """Start a run at `prec` bits and return its steps, in order from t = 0.
 
         Raises:
-            Replaced: another engine has to do it than at the first call. All that a proof has tried is to be of the
+            EngineChanged: another engine has to do it than at the first call. All that a proof has tried is to be of the
                 engine that its dataset names, so that `--engine` gives the same bytes again.
         """
         self.stop()
         self._runs.clear()
         engine = fastest(prec, self.engine, self.steps)
         if self._begun not in ("", engine.name):
-            raise Replaced(engine.name)
+            raise EngineChanged(engine.name)
         self._begun = engine.name
         if engine.own_process and engine.expected_s(self.steps, prec) >= WORTH_A_PROCESS:
             self._worker = Worker(_send_steps, engine.name, self.inputs, self.times, prec)

@@ -20,7 +20,7 @@ from ..scenes.scene import Scene
 from .choice import first_radius, late_radius
 from .pilot import Pilot
 from .proof_checks import checked_states
-from .proof_steps import COEFFICIENT_BITS, Feed, Replaced
+from .proof_steps import COEFFICIENT_BITS, Feed, EngineChanged
 from .rounding import UndecidedRounding, check_decided
 from .solution import CrossCheck, Proof, Solution, Source
 
@@ -88,8 +88,8 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
                     radius = min(radius, late_radius(first, scene.exact))
             else:
                 return solution
-    except Replaced as replaced:
-        return proved(replace(problem, engine=replaced.engine), enclose, report)
+    except EngineChanged as changed:
+        return proved(replace(problem, engine=changed.engine), enclose, report)
     finally:
         feed.stop()
     raise UnreachableError(

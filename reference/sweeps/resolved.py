@@ -34,7 +34,7 @@ class Audit:
         }  # fmt: skip
 
 
-def audit(
+def resolved(
     request: Request,
     read: Callable[[int], Mapping[str, Any]],
     report: Callable[[int], None] = lambda _: None,

@@ -19,8 +19,7 @@ from .local import LocalExecutor
 from .part import Part
 from .planning import default_audit, request
 from .request import Request
-from .resolved import Audit
-from .resolved import audit as audited
+from .resolved import Audit, resolved
 from .swept import Swept
 
 if TYPE_CHECKING:
@@ -187,7 +186,7 @@ def run(
     if left:
         return Swept(asked, tally, None, store, compile_s, time.perf_counter() - started, left=left)
     swept = Swept(asked, tally, None, store, compile_s, 0.0, done.columns, done.transits)
-    found = audited(asked, _reader(swept)) if asked.audit else None
+    found = resolved(asked, _reader(swept)) if asked.audit else None
     swept = Swept(asked, tally, found, store, compile_s, time.perf_counter() - started, done.columns, done.transits)
     if store is not None:
         store.summarize(_summary(swept))

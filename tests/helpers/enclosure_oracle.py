@@ -12,7 +12,7 @@ import numpy as np
 from enclosure_recurrence import Recurrence
 
 from reference.enclosure.approximant import pair
-from reference.enclosure.bound import Piece, Radius, World, output
+from reference.enclosure.bound import Piece, Radius, SceneBalls, output
 from reference.enclosure.frames import ColumnSource
 from reference.enclosure.six_columns import Columns
 from reference.scenes.inputs import Inputs
@@ -157,7 +157,7 @@ def contains(interval, x: Fraction) -> bool:
 
 def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first: Fraction = Fraction(1, 4)):
     """Steps of the recurrence, the last one cut at `end`."""
-    for step in pair(Recurrence(World(inputs, bits + 64), bits, order).chain(first)):
+    for step in pair(Recurrence(SceneBalls(inputs, bits + 64), bits, order).chain(first)):
         last = step.centre + step.h * step.high >= end
         yield step._replace(high=(end - step.centre) / step.h) if last else step
         if last:
@@ -167,10 +167,10 @@ def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first
 def carry(inputs: Inputs, proposal, columns: bool = False):
     """Every piece with its tube."""
     proposal = list(proposal)
-    world = World(inputs, proposal[0].bits + 64)
-    bound, source = (Columns(world), ColumnSource(world)) if columns else (Radius(world), None)
+    balls = SceneBalls(inputs, proposal[0].bits + 64)
+    bound, source = (Columns(balls), ColumnSource(balls)) if columns else (Radius(balls), None)
     for step in proposal:
-        piece = Piece(world, step)
+        piece = Piece(balls, step)
         more = [source.propose(step, [float(z) for z in bound.z])] if source else []
         yield bound.advance(piece, *more)
 

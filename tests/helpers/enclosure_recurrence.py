@@ -11,7 +11,7 @@ from flint import ctx, fmpz_poly
 from reference.enclosure import Enclosure, enclose
 from reference.enclosure.approximant import GRAIN, pair, stretched
 from reference.enclosure.balls import cross, fixed
-from reference.enclosure.bound import World
+from reference.enclosure.bound import SceneBalls
 from reference.enclosure.prove import SCENE_GUARD_BITS
 from reference.numbers.taylor_step import TaylorStep
 from reference.scenes.inputs import Inputs
@@ -28,8 +28,8 @@ def recurrence(inputs: Inputs) -> Callable[[int], Iterator[TaylorStep]]:
 
     def steps(bits: int) -> Iterator[TaylorStep]:
         order = max(LEAST_ORDER, round(ORDER_PER_BIT * bits))
-        first = coarse(Fraction(1 / (4 * float(World(inputs, 128).w0))))
-        return pair(Recurrence(World(inputs, bits + SCENE_GUARD_BITS), bits, order).chain(first))
+        first = coarse(Fraction(1 / (4 * float(SceneBalls(inputs, 128).w0))))
+        return pair(Recurrence(SceneBalls(inputs, bits + SCENE_GUARD_BITS), bits, order).chain(first))
 
     return steps
 
@@ -45,15 +45,15 @@ class Recurrence:
     With drag one more, w²; for λ' = 3 c·V - c·(Ω × n) - 2 γ (λ - c·n - ω j) has j = (n × V)_w.
     """
 
-    def __init__(self, world: World, bits: int, order: int) -> None:
+    def __init__(self, balls: SceneBalls, bits: int, order: int) -> None:
         """Take the constants as integers over 2^(bits + GUARD_BITS)."""
-        self.world, self.bits, self.order = world, bits, order
+        self.balls, self.bits, self.order = balls, bits, order
         self.f = bits + GUARD_BITS
         self.one = 1 << self.f
-        with ctx.workprec(world.prec + self.f):
+        with ctx.workprec(balls.prec + self.f):
             whole = lambda balls: [int(n) for n in fixed(balls, self.f)[0]]  # noqa: E731
-            self.c, (self.w, self.g) = whole(world.c), whole([world.omega[2], world.drag])
-            self.n, self.V = whole(world.r), whole(cross(world.H, world.r))
+            self.c, (self.w, self.g) = whole(balls.c), whole([balls.omega[2], balls.drag])
+            self.n, self.V = whole(balls.r), whole(cross(balls.H, balls.r))
 
     def _dot(self, a: Iterable[int], b: Iterable[int]) -> int:
         return int(sum(map(mul, a, b))) >> self.f

@@ -8,7 +8,7 @@ import pytest
 from enclosure_oracle import PARIS, carry, scene, steps
 from flint import arb
 
-from reference.enclosure.bound import Piece, Radius, World, output, tube
+from reference.enclosure.bound import Piece, Radius, SceneBalls, output, tube
 from reference.enclosure.course import Course
 from reference.enclosure.enclosed_transits import MOST_LEAVES, Scan
 from reference.enclosure.shapes import Covered, Tube
@@ -19,7 +19,7 @@ TIMES = [Fraction(0), Fraction(7), Fraction(20)]
 
 def course(proposed, times=TIMES):
     proposed = list(proposed)
-    one = Course(World(PARIS, proposed[0].bits + 64), times, columns=False, transits=True)
+    one = Course(SceneBalls(PARIS, proposed[0].bits + 64), times, columns=False, transits=True)
     for step in proposed:
         one.advance(step, (), lambda _: None)
     return one
@@ -42,24 +42,24 @@ def test_a_step_left_out_or_of_another_scene_is_refused():
     rows = list(steps(PARIS, Fraction(20)))
     with pytest.raises(ArithmeticError, match="join"):
         course([rows[0], *rows[2:]])
-    bound, other = Radius(World(PARIS, 192)), World(scene(length="66"), 192)
+    bound, other = Radius(SceneBalls(PARIS, 192)), SceneBalls(scene(length="66"), 192)
     with pytest.raises(ArithmeticError, match="one scene"):
         bound.advance(Piece(other, rows[0]))
 
 
 def test_the_scan_takes_the_steps_of_its_own_scene_in_order():
     first, second, *_ = covered = list(carry(PARIS, steps(PARIS, Fraction(20))))
-    scan = Scan(first.piece.world)
+    scan = Scan(first.piece.balls)
     with pytest.raises(ArithmeticError, match="join"):
         scan.advance(second)
     with pytest.raises(ArithmeticError, match="one scene"):
-        Scan(World(PARIS, 192)).advance(first)
+        Scan(SceneBalls(PARIS, 192)).advance(first)
     assert output(covered[-1], covered[-1].piece.end)
 
 
 @pytest.mark.parametrize("eta", ["2", "2.4e9", "nan", "inf"])
 def test_a_tube_as_wide_as_the_sphere_is_refused(eta):
-    piece = Piece(World(PARIS, 192), next(steps(PARIS, Fraction(5))))
+    piece = Piece(SceneBalls(PARIS, 192), next(steps(PARIS, Fraction(5))))
     with pytest.raises(ArithmeticError):
         tube(piece.k, piece.sizes, arb(eta), arb(0))
 
@@ -67,11 +67,11 @@ def test_a_tube_as_wide_as_the_sphere_is_refused(eta):
 @pytest.mark.parametrize("widths", [("1.9", "1e3", "1e12"), ("1.9", "1.9e9", "1.6e18")])
 def test_leaves_that_a_useless_tube_would_ask_for_are_one_possible_transit(widths):
     """Seed 5007 of the audit: |xddot| is known a billion times less closely than xdot."""
-    world = World(scene(vx="1"), 264)
+    balls = SceneBalls(scene(vx="1"), 264)
     row = [0, 1 << 230, 1 << 214]
     step = TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 200, (row, *[[0]] * 3))
-    scan = Scan(world)
-    scan.advance(Covered(Piece(world, step), Tube(*map(arb, widths))))
+    scan = Scan(balls)
+    scan.advance(Covered(Piece(balls, step), Tube(*map(arb, widths))))
     assert scan.leaves < MOST_LEAVES * 3
     found = scan.finish()
     assert all(t.kind == "possible" for t in found)

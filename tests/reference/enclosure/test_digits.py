@@ -12,14 +12,14 @@ from flint import fmpz_poly
 
 pytest.importorskip("numba")
 
-from reference.enclosure.bound import Piece, World, polynomials
+from reference.enclosure.bound import Piece, SceneBalls, polynomials
 from reference.enclosure.digits import check, norms, split
 from reference.enclosure.sums_checked import compare
 from reference.numbers.packing import DIGIT_BITS, Digits
 from reference.numbers.taylor_step import TaylorStep
 
 MOST = 1 << (DIGIT_BITS - 1)
-WORLDS = [World(PARIS, 400), World(scene(drag="0.3", rotation_rate="-0.7", equatorial_radius="5"), 400)]
+WORLDS = [SceneBalls(PARIS, 400), SceneBalls(scene(drag="0.3", rotation_rate="-0.7", equatorial_radius="5"), 400)]
 
 
 def table(rng: Random) -> np.ndarray:
@@ -38,9 +38,9 @@ def table(rng: Random) -> np.ndarray:
     return rows
 
 
-def piece_of(rows: np.ndarray, world: World) -> Piece:
+def piece_of(rows: np.ndarray, balls: SceneBalls) -> Piece:
     bits = DIGIT_BITS * rows.shape[1] - 1
-    return Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, Digits(rows)))
+    return Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, Digits(rows)))
 
 
 @pytest.mark.parametrize("seed", range(40))

@@ -13,7 +13,7 @@ from sampled import one_in
 from reference.enclosure import enclose, turned
 from reference.enclosure.approximant import pair
 from reference.enclosure.balls import fixed
-from reference.enclosure.bound import World
+from reference.enclosure.bound import SceneBalls
 from reference.errors import UnreachableError
 from reference.numbers.taylor_step import LOCAL, TaylorStep
 
@@ -77,13 +77,13 @@ def test_precision_rises_until_the_width_is_reached(monkeypatch):
 def test_what_cannot_be_had_is_refused_with_the_width_reached():
     with pytest.raises(UnreachableError, match="bits"):
         enclose(PARIS, [Fraction(60)], radius=Fraction(1, 10**900), approximant=recurrence(PARIS))
-    too_coarse = lambda _bits: pair(Recurrence(World(PARIS, 160), 96, 48).chain(Fraction(1, 2)))  # noqa: E731
+    too_coarse = lambda _bits: pair(Recurrence(SceneBalls(PARIS, 160), 96, 48).chain(Fraction(1, 2)))  # noqa: E731
     with pytest.raises(UnreachableError, match=r"96 bits gave .*e-\d+ m"):
         enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=too_coarse)
 
 
 def test_an_approximant_that_ends_too_early_is_refused():
-    chain = Recurrence(World(PARIS, 256), 192, 96).chain(Fraction(1, 2))
+    chain = Recurrence(SceneBalls(PARIS, 256), 192, 96).chain(Fraction(1, 2))
     with pytest.raises(UnreachableError, match="ends before"):
         enclose(PARIS, [Fraction(600)], radius=WANTED, approximant=lambda _bits: pair(islice(chain, 6)))
     with pytest.raises(UnreachableError, match="empty"):
@@ -96,7 +96,7 @@ def test_an_approximant_too_coarse_is_requested_again_with_more_bits():
     def source(bits):
         requested.append(bits)
         delivered = max(bits - 60 if len(requested) == 1 else bits, 96)
-        return pair(Recurrence(World(PARIS, delivered + 64), delivered, delivered // 2).chain(Fraction(1, 2)))
+        return pair(Recurrence(SceneBalls(PARIS, delivered + 64), delivered, delivered // 2).chain(Fraction(1, 2)))
 
     proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=source)
     assert len(requested) == 2
@@ -107,8 +107,8 @@ def test_an_approximant_too_coarse_is_requested_again_with_more_bits():
 def test_coefficients_of_an_integrator_are_an_approximant():
     bits, rows = 192, []
     with ctx.workprec(256):
-        sin, cos = map(int, fixed(list(World(PARIS, 256).tilt), bits)[0])
-    for e in Recurrence(World(PARIS, 256), bits, 96).chain(Fraction(1, 2)):
+        sin, cos = map(int, fixed(list(SceneBalls(PARIS, 256).tilt), bits)[0])
+    for e in Recurrence(SceneBalls(PARIS, 256), bits, 96).chain(Fraction(1, 2)):
         x, m, w, _ = e.coefficients
         y = [(a * sin + b * cos) >> bits for a, b in zip(m, w, strict=True)]
         z = [(b * sin - a * cos) >> bits for a, b in zip(m, w, strict=True)]

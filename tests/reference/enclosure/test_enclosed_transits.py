@@ -13,7 +13,7 @@ from flint import arb, ctx
 from scipy.integrate import solve_ivp
 
 from reference.enclosure.balls import ball
-from reference.enclosure.bound import Piece, World
+from reference.enclosure.bound import Piece, SceneBalls
 from reference.enclosure.enclosed_transits import Scan, Slope, narrowed
 from reference.enclosure.shapes import Covered, Leaf, Tube
 from reference.numbers.taylor_step import TaylorStep
@@ -22,7 +22,7 @@ from reference.numbers.taylor_step import TaylorStep
 def scan(inputs, proposal, columns=False):
     seen = None
     for covered in carry(inputs, proposal, columns):
-        seen = seen or Scan(covered.piece.world)
+        seen = seen or Scan(covered.piece.balls)
         seen.advance(covered)
     return seen.finish()
 
@@ -186,9 +186,9 @@ def parabola(delta, u):
     rows = [[0, Fraction(1, 9) + delta, Fraction(-1, 3), Fraction(1, 3)], *[[0]] * 3]
     whole = tuple([int(c * 2**bits) for c in r] for r in rows)
     step = TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, whole)
-    world = World(scene(vx="1"), 264)
-    out = Scan(world)
-    out.advance(Covered(Piece(world, step), Tube(arb(u), arb(u), arb(u) * 10)))
+    balls = SceneBalls(scene(vx="1"), 264)
+    out = Scan(balls)
+    out.advance(Covered(Piece(balls, step), Tube(arb(u), arb(u), arb(u) * 10)))
     return out.finish()
 
 
@@ -209,11 +209,11 @@ def test_two_zeros_that_are_close_are_told_apart():
 
 
 def test_a_step_shorter_than_the_precision_is_refused():
-    world, third = World(scene(), 128), Fraction(1, 3)
+    balls, third = SceneBalls(scene(), 128), Fraction(1, 3)
     row = [0, 1 << 128]
     step = TaylorStep(-third, Fraction(1), third, third + Fraction(1, 2**200), 128, (row, *[[0]] * 3))
     with pytest.raises(ArithmeticError, match="too short"):
-        Scan(world).advance(Covered(Piece(world, step), Tube(arb(0), arb(0), arb(0))))
+        Scan(balls).advance(Covered(Piece(balls, step), Tube(arb(0), arb(0), arb(0))))
 
 
 ROUNDED = arb(2) ** -25  # the radius of a ball has 30 bits
@@ -225,10 +225,10 @@ ROUNDED = arb(2) ** -25  # the radius of a ball has 30 bits
     ("-2/3", "1/3", (-1, 0), (1, 0)),
 ])  # fmt: skip
 def test_ends_move_only_to_signs_that_are_those_of_the_sides(low, high, sides, far):
-    world = World(scene(), 128)
-    with ctx.workprec(world.prec):
+    balls = SceneBalls(scene(), 128)
+    with ctx.workprec(balls.prec):
         row = [0, 0, 1 << 127]  # xdot = s
-        piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
+        piece = Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
         slope, (low, high) = Slope(Covered(piece, Tube(*[arb(2) ** -90] * 3))), (ball(Fraction(q)) for q in (low, high))
         found = narrowed([Leaf(1, low, high, slope)], 1 + low, 1 + high, sides)
         for end, old, moved in zip((found.lower(), found.upper()), (low, high), far, strict=True):
@@ -236,10 +236,10 @@ def test_ends_move_only_to_signs_that_are_those_of_the_sides(low, high, sides, f
 
 
 def test_a_zero_far_from_the_middle_of_a_bent_leaf_is_found():
-    world = World(scene(), 128)
-    with ctx.workprec(world.prec):
+    balls = SceneBalls(scene(), 128)
+    with ctx.workprec(balls.prec):
         row = [0, -(1 << 108), 0, 0, 0, (1 << 128) // 5]  # xdot = s^4 - 2^-20, 0 at 1/32
-        piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
+        piece = Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
         slope = Slope(Covered(piece, Tube(*[arb(2) ** -90] * 3)))
         found = narrowed([Leaf(1, arb("0.01"), arb(1), slope)], arb("1.01"), arb(2), (-1, 1))
         assert found.contains(1 + arb(2) ** -5)
@@ -247,10 +247,10 @@ def test_a_zero_far_from_the_middle_of_a_bent_leaf_is_found():
 
 
 def test_whatever_is_proposed_the_zero_stays_between(monkeypatch):
-    rng, world = Random(2), World(scene(), 128)
-    with ctx.workprec(world.prec):
+    rng, balls = Random(2), SceneBalls(scene(), 128)
+    with ctx.workprec(balls.prec):
         row = [0, 0, 1 << 127]  # xdot = s, known to 0.01
-        piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
+        piece = Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 128, (row, *[[0]] * 3)))
         slope = Slope(Covered(piece, Tube(*[arb("0.01")] * 3)))
         leaves = [Leaf(1, arb(-1), arb("0.25"), slope), Leaf(1, arb("0.25"), arb(1), slope)]
         for _ in range(200):

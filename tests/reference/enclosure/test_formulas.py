@@ -10,7 +10,7 @@ import pytest
 from enclosure_oracle import scene
 from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 
-from reference.enclosure.bound import Piece, Radius, Scaled, World
+from reference.enclosure.bound import Piece, Radius, Scaled, SceneBalls
 from reference.enclosure.shapes import Sizes
 from reference.enclosure.six_columns import CUT, FINE, Columns, cut, residuals
 from reference.numbers.packing import DIGIT_BITS, Digits
@@ -49,9 +49,9 @@ def poly(row, s, n=0):
 
 
 def anything(rng):
-    """A world whose constants have any size, and a polynomial step likewise."""
+    """A scene whose constants have any size, and a polynomial step likewise."""
     some = lambda low, high: f"{10 ** rng.uniform(low, high):.12f}"  # noqa: E731
-    world = World(
+    balls = SceneBalls(
         scene(
             length="1", angles=("60", "30", "20", "10"), latitude=f"{rng.uniform(-90, 90):.6f}",
             gravity=rng.choice(["0", some(-3, 3)]), drag=rng.choice(["0", some(-3, 3)]),
@@ -65,18 +65,18 @@ def anything(rng):
         for i, row in enumerate(rows):
             row[0] = 2**bits if i == rng.randrange(3) else 0
     rows.append([round(2**bits * rng.choice((0, 0, 1)) * 10 ** rng.uniform(-3, 2))])
-    return Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, tuple(rows)))
+    return Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, tuple(rows)))
 
 
 def of_digits(rng):
     """The same, the polynomials as digits: few orders, often no more than one, some of them all zero."""
-    world, count, orders = anything(rng).world, rng.randint(2, 4), rng.randint(1, 3)
+    balls, count, orders = anything(rng).balls, rng.randint(2, 4), rng.randint(1, 3)
     size = (4, count, orders)
     table = np.reshape([rng.choice((0, 1)) * rng.randint(-(2**21), 2**21) for _ in range(np.prod(size))], size)
     if rng.random() < 0.3:
         table[:3, :, rng.randrange(orders) :] = 0
     bits = DIGIT_BITS * count - 1
-    return Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, Digits(table)))
+    return Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, Digits(table)))
 
 
 def defects(piece, s):
@@ -158,10 +158,10 @@ def same(got, expected):
 def carried(method, rng, K, span, monkeypatch):
     """A bound that starts from given jumps, and a piece that is only its constants."""
     jump = [10 ** rng.uniform(-2, -1) for _ in range(6)]
-    world = SimpleNamespace(prec=128, r=[arb(0)] * 3, H=[arb(0)] * 3, w0=arb(K.w) / arb(K.h))
+    balls = SimpleNamespace(prec=128, r=[arb(0)] * 3, H=[arb(0)] * 3, w0=arb(K.w) / arb(K.h))
     monkeypatch.setattr(method, "join", lambda self, piece: [arb(x) for x in jump])
     step = SimpleNamespace(low=Fraction(-1, 4), high=Fraction(-1, 4) + Fraction(span))
-    return method(world), step, jump
+    return method(balls), step, jump
 
 
 def test_one_radius_is_carried_as_theorem_c_says(monkeypatch):
@@ -223,16 +223,16 @@ def test_what_holds_for_the_whole_run_follows_from_the_energy():
     rng = Random(3)
     for _ in range(100):
         piece = anything(rng)
-        world, k = piece.world, Scaled(piece.world, Fraction(1, 4), 64)
-        r, H, W, c = ([float(x) for x in v] for v in (world.r, world.H, world.omega, world.c))
+        balls, k = piece.balls, Scaled(piece.balls, Fraction(1, 4), 64)
+        r, H, W, c = ([float(x) for x in v] for v in (balls.r, balls.H, balls.omega, balls.c))
         J = np.dot(H, H) / 2 - np.dot(W, H) - np.dot(c, r)
-        turn, pull, w0 = np.linalg.norm(W), np.linalg.norm(c), float(world.w0)
+        turn, pull, w0 = np.linalg.norm(W), np.linalg.norm(c), float(balls.w0)
         S = turn + np.sqrt(turn**2 + 2 * (J + pull))
         scale = w0**2 + turn**2 + S**2
-        got = [float(x) for x in (world.speed**2, world.below, world.above)]
+        got = [float(x) for x in (balls.speed**2, balls.below, balls.above)]
         assert np.allclose(got, [S**2, w0**2 + turn**2 / 2 + J, pull - w0**2], rtol=0, atol=1e-9 * scale)
         got = [float(x) for x in (k.w, k.speed, k.below, k.above, k.drag, k.omega[2], *k.c)]
-        full = [w0, world.speed, world.below, world.above, world.drag, world.omega[2], *world.c]
+        full = [w0, balls.speed, balls.below, balls.above, balls.drag, balls.omega[2], *balls.c]
         assert np.allclose(got, [float(x) / 4**n for x, n in zip(full, (1, 1, 2, 2, 1, 1, 2, 2, 2), strict=True)])
 
 

@@ -11,7 +11,7 @@ from enclosure_recurrence import prove
 from flint import arb, ctx, fmpq, fmpq_poly
 
 from reference.enclosure.balls import ball
-from reference.enclosure.bound import Piece, World
+from reference.enclosure.bound import Piece, SceneBalls
 from reference.enclosure.enclosed_transits import Scan, Slope, touched
 from reference.enclosure.shapes import Covered, Leaf, Tube
 from reference.numbers.taylor_step import TaylorStep
@@ -26,8 +26,8 @@ def rational(q):
 
 def made_up(edges, xdot, u, rng):
     """The transits that Scan finds in steps between `edges` whose polynomials are off by all that their tubes allow."""
-    world = World(MOVING, BITS + 64)
-    scan = Scan(world)
+    balls = SceneBalls(MOVING, BITS + 64)
+    scan = Scan(balls)
     for a, b in pairwise(edges):
         c = a + (b - a) * Fraction(rng.randint(0, 4), 4)
         h = max(c - a, b - c) * Fraction(rng.randint(16, 24), 16)
@@ -38,7 +38,7 @@ def made_up(edges, xdot, u, rng):
         step = TaylorStep(c, h, (a - c) / h, (b - c) / h, BITS, (row, *[[0]] * 3))
         with ctx.workprec(64):
             tube = Tube(arb(0), (ball(u) + arb(2) ** -180).upper(), (ball(u) + arb(2) ** -180).upper())
-        scan.advance(Covered(Piece(world, step), tube))
+        scan.advance(Covered(Piece(balls, step), tube))
     return scan.finish()
 
 
@@ -108,29 +108,29 @@ def test_a_release_a_hair_off_the_meridian_keeps_its_early_transit():
 
 def test_from_rest_the_third_derivative_must_keep_its_sign_on_the_whole_leaf():
     fast = {"rotation_rate": "0.5", "equatorial_radius": "5", "gravity": "0.01"}
-    world = World(scene(x="0", y="0.5", length="1", **fast), BITS + 64)
-    assert world.flat
+    balls = SceneBalls(scene(x="0", y="0.5", length="1", **fast), BITS + 64)
+    assert balls.flat
     x = [0, 0, 0, Fraction(1, 12), Fraction(-1, 4)]  # xdot = s² (1/4 - s)
     m = [0, 0, Fraction(1, 2), Fraction(-2, 3)]  # its second derivative, 1 - 4 s, turns x''' round
     rows = tuple([int(q * 2**BITS) for q in row] for row in (x, m, [-1], [0]))
     tiny = arb(2) ** -180
-    scan = Scan(world)
-    piece = Piece(world, TaylorStep(Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, rows))
+    scan = Scan(balls)
+    piece = Piece(balls, TaylorStep(Fraction(0), Fraction(1), Fraction(0), Fraction(1), BITS, rows))
     scan.advance(Covered(piece, Tube(tiny, tiny, tiny)))
     assert any(f.t.low <= Fraction(1, 4) <= f.t.high for f in scan.finish())
 
 
 def test_at_a_boundary_both_steps_are_asked():
-    world, third = World(MOVING, 128), Fraction(1, 3)
+    balls, third = SceneBalls(MOVING, 128), Fraction(1, 3)
     leaves = []
     with ctx.workprec(128):
         for low, high, y in ((Fraction(0), third, 0), (third, Fraction(1), 1)):
             rows = ([0, -(2**128) // 3, 2**127], [y << 120], [0], [0])  # xdot = s - 1/3
-            piece = Piece(world, TaylorStep(Fraction(0), Fraction(1), low, high, 128, rows))
+            piece = Piece(balls, TaylorStep(Fraction(0), Fraction(1), low, high, 128, rows))
             slope = Slope(Covered(piece, Tube(*[arb(2) ** -100] * 3)))
             leaves.append(Leaf(1, ball(low), ball(high), slope))
         assert len(touched(leaves, ball(third))) == 2
-        scan = Scan(world)
+        scan = Scan(balls)
         scan.cluster, scan.left = leaves, -1
         scan._close(1)
     (found,) = scan.found
@@ -150,13 +150,13 @@ def test_at_a_boundary_both_steps_are_asked():
     ({"gravity": Fraction(9, 10 * 2**64), "rotation_rate": 0}, ([2**64], [0], [0], [0]), Fraction(9, 10 * 2**64)),
 ])  # fmt: skip
 def test_constants_below_the_last_bit_still_count(changes, rows, least):
-    world = World(scene(length="1", **changes), 192)
-    piece = Piece(world, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 64, rows))
+    balls = SceneBalls(scene(length="1", **changes), 192)
+    piece = Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 64, rows))
     assert piece.sizes.d2 >= ball(least)
 
 
 def test_sides_that_contradict_each_other_are_refused():
-    scan = Scan(World(MOVING, 128))
+    scan = Scan(SceneBalls(MOVING, 128))
     scan.left = -1
     with pytest.raises(ArithmeticError, match="contradict"):
         scan._close(1)

@@ -8,7 +8,7 @@ from enclosure_oracle import acceleration, constants, scene, start, truth
 from flint import arb, ctx, fmpz, fmpz_poly
 
 from reference.enclosure.balls import ball, fixed, interval, norm, size, upper
-from reference.enclosure.bound import Piece, Radius, World, output
+from reference.enclosure.bound import Piece, Radius, SceneBalls, output
 from reference.enclosure.shapes import Covered, Tube
 from reference.numbers.taylor_step import TaylorStep
 
@@ -44,29 +44,29 @@ def test_ends_of_what_is_useless_are_refused(useless):
         interval(useless)
 
 
-def piece_at(world, x, low=0, high=1):
+def piece_at(balls, x, low=0, high=1):
     row = [int(Fraction(q) * 2**64) for q in x]
     rows = (*([c] for c in row), [0])
-    return Piece(world, TaylorStep(Fraction(0), Fraction(1), Fraction(low), Fraction(high), 64, rows))
+    return Piece(balls, TaylorStep(Fraction(0), Fraction(1), Fraction(low), Fraction(high), 64, rows))
 
 
 def test_a_join_counts_the_gap_and_the_radius_of_what_is_joined():
-    world = World(scene(rotation_rate="0.5"), 128)
-    bound = Radius(world)
+    balls = SceneBalls(scene(rotation_rate="0.5"), 128)
+    bound = Radius(balls)
     bound.last = [arb(0, 0.25), *[arb(0)] * 5]
     with ctx.workprec(128):
-        first, *rest = bound.join(piece_at(world, ("0.5", 0, 0), 0, "1/2"))
+        first, *rest = bound.join(piece_at(balls, ("0.5", 0, 0), 0, "1/2"))
         assert first >= 0.75
         assert rest[-1] >= 0.125  # K = p × (Ω × p)
-        again = bound.join(piece_at(world, ("0.5", 0, "0.125"), "1/2", 1))
+        again = bound.join(piece_at(balls, ("0.5", 0, "0.125"), "1/2", 1))
         assert again[0] <= 1e-18
         assert again[2] >= 0.125
         assert again[3] >= 0.03125
 
 
 def test_a_tube_is_asked_on_its_own_step_only():
-    world = World(scene(), 128)
-    piece = piece_at(world, (0, 0, -1))
+    balls = SceneBalls(scene(), 128)
+    piece = piece_at(balls, (0, 0, -1))
     with pytest.raises(ArithmeticError, match="own step"):
         output(Covered(piece, Tube(arb(0), arb(0), arb(0))), Fraction(3, 2))
     got = output(Covered(piece, Tube(arb(1) / 67, arb(2) / 67, arb(0))), Fraction(1, 2))
@@ -83,14 +83,14 @@ def test_a_tube_is_asked_on_its_own_step_only():
     scene(angles=("30", "90", "0", "0")), scene(angles=("30", "90", "0", "5"), latitude="90"),
 ])  # fmt: skip
 def test_exact_zeros_are_claimed_only_where_they_are(inputs):
-    world = World(inputs, 128)
+    balls = SceneBalls(inputs, 128)
     with mp.workprec(300):
         state = start(inputs)
         pull = acceleration(constants(inputs), state)
         small = mp.mpf(10) ** -60
-        assert not world.slow or abs(state[3]) < small
-        assert not world.flat or abs(pull[0]) < small
+        assert not balls.slow or abs(state[3]) < small
+        assert not balls.flat or abs(pull[0]) < small
         ((*_, vx, _, _),) = truth(inputs, [Fraction(7, 3)], 300)
-        assert not world.still or abs(vx) < small
+        assert not balls.still or abs(vx) < small
         # what is claimed is also noticed where the input says it plainly
-        assert world.slow == (abs(state[3]) < small)
+        assert balls.slow == (abs(state[3]) < small)

@@ -15,7 +15,7 @@ from scipy.integrate import solve_ivp
 
 from reference.enclosure.approximant import pair
 from reference.enclosure.balls import add, ball, cross
-from reference.enclosure.bound import Piece, Radius, World
+from reference.enclosure.bound import Piece, Radius, SceneBalls
 from reference.enclosure.digits import split
 from reference.enclosure.enclosed_transits import Scan
 from reference.enclosure.frames import ColumnSource
@@ -31,11 +31,11 @@ ROUNDING = 1 + 1e-7  # of the double-precision truth
 LOOSE = Fraction(10**9)
 
 
-def exact_errors(inputs, piece, world, ratios):
+def exact_errors(inputs, piece, balls, ratios):
     """|e|, |v - p'|, |r'' - p''| at a few times of a piece, each over its bound's name."""
     rates, first = doubles(inputs)
     length = float(inputs.length)
-    axes = np.array([[float(x) for x in world.turned([arb(i == k) for i in range(3)], 1)] for k in range(3)])
+    axes = np.array([[float(x) for x in balls.turned([arb(i == k) for i in range(3)], 1)] for k in range(3)])
     h, centre = float(piece.step.h), float(piece.step.centre)
     grid = np.linspace(float(piece.step.low), float(piece.step.high), 5)
     span = (0, centre + h * grid[-1])
@@ -63,23 +63,23 @@ def wide_pair(rng):
 
 def first_piece(true, other, method):
     """The first step of an approximant that starts at `other`, bounded from its true distance to `true` alone."""
-    world, beside = World(true, 192), World(other, 192)
+    balls, beside = SceneBalls(true, 192), SceneBalls(other, 192)
     step = next(pair(Recurrence(beside, 128, 40).chain(Fraction(1, 32))))
-    piece = Piece(world, step)
+    piece = Piece(balls, step)
     with ctx.workprec(192):
         k, (p, v) = piece.k, piece.values(ball(step.low))
         here = [*p, *(x / k.h for x in cross(p, add(v, cross(k.omega, p))))]
-        gap = [a - b for a, b in zip([*world.r, *world.H], here, strict=True)]
-        bound = method(world)
+        gap = [a - b for a, b in zip([*balls.r, *balls.H], here, strict=True)]
+        bound = method(balls)
         bound.last = here
         if method is Columns:
             bound.rest = [x.abs_upper() for x in gap]
-            return world, piece, bound.advance(piece, ColumnSource(world).propose(step, [0.0] * 6)).tube
-        radial = sum((a * b for a, b in zip(world.r, gap[3:], strict=True)), arb(0))
-        flat = [g - radial * r for g, r in zip(gap[3:], world.r, strict=True)]
-        square = sum((x**2 for x in gap[:3]), arb(0)) + sum((x**2 for x in flat), arb(0)) / world.w0**2
+            return balls, piece, bound.advance(piece, ColumnSource(balls).propose(step, [0.0] * 6)).tube
+        radial = sum((a * b for a, b in zip(balls.r, gap[3:], strict=True)), arb(0))
+        flat = [g - radial * r for g, r in zip(gap[3:], balls.r, strict=True)]
+        square = sum((x**2 for x in gap[:3]), arb(0)) + sum((x**2 for x in flat), arb(0)) / balls.w0**2
         bound.eta = square.sqrt().upper()
-    return world, piece, bound.advance(piece).tube
+    return balls, piece, bound.advance(piece).tube
 
 
 @pytest.mark.parametrize("method", [Radius, Columns])
@@ -88,12 +88,12 @@ def test_no_error_of_any_size_exceeds_its_bound(method):
     while accepted < 75:
         true, other = wide_pair(rng)
         try:
-            world, piece, tube = first_piece(true, other, method)
+            balls, piece, tube = first_piece(true, other, method)
         except ArithmeticError:
             continue
         accepted += 1
         errors = []
-        exact_errors(true, piece, world, errors)
+        exact_errors(true, piece, balls, errors)
         ratio = np.max(errors, axis=0) / np.array([float(x) for x in tube])
         assert np.all(ratio <= ROUNDING), (true, other, ratio)
         worst = np.maximum(worst, ratio)
@@ -219,7 +219,7 @@ def test_transits_of_sabotaged_approximants_are_all_true_or_refused(digits, size
             proposed = sabotage(rng, inputs, end)
             scan = None
             for covered in carry(inputs, map(in_digits, proposed) if digits else proposed, columns):
-                scan = scan or Scan(covered.piece.world)
+                scan = scan or Scan(covered.piece.balls)
                 scan.advance(covered)
             claims = scan.finish()
         except (ArithmeticError, ValueError):
@@ -294,8 +294,8 @@ def widened(i, by=Fraction(1, 10**60)):
 @pytest.mark.parametrize("eta", [arb("nan"), arb("inf"), arb("1e400"), arb(10) ** 30])
 def test_a_useless_radius_is_refused(eta):
     step = next(steps(PARIS, Fraction(5)))
-    world = World(PARIS, 192)
-    piece, bound = Piece(world, step), Radius(world)
+    balls = SceneBalls(PARIS, 192)
+    piece, bound = Piece(balls, step), Radius(balls)
     bound.eta = eta
     with pytest.raises(ArithmeticError):
         bound.advance(piece)
@@ -303,15 +303,15 @@ def test_a_useless_radius_is_refused(eta):
 
 def test_a_release_that_may_be_on_the_horizontal_is_refused():
     with pytest.raises(ArithmeticError):
-        World(scene(x="67", y="0", vx="1"), 128)
+        SceneBalls(scene(x="67", y="0", vx="1"), 128)
     with pytest.raises(ArithmeticError):
-        World(scene(x="70", y="0"), 128)
+        SceneBalls(scene(x="70", y="0"), 128)
 
 
 @pytest.mark.parametrize("change", [{"drag": "-0.001"}, {"length": "-67"}])
 def test_what_the_theorems_do_not_cover_is_refused(change):
     with pytest.raises(ArithmeticError, match="theorems"):
-        World(scene(**change), 128)
+        SceneBalls(scene(**change), 128)
 
 
 def test_steps_that_do_not_join_or_overreach_are_refused():
@@ -323,7 +323,7 @@ def test_steps_that_do_not_join_or_overreach_are_refused():
 
 
 def test_ball_of_integers_contains_what_it_stands_for():
-    assert fmpz(7) == World(PARIS, 64).length.unique_fmpz() - 60
+    assert fmpz(7) == SceneBalls(PARIS, 64).length.unique_fmpz() - 60
     assert constants(PARIS)[3] == 67
 
 
