@@ -5,7 +5,8 @@
 - `choice`: the run that is published: its bits, engine and form.
 - `pilot`: pilot runs, which measure how rounding errors grow; `reach`: the limits of a run.
 - `agreement`: how far two runs of a scene are apart, and the errors that follow; `transit_errors`: those of transits.
-- `enclosed`: the level enclosed; `proof_steps`: the run whose Taylor polynomials its proof takes.
+- `enclosed`: the level enclosed: a proof, with its audit and its confirmation beside it; `proving`: the proof itself;
+  `proof_steps`: the run whose Taylor polynomials it takes; `proof_checks`: runs that may refuse it.
 - `rounding`: decimals of every printed column, and whether a proof decides each digit.
 - `sensitivity`: response of a trajectory to each input, and how many digits that costs.
 """

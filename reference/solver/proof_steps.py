@@ -6,10 +6,9 @@ they arrive; the pipe provides back-pressure. The proof bounds the defect of eve
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from itertools import islice
+from itertools import chain, islice
 
 from ..engines import AUTO
 from ..engines.plan import Run
@@ -32,84 +31,81 @@ class EngineChanged(Exception):
         self.engine = engine
 
 
-@dataclass
 class Feed:
-    """The run whose Taylor steps the proof takes.
+    """The run whose Taylor steps the proof takes: called with a precision, it starts one and returns its steps."""
 
-    Called with a precision, it starts the run and yields its steps; `finished` then returns the states.
+    def __init__(
+        self, inputs: Inputs, times: tuple[Fraction, ...], engine: str = AUTO, steps: int = MANY_STEPS
+    ) -> None:
+        """Declare the run.
 
-    Attributes:
-        inputs: the scene's exact inputs.
-        times: output times in s; the run goes one step beyond the last.
-        engine: name of the engine, where it has the bits; "auto" for the fastest.
-        steps: about how many steps it takes in double.
-    """
-
-    inputs: Inputs
-    times: tuple[Fraction, ...]
-    engine: str = AUTO
-    steps: int = MANY_STEPS
-    _begun: str = ""
-    _worker: Worker | None = field(default=None, repr=False)
-    _steps: Iterator[TaylorStep] = field(default_factory=lambda: iter(()), repr=False)
-    _runs: list[Run] = field(default_factory=list, repr=False)
+        Args:
+            inputs: the scene's exact inputs.
+            times: output times in s; the run goes one step beyond the last.
+            engine: name of the engine, where it has the bits; "auto" for the fastest.
+            steps: about how many steps it takes in double.
+        """
+        self._inputs, self._times, self._wanted, self._count = inputs, times, engine, steps
+        self._begun = ""
+        self._worker: Worker | None = None
+        self._steps: Iterator[TaylorStep] = iter(())
+        self._run: Run | None = None
 
     def __call__(self, prec: int) -> Iterator[TaylorStep]:
         """Start a run at `prec` bits and return its steps, in order from t = 0.
 
         Raises:
-            EngineChanged: another engine has to do it than at the first call. All that a proof has tried is to be of the
-                engine that its dataset names, so that `--engine` gives the same bytes again.
+            EngineChanged: another engine has to do it than at the first call. All that a proof has tried is to be of
+                the engine that its dataset names, so that `--engine` gives the same bytes again.
         """
         self.stop()
-        self._runs.clear()
-        engine = fastest(prec, self.engine, self.steps)
+        engine = fastest(prec, self._wanted, self._count)
         if self._begun not in ("", engine.name):
             raise EngineChanged(engine.name)
-        self._begun = engine.name
-        if engine.own_process and engine.expected_s(self.steps, prec) >= WORTH_A_PROCESS:
-            self._worker = Worker(_send_steps, engine.name, self.inputs, self.times, prec)
-            self._steps = self._received(self._worker)
+        self._begun, self._run = engine.name, None
+        run = engine.name, self._inputs, self._times, prec
+        if engine.own_process and engine.expected_s(self._count, prec) >= WORTH_A_PROCESS:
+            self._worker = Worker(_send, *run)
+            self._steps = self._taken(chain.from_iterable(self._worker))
         else:
-            self._steps = _paired(engine.name, self.inputs, self.times, prec, self._runs)
+            self._steps = self._taken(_steps_and_run(*run))
         return self._steps
 
     def finished(self) -> Run:
         """Exhaust the steps and return the run, with its states at `times`."""
         for _ in self._steps:
             pass
-        if not self._runs:
+        if self._run is None:
             raise IntegrationError("the approximant ended without its states.")
-        return self._runs[0]
-
-    def _received(self, worker: Worker) -> Iterator[TaylorStep]:
-        for item in worker:
-            if isinstance(item, Run):
-                self._runs.append(item)
-            else:
-                yield from item
+        return self._run
 
     def stop(self) -> None:
         """End the process."""
         if self._worker is not None:
             self._worker.stop()
 
+    def _taken(self, items: Iterable[TaylorStep | Run]) -> Iterator[TaylorStep]:
+        for item in items:
+            if isinstance(item, Run):
+                self._run = item
+            else:
+                yield item
 
-def _paired(
-    engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int, runs: list[Run]
-) -> Iterator[TaylorStep]:
-    """Return the steps of an engine's run, in the axes of a proof and paired; at the end the run is put into `runs`."""
+
+def _steps_and_run(engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> Iterator[TaylorStep | Run]:
+    """Yield the steps of an engine's run, in the axes of a proof and paired, and at last the run."""
     from ..enclosure import pair, turned
 
-    def chain() -> Iterator[TaylorStep]:
+    runs: list[Run] = []
+
+    def steps() -> Iterator[TaylorStep]:
         runs.append((yield from engines()[engine].taylor_steps(inputs, times, prec, prec + COEFFICIENT_BITS)))
 
-    return pair(turned(inputs, chain()))
+    yield from pair(turned(inputs, steps()))
+    yield runs[0]
 
 
-def _send_steps(emit: Emit, engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> None:
-    runs: list[Run] = []
-    steps = _paired(engine, inputs, times, prec, runs)
-    while batch := list(islice(steps, BATCH)):
+def _send(emit: Emit, engine: str, inputs: Inputs, times: tuple[Fraction, ...], prec: int) -> None:
+    items = _steps_and_run(engine, inputs, times, prec)
+    while batch := list(islice(items, BATCH)):
         emit(batch)
-    emit(runs[0])

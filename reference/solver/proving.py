@@ -5,7 +5,6 @@ The approximant is a run by heyoka or limbs, whose states must lie in the balls 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import ceil
@@ -20,7 +19,7 @@ from ..scenes.scene import Scene
 from .choice import first_radius, late_radius
 from .pilot import Pilot
 from .proof_checks import checked_states
-from .proof_steps import COEFFICIENT_BITS, Feed, EngineChanged
+from .proof_steps import COEFFICIENT_BITS, EngineChanged, Feed
 from .rounding import UndecidedRounding, check_decided
 from .solution import CrossCheck, Proof, Solution, Source
 
@@ -73,7 +72,7 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
                 radius=radius,
                 transits=scene.run.transits,
                 approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
-                progress=report and _scaled(report, span),
+                progress=report and (lambda part: report(part * span)),
             )
             try:
                 solution = _solution(scene, times, enclosed, feed.finished(), pilot)
@@ -92,25 +91,16 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
         return proved(replace(problem, engine=changed.engine), enclose, report)
     finally:
         feed.stop()
-    raise UnreachableError(
-        f"{reason} Balls of {rounded_up(tried)} m were tried.",
-        advice,
-    )
-
-
-def _scaled(report: Report, span: float) -> Callable[[float], None]:
-    return lambda part: report(part * span)
+    raise UnreachableError(f"{reason} Balls of {rounded_up(tried)} m were tried.", advice)
 
 
 def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approximant: Run, pilot: Pilot) -> Solution:
     bits = enclosed.bits + TABLE_BITS
     grid = Table.of_intervals(GRID, enclosed.states, bits)
     gaps = checked_states(grid, times, approximant).largest()
-    checks = [replace(CrossCheck.of(approximant, gaps, None), cpu_s=0.0)]  # no further run, so no further cost
-    decided: list[Any] = []
-    undecided: list[Any] = []
-    for transit in enclosed.transits or ():
-        (decided if transit.kind == "one" else undecided).append(transit)
+    check = replace(CrossCheck.of(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
+    zeros = enclosed.transits or ()
+    decided, undecided = [z for z in zeros if z.kind == "one"], [z for z in zeros if z.kind != "one"]
     directions = [z.direction for z in decided]
     transits = None
     if enclosed.transits is not None:
@@ -130,15 +120,5 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     )
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)
-    return Solution(
-        scene,
-        times,
-        grid,
-        transits,
-        directions,
-        Source.of(approximant),
-        tuple(checks),
-        pilot.cpu_s,
-        proof,
-        possible,
-    )
+    source = Source.of(approximant)
+    return Solution(scene, times, grid, transits, directions, source, (check,), pilot.cpu_s, proof, possible)

@@ -64,7 +64,7 @@ def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
         return dataclasses.replace(honest(self), directions=[])
 
     monkeypatch.setattr(Beside, "result", wrong)
-    monkeypatch.setattr("reference.solver.confirming.run", lambda plan: wrong(Beside(None, send_run, plan)))
+    monkeypatch.setattr("reference.solver.enclosed.run", lambda plan: wrong(Beside(None, send_run, plan)))
     with pytest.raises(IntegrationError, match="does not confirm"):
         reference.solve(PARIS, **SHORT, confirm=True)
 
@@ -94,7 +94,7 @@ def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeyp
 
     monkeypatch.setattr(enclosed, "proved", noted)
     monkeypatch.setattr(side_by_side, "usable_cores", lambda: 2)
-    monkeypatch.setattr("reference.solver.confirming.WORTH_A_PROCESS", 0.0)
+    monkeypatch.setattr("reference.solver.enclosed.WORTH_A_PROCESS", 0.0)
     end = 9000.0
     reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm=True, report=seen.append)
     assert before[-1] < end  # the proof has ended, its audit has not

@@ -23,8 +23,8 @@ from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.precision import real
-from reference.solver import auditing, proof_steps
-from reference.solver.enclosed import solve_enclosed
+from reference.solver import proof_steps
+from reference.solver.enclosed import audited, proved_digits, solve_enclosed
 from reference.solver.proof_steps import Feed
 
 SHORT = {"t_end": "300", "digits": 30, "level": "enclosed"}
@@ -276,8 +276,8 @@ def test_all_that_a_proof_tries_is_of_the_engine_that_it_names(monkeypatch):
 def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(monkeypatch):
     digits = pytest.importorskip("reference.enclosure.digits")
     scene = make_scene(run={**SHORT, "t_end": "30", "digits": 20})
-    audited = reference.solve(scene, engine="limbs", audit=True)
-    assert grid_sheet(audited) == grid_sheet(reference.solve(scene, engine="limbs"))
+    by_flint = reference.solve(scene, engine="limbs", audit=True)
+    assert grid_sheet(by_flint) == grid_sheet(reference.solve(scene, engine="limbs"))
     honest = digits.norms
     monkeypatch.setattr(digits, "norms", lambda *words: [x / 2 for x in honest(*words)])
     reference.solve(scene, engine="limbs")  # half of the defect still bounds these few digits: only the audit can tell
@@ -288,8 +288,8 @@ def test_an_audit_proves_the_same_digits_by_flint_alone_and_finds_a_spoilt_sum(m
 @pytest.mark.parametrize("transits", [True, False])
 def test_an_audit_that_proves_other_digits_is_refused(transits):
     solution = reference.solve(make_scene(run={**SHORT, "t_end": "30", "digits": 20, "transits": transits}))
-    digits = auditing._digits(solution)
-    assert auditing.audited(solution, digits).proof.audited
+    digits = proved_digits(solution)
+    assert audited(solution, digits).proof.audited
     others = [replace(solution, directions=[*solution.directions, 1])]
     for name in ("grid", "transits") if transits else ("grid",):
         table = getattr(solution, name)
@@ -298,7 +298,7 @@ def test_an_audit_that_proves_other_digits_is_refused(transits):
         others.append(replace(solution, **{name: spoilt}))
     for other in others:
         with pytest.raises(IntegrationError, match="FLINT alone proves other digits"):
-            auditing.audited(other, digits)
+            audited(other, digits)
 
 
 def test_an_audit_without_a_proof_is_refused():
