@@ -17,7 +17,7 @@ from ...engines.plan import Run
 from ...engines.registry import engines
 from ...errors import IntegrationError, UnreachableError
 from ...model.start import Start
-from ...numbers.columns import GRID, TRANSITS
+from ...numbers.columns import GRID, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
 from ..files import Files
@@ -103,7 +103,7 @@ def _first_prec(manifest: Manifest) -> int:
 def _steps(files: Files) -> int:
     """Return about how many steps a run takes: the fastest rate in the scene, over the whole span."""
     start = Start.of(files.scene.exact, GUARD_BITS)
-    speeds = (sum(abs(part) for part in row) for row in files.tables["grid.csv"].numbers(GRID[3:]))
+    speeds = (sum(abs(part) for part in row) for row in files.tables["grid.csv"].numbers(VELOCITY))
     rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)) + abs(start.k.rate) + start.k.drag)
     rate += float(max(speeds) / files.scene.exact.length)
     return int(min(1e15, float(files.scene.exact.t_end) * rate))

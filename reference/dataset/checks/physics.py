@@ -15,7 +15,7 @@ import numpy as np
 
 from ...model.constants import Constants, constants
 from ...model.force import acceleration, invariant
-from ...numbers.columns import GRID
+from ...numbers.columns import STATE
 from ...numbers.fixed_point import FixedPoint, Integers, integers
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
 from ...numbers.table import bits_in
@@ -50,7 +50,7 @@ def problems(files: Files) -> Iterator[str]:
 def _on_grid(files: Files) -> _Moments:
     sheet = files.tables["grid.csv"]
     names = [f"grid.csv: t = {row[0]}" for row in sheet.rows]
-    return _Moments.of(files, names, *sheet.integers(GRID), [files.manifest.bound("grid", name) for name in GRID])
+    return _Moments.of(files, names, *sheet.integers(STATE), [files.manifest.bound("grid", name) for name in STATE])
 
 
 def _at_transits(files: Files) -> _Moments:

@@ -7,7 +7,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from ...model.start import Start
-from ...numbers.columns import GRID, VELOCITY
+from ...numbers.columns import GRID, STATE, VELOCITY
 from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
 from ...solver.rounding import exact_decimals
 from ..files import Files
@@ -45,8 +45,8 @@ def _release(files: Files) -> Iterator[str]:
     """Check that the first row is the scene's exact release."""
     start = Start.of(files.scene.exact, bits_of(2 * files.manifest.digits) + GUARD_BITS)
     released = [to_fraction(start.ctx.mpf(part)) for part in (*start.position, *start.velocity)]
-    (printed,) = Sheet(files.tables["grid.csv"].header, files.tables["grid.csv"].rows[:1], {}).numbers(GRID)
-    for name, value, number in zip(GRID, released, printed, strict=True):
+    (printed,) = Sheet(files.tables["grid.csv"].header, files.tables["grid.csv"].rows[:1], {}).numbers(STATE)
+    for name, value, number in zip(STATE, released, printed, strict=True):
         if abs(number - value) > files.manifest.bound("grid", name):
             yield f"grid.csv: {name} of the first row is not that of the scene's release"
 

@@ -1,0 +1,71 @@
+"""CONTRIBUTING's recipe for a column of grid.csv, followed to the letter in a copy of the project."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from places import ROOT
+
+BALL = '''
+
+_state = output
+
+
+def output(covered: Covered, time: Fraction) -> list[Interval]:
+    """Return position, velocity and ax at an output time."""
+    piece = covered.piece
+    with ctx.workprec(piece.balls.prec):
+        s = ball((time - piece.step.centre) / piece.step.h)
+        ax = piece.v[0].derivative()(s) / piece.unit + arb(0, covered.tube.a)
+        return [*_state(covered, time), interval(ax * piece.balls.length / piece.k.h**2)]
+'''
+# what is done to each file that the recipe names
+EDITS = {
+    "reference/numbers/columns.py": lambda text: re.sub("^GRID = STATE", 'GRID = (*STATE, "ax")', text, flags=re.M),
+    "reference/enclosure/bound.py": lambda text: text + BALL,
+    "reference/enclosure/printed.py": lambda text: re.sub('^GRID = "t,x.*vz', r"\g<0>,ax", text, flags=re.M),
+    "tests/reference/dataset/test_write_and_read.py": lambda text: text.replace('"t,x,y,z,vx,vy,vz"', "its header"),
+}
+HEADER = "t,x,y,z,vx,vy,vz,ax"
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the project whose grid.csv has the column ax, too."""
+    root = tmp_path_factory.mktemp("project")
+    shutil.copy(ROOT / "foucault.py", root)
+    for name in ("reference", "compare", "tests/reference/dataset", "data/scenes"):
+        shutil.copytree(ROOT / name, root / name, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "data/flags.toml", root / "data")
+    for name, edit in EDITS.items():
+        before = (root / name).read_text(encoding="utf-8")
+        assert edit(before) != before, name
+        (root / name).write_text(edit(before), encoding="utf-8")
+    return root
+
+
+def test_the_recipe_names_the_files_that_have_to_be_touched_and_no_others():
+    (row,) = re.findall(r"^\| a column of `grid.csv` \|(.+)$", (ROOT / "CONTRIBUTING.md").read_text("utf-8"), re.M)
+    assert set(re.findall(r"`((?:reference|tests)/[\w/]+\.py)`", row)) == {*EDITS}
+
+
+def test_a_column_is_made_and_verified_at_levels_of_runs_and_of_proof(copy, tmp_path):
+    sheets = []
+    for level in ("self_consistent", "enclosed"):
+        words = ["generate", "paris", "--t-end", "120", "--digits", "20", "--level", level, "--out", tmp_path / level]
+        for command in (words, ["verify", tmp_path / level]):
+            run = [sys.executable, "-m", "foucault", *map(str, command)]
+            done = subprocess.run(
+                run, check=False, cwd=copy, env={**os.environ, "PYTHONPATH": str(copy)}, capture_output=True, text=True
+            )
+            assert done.returncode == 0, done.stderr
+        sheets.append((tmp_path / level / "grid.csv").read_text("utf-8").splitlines())
+    runs, proof = ([line.split(",") for line in sheet] for sheet in sheets)
+    assert ",".join(runs[0]) == ",".join(proof[0]) == HEADER
+    assert [row[-1] for row in runs] == [row[-1] for row in proof]  # two ways to compute ax, the same digits
