@@ -21,12 +21,15 @@ pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="co
 PROGRAM = "import time; print(0, 0.3, 0.4, flush=True); time.sleep(2)"
 STUDY = ["study", "paris", "--t-end", "60", "--methods", "rk4", "--no-formulations", "--out"]
 GOES_ON = "foucault: stopped; the same command with the same --out goes on where it stopped"
+SWEEP = ["sweep", "paris", "--over", "site.latitude=-80:80:20", "--t-end", "60", "--audit", "0"]
 COMMANDS: dict[str, tuple[list[str], str]] = {
     "scenes": (["scenes"], ""),
     "generate": (["generate", "paris", "--t-end", "120", "--digits", "20", "--out"], "foucault: stopped; nothing "),
     "study": (STUDY, GOES_ON),
     "study --run": ([*STUDY[:4], *("--methods", "rk4", "--run", "PROGRAM", "--out")], GOES_ON),
     "stability": (["stability", "--scenes", "hard", "--methods", "rk4", "--out"], GOES_ON),
+    "sweep": ([*SWEEP, "--engine", "heyoka", "--out"], "foucault: stopped; what is done is in "),
+    "sweep --digits": ([*SWEEP, "--digits", "16", "--out"], "foucault: stopped; what is done is in "),
 }
 
 

@@ -1,4 +1,4 @@
-"""Campaigns of sweeps: random rows in both engines against limbs at 110 bits; kills in the middle of the work."""
+"""Campaigns of sweeps: random rows in both engines against limbs at 110 bits; kills and Ctrl-C in the middle."""
 
 from __future__ import annotations
 
@@ -7,10 +7,12 @@ import random
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 from against_limbs import compare
+from interruption import gone_within
 from places import ROOT
 from random_rows import KINDS, random_kinds
 
@@ -62,3 +64,47 @@ def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally
     assert len(contents(whole)) > 9
     assert process.returncode == 0
     assert contents(killed) == contents(whole)
+
+
+# rows side by side, in threads; rows that the solver solves, in processes
+WAYS = {
+    "threads": ["--over", "site.latitude=-90:90:1", "--engine", "heyoka"],
+    "processes": ["--over", "site.latitude=-60:60:5", "--digits", "16", "--want", "transits", "--workers", "2"],
+}
+
+
+@pytest.fixture(scope="module", params=WAYS)
+def way(request, tmp_path_factory):
+    """A sweep of many parts: its command, and the folder that it fills when nothing stops it."""
+    whole = tmp_path_factory.mktemp(request.param) / "whole"
+    command = [sys.executable, "-c", SMALL_PARTS, *WORDS, *WAYS[request.param]]
+    subprocess.run([*command, "--out", whole], check=True, cwd=ROOT, capture_output=True)
+    return command, whole
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
+@pytest.mark.parametrize(
+    "number", ["SIGKILL", "SIGINT", *(pytest.param(name, marks=pytest.mark.long) for name in ("SIGTERM", "SIGHUP"))]
+)
+def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, number, tmp_path):
+    """The signal reaches the sweep alone, and its processes notice; to the whole group it goes in another test."""
+    command, whole = way
+    folder = tmp_path / "stopped"
+    process = subprocess.Popen(
+        [*command, "--out", folder], cwd=ROOT, stderr=subprocess.PIPE, text=True, start_new_session=True
+    )
+    while process.poll() is None and not (contents(folder) if folder.exists() else {}):
+        time.sleep(0.01)
+    process.send_signal(getattr(signal, number))
+    _, err = process.communicate()
+    assert gone_within(process.pid, 10.0), "processes run on"
+    stopped = getattr(signal, number)
+    assert process.returncode == (-stopped if stopped == signal.SIGKILL else 128 + stopped), err
+    told = f"foucault: stopped; what is done is in {folder}: `foucault sweep --out {folder}` goes on"
+    assert err.splitlines() == ([told] if stopped == signal.SIGINT else [])
+    done = contents(folder)
+    assert done and done.items() < contents(whole).items()
+    assert not (folder / "summary.json").exists()
+    subprocess.run([*command[:4], "--out", folder], check=True, cwd=ROOT, capture_output=True)
+    assert contents(folder) == contents(whole)
+    assert (folder / "summary.json").read_bytes() == (whole / "summary.json").read_bytes()
