@@ -154,7 +154,7 @@ PUBLIC = {
     "reference.status": "Status",
     "reference.sweeps.axes": "Grid",
     "reference.sweeps.request": "Request",
-    "reference.sweeps.sweep": "asked_for opened parts_between run",
+    "reference.sweeps.sweep": "asked_for opened run",
     "reference.sweeps.values": "TEXTS",
     "reference.system": "cache",
     "reference.system.cache": "arrays entry store",

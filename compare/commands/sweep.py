@@ -95,20 +95,10 @@ def command(
             help="Solve N rows again in 28 digits (default: with --out a thousandth, else none).",
         ),
     ] = None,
-    agree_with: Annotated[
-        str | None,
-        typer.Option("--agree-with", metavar="E", help="Have this engine solve each row as well, and compare."),
-    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
             "--out", metavar="DIR", help="Write the rows into this folder, in Parquet; the same command goes on."
-        ),
-    ] = None,
-    rows_range: Annotated[
-        str | None,
-        typer.Option(
-            "--rows-range", metavar="A:B", help="Only the parts that begin in these rows: several jobs fill one --out."
         ),
     ] = None,
     workers: Workers = None,
@@ -125,23 +115,19 @@ def command(
 
     foucault sweep paris --over site.latitude=-90:90:1 --t-end 12000
     """
-    from reference.sweeps.sweep import parts_between, run
+    from reference.sweeps.sweep import run
 
     from ..report.sweep_report import document, text
 
     request = _request(
         scene_word, out,
         {"--over": over, "--rows": rows, "--set": set_, "--t-end": t_end, "--want": want, "--level": level,
-         "--digits": digits, "--tolerance": tolerance, "--engine": engine, "--audit": audit,
-         "--agree-with": agree_with},
+         "--digits": digits, "--tolerance": tolerance, "--engine": engine, "--audit": audit},
     )  # fmt: skip
     if workers is not None and cluster is not None:
         refuse({"--workers": workers}, "together with --cluster")
     if workers is not None and workers < 1:
         raise InputError("--workers", workers, "a whole number from 1")
-    chosen = parts_between(request, out, rows_range)
-    if chosen is not None:
-        refuse({"--plot": plot}, "together with --rows-range")
     if plot is not None:
         from ..report.charts.sweep_chart import check
 
@@ -156,7 +142,7 @@ def command(
             done[0] += count
             move(done[0])
 
-        swept = run(request, out, workers, cluster, report, chosen)
+        swept = run(request, out, workers, cluster, report)
     if plot is not None:
         from ..report.charts.sweep_chart import draw
 
@@ -194,7 +180,6 @@ def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) 
         tolerance=options["--tolerance"],
         engine=options["--engine"] or "auto",
         audit=options["--audit"],
-        agree_with=options["--agree-with"],
     )
 
 
@@ -206,13 +191,12 @@ def _judge(swept: Swept) -> None:
         typer.Exit: other rows failed, or the audit found a wrong one.
     """
     counts = swept.counts
-    done = sum(counts.values())
-    failed = done - counts.get(Status.OK.value, 0)
+    failed = len(swept) - counts.get(Status.OK.value, 0)
     if failed:
         first = swept.first_bad
         words = ", ".join(f"{count} {Status(word).words}" for word, count in counts.items() if word != Status.OK.value)
         where = ", ".join(f"{key}={text}" for key, text in swept.request.table.texts(first).items())
-        typer.echo(f"foucault: {failed} of {done} rows failed: {words} (first: row {first}, {where})", err=True)
+        typer.echo(f"foucault: {failed} of {len(swept)} rows failed: {words} (first: row {first}, {where})", err=True)
     if swept.audit is not None and swept.audit.wrong:
         named = ", ".join(map(str, swept.audit.wrong))
         typer.echo(f"foucault: solved again, rows {named} lie outside of their errors", err=True)

@@ -36,7 +36,7 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
 
     request, tally = swept.request, swept.tally
     plan, counts = request.document(), swept.counts
-    printed = not swept.left and (out is None or len(swept) <= ROWS_OF_JSON)
+    printed = out is None or len(swept) <= ROWS_OF_JSON
     return {
         "scene": request.scene.id,
         "over": plan["over"],
@@ -72,7 +72,7 @@ def text(swept: Swept, out: Path | None) -> str:
     """Return the table of a sweep, or where its folder is; then what an audit found, statuses and costs."""
     tally, counts = swept.tally, swept.counts
     by_status = ", ".join(f"{count} {Status(word).words}" for word, count in counts.items())
-    total = f"{sum(counts.values())} rows: {by_status}"
+    total = f"{len(swept)} rows: {by_status}"
     cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s, compiling {swept.compile_s:.2f} s; {swept.request.engine}"
     lines = []
     if out is None:
@@ -90,10 +90,7 @@ def text(swept: Swept, out: Path | None) -> str:
                 + ("".join(_cell(name, row[name]) for name in names) if ok else f"    {row['status']}: {row['reason']}")
             )
     else:
-        parts = swept.request.parts
-        lines.append(f"{out}: {parts} parts in Parquet")
-        if swept.left:
-            lines[-1] = f"{out}: {parts - swept.left} of {parts} parts in Parquet; the others are not done yet"
+        lines.append(f"{out}: {swept.request.parts} parts in Parquet")
     if swept.audit is not None:
         found = f"{len(swept.audit.wrong)} wrong, largest error {swept.audit.worst_ratio:.2g} of its estimate"
         lines.append(f"{swept.audit.rows} rows solved again in 28 digits: {found}")

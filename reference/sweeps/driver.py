@@ -29,10 +29,9 @@ DIED_REASON = "Its process died each time, alone as well"
 
 @dataclass
 class Tally:
-    """Counts of rows by status, the first row that is not ok, and costs."""
+    """Counts of rows by status, and costs."""
 
     counts: Counter[str] = field(default_factory=Counter)
-    first_bad: int | None = None
     cpu_s: float = 0.0
     fold_s: float = 0.0
     store_s: float = 0.0
@@ -40,15 +39,11 @@ class Tally:
     @classmethod
     def of(cls, part: Part) -> Tally:
         """Count the rows of a part."""
-        bad = np.flatnonzero(part.columns["status"] != Status.OK.value)
-        first = int(part.columns["row"][bad[0]]) if len(bad) else None
-        return cls(Counter(part.columns["status"].tolist()), first, part.cpu_s, part.fold_s)
+        return cls(Counter(part.columns["status"].tolist()), part.cpu_s, part.fold_s)
 
     def add(self, other: Tally) -> None:
         """Add another's."""
         self.counts += other.counts
-        known = [row for row in (self.first_bad, other.first_bad) if row is not None]
-        self.first_bad = min(known, default=None)
         self.cpu_s += other.cpu_s
         self.fold_s += other.fold_s
         self.store_s += other.store_s

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import OK, STOPPED, Batch, Outcomes, Rows, Wanted
+from ..engines.batch_interface import OK, STOPPED, Batch, Outcomes, Rows
 from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
@@ -127,10 +127,6 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
         write(columns, at, chosen, run, found, engine.name)
         if wanted.times:
             _list_transits(part, at, run)
-        if request.agree_with is not None:
-            agrees, other = _agreement(request.agree_with, chosen, run, found, wanted)
-            columns["agrees_with"][at[agrees]] = other
-            more |= dict.fromkeys(map(int, at[~agrees]), DOUBTFUL_REASON)
         stopped = (run.fate == STOPPED) | lost
         unsure = (run.fate != OK) | (found.undecided if wanted.transits else False)
         if request.tolerance is not None:
@@ -138,17 +134,6 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
         more |= dict.fromkeys(map(int, at[unsure]), DOUBTFUL_REASON)
         more |= dict.fromkeys(map(int, at[stopped]), STOPPED_REASON)
     return more
-
-
-def _agreement(name: str, rows: Rows, run: Outcomes, found: Errors, wanted: Wanted) -> tuple[Any, str]:
-    """Return where another engine, whose name is returned too, gives the same within twice the errors."""
-    engine = batches()[name] if batches()[name].drag or not rows.drag.any() else batches()["heyoka"]
-    other = engine.solve(rows, replace(wanted, apsides=False, times=False))
-    agrees = np.linalg.norm(run.state[:, :3] - other.state[:, :3], axis=1) <= 2 * found.position
-    agrees &= np.linalg.norm(run.state[:, 3:] - other.state[:, 3:], axis=1) <= 2 * found.velocity
-    agrees &= (run.transits == other.transits) & (other.fate == OK)
-    late = np.fmax(np.abs(run.t_first - other.t_first), np.abs(run.t_last - other.t_last))
-    return agrees & ~(late > 2 * found.transit), engine.name
 
 
 def _shared(name: str, damped: Any) -> list[tuple[Batch, Any]]:

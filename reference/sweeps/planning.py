@@ -34,7 +34,6 @@ def request(
     tolerance: float | None = None,
     engine: str = AUTO,
     audit: int | None = None,
-    agree_with: str | None = None,
 ) -> Request:
     """Return a sweep, checked.
 
@@ -48,7 +47,6 @@ def request(
         tolerance: largest error of a position in m with which a row stays in double.
         engine: the engine that solves many rows at once; "auto" takes the one that is done first.
         audit: rows to be solved again in many digits; None for none.
-        agree_with: another engine for many rows that has to agree with each, or None.
 
     Raises:
         InputError: a wrong axis, option or value.
@@ -76,7 +74,6 @@ def request(
         identity=chosen.identity,
         rows_per_part=_power_of_two(PART_S / row_s),
         audit=min(audit or 0, table.count),
-        agree_with=None if agree_with is None else _other(agree_with, chosen, swings),
     )
 
 
@@ -111,7 +108,7 @@ def _swings(scene: Scene) -> float:
     return max(1.0, float(scene.exact.t_end) * rate / (2 * math.pi))
 
 
-def _engine(name: str, swings: float, option: str = "--engine") -> Batch:
+def _engine(name: str, swings: float) -> Batch:
     """Return the engine that is asked for, or the one that is expected to be done first.
 
     Raises:
@@ -123,24 +120,12 @@ def _engine(name: str, swings: float, option: str = "--engine") -> Batch:
             (one for one in known.values() if one.installed), key=lambda one: one.expected_s(swings) - one.saved_s
         )
     if name not in known:
-        raise unknown(option, name, "an engine for many rows", (AUTO, *known), "")
+        raise unknown("--engine", name, "an engine for many rows", (AUTO, *known), "")
     if not known[name].installed:
         needed = ", ".join(known[name].requires)
         advice = f"Install it with pip install 'foucault-reference[{known[name].extra}]'."
-        raise InputError(option, name, f"the package {needed}, which it needs", advice)
+        raise InputError("--engine", name, f"the package {needed}, which it needs", advice)
     return known[name]
-
-
-def _other(name: str, chosen: Batch, swings: float) -> str:
-    """Return the name of the engine that has to agree, another one than that which is chosen.
-
-    Raises:
-        InputError: it is the same, or there is none of this name.
-    """
-    if name in (AUTO, chosen.name):
-        others = ", ".join(other for other in batches() if other != chosen.name)
-        raise InputError("--agree-with", name, f"another engine than {chosen.name}, such as {others}")
-    return _engine(name, swings, "--agree-with").name
 
 
 def _power_of_two(rows: float) -> int:

@@ -18,7 +18,7 @@ from .folding import columns_of, fold
 from .lists import Listed
 from .row import AMPLITUDE, FREQUENCY, PRECESSION, TIMES, TRANSITS, Column, columns_for
 
-SCHEMA = 1
+SCHEMA = 2
 PART_S = 10.0  # CPU seconds of a part, by the cost model
 LEAST_PART, MOST_PART = 8, 65_536  # rows
 CARTESIAN, ANGULAR = ("x", "y", "vx", "vy"), ("angle", "azimuth", "angle_rate", "azimuth_rate")
@@ -39,7 +39,6 @@ class Request:
         identity: what decides its digits.
         rows_per_part: rows of a part.
         audit: how many rows are solved again in many digits.
-        agree_with: an engine that solves every row as well, and has to agree.
     """
 
     scene: Scene
@@ -52,7 +51,6 @@ class Request:
     identity: str
     rows_per_part: int
     audit: int = 0
-    agree_with: str | None = None
 
     @property
     def promotes(self) -> bool:
@@ -138,7 +136,6 @@ class Request:
             "engine": self.engine,
             "identity": self.identity,
             "audit": self.audit,
-            "agree_with": self.agree_with,
         }
 
     @classmethod
@@ -152,7 +149,7 @@ class Request:
                 known = key in values
                 axes.append(Values(key, word, tuple(values[key])) if known else axis(f"{key}={word}", scene.inputs))
             table = Grid(tuple(axes))
-        names = ("level", "digits", "tolerance", "engine", "identity", "rows_per_part", "audit", "agree_with")
+        names = ("level", "digits", "tolerance", "engine", "identity", "rows_per_part", "audit")
         return cls(scene, table, tuple(document["want"]), **{name: document[name] for name in names})
 
     @cached_property

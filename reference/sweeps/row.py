@@ -34,7 +34,6 @@ COLUMNS = (
     Column("reason", "dictionary", "a sentence where the status is not ok"),
     Column("level", "dictionary", "level of trust: computed, or that of the solver where the row was promoted"),
     Column("engine", "dictionary", "the engine that computed the row"),
-    Column("agrees_with", "dictionary", "the engine that was asked as well, with the same result within the errors"),
     Column("digits", "int16", "significant digits of the largest number; 0 where the level is computed"),
     Column("steps", "int32", "steps taken"),
     Column("transits", "int32", "zeros of xdot in 0 < t <= t_end", (TRANSITS, FREQUENCY)),

@@ -157,7 +157,7 @@ class Store:
 
 
 def _foreign(path: Path) -> bool:
-    """Return whether a file is none of those with which another job begins the same folder at this moment."""
+    """Return whether a file is none of those that a sweep leaves which was killed as it began."""
     return path.name not in (ROWS, TRANSITS, PLAN) and not path.name.startswith(f".{PLAN}.")
 
 

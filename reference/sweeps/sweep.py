@@ -43,10 +43,8 @@ def sweep(
     tolerance: float | None = None,
     engine: str = "auto",
     audit_rows: int | None = None,
-    agree_with: str | None = None,
     workers: int | None = None,
     cluster: str | None = None,
-    rows_range: str | None = None,
     report: Report = lambda _: None,
 ) -> Swept:
     """Solve a scene for many values of some of its fields.
@@ -62,15 +60,12 @@ def sweep(
         tolerance: rows with a larger error of the position in m go through `solve` as well.
         engine: the engine that solves many rows at once; "auto" takes the one that is expected to be done first.
         audit_rows: how many rows are solved again in many digits; None for a thousandth with `out`, none without.
-        agree_with: another engine for many rows; where it does not agree, the row goes through `solve`.
         workers: threads, or processes where rows go through `solve`; None for one a core.
         cluster: address of a scheduler of dask.distributed, or "local:N" for one of N workers on this machine.
-        rows_range: "A:B" for the parts alone that begin in the rows from A to before B; others fill the same folder.
         report: called with the number of rows that were done since the last call.
 
     Returns:
-        A `Swept`: columns as arrays; a row that failed has a status and a reason, and no numbers. Where parts are left
-        to others, it has counts alone, of what was computed now.
+        A `Swept`: columns as arrays; a row that failed has a status and a reason, and no numbers.
 
     Raises:
         InputError: a wrong axis, option or folder; before any work.
@@ -86,10 +81,9 @@ def sweep(
         tolerance=tolerance,
         engine=engine,
         audit=audit_rows,
-        agree_with=agree_with,
     )
     folder = Path(out) if out is not None else None
-    return run(asked, folder, workers, cluster, report, parts_between(asked, folder, rows_range))
+    return run(asked, folder, workers, cluster, report)
 
 
 def asked_for(
@@ -156,12 +150,8 @@ def run(
     workers: int | None = None,
     cluster: str | None = None,
     report: Report = lambda _: None,
-    chosen: range | None = None,
 ) -> Swept:
-    """Do what of a sweep is not done yet, and audit it; arguments and errors as those of `sweep`.
-
-    Where parts other than the `chosen` ones are left, it is not audited yet, and has no summary.
-    """
+    """Do what of a sweep is not done yet, and audit it; arguments and errors as those of `sweep`."""
     started = time.perf_counter()
     store, parts = None, list(range(asked.parts))
     if out is not None:
@@ -170,9 +160,8 @@ def run(
 
         store = Store.begun(out, asked)
         store.check_versions()
-        undone = store.missing()
-        report(asked.table.count - sum(len(asked.rows_of(part)) for part in undone))
-        parts = undone if chosen is None else [part for part in undone if part in chosen]
+        parts = store.missing()
+        report(asked.table.count - sum(len(asked.rows_of(part)) for part in parts))
     kept: dict[int, Part] = {}
     keep = kept.__setitem__ if store is None else store.save
     tally, compile_s = Tally(), 0.0
@@ -182,32 +171,12 @@ def run(
             tally = drive(asked, parts, executor, keep, report)
         compile_s = getattr(executor, "compile_s", 0.0)
     done = joined([kept[part] for part in sorted(kept)]) if store is None else Part({})
-    left = len(store.missing()) if store is not None and chosen is not None else 0
-    if left:
-        return Swept(asked, tally, None, store, compile_s, time.perf_counter() - started, left=left)
     swept = Swept(asked, tally, None, store, compile_s, 0.0, done.columns, done.transits)
     found = resolved(asked, _reader(swept)) if asked.audit else None
     swept = Swept(asked, tally, found, store, compile_s, time.perf_counter() - started, done.columns, done.transits)
     if store is not None:
         store.summarize(_summary(swept))
     return swept
-
-
-def parts_between(asked: Request, out: Path | None, words: str | None) -> range | None:
-    """Return the parts that begin in a range A:B of rows, None for all: ranges that tile the rows share no part.
-
-    Raises:
-        InputError: this is no range of the sweep's rows, or there is no folder.
-    """
-    if words is None:
-        return None
-    first, colon, last = words.partition(":")
-    count, size = asked.table.count, asked.rows_per_part
-    if not (colon and first.isdecimal() and last.isdecimal() and int(first) < min(int(last), count)):
-        raise InputError("--rows-range", words, f"A:B, the rows from A to before B, of {count}")
-    if out is None:
-        raise InputError("--rows-range", words, "--out DIR with it", "Jobs on several machines fill one folder.")
-    return range(-(-int(first) // size), min(-(-int(last) // size), asked.parts))
 
 
 def _executor(

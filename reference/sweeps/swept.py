@@ -33,7 +33,6 @@ class Swept:
         store: its folder, if it has one.
         compile_s: CPU seconds of compiling.
         wall_s: seconds from the start to the end.
-        left: parts that are left to others; where there are any, the rows cannot be read yet.
     """
 
     request: Request
@@ -44,24 +43,19 @@ class Swept:
     wall_s: float = 0.0
     kept: dict[str, Any] = field(default_factory=dict, repr=False)
     listed: dict[str, Any] = field(default_factory=dict, repr=False)
-    left: int = 0
 
     def __len__(self) -> int:
         return self.request.table.count
 
     @cached_property
     def counts(self) -> dict[str, int]:
-        """How many rows there are of each status, counting those computed now where parts are left to others."""
-        if self.left:
-            return dict(sorted(self.tally.counts.items()))
+        """How many rows there are of each status."""
         words, counts = np.unique(self["status"].astype(str), return_counts=True)
         return dict(zip(words.tolist(), counts.tolist(), strict=True))
 
     @property
     def first_bad(self) -> int:
         """The first row that is not ok; only where there is one."""
-        if self.left and self.tally.first_bad is not None:
-            return self.tally.first_bad
         return int(np.argmax(self["status"] != Status.OK.value))
 
     @property
