@@ -93,13 +93,3 @@ def test_one_or_two_fields_make_a_picture(foucault, tmp_path, over):
     assert "latitude in °" in text
     assert "precession in °/h" in text
     assert text == (tmp_path / "b.svg").read_text()
-
-
-def test_a_range_of_rows_needs_a_folder_and_draws_nothing(foucault, tmp_path):
-    pytest.importorskip("pyarrow")
-    words = ("sweep", "paris", "--over", "site.latitude=-90:90:2", "--t-end", 30, "--rows-range", "0:1")
-    status, _, err = foucault(*words)
-    assert (status, "--rows-range" in err) == (2, True)
-    status, _, err = foucault(*words, "--out", tmp_path / "all", "--plot", tmp_path / "a.svg")
-    assert (status, "--plot" in err) == (2, True)
-    assert foucault(*words, "--out", tmp_path / "all", "--engine", "heyoka")[0] == 0

@@ -13,7 +13,7 @@ import pytest
 from reference import InputError, load_scene, load_sweep, sweep
 from reference.sweeps import local
 from reference.sweeps.driver import Piece, WorkerDied, work
-from reference.sweeps.sweep import asked_for, parts_between, run
+from reference.sweeps.sweep import asked_for, run
 
 pytest.importorskip("pyarrow")
 OVER = ["site.latitude=-90:90:2"]
@@ -46,7 +46,9 @@ def test_the_folder_holds_what_memory_would(whole):
 
 def test_any_number_of_workers_and_any_interruption_give_the_same_bytes(whole, tmp_path):
     folder = tmp_path / "resumed"
-    shutil.copytree(whole, folder)
+    (folder / ".plan.json.partial-abc").mkdir(parents=True)  # of a command that was killed as it began
+    run(asked(folder), folder)
+    shutil.copytree(whole, folder, dirs_exist_ok=True)
     (folder / "summary.json").unlink()
     (folder / "rows/part-00000001.parquet").unlink()
     cut = folder / "rows/part-00000003.parquet"
@@ -81,30 +83,6 @@ def test_each_column_says_what_it_means(whole):
 
     schema = pq.read_schema(whole / "rows/part-00000000.parquet")
     assert all(field.metadata[b"meaning"] for field in schema)
-
-
-def test_ranges_of_rows_fill_one_folder_with_the_same_bytes(whole, tmp_path):
-    folder = tmp_path / "shared"
-    request = asked(folder)
-    ranges = ["40:70", "70:91", "0:40"]  # in any order; parts have 16 rows
-    assert [parts_between(request, folder, words) for words in ranges] == [range(3, 5), range(5, 6), range(3)]
-    for i, words in enumerate(ranges):
-        (folder / f".plan.json.partial-{i}").mkdir(parents=True)  # as of a job that began it and died
-        swept = run(request, folder, workers=1, chosen=parts_between(request, folder, words))
-        assert bool(swept.left) == (i < 2) == (not (folder / "summary.json").exists())
-    assert swept.counts == {"ok": ROWS}
-    assert contents(folder) == contents(whole)
-
-
-@pytest.mark.parametrize("words", ["", "5", "5:5", "9:3", "-1:5", "91:99", "a:b", "1:2:3"])
-def test_a_range_of_rows_that_is_none_is_refused(words, tmp_path):
-    with pytest.raises(InputError, match="--rows-range"):
-        parts_between(asked(tmp_path), tmp_path, words)
-
-
-def test_a_range_of_rows_needs_a_folder(tmp_path):
-    with pytest.raises(InputError, match="--out DIR"):
-        parts_between(asked(tmp_path), None, "0:16")
 
 
 def test_another_sweep_or_other_files_are_left_alone(whole, tmp_path):
@@ -171,9 +149,9 @@ def test_a_part_that_kills_its_worker_is_halved_down_to_the_row(whole, tmp_path)
     store, done = Store.begun(folder, request), []
     tally = drive(request, store.missing(), Dying(request, folder), store.save, done.append)
     assert tally.counts == {"ok": ROWS - 1, "crashed": 1}
-    assert tally.first_bad == poisoned_sweep.POISON
     assert sum(done) == ROWS
     swept, healthy = load_sweep(folder), load_sweep(whole)
+    assert swept.first_bad == poisoned_sweep.POISON
     assert swept["reason"][poisoned_sweep.POISON].endswith("killed by signal 9.")
     others = np.arange(ROWS) != poisoned_sweep.POISON
     assert (swept["x_m"][others] == healthy["x_m"][others]).all()

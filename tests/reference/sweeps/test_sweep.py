@@ -177,28 +177,6 @@ def test_wrong_options_are_refused_before_any_work(paris, over, options, field):
     assert error.value.field == field
 
 
-def test_the_other_engine_agrees_or_the_row_is_promoted(paris, monkeypatch):
-    scene = paris.with_values(["run.t_end=20"])
-    swept = sweep(scene, ["site.latitude=0,10"], engine="octet", agree_with="heyoka")
-    assert swept["agrees_with"].tolist() == ["heyoka"] * 2
-    assert swept["level"].tolist() == ["computed"] * 2
-    with pytest.raises(InputError, match="another engine than octet"):
-        sweep(scene, ["site.latitude=0"], engine="octet", agree_with="octet")
-    from reference.sweeps import part
-
-    solve_rows = part.batches()["heyoka"].solve
-
-    def moved(rows, wanted):
-        run = solve_rows(rows, wanted)
-        run.state[0, 0] += 1e-9
-        return run
-
-    monkeypatch.setattr(part.batches()["heyoka"], "solve", moved)
-    swept = sweep(scene, ["site.latitude=0,10"], engine="octet", agree_with="heyoka", workers=1)
-    assert swept["agrees_with"].tolist() == [None, "heyoka"]
-    assert swept["level"].tolist() == ["self_consistent", "computed"]
-
-
 def test_parts_depend_on_the_scene_and_not_on_a_clock(paris):
     short, long = (
         request(paris.with_values([f"run.t_end={t}"]), ["site.altitude=0:1e6:1"], engine="heyoka") for t in (60, 86400)
