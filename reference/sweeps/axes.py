@@ -1,223 +1,112 @@
-"""The axes of a sweep: `--over` words as exact values, and the values of any row without the others in memory."""
+"""The axes of a sweep: `--over` words as exact values, all combinations of which are the rows."""
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from heapq import nsmallest
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputError
-from ..numbers.double_double import DoubleDouble
 from ..numbers.precision import with_decimal_point
 from ..scenes.scene import Reading, checked_value
 from .lists import column_of_csv
-from .values import TEXTS, check_key, numbers_of
+from .values import Table, check_key
 
-MOST_ROWS = 10**12
+MOST_ROWS = 10**8
+MOST_VALUES = 10**7  # of a field: they are held as text
 FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
-_DOUBLES = 2**53, 22  # integers, and powers of ten, up to these are doubles
-
-
-class Axis(ABC):
-    """The values of one field: `key` is its name, `word` what was typed after it, `len` the number of values."""
-
-    key: str
-    word: str
-
-    @abstractmethod
-    def __len__(self) -> int: ...
-
-    @abstractmethod
-    def text(self, index: int) -> str:
-        """Return a value as a decimal number, exactly."""
-
-    @abstractmethod
-    def numbers(self, indices: Any, reading: Reading) -> DoubleDouble:
-        """Return values, shape (indices,), as the scene reads them."""
-
-    @abstractmethod
-    def ends(self) -> Iterable[int]:
-        """Return the indices of values of which all are right if these are."""
 
 
 @dataclass(frozen=True)
-class Range(Axis):
-    """START:STOP:STEP, both ends in: (first + index step)/10**decimals."""
+class Grid(Table):
+    """All combinations of the values of fields, the last one fastest; `typed` is what stood after their names."""
 
-    key: str
-    word: str
-    first: int
-    step: int
-    count: int
-    decimals: int
+    typed: dict[str, str]
 
-    @classmethod
-    def of(cls, key: str, word: str) -> Range:
-        """Read START:STOP:STEP.
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The numbers of values of the fields."""
+        return tuple(map(len, self.values.values()))
 
-        Raises:
-            InputError: no three numbers, no step, or no value.
-        """
-        parts = word.split(":")
-        if len(parts) != 3:
-            raise InputError("--over", f"{key}={word}", f"{key}={FORMS}")
-        start, stop, step = (_exactly(key, part.strip()) for part in parts)
-        if step == 0 or (stop - start) / step < 0:
-            raise InputError("--over", f"{key}={word}", "a STEP that leads from START to STOP")
-        decimals = max(_decimals(value) for value in (start, stop, step))
-        count = (stop - start) // step + 1
-        if count > MOST_ROWS:
-            raise InputError("--over", f"{key}={word}", f"at most {MOST_ROWS:.0e} values")
-        return cls(key, word, int(start * 10**decimals), int(step * 10**decimals), int(count), decimals)
+    def places(self, rows: Any) -> tuple[Any, ...]:
+        """Return, for each field, where among its values those of rows stand."""
+        return np.unravel_index(np.asarray(rows, np.int64), self.shape)
 
-    def __len__(self) -> int:
-        return self.count
-
-    def text(self, index: int) -> str:
-        """Return a value, exactly."""
-        text = with_decimal_point(self.first + index * self.step, self.decimals)
-        return text.rstrip("0").rstrip(".") if self.decimals else text
-
-    def numbers(self, indices: Any, reading: Reading) -> DoubleDouble:
-        """Return values."""
-        largest = max(abs(self.first), abs(self.first + self.count * self.step))
-        if largest >= _DOUBLES[0] or self.decimals > _DOUBLES[1]:
-            return numbers_of([self.text(int(index)) for index in indices], reading)
-        whole = (self.first + np.asarray(indices, np.int64) * self.step).astype(np.float64)
-        value = DoubleDouble(whole, np.zeros(len(whole))) / 10.0**self.decimals
-        return DoubleDouble(value.high, np.zeros(len(whole))) if reading == "binary64" else value
-
-    def ends(self) -> Iterable[int]:
-        """Return the first and the last, between which the others lie, and the one next to zero."""
-        near = -self.first // self.step
-        return sorted({0, self.count - 1, *(i for i in (near, near + 1) if 0 <= i < self.count)})
+    @property
+    def listed(self) -> dict[str, tuple[str, ...]]:
+        """The values of the fields that come from a file."""
+        return {key: self.values[key] for key, word in self.typed.items() if word.startswith("@")}
 
 
-@dataclass(frozen=True)
-class Values(Axis):
-    """Values one by one."""
+def grid(words: Iterable[str], reading: Reading) -> Grid:
+    """Read `--over` words, and check their values.
 
-    key: str
-    word: str
-    values: tuple[str, ...]
-
-    def __len__(self) -> int:
-        return len(self.values)
-
-    def text(self, index: int) -> str:
-        """Return a value as it was written."""
-        return self.values[index]
-
-    def numbers(self, indices: Any, reading: Reading) -> DoubleDouble:
-        """Return values."""
-        return numbers_of([self.values[int(index)] for index in indices], reading)
-
-    def ends(self) -> Iterable[int]:
-        """Return all indices."""
-        return range(len(self.values))
+    Raises:
+        InputError: a wrong word, a field twice, or too many rows.
+    """
+    values: dict[str, tuple[str, ...]] = {}
+    typed: dict[str, str] = {}
+    for word in words:
+        key, typed_word, texts = axis(word, reading)
+        if key in values:
+            raise InputError("--over", key, "each field once")
+        values[key], typed[key] = texts, typed_word
+    made = Grid(values, typed)
+    if made.count > MOST_ROWS:
+        raise InputError("--over", f"{made.count} rows", f"at most {MOST_ROWS:,} rows")
+    return made
 
 
-def axis(word: str, reading: Reading) -> Axis:
-    """Read one `--over` word, KEY=…, and check its values.
+def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
+    """Read one `--over` word, KEY=…; return the key, what stands after it, and the values, which are checked.
 
     Raises:
         InputError: unknown field, or a wrong value: field, got, expected.
     """
-    key, sign, spec = (part.strip() for part in word.partition("="))
-    if not sign or not spec:
+    key, sign, typed = (part.strip() for part in word.partition("="))
+    if not sign or not typed:
         raise InputError("--over", word, f"KEY={FORMS}")
     check_key("--over", key)
-    made: Axis
-    if spec.startswith("@"):
-        made = Values(key, spec, tuple(column_of_csv(Path(spec[1:]), key)))
-    elif ":" in spec:
-        made = Range.of(key, spec)
-    else:
-        made = Values(key, spec, tuple(part.strip() for part in spec.split(",")))
+    if ":" in typed and not typed.startswith("@"):
+        texts = _range(key, typed)
+        for text in (texts[0], texts[-1], *nsmallest(2, texts, key=lambda text: abs(float(text)))):
+            checked_value(key, text, reading)  # between these lie the others
+        return key, typed, texts
+    listed = column_of_csv(Path(typed[1:]), key) if typed.startswith("@") else typed.split(",")
+    texts = tuple(text.strip() for text in listed)
     seen = set()
-    for index in made.ends():
-        text = made.text(index)
+    for text in texts:
         checked_value(key, text, reading)
-        if isinstance(made, Values) and text in seen:
+        if text in seen:
             raise InputError("--over", word, "each value once", f"{text} stands there twice.")
         seen.add(text)
-    return made
+    return key, typed, texts
 
 
-@dataclass(frozen=True)
-class Grid:
-    """All combinations of the values of axes, the last axis fastest."""
+def _range(key: str, word: str) -> tuple[str, ...]:
+    """Return the values of START:STOP:STEP, both ends in, exactly.
 
-    axes: tuple[Axis, ...]
-
-    def __post_init__(self) -> None:
-        keys = [axis.key for axis in self.axes]
-        for key in keys:
-            if keys.count(key) > 1:
-                raise InputError("--over", key, "each field once")
-        if self.count > MOST_ROWS:
-            raise InputError("--over", f"{self.count} rows", f"at most {MOST_ROWS:.0e} rows")
-
-    @property
-    def listed(self) -> dict[str, tuple[str, ...]]:
-        """The values of the axes that come from a file."""
-        return {one.key: one.values for one in self.axes if isinstance(one, Values) and one.word.startswith("@")}
-
-    @property
-    def keys(self) -> tuple[str, ...]:
-        """The fields that are varied."""
-        return tuple(axis.key for axis in self.axes)
-
-    @cached_property
-    def shape(self) -> tuple[int, ...]:
-        """The numbers of values of the axes."""
-        return tuple(len(axis) for axis in self.axes)
-
-    @property
-    def count(self) -> int:
-        """The number of rows."""
-        count = 1
-        for length in self.shape:
-            count *= length
-        return count
-
-    def texts(self, row: int) -> dict[str, str]:
-        """Return the values of a row by field, as exact decimals."""
-        return {axis.key: axis.text(index) for axis, (index,) in zip(self.axes, self._indices([row]), strict=True)}
-
-    def numbers(self, rows: Any, reading: Reading) -> dict[str, DoubleDouble]:
-        """Return the numbers of rows by field, those that are not words."""
-        found = {}
-        for axis, indices in zip(self.axes, self._indices(rows), strict=True):
-            if axis.key not in TEXTS:
-                different, place = np.unique(indices, return_inverse=True)
-                numbers = axis.numbers(different, reading)
-                found[axis.key] = DoubleDouble(numbers.high[place], numbers.low[place])
-        return found
-
-    def wrong(self, rows: Any, reading: Reading) -> dict[int, str]:
-        """Return nothing: the values were checked when the axes were read."""
-        return {}
-
-    def words(self, rows: Any) -> dict[str, list[str]]:
-        """Return the values of rows by field, those that are words."""
-        both = zip(self.axes, self._indices(rows), strict=True)
-        return {axis.key: [axis.text(int(i)) for i in indices] for axis, indices in both if axis.key in TEXTS}
-
-    def _indices(self, rows: Any) -> Iterator[Any]:
-        """Return, for each axis, the indices of the values of rows."""
-        rest = np.asarray(rows, np.int64)
-        indices = []
-        for length in reversed(self.shape):
-            rest, index = np.divmod(rest, length)
-            indices.append(index)
-        return reversed(indices)
+    Raises:
+        InputError: no three numbers, no step, no value, or too many.
+    """
+    parts = word.split(":")
+    if len(parts) != 3:
+        raise InputError("--over", f"{key}={word}", f"{key}={FORMS}")
+    start, stop, step = (_exactly(key, part.strip()) for part in parts)
+    if step == 0 or (stop - start) / step < 0:
+        raise InputError("--over", f"{key}={word}", "a STEP that leads from START to STOP")
+    count = (stop - start) // step + 1
+    if count > MOST_VALUES:
+        raise InputError("--over", f"{key}={word}", f"at most {MOST_VALUES:,} values")
+    decimals = max(_decimals(value) for value in (start, stop, step))
+    first, by = int(start * 10**decimals), int(step * 10**decimals)
+    texts = (with_decimal_point(first + i * by, decimals) for i in range(count))
+    return tuple(text.rstrip("0").rstrip(".") if decimals else text for text in texts)
 
 
 def _exactly(key: str, text: str) -> Fraction:

@@ -10,39 +10,28 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ..errors import InputError
-from ..numbers.double_double import DoubleDouble
 from ..scenes.scene import Reading, checked_value
 from ..system.imports import missing
-from .values import TEXTS, check_key, numbers_of
+from .values import Table, check_key
 
 PARQUET = (".parquet", ".pq")
 
 
 @dataclass(frozen=True)
-class Listed:
-    """Rows of a file: of each field its values as text, one a row."""
-
-    values: dict[str, list[str]]
-
-    @property
-    def keys(self) -> tuple[str, ...]:
-        """The fields that are varied."""
-        return tuple(self.values)
+class Listed(Table):
+    """Rows of a file: of each field its values, one a row."""
 
     @property
     def shape(self) -> tuple[int, ...]:
         """The number of rows."""
-        return (self.count,)
+        return (len(next(iter(self.values.values()))),)
 
-    @property
-    def count(self) -> int:
-        """The number of rows."""
-        return len(next(iter(self.values.values())))
-
-    def texts(self, row: int) -> dict[str, str]:
-        """Return the values of a row by field."""
-        return {key: column[row] for key, column in self.values.items()}
+    def places(self, rows: Any) -> list[Any]:
+        """Return, for each field, where among its values those of rows stand."""
+        return [np.asarray(rows, np.int64)] * len(self.values)
 
     def wrong(self, rows: Any, reading: Reading) -> dict[int, str]:
         """Return what is wrong with the values of rows, each by itself, of those where something is."""
@@ -56,15 +45,6 @@ class Listed:
                 if known[text]:
                     found.setdefault(row, known[text])
         return found
-
-    def numbers(self, rows: Any, reading: Reading) -> dict[str, DoubleDouble]:
-        """Return the numbers of rows by field; only where nothing is wrong with them."""
-        numeric = (key for key in self.values if key not in TEXTS)
-        return {key: numbers_of([self.values[key][row] for row in rows], reading) for key in numeric}
-
-    def words(self, rows: Any) -> dict[str, list[str]]:
-        """Return the values of rows by field, those that are words."""
-        return {key: [self.values[key][row] for row in rows] for key in self.values if key in TEXTS}
 
 
 def listed(path: Path) -> Listed:
@@ -95,7 +75,7 @@ def column_of_csv(path: Path, key: str) -> list[str]:
         at = 0
     else:
         raise InputError("--over", f"{key}=@{path}", f"a column {key}", f"It has {', '.join(table[0])}.")
-    return [line[at].strip() for line in table]
+    return [line[at] for line in table]
 
 
 def _refusal(key: str, text: str, reading: Reading) -> str:
@@ -130,16 +110,17 @@ def _lines(option: str, path: Path) -> list[list[str]]:
     return lines
 
 
-def _csv(path: Path) -> dict[str, list[str]]:
+def _csv(path: Path) -> dict[str, tuple[str, ...]]:
     names, *lines = _lines("--rows", path)
     keys = [name.strip() for name in names]
     for key in keys:
         if keys.count(key) > 1:
             raise InputError("--rows", key, "each field once")
-    return {key: [text.strip() for text in column] for key, column in zip(keys, zip(*lines, strict=True), strict=False)}
+    columns = zip(*lines, strict=True)
+    return {key: tuple(text.strip() for text in column) for key, column in zip(keys, columns, strict=False)}
 
 
-def _parquet(path: Path) -> dict[str, list[str]]:
+def _parquet(path: Path) -> dict[str, tuple[str, ...]]:
     """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
     if missing(["pyarrow"]):
         raise InputError(
@@ -149,7 +130,7 @@ def _parquet(path: Path) -> dict[str, list[str]]:
 
     with _readable("--rows", path):
         columns: dict[str, list[Any]] = read_columns(path)
-    return {key: [_text(value) for value in column] for key, column in columns.items()}
+    return {key: tuple(map(_text, column)) for key, column in columns.items()}
 
 
 def _text(value: Any) -> str:

@@ -14,6 +14,7 @@ from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
 from .estimate import DEGREES_PER_HOUR, Errors, judged
+from .lists import Listed
 from .promote import DOUBTFUL_REASON, Promoted, fill, promoted
 from .request import Request
 from .row import STATE_COLUMNS, TIMES, empty
@@ -68,7 +69,7 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
     columns["level"][:] = "computed"
     for key, words in table.words(numbers).items():
         columns[key][:] = words
-    wrong = table.wrong(numbers, request.scene.inputs)
+    wrong = table.wrong(numbers, request.scene.inputs) if isinstance(table, Listed) else {}
     for row, reason in wrong.items():
         _fail(columns, row - numbers.start, Status.INVALID, reason)
         for key in table.keys:

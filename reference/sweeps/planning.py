@@ -13,7 +13,7 @@ from ..errors import InputError, unknown
 from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.scene import LEVELS, Scene
-from .axes import Grid, axis
+from .axes import Grid, grid
 from .lists import Listed, listed
 from .request import ANGULAR, CARTESIAN, LEAST_PART, MOST_PART, PART_S, Request
 from .row import TIMES, WANTS
@@ -57,7 +57,7 @@ def request(
     if bool(words) == (rows is not None):
         raise InputError("--over", " ".join(words) or "nothing", "--over KEY=…, or --rows FILE", "Give one of the two.")
     scene = scene.with_values([f"run.grid_step={scene.run.t_end}"])
-    table: Grid | Listed = listed(rows) if rows else Grid(tuple(axis(word, scene.inputs) for word in words))
+    table: Grid | Listed = listed(rows) if rows else grid(words, scene.inputs)
     _check_release(scene, table.keys)
     swings = _swings(scene) * table.count
     chosen = _engine(engine, swings)

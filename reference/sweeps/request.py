@@ -13,7 +13,7 @@ import numpy as np
 from ..engines.batch_interface import Rows, Wanted
 from ..numbers.double_double import DoubleDouble
 from ..scenes.scene import Level, Scene, parse_scene
-from .axes import Axis, Grid, Values, axis
+from .axes import Grid, axis
 from .folding import columns_of, fold
 from .lists import Listed
 from .row import AMPLITUDE, FREQUENCY, PRECESSION, TIMES, TRANSITS, Column, columns_for
@@ -125,7 +125,7 @@ class Request:
         return {
             "schema": SCHEMA,
             "scene": self.scene.model_dump(exclude_none=True),
-            "over": {axis.key: axis.word for axis in table.axes} if isinstance(table, Grid) else None,
+            "over": table.typed if isinstance(table, Grid) else None,
             "values": table.values if isinstance(table, Listed) else table.listed,
             "rows": table.count,
             "rows_per_part": self.rows_per_part,
@@ -141,14 +141,13 @@ class Request:
     @classmethod
     def of(cls, document: dict[str, Any]) -> Request:
         """Return the request that `document` wrote."""
-        scene, values = parse_scene(document["scene"]), document["values"]
+        scene, typed = parse_scene(document["scene"]), document["over"]
+        values = {key: tuple(texts) for key, texts in document["values"].items()}
         table: Grid | Listed = Listed(values)
-        if document["over"] is not None:
-            axes: list[Axis] = []
-            for key, word in document["over"].items():
-                known = key in values
-                axes.append(Values(key, word, tuple(values[key])) if known else axis(f"{key}={word}", scene.inputs))
-            table = Grid(tuple(axes))
+        if typed is not None:
+            known = values
+            values = {key: known.get(key) or axis(f"{key}={word}", scene.inputs)[-1] for key, word in typed.items()}
+            table = Grid(values, typed)
         names = ("level", "digits", "tolerance", "engine", "identity", "rows_per_part", "audit")
         return cls(scene, table, tuple(document["want"]), **{name: document[name] for name in names})
 

@@ -88,8 +88,7 @@ class Swept:
             return values
         import xarray
 
-        axes = [(axis.key, [axis.text(i) for i in range(len(axis))]) for axis in table.axes]
-        coords = {key: texts if key in TEXTS else np.array(texts, float) for key, texts in axes}
+        coords = {key: list(texts) if key in TEXTS else np.array(texts, float) for key, texts in table.values.items()}
         return xarray.DataArray(values, coords=coords, dims=list(coords), name=name)
 
     def transits(self) -> dict[str, Any]:

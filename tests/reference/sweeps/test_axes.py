@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from reference import InputError
-from reference.sweeps.axes import Grid, axis
+from reference.sweeps.axes import axis, grid
 from reference.sweeps.lists import listed
 from reference.sweeps.values import varied_names
 
 
 def texts(word: str) -> list[str]:
-    made = axis(word, "decimal")
-    return [made.text(i) for i in range(len(made))]
+    return list(axis(word, "decimal")[-1])
 
 
 def test_steps_are_exact_decimals_with_both_ends_in():
@@ -31,24 +30,34 @@ def test_steps_are_exact_decimals_with_both_ends_in():
     ["site.latitude=-90:90:0.7", "release.x=0.1:0.3:0.000001", "site.gravity=9.8:9.8000000000000000000001:1e-25"],
 )
 def test_numbers_are_the_nearest_sums_of_two_doubles(word):
-    made = axis(word, "decimal")
-    indices = np.linspace(0, min(len(made) - 1, 10**12), 50).astype(np.int64)
-    numbers = made.numbers(indices, "decimal")
-    for i, high, low in zip(indices, numbers.high, numbers.low, strict=True):
-        exact = Fraction(made.text(int(i)))
+    made = grid([word], "decimal")
+    rows = np.linspace(0, made.count - 1, 50).astype(np.int64)
+    (numbers,) = made.numbers(rows, "decimal").values()
+    for row, high, low in zip(rows.tolist(), numbers.high, numbers.low, strict=True):
+        (text,) = made.texts(row).values()
+        exact = Fraction(text)
         assert high == float(exact)
-        assert abs(exact - Fraction(high) - Fraction(low)) <= abs(exact) * Fraction(1, 1 << 104)
-    assert (made.numbers(indices, "binary64").low == 0).all()
+        assert low == float(exact - Fraction(high))
+    (doubles,) = made.numbers(rows, "binary64").values()
+    assert doubles.high.tolist() == numbers.high.tolist()
+    assert (doubles.low == 0).all()
 
 
-def test_a_grid_gives_any_row_without_the_others():
-    grid = Grid((axis("site.latitude=-90:90:0.0001", "decimal"), axis("release.x=0.1,0.2,0.3", "decimal")))
-    assert grid.count == 1_800_001 * 3
-    assert grid.texts(0) == {"site.latitude": "-90", "release.x": "0.1"}
-    assert grid.texts(grid.count - 1) == {"site.latitude": "90", "release.x": "0.3"}
-    assert grid.texts(4) == {"site.latitude": "-89.9999", "release.x": "0.2"}
-    numbers = grid.numbers([2, 3], "decimal")
+def test_the_rows_of_a_grid_are_all_combinations_the_last_field_fastest():
+    made = grid(["site.latitude=-90:90:0.01", "release.x=0.1,0.2,0.3"], "decimal")
+    assert (made.shape, made.count) == ((18_001, 3), 18_001 * 3)
+    assert made.texts(0) == {"site.latitude": "-90", "release.x": "0.1"}
+    assert made.texts(made.count - 1) == {"site.latitude": "90", "release.x": "0.3"}
+    assert made.texts(4) == {"site.latitude": "-89.99", "release.x": "0.2"}
+    numbers = made.numbers([2, 3], "decimal")
     assert numbers["release.x"].high.tolist() == [0.3, 0.1]
+
+
+def test_more_rows_than_can_be_counted_on_are_refused():
+    with pytest.raises(InputError, match=r"got '1002001000 rows', expected at most 100,000,000 rows"):
+        grid(["site.latitude=0:1:0.001", "release.x=0:1:0.001", "release.y=0:0.999:0.001"], "decimal")
+    with pytest.raises(InputError, match=r"at most 10,000,000 values"):
+        axis("site.altitude=0:1:1e-7", "decimal")
 
 
 @pytest.mark.parametrize(
@@ -80,9 +89,8 @@ def test_a_wrong_axis_is_named(word, field, got):
 
 
 def test_a_field_is_varied_once():
-    one = axis("site.latitude=1,2", "decimal")
     with pytest.raises(InputError, match="each field once"):
-        Grid((one, one))
+        grid(["site.latitude=1,2", "site.latitude=3"], "decimal")
 
 
 def test_values_come_from_a_file(tmp_path):
