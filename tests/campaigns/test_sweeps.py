@@ -69,7 +69,7 @@ def test_kills_leave_parts_that_the_same_command_completes(tmp_path, size, tally
 # rows side by side, in threads; rows that the solver solves, in processes
 WAYS = {
     "threads": ["--over", "site.latitude=-90:90:1", "--engine", "heyoka"],
-    "processes": ["--over", "site.latitude=-60:60:5", "--digits", "16", "--want", "transits", "--workers", "2"],
+    "processes": ["--over", "site.latitude=-80:80:4", "--digits", "16", "--want", "transits", "--workers", "2"],
 }
 
 
@@ -103,7 +103,7 @@ def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, num
     told = f"foucault: stopped; what is done is in {folder}: `foucault sweep --out {folder}` goes on"
     assert err.splitlines() == ([told] if stopped == signal.SIGINT else [])
     done = contents(folder)
-    assert done and done.items() < contents(whole).items()
+    assert done and done.items() <= contents(whole).items()
     assert not (folder / "summary.json").exists()
     subprocess.run([*command[:4], "--out", folder], check=True, cwd=ROOT, capture_output=True)
     assert contents(folder) == contents(whole)

@@ -66,7 +66,24 @@ def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(clu
     assert load_sweep(there).counts == {"ok": ROWS}
 
 
-@pytest.mark.long  # thirty seconds of workers that start; test_store.py has the halving in every run
+def test_if_the_scheduler_is_lost_what_is_done_stays_and_the_same_command_goes_on(tmp_path):
+    from reference.sweeps.cluster import ClusterError
+
+    folder = tmp_path / "out"
+    with distributed.LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None, silence_logs=50) as lost:
+
+        def report(rows: int) -> None:
+            if rows:
+                lost.close()
+
+        with pytest.raises(ClusterError, match="the same command goes on"):
+            run(asked(folder), folder, cluster=lost.scheduler_address, report=report)
+    done = len(list((folder / "rows").glob("part-*")))
+    assert done > 0
+    assert run(asked(folder), folder, workers=1).counts == {"ok": ROWS}
+
+
+@pytest.mark.long  # thirty seconds of workers that start; test_store.py has the row by itself in every run
 def test_a_row_that_kills_its_worker_crashes_alone(cluster, tmp_path, monkeypatch):
     from reference.sweeps import cluster as module
 
