@@ -1,7 +1,6 @@
 """Clusters through dask.distributed, to which this is the only door: a scheduler somewhere, or one on this machine.
 
-dask sends a piece again when its worker is lost. A piece that was lost as often as dask allows has killed its workers:
-it is halved, until the row that does so is alone.
+dask sends a part again when its worker is lost. A part that was lost as often as dask allows has killed its workers.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from distributed.scheduler import KilledWorker
 
 from ..errors import FoucaultError, InputError
 from ..system.pool import WorkerDied
-from .driver import Piece, work
+from .driver import work
 from .isolated import Isolated
 from .local import prepared
 from .request import Request
@@ -31,7 +30,7 @@ LOCAL = "local:"
 SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
 WAIT_S = 10.0  # for an answer of the scheduler
 FOREVER_S = 1e7
-RETRIES = 3  # of a piece that raised an error which is none of this project's
+RETRIES = 3  # of a part that raised an error which is none of this project's
 LOST = "the scheduler was lost; what is done stays, and the same command goes on."
 _NONCE = ".seen-by-workers"
 
@@ -121,7 +120,7 @@ class Scheduler:
 
 
 class ClusterExecutor(Scheduler):
-    """The workers of a scheduler that compute pieces of a sweep.
+    """The workers of a scheduler that compute the rows of a sweep.
 
     Args:
         request: the sweep.
@@ -139,9 +138,9 @@ class ClusterExecutor(Scheduler):
             self._stack.close()
             raise
 
-    def submit(self, piece: Piece) -> Any:
-        """Begin a piece on some worker."""
-        return self.begin(compute, self._document, piece, self._folder)
+    def submit(self, rows: range) -> Any:
+        """Begin a part, or some of its rows, on some worker."""
+        return self.begin(compute, self._document, rows, self._folder)
 
     def _shared(self, folder: Path | None) -> Path | None:
         """Return the folder if every worker sees it; a file of a random name tells."""
@@ -163,14 +162,14 @@ class _Awaited:
         self._future = future
 
     def add_done_callback(self, call: Callable[[Any], None]) -> None:
-        """Have `call` called with this when the piece is done."""
+        """Have `call` called with this when it is done."""
         self._future.add_done_callback(lambda _: call(self))
 
     def result(self) -> Any:
         """Return what was computed; if it was lost with its worker meanwhile, wait until dask has it again.
 
         Raises:
-            WorkerDied: the piece killed its workers.
+            WorkerDied: it killed its workers.
             ClusterError: the scheduler was lost.
         """
         if self._future.status == "cancelled":
@@ -224,12 +223,12 @@ _requests: dict[str, Request] = {}
 _turn = threading.Lock()
 
 
-def compute(document: dict[str, Any], piece: Piece, folder: Path | None) -> Any:
-    """Compute a piece on a worker."""
+def compute(document: dict[str, Any], rows: range, folder: Path | None) -> Any:
+    """Compute rows on a worker."""
     key = repr(document)
     with _turn:
         if key not in _requests:
             _requests.clear()
             _requests[key] = Request.of(document)
         request = _requests[key]
-    return work(request, piece, folder, _promote)
+    return work(request, rows, folder, _promote)

@@ -1,4 +1,4 @@
-"""Run the parts of a sweep on workers that may die: what kills its worker is halved until one row is left."""
+"""Run the parts of a sweep on workers that may die: a part that kills its worker is run again row by row."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .row import empty
 
 BLOCKS = 16  # of a whole part, solved one after the other: Ctrl-C waits for one
 LEAST_BLOCK = 256  # rows
-PER_WORKER = 3  # pieces that wait or are computed for each worker
+PER_WORKER = 3  # parts that wait or are computed for each worker
 DIED_REASON = "Its process died each time, alone as well"
 
 
@@ -49,57 +49,48 @@ class Tally:
         self.store_s += other.store_s
 
 
-@dataclass(frozen=True)
-class Piece:
-    """Rows of a part that are computed together; `whole` if they are all of it."""
-
-    part: int
-    rows: range
-    whole: bool = True
-
-
 class Executor(Protocol):
-    """Computes pieces: `submit` returns a future whose result is `work`'s, or which raises `WorkerDied`."""
+    """Computes rows: `submit` returns a future whose result is `work`'s, or which raises `WorkerDied`."""
 
     workers: int
 
-    def submit(self, piece: Piece) -> Any:
-        """Begin a piece."""
+    def submit(self, rows: range) -> Any:
+        """Begin a part, or some of its rows."""
 
     def check(self) -> None:
         """Raise if nothing will come any more."""
 
 
 class Interrupted(Exception):
-    """A piece was given up because the sweep ends."""
+    """A part was given up because the sweep ends."""
 
 
 def work(
     request: Request,
-    piece: Piece,
+    rows: range,
     folder: Path | None,
     promote: Promote = promoted,
     stop: threading.Event | None = None,
 ) -> tuple[Tally, Part | None]:
-    """Solve a piece, and save it where it is a whole part and there is a folder; else return its rows as well.
+    """Solve rows, and save them where they are a whole part and there is a folder; else return them as well.
 
     Raises:
         Interrupted: the event `stop` was set meanwhile.
         OSError: it cannot be saved.
     """
     blocks, size = [], max(request.rows_per_part // BLOCKS, LEAST_BLOCK)
-    for first in range(piece.rows.start, piece.rows.stop, size):
+    for first in range(rows.start, rows.stop, size):
         if stop is not None and stop.is_set():
             raise Interrupted
-        blocks.append(solve_part(request, range(first, min(first + size, piece.rows.stop)), promote))
+        blocks.append(solve_part(request, range(first, min(first + size, rows.stop)), promote))
     solved = joined(blocks)
-    tally = Tally.of(solved)
-    if folder is None or not piece.whole:
+    tally, part = Tally.of(solved), request.part_of(rows)
+    if folder is None or rows != request.rows_of(part):
         return tally, solved
     from .store import Store
 
     started = time.thread_time()
-    Store(folder, request).save(piece.part, solved)
+    Store(folder, request).save(part, solved)
     tally.store_s = time.thread_time() - started
     return tally, None
 
@@ -113,6 +104,8 @@ def drive(
 ) -> Tally:
     """Run parts to their end; return the tally of all.
 
+    The rows of a part whose worker died are run alone, one after the other: those whose worker dies again are crashed.
+
     Args:
         request: the sweep.
         parts: which of its parts.
@@ -120,48 +113,47 @@ def drive(
         keep: called with every part that `work` did not save.
         report: called with the number of rows that were done since the last call.
     """
-    total, waiting = Tally(), _pieces(request, parts)
-    done: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    open_pieces: dict[Any, Piece] = {}
-    halves: dict[int, list[Part]] = {}
-    suspects: list[Piece] = []  # rows whose process died, perhaps by another piece in it
-    alone: set[int] = set()
-
-    def begin(piece: Piece) -> None:
-        future = executor.submit(piece)
-        open_pieces[future] = piece
-        future.add_done_callback(done.put)
-
-    for piece in islice(waiting, PER_WORKER * executor.workers):
-        begin(piece)
-    while open_pieces or suspects:
-        if not open_pieces:
-            alone.add(suspects[-1].rows.start)
-            begin(suspects.pop())
-        piece = open_pieces.pop(future := next_done(done, executor))
+    total, died = Tally(), list[range]()
+    for rows, future in _done(executor, map(request.rows_of, parts), PER_WORKER * executor.workers):
         try:
             tally, solved = future.result()
-        except WorkerDied as death:
-            if len(piece.rows) > 1:
-                middle = piece.rows.start + len(piece.rows) // 2
-                begin(Piece(piece.part, range(piece.rows.start, middle), whole=False))
-                begin(Piece(piece.part, range(middle, piece.rows.stop), whole=False))
-                continue
-            if piece.rows.start not in alone:
-                suspects.append(piece)
-                continue
-            solved = crashed(request, piece.rows, f"{DIED_REASON}: {death}.")
-            tally = Tally.of(solved)
+        except WorkerDied:
+            died.append(rows)
+            continue
         total.add(tally)
-        if solved is not None and not piece.whole:
-            halves.setdefault(piece.part, []).append(solved)
-            solved = _whole(request, piece.part, halves)
         if solved is not None:
-            keep(piece.part, solved)
-        report(len(piece.rows))
-        for following in islice(waiting, 1):
-            begin(following)
+            keep(request.part_of(rows), solved)
+        report(len(rows))
+    for rows in died:
+        alone = []
+        for row, future in _done(executor, (range(number, number + 1) for number in rows), 1):
+            try:
+                tally, solved = future.result()
+            except WorkerDied as death:
+                solved = crashed(request, row, f"{DIED_REASON}: {death}.")
+                tally = Tally.of(solved)
+            total.add(tally)
+            if solved is not None:  # the row is no whole part, which `work` has saved
+                alone.append(solved)
+            report(1)
+        if alone:
+            keep(request.part_of(rows), joined(alone))
     return total
+
+
+def _done(executor: Executor, every: Iterable[range], at_once: int) -> Iterator[tuple[range, Any]]:
+    """Have rows computed, some of them at once; yield them with their futures as they are done."""
+    done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    waiting, begun = iter(every), dict[Any, range]()
+    while True:
+        for rows in islice(waiting, at_once - len(begun)):
+            future = executor.submit(rows)
+            begun[future] = rows
+            future.add_done_callback(done.put)
+        if not begun:
+            return
+        future = next_done(done, executor)
+        yield begun.pop(future), future
 
 
 def crashed(request: Request, rows: range, reason: str) -> Part:
@@ -178,19 +170,6 @@ def crashed(request: Request, rows: range, reason: str) -> Part:
     if request.wanted.times:
         part.transits = {"row": np.zeros(0, np.int64), "t_s": np.zeros(0), "direction": np.zeros(0, np.int8)}
     return part
-
-
-def _pieces(request: Request, parts: Iterable[int]) -> Iterator[Piece]:
-    return (Piece(part, request.rows_of(part)) for part in parts)
-
-
-def _whole(request: Request, number: int, halves: dict[int, list[Part]]) -> Part | None:
-    """Return a part from its pieces when all are there."""
-    pieces = sorted(halves[number], key=lambda piece: int(piece.columns["row"][0]))
-    if sum(len(piece.columns["row"]) for piece in pieces) < len(request.rows_of(number)):
-        return None
-    del halves[number]
-    return joined(pieces)
 
 
 def joined(pieces: list[Part]) -> Part:

@@ -12,7 +12,7 @@ from typing import Any, Self
 from ..engines.registry import batches
 from ..system.pool import Pool
 from ..system.process import Parent
-from .driver import Piece, work
+from .driver import work
 from .estimate import MOVED
 from .isolated import Isolated
 from .request import Request
@@ -52,11 +52,11 @@ class LocalExecutor:
     def _prepare(self) -> None:
         self.compile_s += prepared(self._request)
 
-    def submit(self, piece: Piece) -> Future[Any]:
-        """Begin a piece."""
+    def submit(self, rows: range) -> Future[Any]:
+        """Begin a part, or some of its rows."""
         if self._request.promotes:
-            return self._processes.submit(piece)
-        return self._threads.submit(work, self._request, piece, self._folder, self._promote, self._stop)
+            return self._processes.submit(rows)
+        return self._threads.submit(work, self._request, rows, self._folder, self._promote, self._stop)
 
     def check(self) -> None:
         """Do nothing: threads do not get lost."""
@@ -72,7 +72,7 @@ def prepared(request: Request) -> float:
 
 
 def serve(parent: Parent, document: dict[str, Any], folder: Path | None) -> None:
-    """Compute the pieces that the parent sends, in a process of its own."""
+    """Compute the rows that the parent sends, in a process of its own."""
     request = Request.of(document)
-    for piece in parent:
-        parent(work(request, piece, folder))
+    for rows in parent:
+        parent(work(request, rows, folder))

@@ -82,6 +82,10 @@ class Request:
         first = part * self.rows_per_part
         return range(first, min(first + self.rows_per_part, self.table.count))
 
+    def part_of(self, rows: range) -> int:
+        """Return the part in which rows are."""
+        return rows.start // self.rows_per_part
+
     def scene_of(self, row: int) -> Scene:
         """Return the scene of a row.
 

@@ -10,11 +10,11 @@ POISON = 37  # number of the row
 
 
 def compute(*arguments: Any) -> Any:
-    """Compute a piece as `cluster.compute` does, but die at the row."""
+    """Compute rows as `cluster.compute` does, but die at the row."""
     from reference.sweeps import cluster
 
-    _, piece, _ = arguments
-    if POISON in piece.rows:
+    _, rows, _ = arguments
+    if POISON in rows:
         os.kill(os.getpid(), signal.SIGKILL)
     return cluster.compute(*arguments)
 
@@ -27,12 +27,12 @@ def solved(*_: Any, **__: Any) -> Any:
 
 
 def serve(parent: Any, document: dict[str, Any], folder: Any) -> None:
-    """Compute pieces as `local.serve` does, with a solver that is done at once, but die at the row."""
+    """Compute rows as `local.serve` does, with a solver that is done at once, but die at the row."""
     from reference.sweeps.driver import work
     from reference.sweeps.request import Request
 
     request = Request.of(document)
-    for piece in parent:
-        if POISON in piece.rows:
+    for rows in parent:
+        if POISON in rows:
             os.kill(os.getpid(), signal.SIGKILL)
-        parent(work(request, piece, folder, solved))
+        parent(work(request, rows, folder, solved))

@@ -12,7 +12,7 @@ import pytest
 
 from reference import InputError, load_scene, load_sweep, sweep
 from reference.sweeps import local
-from reference.sweeps.driver import Piece, WorkerDied, work
+from reference.sweeps.driver import WorkerDied, work
 from reference.sweeps.sweep import asked_for, run
 
 pytest.importorskip("pyarrow")
@@ -119,28 +119,28 @@ def test_the_times_of_transits_are_a_dataset_of_their_own(tmp_path):
 
 
 class Dying:
-    """An executor whose pieces with the poisonous row die."""
+    """An executor whose workers die of the poisonous row."""
 
     workers = 1
 
     def __init__(self, asked, folder):
         self._asked, self._folder = asked, folder
 
-    def submit(self, piece: Piece):
+    def submit(self, rows):
         from concurrent.futures import Future
 
         future: Future = Future()
-        if poisoned_sweep.POISON in piece.rows:
+        if poisoned_sweep.POISON in rows:
             future.set_exception(WorkerDied("killed by signal 9"))
         else:
-            future.set_result(work(self._asked, piece, self._folder))
+            future.set_result(work(self._asked, rows, self._folder))
         return future
 
     def check(self):
         pass
 
 
-def test_a_part_that_kills_its_worker_is_halved_down_to_the_row(whole, tmp_path):
+def test_of_a_part_that_kills_its_worker_the_row_alone_crashes(whole, tmp_path):
     from reference.sweeps.driver import drive
     from reference.sweeps.store import Store
 
