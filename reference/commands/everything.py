@@ -104,9 +104,9 @@ def _executor(
     from ..system.process import usable_cores
 
     if cluster is not None:
-        from ..sweeps.cluster import Scheduler, solving_versions
+        from ..sweeps.cluster import Scheduler
 
-        scheduler = stack.enter_context(Scheduler(cluster, solving_versions))
+        scheduler = stack.enter_context(Scheduler(cluster))
         return lambda job: scheduler.begin(isolated, job), scheduler
     pool = stack.enter_context(Pool(min(workers or usable_cores(), count), serve))
     return pool.submit, pool

@@ -5,11 +5,11 @@ dask sends a part again when its worker is lost. A part that was lost as often a
 
 from __future__ import annotations
 
+import json
 import logging
-import threading
 from collections.abc import Callable
 from contextlib import ExitStack
-from functools import partial
+from functools import lru_cache
 from pathlib import Path
 from secrets import token_hex
 from types import TracebackType
@@ -22,17 +22,16 @@ from distributed.scheduler import KilledWorker
 from ..errors import FoucaultError, InputError
 from ..system.pool import WorkerDied
 from .driver import work
-from .isolated import Isolated
-from .local import prepared
+from .local import Isolated, prepared
 from .request import Request
 
 LOCAL = "local:"
 SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
+PACKAGES = ("foucault-reference", "heyoka", "numba", "numpy", "python-flint", "mpmath", "pyarrow")  # alike everywhere
 WAIT_S = 10.0  # for an answer of the scheduler
 FOREVER_S = 1e7
 RETRIES = 3  # of a part that raised an error which is none of this project's
 LOST = "the scheduler was lost; what is done stays, and the same command goes on."
-_NONCE = ".seen-by-workers"
 
 
 class ClusterError(FoucaultError):
@@ -46,26 +45,23 @@ class Scheduler:
 
     Args:
         address: tcp://HOST:PORT of a scheduler, or local:N for N processes of one thread on this machine.
-        versions: returns what has to be alike everywhere, as text.
 
     Raises:
         InputError: no scheduler answers there, it has no workers, or their versions differ from those here.
     """
 
-    def __init__(self, address: str, versions: Callable[[], str]) -> None:
-        self._stack = ExitStack()
+    def __init__(self, address: str) -> None:
         logging.getLogger("distributed").setLevel(logging.CRITICAL)  # a lost scheduler is told in one line
-        try:
-            self._client = self._connected(address)
-            self.workers = self._check_workers(address, versions)
-        except BaseException:
-            self._stack.close()
-            raise
+        with ExitStack() as stack:
+            self._client = _connected(address, stack)
+            self.workers = self._threads(address)
+            self._check_versions()
+            self._stack = stack.pop_all()
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, *_: TracebackType | BaseException | None) -> None:
+    def __exit__(self, *_: type[BaseException] | TracebackType | BaseException | None) -> None:
         """Leave the scheduler; end one that was started here."""
         self._stack.close()
 
@@ -82,41 +78,23 @@ class Scheduler:
         if self._client.status != "running":
             raise ClusterError(LOST)
 
-    def _connected(self, address: str) -> Any:
-        if address.startswith(LOCAL):
-            count = address[len(LOCAL) :]
-            if not count.isdigit() or not int(count):
-                raise InputError("--cluster", address, "local:N with a number of workers from 1")
-            # dask gives a local worker up that is being started again some seconds after its death: the last one, too
-            self._stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": FOREVER_S}))
-            cluster = distributed.LocalCluster(
-                n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
-            )
-            self._stack.enter_context(cluster)
-            return self._stack.enter_context(distributed.Client(cluster))
-        if not address.startswith(SCHEMES):
-            raise InputError("--cluster", address, "tcp://HOST:PORT of a scheduler of dask, or local:N")
-        try:
-            return self._stack.enter_context(distributed.Client(address, timeout=WAIT_S))
-        except (OSError, ValueError):
-            advice = "Start one with `dask scheduler`, and workers with `dask worker ADDRESS`."
-            raise InputError("--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice) from None
-
-    def _check_workers(self, address: str, versions: Callable[[], str]) -> int:
-        """Return how many threads the workers have together, all with the versions that are here."""
+    def _threads(self, address: str) -> int:
+        """Return how many threads the workers have together."""
         try:
             self._client.wait_for_workers(1, timeout=WAIT_S)
-            threads = self._client.nthreads()
         except TimeoutError:
-            threads = {}
-        if not threads:
-            raise InputError("--cluster", address, "a scheduler with workers", "Start them: `dask worker ADDRESS`.")
-        here = versions()
-        for worker, there in self._client.run(_versions_or_error, versions).items():
-            if there != here:
-                advice = "Install the same versions everywhere."
-                raise InputError("--cluster", f"{there} on {worker}", f"{here}, as here", advice)
-        return sum(threads.values())
+            advice = "Start them: `dask worker ADDRESS`."
+            raise InputError("--cluster", address, "a scheduler with workers", advice) from None
+        return sum(self._client.nthreads().values())
+
+    def _check_versions(self) -> None:
+        versions = self._client.get_versions(packages=PACKAGES)
+        here = versions["client"]["packages"]
+        for worker, there in versions["workers"].items():
+            for name in PACKAGES:
+                if (got := there["packages"][name]) != here[name]:
+                    advice = "Install the same versions everywhere."
+                    raise InputError("--cluster", f"{name} {got} on {worker}", f"{name} {here[name]}, as here", advice)
 
 
 class ClusterExecutor(Scheduler):
@@ -129,8 +107,8 @@ class ClusterExecutor(Scheduler):
     """
 
     def __init__(self, request: Request, folder: Path | None, address: str) -> None:
-        super().__init__(address, partial(versions, request.engine))
-        self._document = request.document()
+        super().__init__(address)
+        self._document = json.dumps(request.document())
         try:
             self.compile_s = max(self._client.run(_prepare, self._document).values())
             self._folder = self._shared(folder)
@@ -147,7 +125,7 @@ class ClusterExecutor(Scheduler):
         if folder is None:
             return None
         folder = folder.resolve()
-        nonce = folder / f"{_NONCE}-{token_hex(8)}"
+        nonce = folder / f".seen-by-workers-{token_hex(8)}"
         nonce.touch()
         try:
             return folder if all(self._client.run(nonce.exists).values()) else None
@@ -172,8 +150,6 @@ class _Awaited:
             WorkerDied: it killed its workers.
             ClusterError: the scheduler was lost.
         """
-        if self._future.status == "cancelled":
-            raise ClusterError(LOST)
         try:
             return self._future.result()
         except KilledWorker:
@@ -182,53 +158,40 @@ class _Awaited:
             raise ClusterError(LOST) from None
 
 
-def versions(engine: str) -> str:
-    """Return what has to be alike on all machines: this project, the engine, pyarrow."""
-    from importlib.metadata import version
-
-    from ..engines.registry import batches
-    from ..system.imports import missing
-
-    arrow = "" if missing(["pyarrow"]) else f"; pyarrow {version('pyarrow')}"
-    return f"{batches()[engine].identity}{arrow}"
-
-
-def solving_versions() -> str:
-    """Return what has to be alike on all machines that solve scenes: this project and what it solves with."""
-    from importlib.metadata import PackageNotFoundError, version
-
-    found = []
-    for package in ("foucault-reference", "heyoka", "numba", "python-flint", "mpmath"):
-        try:
-            found.append(f"{package} {version(package)}")
-        except PackageNotFoundError:
-            found.append(f"no {package}")
-    return "; ".join(found)
-
-
-def _versions_or_error(versions: Callable[[], str]) -> str:
+def _connected(address: str, stack: ExitStack) -> Any:
+    """Return a client of the scheduler that answers at an address, or of one that is started here."""
+    if address.startswith(LOCAL):
+        count = address[len(LOCAL) :]
+        if not count.isdigit() or not int(count):
+            raise InputError("--cluster", address, "local:N with a number of workers from 1")
+        # dask gives a local worker up that is being started again some seconds after its death: the last one, too
+        stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": FOREVER_S}))
+        cluster = distributed.LocalCluster(
+            n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
+        )
+        return stack.enter_context(distributed.Client(stack.enter_context(cluster)))
+    if not address.startswith(SCHEMES):
+        raise InputError("--cluster", address, "tcp://HOST:PORT of a scheduler of dask, or local:N")
     try:
-        return versions()
-    except Exception as error:  # whatever it lacks
-        return f"{type(error).__name__}: {error}"
-
-
-def _prepare(document: dict[str, Any]) -> float:
-    """Compile on a worker, once."""
-    return prepared(Request.of(document))
+        return stack.enter_context(distributed.Client(address, timeout=WAIT_S))
+    except (OSError, ValueError):
+        advice = "Start one with `dask scheduler`, and workers with `dask worker ADDRESS`."
+        raise InputError("--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice) from None
 
 
 _promote = Isolated()
-_requests: dict[str, Request] = {}
-_turn = threading.Lock()
 
 
-def compute(document: dict[str, Any], rows: range, folder: Path | None) -> Any:
+@lru_cache(maxsize=1)
+def _request(document: str) -> Request:
+    return Request.of(json.loads(document))
+
+
+def _prepare(document: str) -> float:
+    """Compile on a worker, once."""
+    return prepared(_request(document))
+
+
+def compute(document: str, rows: range, folder: Path | None) -> Any:
     """Compute rows on a worker."""
-    key = repr(document)
-    with _turn:
-        if key not in _requests:
-            _requests.clear()
-            _requests[key] = Request.of(document)
-        request = _requests[key]
-    return work(request, rows, folder, _promote)
+    return work(_request(document), rows, folder, _promote)

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from ..engines.registry import batches
+from ..errors import IntegrationError
 from ..system.pool import Pool
-from ..system.process import Parent
+from ..system.process import Parent, Worker
 from .driver import work
 from .estimate import MOVED
-from .isolated import Isolated
+from .promote import Promoted, promoted
 from .request import Request
 
 
@@ -76,3 +79,49 @@ def serve(parent: Parent, document: dict[str, Any], folder: Path | None) -> None
     request = Request.of(document)
     for rows in parent:
         parent(work(request, rows, folder))
+
+
+class Isolated:
+    """Calls `promoted` for threads in one process of its own: the solver is not made for several threads.
+
+    The process starts with the first row, and is replaced if it dies.
+    """
+
+    def __init__(self) -> None:
+        self._turn = threading.Lock()
+        self._worker: Worker | None = None
+        self._hash = ""
+
+    def __call__(self, request: Request, row: int, *, doubtful: bool) -> Promoted:
+        """Return a row solved by itself; see `promote.promoted`."""
+        with self._turn:
+            if self._hash != request.hash:
+                self._end()
+            try:
+                if self._worker is None:
+                    self._worker, self._hash = Worker(serve_promoted, request.document()), request.hash
+                self._worker.send((row, doubtful))
+                result: Promoted = self._worker.receive()
+            except (IntegrationError, OSError) as error:
+                self._end()
+                return Promoted({}, ([], []), str(error))
+            return result
+
+    def stop(self) -> None:
+        """End the process."""
+        with self._turn:
+            self._end()
+
+    def _end(self) -> None:
+        if self._worker is not None:
+            self._worker.stop()
+            self._worker = None
+
+
+def serve_promoted(parent: Parent, document: dict[str, Any]) -> None:
+    """Promote the rows that the parent sends."""
+    request = Request.of(document)
+    for row, doubtful in parent:
+        before = sum(os.times()[:4])
+        result = promoted(request, row, doubtful=doubtful)
+        parent(replace(result, cpu_s=sum(os.times()[:4]) - before))

@@ -201,7 +201,7 @@ def test_more_than_memory_should_hold_needs_a_folder(paris, tmp_path):
 
 
 def test_rows_that_another_process_solves_cost_what_they_cost_there(paris, monkeypatch):
-    from reference.sweeps import isolated
+    from reference.sweeps import local
     from reference.sweeps.part import solve_part
     from reference.sweeps.planning import request
     from reference.sweeps.promote import Promoted
@@ -217,6 +217,6 @@ def test_rows_that_another_process_solves_cost_what_they_cost_there(paris, monke
             got.append(result)
 
     got = []
-    monkeypatch.setattr(isolated, "promoted", lambda *_, **__: Promoted({"x_m": sum(range(3 * 10**6))}, ([], [])))
-    isolated.serve(Rows([(0, True)]), asked.document())
+    monkeypatch.setattr(local, "promoted", lambda *_, **__: Promoted({"x_m": sum(range(3 * 10**6))}, ([], [])))
+    local.serve_promoted(Rows([(0, True)]), asked.document())
     assert got[0].cpu_s > 0
