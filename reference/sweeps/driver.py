@@ -16,10 +16,9 @@ import numpy as np
 
 from ..status import Status
 from ..system.pool import WorkerDied, next_done
-from .part import Part, Promote, solve_part
+from .part import Part, Promote, solve_part, unsolved
 from .promote import promoted
 from .request import Request
-from .row import empty
 
 BLOCKS = 16  # of a whole part, solved one after the other: Ctrl-C waits for one
 LEAST_BLOCK = 256  # rows
@@ -53,6 +52,7 @@ class Executor(Protocol):
     """Computes rows: `submit` returns a future whose result is `work`'s, or which raises `WorkerDied`."""
 
     workers: int
+    compile_s: float  # CPU seconds
 
     def submit(self, rows: range) -> Any:
         """Begin a part, or some of its rows."""
@@ -158,17 +158,11 @@ def _done(executor: Executor, every: Iterable[range], at_once: int) -> Iterator[
 
 def crashed(request: Request, rows: range, reason: str) -> Part:
     """Return rows that no process survived."""
-    part = Part({column.name: empty(column, len(rows)) for column in request.columns})
-    part.columns["row"][:] = rows
-    part.columns["level"][:] = "computed"
+    part = unsolved(request, rows)
     part.columns["status"][:] = Status.CRASHED.value
     part.columns["reason"][:] = reason
     for key, numbers in request.table.numbers(np.array(rows), request.scene.inputs).items():
         part.columns[key][:] = numbers.high
-    for key, words in request.table.words(rows).items():
-        part.columns[key][:] = words
-    if request.wanted.times:
-        part.transits = {"row": np.zeros(0, np.int64), "t_s": np.zeros(0), "direction": np.zeros(0, np.int8)}
     return part
 
 

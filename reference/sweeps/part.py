@@ -51,6 +51,18 @@ class Part:
         }
 
 
+def unsolved(request: Request, numbers: range) -> Part:
+    """Return rows of which nothing is known but their numbers and the words among their values."""
+    part = Part({column.name: empty(column, len(numbers)) for column in request.columns})
+    part.columns["row"][:] = numbers
+    part.columns["level"][:] = "computed"
+    for key, words in request.table.words(numbers).items():
+        part.columns[key][:] = words
+    if request.wanted.times:
+        part.transits = {"row": np.zeros(0, np.int64), "t_s": np.zeros(0), "direction": np.zeros(0, np.int8)}
+    return part
+
+
 def solve_part(request: Request, numbers: range, promote: Promote = promoted) -> Part:
     """Return rows solved; a row that fails says so, and the others go on.
 
@@ -60,15 +72,8 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
         promote: solves a row by itself, as `promoted` does, which is not made for several threads.
     """
     started = time.thread_time()
-    table, count = request.table, len(numbers)
-    part = Part({column.name: empty(column, count) for column in request.columns})
-    if TIMES in request.want:
-        part.transits = {"row": np.zeros(0, np.int64), "t_s": np.zeros(0), "direction": np.zeros(0, np.int8)}
+    table, part = request.table, unsolved(request, numbers)
     columns = part.columns
-    columns["row"][:] = numbers
-    columns["level"][:] = "computed"
-    for key, words in table.words(numbers).items():
-        columns[key][:] = words
     wrong = table.wrong(numbers, request.scene.inputs) if isinstance(table, Listed) else {}
     for row, reason in wrong.items():
         _fail(columns, row - numbers.start, Status.INVALID, reason)
@@ -78,7 +83,7 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
     before = time.thread_time()
     for key, values in table.numbers(good, request.scene.inputs).items():
         columns[key][good - numbers.start] = values.high
-    rows = request.folded(good) if len(good) else None
+    rows = request.constants(good) if len(good) else None
     part.fold_s = time.thread_time() - before
     if rows is not None:
         _solve(request, part, good, rows, promote)

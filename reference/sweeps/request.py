@@ -14,9 +14,9 @@ from ..engines.batch_interface import Rows, Wanted
 from ..numbers.double_double import DoubleDouble
 from ..scenes.scene import Level, Scene, parse_scene
 from .axes import Grid, axis
-from .folding import columns_of, fold
 from .lists import Listed
 from .row import AMPLITUDE, FREQUENCY, PRECESSION, TIMES, TRANSITS, Column, columns_for
+from .row_constants import columns_of, row_constants
 
 SCHEMA = 2
 PART_S = 10.0  # CPU seconds of a part, by the cost model
@@ -97,21 +97,21 @@ class Request:
         more = [f"run.grid_step={end}"] if end else []
         return self.scene.with_values([*(f"{key}={text}" for key, text in texts.items()), *more])
 
-    def folded(self, rows: Any) -> Rows:
+    def constants(self, rows: Any) -> Rows:
         """Return the constants and releases of rows; not finite where something is wrong with the scene."""
         rows = np.asarray(rows, np.int64)
         words = self.table.words(rows)
         if not words:
-            return self._fold(rows, {})
+            return self._constants(rows, {})
         kinds = list(zip(*words.values(), strict=True))
         blocks = []
         for kind in sorted(set(kinds)):
             own = np.flatnonzero([one == kind for one in kinds])
-            blocks.append((own, self._fold(rows[own], dict(zip(words, kind, strict=True)))))
+            blocks.append((own, self._constants(rows[own], dict(zip(words, kind, strict=True)))))
         back = np.argsort(np.concatenate([own for own, _ in blocks]))
         return Rows.joined([block for _, block in blocks])[back]
 
-    def _fold(self, rows: Any, words: dict[str, str]) -> Rows:
+    def _constants(self, rows: Any, words: dict[str, str]) -> Rows:
         scene = self.scene.with_values(f"{key}={word}" for key, word in words.items()) if words else self.scene
         columns = columns_of(scene.exact)
         for key, numbers in self.table.numbers(rows, scene.inputs).items():
@@ -121,7 +121,7 @@ class Request:
             else:
                 columns[name] = numbers
         with np.errstate(all="ignore"):
-            return fold(columns, scene.site.gravity_is, len(rows))
+            return row_constants(columns, scene.site.gravity_is, len(rows))
 
     def document(self) -> dict[str, Any]:
         """Return the request as JSON, all that decides the digits; the rows of a list by their hash."""

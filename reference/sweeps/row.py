@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..numbers.columns import POSITION, VELOCITY
+from .values import TEXTS
 
 FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = "frequency", "precession", "transits", "state", "amplitude"
 TIMES = "transit-times"
@@ -58,9 +59,8 @@ COLUMNS = (
 
 def columns_for(want: tuple[str, ...], keys: tuple[str, ...]) -> tuple[Column, ...]:
     """Return the columns of a sweep that varies the fields `keys`, in order."""
-    words = {"inputs", "site.gravity_is"}
     varied = [
-        Column(key, "dictionary" if key in words else "float64", f"{key} of the scene, the nearest double")
+        Column(key, "dictionary" if key in TEXTS else "float64", f"{key} of the scene, the nearest double")
         for key in keys
     ]
     kept = [column for column in COLUMNS[1:] if not column.wants or set(column.wants) & set(want)]

@@ -169,7 +169,7 @@ def run(
         with ExitStack() as stack:
             executor = _executor(asked, out, workers, cluster, len(parts), stack)
             tally = drive(asked, parts, executor, keep, report)
-        compile_s = getattr(executor, "compile_s", 0.0)
+        compile_s = executor.compile_s
     done = joined([kept[part] for part in sorted(kept)]) if store is None else Part({})
     swept = Swept(asked, tally, None, store, compile_s, 0.0, done.columns, done.transits)
     found = resolved(asked, _reader(swept)) if asked.audit else None

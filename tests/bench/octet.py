@@ -27,9 +27,9 @@ from reference.model.formulations import FORMULATIONS
 from reference.numbers.double_double import DoubleDouble
 from reference.scenes.scene import load_scene
 from reference.sweeps.estimate import MOVED, errors, judged
-from reference.sweeps.folding import columns_of, fold
 from reference.sweeps.part import solve_part
 from reference.sweeps.planning import request
+from reference.sweeps.row_constants import columns_of, row_constants
 
 SPAN = 12_000
 MOMENTUM = FORMULATIONS["momentum"]
@@ -62,7 +62,7 @@ def many_rows(count: int) -> Rows:
     """Return the standard rows."""
     columns = columns_of(load_scene("paris", [f"run.t_end={SPAN}", f"run.grid_step={SPAN}"]).exact)
     latitudes = [Fraction(-90) + Fraction(180 * i, count - 1) for i in range(count)]
-    return fold(columns | {"latitude": DoubleDouble.of(latitudes)}, "ellipsoid", count)
+    return row_constants(columns | {"latitude": DoubleDouble.of(latitudes)}, "ellipsoid", count)
 
 
 def cpu_s(work: Callable[[], object]) -> float:
@@ -82,7 +82,7 @@ def show(name: str, over: Callable[[], object], under: Callable[[], object], pai
 
 
 def not_integration(count: int) -> float:
-    """Return the CPU microseconds of a default row for all but the kernel: folding, packing, outcomes, errors."""
+    """Return the CPU microseconds of a default row for all but the kernel: constants, packing, outcomes, errors."""
     results = np.zeros((count, RESULTS))
     results[:, 6] = 1.0
     rows = many_rows(count)
@@ -92,7 +92,7 @@ def not_integration(count: int) -> float:
     several = type(run)(*(np.repeat(getattr(run, name), count, axis=0) for name in vars(run)))
 
     def once() -> None:
-        own = fold(columns, "ellipsoid", count)
+        own = row_constants(columns, "ellipsoid", count)
         for moved in (0, 1):
             outcomes(own, packed(own, Wanted(moved=moved)), results, (results[:0, 0],) * 3)
         errors(own, several, several)

@@ -1,4 +1,4 @@
-"""Random scenes of many kinds, as exact inputs, and the same as columns for `folding`."""
+"""Random scenes of many kinds, as exact inputs, and the same as columns for `row_constants`."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from reference.engines.batch_interface import Rows
 from reference.numbers.double_double import DoubleDouble
 from reference.scenes.inputs import Inputs
 from reference.scenes.scene import load_scene
-from reference.sweeps.folding import ANGLES, POSITION, SITE, fold
+from reference.sweeps.row_constants import ANGLES, POSITION, SITE, row_constants
 
 KINDS = ("small", "wide", "meridian", "planet", "over")
 SPAN = Fraction(600)
@@ -80,6 +80,6 @@ def rows_of(many: list[Inputs]) -> Rows:
     groups: dict[tuple[bool, str], list[int]] = {}
     for i, inputs in enumerate(many):
         groups.setdefault((inputs.position is None, inputs.gravity_is), []).append(i)
-    blocks = [fold(columns_of_many([many[i] for i in own]), key[1], len(own)) for key, own in groups.items()]
+    blocks = [row_constants(columns_of_many([many[i] for i in own]), key[1], len(own)) for key, own in groups.items()]
     order = [i for own in groups.values() for i in own]
     return Rows.joined(blocks)[np.argsort(order)]

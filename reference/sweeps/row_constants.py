@@ -39,7 +39,7 @@ def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
     return {name: DoubleDouble.of([value]) for name, value in named.items()}
 
 
-def fold(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
+def row_constants(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
     """Return the constants and releases of rows.
 
     Args:
@@ -55,11 +55,11 @@ def fold(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
             name: value if len(value.high) == 1 else DoubleDouble(value.high[rows], value.low[rows])
             for name, value in columns.items()
         }
-        blocks.append(_fold(block, gravity_is, size))
+        blocks.append(_of_block(block, gravity_is, size))
     return Rows(*(np.concatenate([getattr(b, field.name) for b in blocks]) for field in fields(Rows)))
 
 
-def _fold(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
+def _of_block(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
     """Return the constants and releases of a few rows."""
     length, rate, zero = columns["length"], columns["rotation_rate"], DoubleDouble(np.zeros(1), np.zeros(1))
     sin, cos = sine_and_cosine(columns["latitude"])

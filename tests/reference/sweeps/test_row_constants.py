@@ -1,4 +1,4 @@
-"""Rows folded in double-double are the model's constants and releases, rounded."""
+"""Constants and releases of rows in double-double are those of the model, rounded."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from random_rows import KINDS, columns_of_many, random_inputs
 from reference.model.algebra import add, cross
 from reference.model.start import Start
 from reference.model.vanishing import xdot_vanishes, zero_at_release
-from reference.sweeps.folding import columns_of, fold
+from reference.sweeps.row_constants import columns_of, row_constants
 
 BITS = 300
 
@@ -26,8 +26,8 @@ def exact_numbers(inputs):
     return {"length": (k.length,), "turn": k.turn, "pull": k.pull, "n": n, "V": inertial}, start
 
 
-def assert_folded(many):
-    rows = fold(columns_of_many(many), many[0].gravity_is, len(many))
+def assert_constants(many):
+    rows = row_constants(columns_of_many(many), many[0].gravity_is, len(many))
     worst = 0.0
     for i, inputs in enumerate(many):
         exact, start = exact_numbers(inputs)
@@ -47,8 +47,8 @@ def assert_folded(many):
 def test_constants_and_releases_are_within_an_ulp_of_the_model(kind, gravity_is, size, tally):
     generator = random.Random(f"{kind} {gravity_is}")
     many = [replace(random_inputs(kind, generator), gravity_is=gravity_is) for _ in range(size(40, 1000))]
-    worst = assert_folded(many)
-    tally(f"folding, {kind}, {gravity_is}: {len(many)} rows, high + low within {worst:.1e} of the largest component")
+    worst = assert_constants(many)
+    tally(f"constants, {kind}, {gravity_is}: {len(many)} rows, high + low within {worst:.1e} of the largest component")
     assert worst < 2.0**-98
 
 
@@ -71,7 +71,7 @@ def test_constants_and_releases_are_within_an_ulp_of_the_model(kind, gravity_is,
 @pytest.mark.parametrize("gravity_is", ["ellipsoid", "effective"])
 def test_exact_zeros_are_those_of_the_model(paris, latitude, rate, release, gravity_is):
     values = {name: tuple(map(Fraction, numbers)) for name, numbers in release.items()}
-    assert_folded(
+    assert_constants(
         [
             replace(
                 paris.exact,
@@ -86,6 +86,6 @@ def test_exact_zeros_are_those_of_the_model(paris, latitude, rate, release, grav
 
 def test_columns_that_are_one_number_serve_all_rows(paris):
     columns = columns_of(paris.exact)
-    rows = fold(columns, "ellipsoid", 5000)
+    rows = row_constants(columns, "ellipsoid", 5000)
     assert len(rows) == 5000
     assert (rows.n == rows.n[0]).all()
