@@ -34,24 +34,18 @@ class Audit:
         }  # fmt: skip
 
 
-def resolved(
-    request: Request,
-    read: Callable[[int], Mapping[str, Any]],
-    report: Callable[[int], None] = lambda _: None,
-) -> Audit:
+def audit(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit:
     """Solve a sample of the rows again: the request says how many, its hash which.
 
     Args:
         request: the sweep.
         read: returns the columns of a row.
-        report: called with the number of rows that were done since the last call.
     """
     ratios = {}
     for number in sample(request):
         row = read(number)
         if row["status"] == Status.OK.value and row["level"] == "computed":
             ratios[number] = worst_ratio(request, number, row)
-        report(1)
     wrong = tuple(number for number, ratio in ratios.items() if not ratio <= 1)
     worst = max(ratios, key=lambda number: ratios[number], default=None)
     return Audit(len(ratios), wrong, ratios[worst] if worst is not None else 0.0, worst)
