@@ -34,7 +34,7 @@ class Audit:
         }  # fmt: skip
 
 
-def audit(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit:
+def resolved(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit:
     """Solve a sample of the rows again: the request says how many, its hash which.
 
     Args:
