@@ -190,3 +190,21 @@ def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, ca
     generic = subprocess.run(command, env={**os.environ, **plain}, capture_output=True, text=True, check=True)
     exec(SHORT, {})
     assert capsys.readouterr().out == generic.stdout
+
+
+FIRST_USE = """
+from reference.system.first_use import announced_to
+with announced_to(lambda line: print("announced")):
+    exec(SHORT)
+"""
+
+
+@pytest.mark.long
+def test_the_first_use_is_announced_and_the_second_is_not(tmp_path, capsys):
+    command = [sys.executable, "-c", f"SHORT = {SHORT!r}\n{FIRST_USE}"]
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
+    first, second = (
+        subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout for _ in range(2)
+    )
+    exec(SHORT, {})
+    assert (first, second) == ("announced\n" + second, capsys.readouterr().out)
