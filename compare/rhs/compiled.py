@@ -66,10 +66,7 @@ def compiled(body: str) -> ModuleType:
     path = _stored(on_disk.encode())
     if path is None:
         return _in_memory(HEADER.replace("CACHE", "False") + body)
-    from reference.system.machine_code import kept
-
-    with kept():
-        return _executed(on_disk, path.stem, str(path))
+    return _executed(on_disk, path.stem, str(path))
 
 
 def _stored(text: bytes) -> Path | None:

@@ -11,7 +11,7 @@ import numpy as np
 from flint import arb, fmpz, fmpz_poly
 
 from ..numbers.packing import DIGIT_BITS
-from ..system.machine_code import compiled_and_kept
+from ..system.machine_code import kept
 from .balls import demand
 
 MASK = (1 << DIGIT_BITS) - 1
@@ -28,7 +28,7 @@ def check(rows: Any, constants: Any) -> int:
     return most
 
 
-@compiled_and_kept
+@kept()
 def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:
     """Add the product of two polynomials to the sums `i`, in the rows that these have; `alike`: f is g."""
     for r in range(g.shape[0]):

@@ -21,6 +21,6 @@ def announced_to(listener: Callable[[str], None]) -> Iterator[None]:
 
 def announce(what: str, seconds: int) -> None:
     """Tell the last listener, once in a process, that `what` is compiled, and that this takes about `seconds`."""
-    if what and what not in _announced and _listeners:
+    if what not in _announced and _listeners:
         _announced.add(what)
         _listeners[-1](f"First use on this machine: {what} are compiled, once, for about {seconds} seconds.")

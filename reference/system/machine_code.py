@@ -1,162 +1,97 @@
-"""Machine code that numba keeps on disk: a damaged file or a full disk costs time, never a result.
+"""Machine code that numba keeps on disk, in a folder for the very sources that it is made of.
 
-numba itself unpickles what it finds. Here every file ends with its hash, and says which function, for which types and
-which processor, it holds: what was changed, cut short or put in another's place is compiled again. Of several processes
-one compiles a function; the others wait and take what it has kept.
+numba itself looks at the file of a function alone: after a change of what the function calls it would take old machine
+code for new. Of several processes that need a function one compiles it; the others wait and take what it has kept.
 """
 
 from __future__ import annotations
 
 import os
-import time
-from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager, suppress
-from functools import partial
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack, suppress
 from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from threading import Lock
+from typing import Any, TypeVar
 
-from numba import njit
-from numba.core import caching, ccallback, dispatcher
-
-from .file_lock import Taken, locked
+from .cache import store
 from .first_use import announce
 
+Function = TypeVar("Function", bound=Callable[..., Any])
 PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
-POLL_S = 0.05
-_HASH_BYTES = 32
-_turns: dict[Path, ExitStack] = {}  # functions that this process compiles; where that failed, until it is tried again
+_declaring = Lock()
 
 
-class _CheckedFile(caching.IndexDataCacheFile):  # type: ignore[misc]  # numba has no types
-    """The files of one function."""
-
-    def save(self, key: Any, data: Any) -> None:
-        super().save(key, (self._mark(key), data))
-
-    def load(self, key: Any) -> Any:
-        mark, data = super().load(key) or (None, None)
-        return data if mark == self._mark(key) else None
-
-    def _mark(self, key: Any) -> Any:
-        return self._index_name, self._source_stamp, key
-
-    def _dump(self, item: Any) -> bytes:
-        data: bytes = super()._dump(item)
-        return data + sha256(data).digest()  # reading ends before it
-
-    def _load_index(self) -> dict[Any, str]:
-        try:
-            index: dict[Any, str] = super()._load_index()
-        except Exception:  # a damaged pickle may raise anything
-            return {}
-        return index
-
-    def _load_data(self, name: str) -> Any:
-        data = Path(self._data_path(name)).read_bytes()
-        if sha256(data[:-_HASH_BYTES]).digest() != data[-_HASH_BYTES:]:
-            raise OSError("damaged")  # numba takes it for a missing file
-        return super()._load_data(name)
+def folder_of(sources: Iterable[Path]) -> Path | None:
+    """Return the folder for machine code that is made of these files, or None if it can be kept nowhere."""
+    hashes = [sha256(path.read_bytes()).digest() for path in sorted(sources)]
+    name = sha256(b"".join(hashes)).hexdigest()[:32]
+    chosen = os.environ.get("NUMBA_CACHE_DIR")
+    if chosen:
+        return Path(chosen, f"foucault-{name}")
+    return store("machine_code", name, lambda path: path.mkdir(exist_ok=True), executed=True)
 
 
-class _Places(caching.CompileResultCacheImpl):  # type: ignore[misc]
-    """Where the files may be; without a home, numba would make a folder named ~ in the working directory."""
-
-    @property
-    def _locator_classes(self) -> list[Any]:
-        places = [caching.UserProvidedCacheLocator, caching.InTreeCacheLocator]
-        return [*places, caching.UserWideCacheLocator] if Path(os.path.expanduser("~")).is_absolute() else places
+def is_kept(name: str, folder: Path | str | None) -> bool:
+    """Return whether there is machine code of a function in a folder."""
+    return folder is not None and any(Path(folder).rglob(f"*.{name}-*.nbi"))
 
 
-class _CheckedCache(caching.FunctionCache):  # type: ignore[misc]
-    """The cache of one function."""
-
-    _impl_class = _Places
-
-    def __init__(self, function: Any, what: str, seconds: int, sources: str) -> None:
-        super().__init__(function)
-        self._what, self._seconds, self._sources = what, seconds, sources
-        stamp = self._impl.locator.get_source_stamp()
-        self._cache_file = _CheckedFile(self._cache_path, self._impl.filename_base, stamp)
-        self._lock = Path(self._cache_path, f"{self._impl.filename_base}.lock")
-
-    def _index_key(self, types: Any, code: Any) -> Any:
-        return self._sources, *super()._index_key(types, code)
-
-    def is_missing(self, types: Any, target: Any) -> bool:
-        return self._index_key(types, target.codegen()) not in self._cache_file._load_index()
-
-    def load_overload(self, types: Any, target: Any) -> Any:
-        code = super().load_overload(types, target)
-        if code is None:
-            announce(self._what, self._seconds)
-            self._begin_turn()
-            code = super().load_overload(types, target)  # another process may have compiled it meanwhile
-            if code is not None:
-                self._end_turn()
-        return code
-
-    def save_overload(self, types: Any, code: Any) -> None:
-        try:
-            with suppress(OSError):
-                super().save_overload(types, code)
-        finally:
-            self._end_turn()
-
-    def _begin_turn(self) -> None:
-        """Wait until no other process compiles this function, at most for `PATIENCE_S`: then it is compiled twice."""
-        self._end_turn()
-        turn, end = _turns.setdefault(self._lock, ExitStack()), time.monotonic() + PATIENCE_S
-        while time.monotonic() < end:
-            try:
-                Path(self._cache_path).mkdir(parents=True, exist_ok=True)
-                turn.enter_context(locked(self._lock))
-            except Taken:
-                time.sleep(POLL_S)
-            except OSError:  # nothing can be kept there
-                return
-            else:
-                turn.callback(self._lock.unlink, missing_ok=True)
-                return
-
-    def _end_turn(self) -> None:
-        with suppress(OSError):
-            _turns.pop(self._lock, ExitStack()).close()
-
-
-def _cache_of(function: Any, what: str, seconds: int, sources: str) -> Any:
-    try:
-        return _CheckedCache(function, what, seconds, sources)
-    except (RuntimeError, OSError):  # there is no folder for it that can be written
-        return caching.NullCache()
-
-
-@contextmanager
-def kept(what: str = "", seconds: int = 0, sources: str = "") -> Iterator[None]:
-    """Have functions that are declared meanwhile with `cache=True` use a checked cache.
+def kept(*sources: Path, **options: Any) -> Callable[[Function], Function]:
+    """Return a decorator that compiles with numba, and keeps the machine code on disk.
 
     Args:
-        what: what they are, in the plural, for the line that announces a long compilation; without it there is none.
-        seconds: that it takes, about.
-        sources: a hash of the other files that they are made of: numba looks at their own alone.
+        sources: all files that the function is made of; its own if none is named.
+        options: numba's.
     """
-    users: tuple[Any, Any] = (dispatcher, ccallback)
-    for module in users:
-        module.FunctionCache = partial(_cache_of, what=what, seconds=seconds, sources=sources)
-    try:
-        yield
-    finally:
-        for module in users:
-            module.FunctionCache = caching.FunctionCache
+
+    def declared(function: Function) -> Function:
+        from numba import njit
+
+        compiled: Function = _cached(function, sources, options) or njit(**options)(function)
+        return compiled
+
+    return declared
 
 
-def compiled_and_kept(function: Any) -> Any:
-    """Compile a function with numba, quickly enough to say nothing, and keep its machine code."""
-    with kept():
-        return njit(cache=True)(function)
+def _cached(function: Any, sources: Iterable[Path], options: dict[str, Any]) -> Any:
+    """Return a function as numba compiles and keeps it, or None if that cannot be done in the folder of its sources."""
+    from numba import config, njit
+
+    folder = folder_of(sources or [Path(function.__code__.co_filename)])
+    if folder is None:
+        return None
+    with _declaring, suppress(RuntimeError):  # numba finds no folder at all
+        before, config.CACHE_DIR = config.CACHE_DIR, str(folder)
+        try:
+            compiled = njit(cache=True, **options)(function)
+        finally:
+            config.CACHE_DIR = before
+        if Path(compiled.stats.cache_path).is_relative_to(folder):  # else numba chose one for sources of any age
+            return compiled
+    return None
 
 
-def missing(function: Any, types: Any) -> bool:
-    """Return whether a function that was declared under `kept` could have its machine code on disk, but has not."""
-    cache = function._cache
-    return isinstance(cache, _CheckedCache) and cache.is_missing(types, function.targetctx)
+def prepare(function: Any, what: str, seconds: int, *arguments: Any) -> None:
+    """Compile a function that is `kept` for arguments like these, or load it, once in a process.
+
+    Args:
+        function: what to compile.
+        what: what it is, in the plural, for the line that announces a compilation.
+        seconds: that it takes, about.
+        arguments: as in a call.
+    """
+    from filelock import FileLock
+    from numba import typeof
+
+    types, folder = tuple(map(typeof, arguments)), function.stats.cache_path
+    if types in function.signatures:
+        return
+    if not is_kept(function.__name__, folder):
+        announce(what, seconds)
+    with ExitStack() as turn:
+        if folder is not None:
+            with suppress(OSError):  # it takes too long, or the disk has no locks: then it is compiled twice
+                turn.enter_context(FileLock(Path(folder, f"{function.__name__}.lock"), timeout=PATIENCE_S))
+        with suppress(OSError):  # the disk is full: it is compiled, and not kept
+            function.compile(types)

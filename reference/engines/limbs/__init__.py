@@ -12,5 +12,5 @@ fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are 
 - `outputs`: what is read from a step; `dense_output`: the state inside it; `zeros`, `polish`, `polynomial`, `xdot`: the
   zeros of xdot on it.
 - `limb`, `lanes`: numbers of limbs, eight side by side.
-- `compiling`, `kernel`: how functions are compiled; those that are called by address are compiled each by itself.
+- `compiling`: how functions are compiled that compiled functions call.
 """

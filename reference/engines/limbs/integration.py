@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from typing import Any
 
@@ -11,10 +10,11 @@ import numpy.typing as npt
 
 from ...errors import InputError, IntegrationError
 from ...model.vanishing import xdot_vanishes, zero_at_release
+from ...system.machine_code import prepare
 from ..plan import AT_REST, Pace, Plan, Report
 from .lanes import LANES
 from .limb import Array, aligned, joined
-from .march import DOUBTFUL, GOOD, STUCK, loaded, march
+from .march import DOUBTFUL, GOOD, STUCK, march
 from .march_state import COLUMNS, STEPS, TIME, ZEROS, Outputs, state_at_release
 from .output_times import limbs_of_fractions
 from .problem import LimbProblem, limb_problem
@@ -22,6 +22,7 @@ from .size import MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS
 
 STEPS_PER_CALL = 1024
+COMPILE_S = 20  # what compiling takes, about, of which users are told
 
 
 class Integration:
@@ -45,10 +46,7 @@ class Integration:
         self.problem, self.seek = problem, seek
         limb_count, model = problem.model.limb_count, problem.model
         multiplicity = zero_at_release(problem.start) if seek else 0
-        cpu_start = _cpu_s()
-        code = loaded()
-        self.compile_s = _cpu_s() - cpu_start
-        self.state = state_at_release(problem.state, problem.first, multiplicity, model, code)
+        self.state = state_at_release(problem.state, problem.first, multiplicity, model)
         room = STEPS_PER_CALL + MOST_ZEROS if seek else 0
         self.out = Outputs(
             whole,
@@ -62,6 +60,9 @@ class Integration:
         )
         self.until = int(whole[-1]) + 1
         self._zeros: list[tuple[Any, Any, Any]] = []
+        cpu_start = time.process_time()
+        prepare(march, "limbs", COMPILE_S, *self._arguments(0))
+        self.compile_s = time.process_time() - cpu_start
 
     def finish(self, report: Report | None, pace: Pace | None = None) -> None:
         """Advance to the last output time.
@@ -82,7 +83,7 @@ class Integration:
 
     def advance(self, steps: int) -> bool:
         """Take at most `steps` steps; return true when the last output time is passed."""
-        outcome = march.python(self.state, self.problem.model, self.out, self.until, steps, self.seek)
+        outcome = march(*self._arguments(steps))
         self._keep_zeros()
         if outcome == STUCK:
             raise IntegrationError(f"no step is short enough at t = {self.time} s.")
@@ -91,6 +92,10 @@ class Integration:
                 f"zeros of xdot near t = {self.time} s: xdot touches zero within the precision.", AT_REST
             )
         return bool(outcome == GOOD)
+
+    def _arguments(self, steps: int) -> tuple[Any, ...]:
+        """Return the arguments of `march`."""
+        return self.state, self.problem.model, self.out, self.until, steps, self.seek
 
     def _keep_zeros(self) -> None:
         n, limb_count = int(self.state.counts[ZEROS]), self.problem.model.limb_count
@@ -116,11 +121,6 @@ class Integration:
             tables.append(rows)
             signs += moments[:, 2].tolist()
         return np.concatenate(times), np.concatenate(tables), signs
-
-
-def _cpu_s() -> float:
-    """Return the CPU seconds of this process and of its children that have ended."""
-    return time.process_time() + sum(os.times()[2:4])
 
 
 def integration_of(plan: Plan, polynomials: int = 0, order: int | None = None) -> Integration:

@@ -14,7 +14,7 @@ from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 from numba.core import cgutils
 
-from .compiling import PART
+from .compiling import OPTIONS
 
 LANES = 8
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
@@ -239,7 +239,7 @@ def _binary(operation: Any, name: str) -> None:
         return Lanes(Lanes, Lanes), generate
 
     # numba calls `choose` with the operands' types and reads the signature off the lambda; it wants no annotations here
-    @_extending.overload(operation, jit_options=PART | {"forceinline": True})
+    @_extending.overload(operation, jit_options=OPTIONS | {"forceinline": True})
     def choose(a, b):  # type: ignore[no-untyped-def]
         if isinstance(a, _Lanes) and isinstance(b, _Lanes):
             return lambda a, b: apply(a, b)  # noqa: PLW0108

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
-from functools import cache
+from pathlib import Path
 
-from ...system.process import Emit, Worker, usable_cores
-from .compiling import compiled
-from .kernel import Kernel
+from ...system.machine_code import kept
+from .compiling import OPTIONS, compiled
 from .lanes import LANES, load, store
 from .march_state import (
     LENGTH,
@@ -18,7 +16,6 @@ from .march_state import (
     STEPS,
     TIME,
     ZEROS,
-    Addresses,
     MarchState,
     Outputs,
 )
@@ -41,10 +38,8 @@ from .zeros import MOST_ZEROS
 # why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
 GOOD, FULL, STUCK, DOUBTFUL = range(4)
 
-_taylor_coefficients, _write_outputs = taylor_coefficients.call, write_outputs.call
 
-
-@Kernel
+@kept(*Path(__file__).parent.glob("*.py"), **OPTIONS)
 def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int, seek: bool) -> int:
     """Take at most `steps` steps, until the time in grains is `until` or later; return why it stopped."""
     s, counts, limb_count, order = state.s, state.counts, model.limb_count, model.order
@@ -58,7 +53,7 @@ def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int,
         if seek and counts[STEPS] == 0:
             counts[SIGN] = _first_sign(state, model)
         project(state.now, state.rows, s, m, limb_count)
-        if not _write_outputs(state.code.outputs, state, model, out, seek):
+        if not write_outputs(state, model, out, seek):
             return DOUBTFUL
         if 2 * i < len(out.steps):
             out.steps[2 * i], out.steps[2 * i + 1] = counts[TIME], m
@@ -93,7 +88,7 @@ def _step_coefficients(state: MarchState, model: Model) -> bool:
             counts[SCALED] = m
         order_zero(state.s, state.terms, state.now, m, model.limb_count)
         shorter = m // 2
-        if _taylor_coefficients(state.code.series, state.s, state.terms, model.order, model.limb_count, model.drag):
+        if taylor_coefficients(state.s, state.terms, model.order, model.limb_count, model.drag):
             factor = step_size_factor(state.s, model.order, model.limb_count, model.tolerance)
             if factor >= LEAST_FACTOR:
                 counts[NEXT] = next_length(m, factor, model.longest)
@@ -102,21 +97,3 @@ def _step_coefficients(state: MarchState, model: Model) -> bool:
         if shorter < 1:
             return False
         counts[LENGTH] = shorter
-
-
-@cache
-def loaded() -> Addresses:
-    """Compile or load the kernels, once in a process, and return the addresses of those that others call.
-
-    What is not kept on disk is compiled by two processes if the machine has two cores: series and steps here, the
-    outputs in a child.
-    """
-    with ExitStack() as stack:
-        if write_outputs.missing and usable_cores() >= 2:
-            stack.callback(Worker(_compile_outputs).stop)
-        march.address()
-        return Addresses(taylor_coefficients.address(), write_outputs.address())
-
-
-def _compile_outputs(_: Emit) -> None:
-    write_outputs.address()

@@ -16,13 +16,6 @@ COLUMNS = 7  # x, y, z, vx, vy, vz, ax
 TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # in `MarchState.counts`
 
 
-class Addresses(NamedTuple):
-    """Addresses of the kernels that others call: `recurrence.taylor_coefficients`, `outputs.write_outputs`."""
-
-    series: int
-    outputs: int
-
-
 class MarchState(NamedTuple):
     """State carried between steps, and working arrays.
 
@@ -34,7 +27,6 @@ class MarchState(NamedTuple):
         terms: its linear terms.
         rows, place: working arrays: all lanes at some place in the step, and that place.
         search: working arrays for the step's zeros.
-        code: addresses of kernels.
     """
 
     now: Array
@@ -44,7 +36,6 @@ class MarchState(NamedTuple):
     rows: Array
     place: Array
     search: Search
-    code: Addresses
 
 
 class Outputs(NamedTuple):
@@ -70,7 +61,7 @@ class Outputs(NamedTuple):
     series: Array
 
 
-def state_at_release(start: Array, first: int, multiplicity: int, model: Model, code: Addresses) -> MarchState:
+def state_at_release(start: Array, first: int, multiplicity: int, model: Model) -> MarchState:
     """Return the state carried between steps, initialised at the release."""
     order, limb_count = model.order, model.limb_count
     counts = np.zeros(9, dtype=np.int64)
@@ -80,4 +71,4 @@ def state_at_release(start: Array, first: int, multiplicity: int, model: Model, 
     now = aligned(len(start))
     now[:] = start
     series, search = empty_series(order, limb_count), empty_search(order, limb_count)
-    return MarchState(now, counts, series, terms, rows, np.zeros(limb_count + 2), search, code)
+    return MarchState(now, counts, series, terms, rows, np.zeros(limb_count + 2), search)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from .compiling import compiled
 from .dense_output import divide_place, evaluate, to_cartesian
-from .kernel import Kernel
 from .lanes import LANES
 from .march_state import LENGTH, MULTIPLICITY, ROWS, SIGN, TIME, ZEROS, MarchState, Outputs
 from .polish import polish
@@ -13,7 +12,7 @@ from .xdot import sign_of_xdot
 from .zeros import GRAZING, bracket_zeros
 
 
-@Kernel
+@compiled
 def write_outputs(state: MarchState, model: Model, out: Outputs, seek: bool) -> bool:
     """Write what the present step passes, zeros of xdot if they are sought; return false if they stay in doubt."""
     if seek and not _write_zeros(state, model, out):
@@ -47,7 +46,7 @@ def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
     if count == GRAZING:
         return False
     for i in range(count):
-        if not polish(z, i, state.s, state.terms, state.rows, model, state.code):
+        if not polish(z, i, state.s, state.terms, state.rows, model):
             return False
         n = counts[ZEROS]
         for q in range(limb_count):

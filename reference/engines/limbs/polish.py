@@ -6,7 +6,6 @@ from .compiling import compiled
 from .dense_output import evaluate
 from .lanes import LANES, load, store
 from .limb import Array, add_double, carry_scalar, double_of, set_double
-from .march_state import Addresses
 from .recurrence import taylor_coefficients
 from .series import LinearTerms, Series
 from .size import LIMB_BITS
@@ -15,11 +14,10 @@ from .xdot import xddot_of, xdot_of
 from .zeros import EDGE, NEAR, NEWTON_STEPS, Search, near_order
 
 DERIVATIVE_BITS = 44  # correct bits of the derivative, a double, that Newton's method divides by
-_taylor_coefficients = taylor_coefficients.call
 
 
 @compiled
-def polish(z: Search, i: int, s: Series, terms: LinearTerms, rows: Array, model: Model, code: Addresses) -> bool:
+def polish(z: Search, i: int, s: Series, terms: LinearTerms, rows: Array, model: Model) -> bool:
     """Write the place of zero i to `place`, all lanes there to `rows`; false if Newton's method leaves its interval.
 
     The guess is so good that a series about it needs few orders: the step's own is evaluated just once.
@@ -30,7 +28,7 @@ def polish(z: Search, i: int, s: Series, terms: LinearTerms, rows: Array, model:
         evaluate(rows, s, z.place, model.order, limb_count)
         for r in range(limb_count):
             store(short.c, LANES * r, load(rows, LANES * r))
-        if not _taylor_coefficients(code.series, short, terms, near_order(limb_count), limb_count, model.drag):
+        if not taylor_coefficients(short, terms, near_order(limb_count), limb_count, model.drag):
             return False
         if not _newton(z, terms, rows, model):
             return False

@@ -13,7 +13,6 @@ k is small as h**k, its leading limbs are zero and are not touched, so that high
 from __future__ import annotations
 
 from .compiling import compiled, inlined
-from .kernel import Kernel
 from .lanes import LANES, load, occupied, plus_product, shuffled, spread, store, within
 from .limb import DOUBLED, LARGEST, Array, carry, carry_scalar, divide
 from .products import add_products, add_squares, clear_sums, copy_to_planes
@@ -29,7 +28,7 @@ _tension_across = shuffled((-1, -1, -1, -1, -1, -1, 1, -1), "_tension_across")
 _tension_spin = shuffled((-1, -1, -1, -1, -1, -1, 7, -1), "_tension_spin")
 
 
-@Kernel
+@compiled
 def taylor_coefficients(s: Series, terms: LinearTerms, order: int, limb_count: int, drag: bool) -> bool:
     """Fill the coefficients from those of order 0; return false if one is too large for exact arithmetic.
 

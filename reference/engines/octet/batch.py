@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...numbers.precision import Array
+from ...system.machine_code import folder_of, is_kept, prepare
 from ..batch_interface import Batch, Outcomes, Rows, Wanted
-from .rows import COLUMNS, COMPILE_S, READ_S, RESULTS, TOLERANCE, outcomes, packed
+from .rows import COLUMNS, COMPILE_S, READ_S, RESULTS, SOURCES, TOLERANCE, outcomes, packed
 
 ORDER, MOVED_ORDER = 24, 22  # of a run, and of the run that tells the error
 SWING_S = 2.4e-6  # of a default row over the period of a small swing
@@ -35,16 +35,17 @@ class OctetBatch(Batch):
     def prepare(self, wanted: Wanted, drag: bool) -> float:
         """Compile the kernel, or read it from the disk, once a process: later calls find it done."""
         from .found import empty_moments
-        from .march import empty_march
+        from .march import empty_march, march
 
         started = time.thread_time()
-        _march(empty_march(), Wanted(), np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
+        arguments = _arguments(empty_march(), Wanted(), np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
+        prepare(march, "steps of eight rows at once", COMPILE_S, *arguments)
         return time.thread_time() - started
 
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
         """Solve rows without drag."""
         from .found import empty_moments
-        from .march import empty_march
+        from .march import empty_march, march
 
         if rows.drag.any():
             raise ValueError("rows with drag are not for this kernel")
@@ -53,7 +54,7 @@ class OctetBatch(Batch):
         done, found = len(rows) == 0, [[column[:0] for column in moments[1:]]]
         while not done:
             moments.number[0] = 0
-            done = _march(lanes, wanted, numbers, results, moments, STEPS_PER_CALL)
+            done = march(*_arguments(lanes, wanted, numbers, results, moments, STEPS_PER_CALL))
             found.append([column[: moments.number[0]].copy() for column in moments[1:]])
         row, t, direction = (np.concatenate(column) for column in zip(*found, strict=True))
         order = np.argsort(row, kind="stable")  # a row's own are in order of time
@@ -65,18 +66,13 @@ class OctetBatch(Batch):
 
     @property
     def saved_s(self) -> float:
-        """Return what is saved where the kernel, as its sources are now, is kept on disk beside them."""
-        folder = Path(__file__).parent
-        newest = max(path.stat().st_mtime for home in (folder, folder.parent / "limbs") for path in home.glob("*.py"))
-        kept = any(path.stat().st_mtime > newest for path in (folder / "__pycache__").glob("march.*.nbi"))
-        return COMPILE_S - READ_S if kept else 0.0
+        """Return what is saved where the kernel, as its sources are now, is kept on disk."""
+        return COMPILE_S - READ_S if is_kept("march", folder_of(SOURCES)) else 0.0
 
 
-def _march(lanes: Any, wanted: Wanted, numbers: Array, results: Array, moments: Any, steps: int) -> Any:
-    """Take steps; return whether all rows are done."""
-    from .march import march
-
-    return march(lanes, MOVED_ORDER if wanted.moved else ORDER, numbers.ravel(), results.ravel(), moments, steps)
+def _arguments(lanes: Any, wanted: Wanted, numbers: Array, results: Array, moments: Any, steps: int) -> tuple[Any, ...]:
+    """Return the arguments of `march`."""
+    return lanes, MOVED_ORDER if wanted.moved else ORDER, numbers.ravel(), results.ravel(), moments, steps
 
 
 BATCH = OctetBatch()

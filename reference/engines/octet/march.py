@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from ...system.machine_code import kept
 from ..batch_interface import DOUBTFUL, STOPPED
-from ..limbs.compiling import SOURCES, compiled, entry, hashed
+from ..limbs.compiling import OPTIONS, compiled
 from ..limbs.lanes import LANES, at_least, load, occupied, spread, store, where
 from ..limbs.limb import Array, aligned
 from . import rows
@@ -160,7 +160,7 @@ def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Mo
     return True
 
 
-@entry("steps of eight rows at once", rows.COMPILE_S, SOURCES + hashed(Path(__file__).parent), nogil=True)
+@kept(*rows.SOURCES, nogil=True, **OPTIONS)
 def march(m: March, order: int, numbers: Array, results: Array, moments: Moments, steps: int) -> bool:
     """Take at most `steps` steps, or until no room is left for times; return whether all rows are done."""
     many = len(numbers) // rows.COLUMNS

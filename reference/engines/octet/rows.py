@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
 APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND = range(13, 23)
 RESULTS = 24
 TOLERANCE = 2.0**-54  # the size that a step's last coefficients have, against the motion
+_ENGINES = Path(__file__).parents[1]
+SOURCES = [*_ENGINES.glob("*.py"), *_ENGINES.glob("limbs/*.py"), *_ENGINES.glob("octet/*.py")]  # of the kernel
 COMPILE_S, READ_S = 15, 1.2  # CPU seconds of numba and the kernel: cold, and kept on disk
 _SAME = 2.0**-94  # of a row's velocities: u' that is less at the release is zero
 

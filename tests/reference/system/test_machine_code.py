@@ -12,8 +12,6 @@ from places import ROOT
 
 pytest.importorskip("numba")
 
-pytestmark = pytest.mark.xfail(reason="`kept` does not take sources, and there is no `prepare`", strict=True)
-
 CALLEE = """
 from numba import extending
 
