@@ -18,17 +18,23 @@ from .cache import store
 from .first_use import announce
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+HERE = Path(__file__).parent
 PATIENCE_S = 120.0  # the longest wait for another process that compiles the same function
 _declaring = Lock()
 
 
 def folder_of(sources: Iterable[Path]) -> Path | None:
-    """Return the folder for machine code that is made of these files, or None if it can be kept nowhere."""
+    """Return the folder for machine code that is made of these files, or None if it can be kept nowhere.
+
+    It is in `$NUMBA_CACHE_DIR`, in `__pycache__` here, or in the cache where this package cannot be written.
+    """
     hashes = [sha256(path.read_bytes()).digest() for path in sorted(sources)]
-    name = sha256(b"".join(hashes)).hexdigest()[:32]
+    name = f"foucault-{sha256(b''.join(hashes)).hexdigest()[:32]}"
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     if chosen:
-        return Path(chosen, f"foucault-{name}")
+        return Path(chosen, name)
+    if os.access(HERE, os.W_OK):
+        return HERE / "__pycache__" / name
     return store("machine_code", name, lambda path: path.mkdir(exist_ok=True), executed=True)
 
 

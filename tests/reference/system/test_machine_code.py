@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
+from reference.system import machine_code
+
 pytest.importorskip("numba")
 
 CALLEE = """
@@ -55,11 +57,12 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def begun(folder: Path, numba: str = "", cache: str = "cache") -> subprocess.Popen[str]:
-    """Begin the program, with a folder for numba's code, if one is named, and one for all that is kept."""
-    places = {"NUMBA_CACHE_DIR": numba and str(folder / numba), "FOUCAULT_CACHE": str(folder / cache)}
-    command = [sys.executable, "caller.py", places["NUMBA_CACHE_DIR"]]
-    return subprocess.Popen(command, cwd=folder, env=os.environ | places, stdout=subprocess.PIPE, text=True)
+def begun(folder: Path, numba: str = "numba") -> subprocess.Popen[str]:
+    """Begin the program, with a folder for numba's code."""
+    place = str(folder / numba)
+    environment = os.environ | {"NUMBA_CACHE_DIR": place}
+    command = [sys.executable, "caller.py", place]
+    return subprocess.Popen(command, cwd=folder, env=environment, stdout=subprocess.PIPE, text=True)
 
 
 def said(process: subprocess.Popen[str]) -> list[str]:
@@ -69,11 +72,20 @@ def said(process: subprocess.Popen[str]) -> list[str]:
     return words
 
 
-@pytest.mark.parametrize("numba", ["", "numba"])
-def test_what_is_kept_is_neither_compiled_nor_announced_again(folder, numba):
-    assert [said(begun(folder, numba)) for _ in range(2)] == [COLD, WARM]
-    place = folder / (numba or "cache/machine_code")
-    assert {path.is_relative_to(place) for path in folder.rglob("*.nb?")} == {True}
+def test_what_is_kept_is_neither_compiled_nor_announced_again(folder):
+    assert [said(begun(folder)) for _ in range(2)] == [COLD, WARM]
+    assert {path.is_relative_to(folder / "numba") for path in folder.rglob("*.nb?")} == {True}
+
+
+def test_it_is_kept_beside_the_package_or_else_in_the_cache(folder, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setenv("FOUCAULT_CACHE", str(folder / "cache"))
+    sources = [folder / "callee.py", folder / "caller.py"]
+    beside = machine_code.folder_of(sources)
+    assert beside is not None
+    assert beside.parent == machine_code.HERE / "__pycache__"
+    monkeypatch.setattr(machine_code, "HERE", folder / "missing")
+    assert machine_code.folder_of(reversed(sources)) == folder / "cache" / "machine_code" / beside.name
 
 
 def test_of_three_processes_one_compiles(folder):
