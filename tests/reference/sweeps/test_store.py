@@ -16,6 +16,7 @@ from reference.sweeps.driver import WorkerDied, work
 from reference.sweeps.sweep import asked_for, run
 
 pytest.importorskip("pyarrow")
+B3 = pytest.mark.xfail(strict=True, reason="plans are read without a bound")
 OVER = ["site.latitude=-90:90:2"]
 ROWS = 91
 
@@ -107,6 +108,25 @@ def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
     (folder / "plan.json").write_text(json.dumps(plan | {"pyarrow": "1.0"}))
     with pytest.raises(InputError, match=r"pyarrow 1\.0"):
         run(asked(folder), folder)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[]",
+        "{}",
+        "\0",
+        pytest.param('{"scene": []}', marks=B3),
+        pytest.param('{"scene": ' * 100_000, marks=B3),
+        f'{{"scene": {"9" * 5000}}}',
+    ],
+    ids=lambda text: f"{text[:12]!r}",
+)
+def test_a_plan_that_is_none_is_refused(text, tmp_path):
+    (tmp_path / "plan.json").write_text(text)
+    with pytest.raises(InputError, match="as it was written|JSON"):
+        load_sweep(tmp_path)
 
 
 def test_the_times_of_transits_are_a_dataset_of_their_own(tmp_path):
