@@ -159,9 +159,8 @@ PUBLIC = {
     "reference.system": "cache",
     "reference.system.cache": "arrays entry store",
     "reference.system.capture": "captured",
-    "reference.system.imports": "Registry",
-    "reference.system.imports": "lazy",
-    "reference.system.opening": "open_at_once",
+    "reference.system.documents": "json_document json_lines open_at_once",
+    "reference.system.imports": "Registry lazy missing switched_off",
     "reference.system.process": "Emit Worker alarm terminable usable_cores",
     "reference.system.workspace": "replace_file workspace",
 }

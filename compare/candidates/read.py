@@ -17,7 +17,7 @@ from typing import BinaryIO
 from reference import InputError
 from reference.errors import plain
 from reference.numbers.precision import Array
-from reference.system.opening import open_at_once
+from reference.system.documents import open_at_once
 
 from .archive import read_archive, read_array
 from .candidate import Candidate, checked_transits

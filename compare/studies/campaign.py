@@ -10,15 +10,18 @@ import json
 import os
 import threading
 from collections.abc import Callable, Generator, Iterator, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any, TypeVar
+
+from pydantic import TypeAdapter
 
 from reference import InputError, IntegrationError
 from reference.errors import finite
 from reference.status import Status
 from reference.system import cache
+from reference.system.documents import json_lines
 from reference.system.process import Worker, alarm
 
 from ..methods import METHODS, available
@@ -102,8 +105,8 @@ def campaign(
     """
     common = [JUDGED, recipe, machine()]
     marks = {item: _mark(common if recipe_of is None else [*common, recipe_of(item)]) for item in items}
-    stored = dict(_stored(journal_path))
-    results = {item: kind.parsed(stored[mark, item]) for item, mark in marks.items() if (mark, item) in stored}
+    stored = dict(_stored(journal_path, kind))
+    results = {item: stored[mark, item] for item, mark in marks.items() if (mark, item) in stored}
     groups: dict[tuple[Any, ...], list[Item]] = {}
     for item in items:
         if item not in results:
@@ -123,16 +126,17 @@ def _mark(recipe: Any) -> str:
     return hashlib.sha256(json.dumps(recipe, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _stored(path: Path | None) -> Iterator[tuple[tuple[str, tuple[Any, ...]], dict[str, Any]]]:
-    """Yield marks with items, and results, in order; a line cut short by an interrupt is skipped."""
-    if path is None or not path.is_file():
+def _stored(path: Path | None, kind: type[Result]) -> Iterator[tuple[tuple[str, tuple[Any, ...]], Result]]:
+    """Yield marks with items, and results, in order; a line that is no result of this kind is skipped."""
+    if path is None or not path.exists():
         return
-    for line in path.read_bytes().splitlines():
-        try:
-            record = json.loads(line)
-            yield (record["recipe"], tuple(record["item"])), dict(record["result"])
-        except (ValueError, KeyError, TypeError):
-            continue
+    types = TypeAdapter(kind)
+    for record in json_lines(path, "--out"):
+        with suppress(KeyError, TypeError, ValueError):
+            key = record["recipe"], tuple(record["item"])
+            hash(key)
+            types.validate_python(record["result"])
+            yield key, kind.parsed(record["result"])
 
 
 def _store(path: Path | None, record: dict[str, Any]) -> None:

@@ -16,10 +16,10 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError
 
 from ..errors import InputError, unknown
+from ..system.documents import toml_document
 from .fields import Line, NotNegative, Number, NumberOrInf, Positive, Refused, as_read, explained, within
 from .inputs import GravityIs, Inputs
 from .shipped import data_root, scene_ids
-from .toml_document import toml_document
 
 MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
@@ -263,13 +263,9 @@ def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
         raise _no_scene(word)
     path = data_root() / "scenes" / f"{word}.toml" if is_scene_id(word) else Path(word)
     try:
-        document = toml_document(path)
+        document = toml_document(path, "SCENE")
     except FileNotFoundError:
         raise _no_scene(word) from None
-    except OSError as error:
-        raise InputError("SCENE", word, "a readable file", f"{error.strerror}.") from None
-    except Refused as refusal:
-        raise InputError("SCENE", word, refusal.expected, refusal.advice) from None
     for assignment in assignments:
         _assign(document, assignment)
     return parse_scene(document)

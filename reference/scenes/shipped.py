@@ -9,6 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
+from ..system.documents import json_document
 from ..system.file_lock import Taken, locked
 from ..system.workspace import replace_file
 
@@ -44,11 +45,9 @@ def index() -> dict[str, dict[str, str]]:
     `seal` is that of its manifest, `options` are those of its command that say how it is made.
     """
     try:
-        text = (golden_root() / INDEX).read_text("utf-8")
+        return json_document(golden_root() / INDEX, INDEX)
     except FileNotFoundError:
         return {}
-    found: dict[str, dict[str, str]] = json.loads(text)
-    return found
 
 
 def seals() -> dict[str, str]:

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
+from ..system.documents import json_document
 from ..system.workspace import replace_file
 from .parquet import PYARROW, arrays, footer, parquet
 from .part import Part
@@ -70,13 +71,11 @@ class Store:
             InputError: there is none, or its plan is damaged.
         """
         try:
-            document = json.loads((folder / PLAN).read_text(encoding="utf-8"))
+            document = json_document(folder / PLAN, "--out")
             store = cls(folder, Request.of(document))
         except FileNotFoundError:
             raise InputError("--out", str(folder), f"a folder of a sweep, with {PLAN}") from None
-        except OSError as error:
-            raise InputError("--out", str(folder), f"a readable {PLAN}", f"{error.strerror}.") from None
-        except (ValueError, KeyError, TypeError, InputError):
+        except (ValueError, KeyError, TypeError, AttributeError, InputError):
             document, store = {}, None
         if store is None or store.request.hash != document.get("hash"):
             raise InputError("--out", str(folder), f"a {PLAN} as it was written", "It was changed: sweep anew.")

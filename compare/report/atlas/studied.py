@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from pydantic.dataclasses import dataclass
 
 from reference import InputError
 from reference.scenes.shipped import data_root, in_checkout
 from reference.status import Status
+from reference.system.documents import json_document
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ def kept_studies(folder: Path | None) -> dict[str, Kept]:
     least: dict[str, tuple[float, list[Fared]]] = {}
     for path in sorted(folder.glob("*.json")) if folder is not None else ():
         try:
-            document = json.loads(path.read_text("utf-8"))
+            document = json_document(path, "--studies")
             scene = document.get("scene")
             if scene is None:
                 for row in document["rows"]:
@@ -85,12 +86,18 @@ def kept_studies(folder: Path | None) -> dict[str, Kept]:
                     asked.setdefault(str(row["scene"]), {}).setdefault(one.method, one)
             elif document["t_end"] > least.get(scene, (0.0, []))[0]:
                 least[scene] = (float(document["t_end"]), _least(document["rows"]))
-        except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-            raise InputError("--studies", str(path), "a study as `foucault study` writes it", f"{error}.") from None
+        except InputError as error:
+            raise _no_study(path, error.advice) from None
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
+            raise _no_study(path, f"{error}.") from None
     return {
         name: Kept(tuple(asked.get(name, {}).values()), least.get(name, (0.0, ()))[1], least.get(name, (0.0, ()))[0])
         for name in {*asked, *least}
     }
+
+
+def _no_study(path: Path, reason: str) -> InputError:
+    return InputError("--studies", str(path), "a study as `foucault study` writes it", reason)
 
 
 def _asked(row: dict[str, Any]) -> Fared:

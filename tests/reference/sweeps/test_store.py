@@ -16,7 +16,6 @@ from reference.sweeps.driver import WorkerDied, work
 from reference.sweeps.sweep import asked_for, run
 
 pytest.importorskip("pyarrow")
-B3 = pytest.mark.xfail(strict=True, reason="plans are read without a bound")
 OVER = ["site.latitude=-90:90:2"]
 ROWS = 91
 
@@ -117,15 +116,15 @@ def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
         "[]",
         "{}",
         "\0",
-        pytest.param('{"scene": []}', marks=B3),
-        pytest.param('{"scene": ' * 100_000, marks=B3),
+        pytest.param('{"scene": []}'),
+        pytest.param('{"scene": ' * 100_000),
         f'{{"scene": {"9" * 5000}}}',
     ],
     ids=lambda text: f"{text[:12]!r}",
 )
 def test_a_plan_that_is_none_is_refused(text, tmp_path):
     (tmp_path / "plan.json").write_text(text)
-    with pytest.raises(InputError, match="as it was written|JSON"):
+    with pytest.raises(InputError, match="as it was written"):
         load_sweep(tmp_path)
 
 

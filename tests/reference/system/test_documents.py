@@ -1,16 +1,17 @@
-"""TOML files of strangers: whatever they hold is read or refused within a second and little memory."""
+"""TOML and JSON files of strangers: whatever they hold is read or refused within a second and little memory."""
 
 from __future__ import annotations
 
 import os
 import time
 import tracemalloc
+from pathlib import Path
 
 import pytest
 
 from reference.errors import InputError
 from reference.scenes.scene import load_scene
-from reference.scenes.toml_document import MAX_BYTES, MAX_DEPTH, toml_document
+from reference.system.documents import MAX_BYTES, MAX_DEPTH, json_document, json_lines, toml_document
 
 
 def filled(*pieces: str) -> str:
@@ -52,13 +53,13 @@ def test_the_worst_that_fits_is_refused_at_once(tmp_path, text, said):
 def test_a_key_as_deep_as_allowed_is_read(tmp_path):
     path = tmp_path / "deep.toml"
     path.write_text(".".join("a" * MAX_DEPTH) + f"=1\ntitle='{'1.2.' * 5}3 and {'.' * 200}'\n")
-    assert toml_document(path)["title"].endswith("...")
+    assert toml_document(path, "SCENE")["title"].endswith("...")
 
 
 def test_a_larger_file_is_refused_and_one_as_large_as_allowed_is_read(tmp_path):
     path = tmp_path / "large.toml"
     path.write_text(filled("", "# comment\n", "#"))
-    assert toml_document(path) == {}
+    assert toml_document(path, "SCENE") == {}
     path.write_text("#" * (MAX_BYTES + 1))
     with pytest.raises(InputError, match=f"at most {MAX_BYTES} bytes"):
         load_scene(path)
@@ -72,3 +73,42 @@ def test_only_regular_files_are_scenes(tmp_path):
     for path in (tmp_path, "a\0b", "\ud800", "x" * 5000):
         with pytest.raises(InputError, match="a readable file"):
             load_scene(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('{"a":' * 100_000, "nested too deeply"),
+        ("[" * 100_000, "nested too deeply"),
+        (f'{{"a": {"9" * 5000}}}', "at most 4300 digits"),
+        ("[]", "of keys and values"),
+        ("", "Expecting value"),
+        ('{"a": 1', "Expecting"),
+        ("\ufeff{}", "BOM"),
+        (b"\xff\xfe", "utf-8"),
+    ],
+    ids=lambda text: f"{text[:9]!r}",
+)
+def test_what_is_no_json_document_is_refused(tmp_path, text, said):
+    path = tmp_path / "mine.json"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(InputError, match=f"--out: got .*{said}") as caught:
+        json_document(path, "--out")
+    assert len(str(caught.value)) < 500
+    assert list(json_lines(path, "--out")) == []
+
+
+def test_only_regular_files_of_a_bounded_size_are_json(tmp_path, monkeypatch):
+    path = tmp_path / "mine.json"
+    path.write_text('{"a": [1]}\n[]\n{"b": \n{"c": 2}')
+    assert list(json_lines(path, "--out")) == [{"a": [1]}, {"c": 2}]
+    path.write_text('{"a": [1]}')
+    assert json_document(path, "--out") == {"a": [1]}
+    monkeypatch.setattr("reference.system.documents.MAX_JSON_BYTES", 9)
+    with pytest.raises(InputError, match="at most 9 bytes"):
+        json_document(path, "--out")
+    for name, said in (("/dev/zero", "regular file"), (tmp_path, "readable|regular file")):
+        with pytest.raises(InputError, match=said):
+            json_document(Path(name), "--out")
+    with pytest.raises(FileNotFoundError):
+        json_document(tmp_path / "none", "--out")

@@ -1,0 +1,111 @@
+"""Read TOML and JSON files that a stranger may have written: bounded in size and depth, and so in time and memory."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import re
+import stat
+import sys
+import tomllib
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, BinaryIO
+
+from ..errors import InputError
+
+MAX_BYTES = 1 << 16  # of a TOML file
+MAX_JSON_BYTES = 1 << 30  # the plan of a sweep may list millions of rows
+MAX_DEPTH = 32  # words of a dotted key; a scene has two. The parser's time and memory grow with the square
+_SAID = 200  # characters of the parser's message that are quoted
+
+_WORD = r"""(?:[\w-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')"""
+_DEEP_KEY = re.compile(rf"(?<![\w\\-]){_WORD}(?:[ \t]*\.[ \t]*{_WORD}){{{MAX_DEPTH}}}", re.ASCII)
+
+
+def open_at_once(path: Path) -> BinaryIO:
+    """Open a file for reading; a pipe is returned unblocked, so that a read tells whether anybody writes to it.
+
+    Raises:
+        OSError: it cannot be opened; also for a path that no file can have, such as one with a zero byte.
+    """
+    try:
+        return open(path, "rb", opener=_unblocked)
+    except ValueError as error:
+        raise OSError(errno.EINVAL, f"No file has this path, {error}") from None
+
+
+def _unblocked(path: str, flags: int) -> int:
+    return os.open(path, flags | os.O_NONBLOCK)
+
+
+def toml_document(path: Path, field: str) -> dict[str, Any]:
+    """Return the tables of a TOML file.
+
+    Args:
+        path: of the file.
+        field: what the user gave it for, to be named in messages.
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        InputError: it is no regular file, cannot be read, is larger than `MAX_BYTES`, or is no TOML.
+    """
+    data = _read(path, field, MAX_BYTES, "a TOML file")
+    try:
+        text = data.decode()
+        if _DEEP_KEY.search(text):
+            raise InputError(field, str(path), f"a TOML file with keys of at most {MAX_DEPTH} words")
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise InputError(field, str(path), "a TOML file", _reason(error)) from None
+
+
+def json_document(path: Path, field: str) -> dict[str, Any]:
+    """Return the dictionary of a JSON file; arguments and errors as of `toml_document`."""
+    data = _read(path, field, MAX_JSON_BYTES, "a JSON document")
+    try:
+        document = json.loads(data.decode())
+    except (ValueError, RecursionError) as error:
+        raise InputError(field, str(path), "a JSON document", _reason(error)) from None
+    if not isinstance(document, dict):
+        raise InputError(field, str(path), "a JSON document of keys and values")
+    return document
+
+
+def json_lines(path: Path, field: str) -> Iterator[dict[str, Any]]:
+    """Yield the dictionaries of a file of JSON lines; a line that is none, such as one cut short, is left out.
+
+    Arguments and errors are those of `toml_document`.
+    """
+    for line in _read(path, field, MAX_JSON_BYTES, "a file of JSON lines").splitlines():
+        document = None
+        with suppress(ValueError, RecursionError):
+            document = json.loads(line.decode())
+        if isinstance(document, dict):
+            yield document
+
+
+def _read(path: Path, field: str, most: int, expected: str) -> bytes:
+    try:
+        with open_at_once(path) as stream:
+            status = os.fstat(stream.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                raise InputError(field, str(path), "a regular file", "Pipes and devices are not read.")
+            if status.st_size > most:
+                raise InputError(field, str(path), f"{expected} of at most {most} bytes")
+            return stream.read()
+    except FileNotFoundError:
+        raise
+    except OSError as error:
+        raise InputError(field, str(path), "a readable file", f"{error.strerror}.") from None
+
+
+def _reason(error: Exception) -> str:
+    """Return what a parser found wrong, in a sentence."""
+    if isinstance(error, RecursionError):
+        return "Its lists or tables are nested too deeply."
+    if isinstance(error, UnicodeDecodeError | tomllib.TOMLDecodeError | json.JSONDecodeError):
+        return f"{str(error)[:_SAID]}."
+    return f"A whole number has at most {sys.get_int_max_str_digits()} digits."
