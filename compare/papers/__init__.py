@@ -61,7 +61,7 @@ def rows(report: Report | None = None) -> list[JudgedRow]:
 
 
 def build(out: Path, report: Report | None = None) -> list[JudgedRow]:
-    """Write `index.html`, `figure_N.svg`, `rows.csv` and `rows.json` into a folder, all of them or none.
+    """Write `index.html`, `figure_N.svg`, `rows.csv` and `rows.json` into a folder.
 
     Raises:
         InputError: matplotlib or numba is not installed, or the folder holds another page or cannot be written.

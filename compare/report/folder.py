@@ -1,20 +1,19 @@
-"""A report: a JSON document, and text, rows and a page made from it; its files are written all or none."""
+"""A report: a JSON document, and text, rows and a page made from it; each file is replaced whole."""
 
 from __future__ import annotations
 
 import csv
 import io
-import os
-import shutil
-from collections.abc import Callable, Iterable, Mapping
-from contextlib import suppress
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from reference import InputError
 from reference.errors import plain_json, plain_lines
-from reference.system.workspace import workspace
+from reference.system.workspace import replace_file
 
 from .page import MARK
 
@@ -52,16 +51,23 @@ class Report:
 
 
 def check_folder(folder: Path, names: Iterable[str]) -> None:
-    """Refuse a folder with one of these files but without a page of ours: somebody else's file would be replaced.
+    """Refuse a folder before the work; nothing is made.
 
     Raises:
-        InputError: there is such a file, or `folder` is not a folder.
+        InputError: it has one of these files but no page of ours, so that somebody else's would be replaced; it is no
+            folder, or cannot be written to.
     """
     existing = next((name for name in names if (folder / name).exists()), None)
     if (existing is not None and not _is_ours(folder / PAGE)) or (folder.exists() and not folder.is_dir()):
         reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
         expected = "a new folder, or one that an earlier run wrote"
         raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
+    with _writing(folder):
+        place = folder.absolute()
+        while not place.exists():
+            place = place.parent
+        with tempfile.TemporaryFile(dir=place):
+            pass
 
 
 def _is_ours(page: Path) -> bool:
@@ -72,11 +78,17 @@ def _is_ours(page: Path) -> bool:
         return False
 
 
-def write_files(folder: Path, texts: Mapping[str, str]) -> None:
-    """Write files into a folder, all or none; other files in it are left alone.
+@contextmanager
+def _writing(folder: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        advice = f"{error.strerror}."
+        raise InputError("--out", str(folder), "a folder that can be written to", advice) from None
 
-    All files are first written beside their targets and then renamed in order. After an error or an interruption the
-    old files are put back.
+
+def write_files(folder: Path, texts: Mapping[str, str]) -> None:
+    """Write files into a folder, each whole or not at all, the page first; other files in it are left alone.
 
     Args:
         folder: created if it does not exist.
@@ -86,47 +98,16 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
         InputError: the folder cannot be written to, or `check_folder` refuses it.
     """
     check_folder(folder, texts)
-    try:
+    with _writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-        with workspace(folder, "report") as work:
-            new, old = ({name: work / f"{name}.{word}" for name in texts} for word in ("new", "before"))
-            for name, content in texts.items():
-                _write(new[name], content)
-                if (folder / name).exists():
-                    shutil.copy2(folder / name, old[name])
-            _replace(folder, new, old)
-    except OSError as error:
-        advice = f"{error.strerror}."
-        raise InputError("--out", str(folder), "a folder that can be written to", advice) from None
+        for name in sorted(texts, key=lambda name: name != PAGE):  # a folder with a page of ours may be written again
+            _write(folder / name, texts[name])
 
 
-def _replace(folder: Path, new: Mapping[str, Path], old: Mapping[str, Path]) -> None:
-    """Rename the new files into the folder, in order; bring the old ones back if that ends in between."""
-    renamed: list[str] = []
-    try:
-        for name, path in new.items():
-            os.replace(path, folder / name)
-            renamed.append(name)
-    except BaseException:
-        for name in renamed:
-            _bring_back(old[name], folder / name)
-        raise
-
-
-def _write(path: Path, content: str) -> None:
+def _write(path: Path, text: str) -> None:
     # a name on the command line may hold bytes that are not UTF-8; JSON too reads the escapes
-    with path.open("w", encoding="utf-8", errors="backslashreplace", newline="") as stream:
-        stream.write(content)
-        stream.flush()
-        os.fsync(stream.fileno())
-
-
-def _bring_back(old: Path, target: Path) -> None:
-    with suppress(OSError):
-        if old.exists():
-            os.replace(old, target)
-        else:
-            target.unlink()
+    data = text.encode(errors="backslashreplace")
+    replace_file(path, lambda stream: stream.write(data))
 
 
 def csv_text(columns: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> str:

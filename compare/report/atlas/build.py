@@ -1,4 +1,4 @@
-"""Make the atlas of a folder of datasets: all pages are written, or none."""
+"""Make the atlas of a folder of datasets: an overview, and a page of each scene."""
 
 from __future__ import annotations
 

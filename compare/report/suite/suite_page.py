@@ -38,7 +38,7 @@ def check(out: Path) -> None:
 
 
 def write(outcomes: Sequence[Outcome], out: Path) -> Path:
-    """Write page, badge, JSON and CSV into a folder, all or none, and return the path of the page."""
+    """Write page, badge, JSON and CSV into a folder, and return the path of the page."""
     document = suite_document(outcomes)
     rows = [{key: row.get(key) for key in KEYS} for row in document["rows"]]
     texts = {CSV: csv_text(KEYS, rows), JSON: json_text(document), BADGE: badge(outcomes), PAGE: page_text(outcomes)}
