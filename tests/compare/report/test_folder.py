@@ -55,29 +55,6 @@ def test_a_folder_with_a_page_of_ours_may_be_written_again_whatever_was_added(tm
 
 @pytest.mark.parametrize("failing", [1, 2, 3])
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
-@pytest.mark.parametrize("before", [{}, {"index.html": OLD["index.html"]}, OLD])
-def test_what_ends_between_two_files_brings_the_old_ones_back(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failing: int, error: BaseException, before: dict[str, str]
-) -> None:
-    out = tmp_path / "page"
-    write_files(out, before)
-    renamed, calls = os.replace, 0
-
-    def fails_once(source: Path, target: Path) -> None:
-        nonlocal calls
-        calls += 1
-        if calls == failing:
-            raise error
-        renamed(source, target)
-
-    monkeypatch.setattr("os.replace", fails_once)
-    with pytest.raises(InputError if isinstance(error, OSError) else KeyboardInterrupt, match=r"No space left|^$"):
-        write_files(out, FILES)
-    assert contents(out) == before
-
-
-@pytest.mark.parametrize("failing", [1, 2, 3])
-@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
 @pytest.mark.parametrize("before", [{}, OLD])
 def test_what_ends_between_two_files_leaves_each_whole_and_the_next_run_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, failing: int, error: BaseException, before: dict[str, str]
