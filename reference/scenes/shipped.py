@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import json
-import time
 import tomllib
-from functools import partial
 from pathlib import Path
-from typing import BinaryIO
 
 from ..system.documents import json_document
-from ..system.file_lock import Taken, locked
 from ..system.workspace import replace_file
 
 INDEX = "index.json"
-POLL_S = 0.01
 PACKAGE = Path(__file__).resolve().parents[1]
 DATA_VERSION = "1.1"  # of what datasets hold, apart from the code's: docs/format.md says when it is raised
 
@@ -57,22 +52,15 @@ def seals() -> dict[str, str]:
 
 def keep_seal(name: str, seal: str, options: str) -> None:
     """Write the seal of a dataset that ships into `golden/index.json`, whole or not at all, one process at a time."""
+    from filelock import FileLock
+
     path = golden_root() / INDEX
     lock = path.with_suffix(".lock")
-    while True:
-        try:
-            with locked(lock):
-                every = index() | {name: {"seal": seal, "options": options}}
-                data = (json.dumps(dict(sorted(every.items())), indent=1) + "\n").encode()
-                replace_file(path, partial(_write, data))
-                lock.unlink(missing_ok=True)
-                return
-        except Taken:
-            time.sleep(POLL_S)
-
-
-def _write(data: bytes, stream: BinaryIO) -> None:
-    stream.write(data)
+    with FileLock(lock):
+        every = index() | {name: {"seal": seal, "options": options}}
+        data = (json.dumps(dict(sorted(every.items())), indent=1) + "\n").encode()
+        replace_file(path, lambda stream: stream.write(data))
+        lock.unlink()
 
 
 def flag_meanings() -> dict[str, str]:

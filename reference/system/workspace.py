@@ -1,7 +1,7 @@
 """A hidden folder beside what is written: filled there, renamed from there, and cleared away after a killed process.
 
 A folder in use is locked by a file in it: a process number would say nothing where they repeat, in containers, or where
-several machines share a disk.
+several machines share a disk. On a disk without locks none is cleared away.
 """
 
 from __future__ import annotations
@@ -9,17 +9,13 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
-from .file_lock import Taken, locked
-
 OLD = "old"  # what stood in the place of the target, while it is moved out of the way
 _LOCK = "lock"
-_FORGOTTEN_S = 86_400.0  # where there are no locks, a folder that was not touched for so long is in nobody's use
 
 
 @contextmanager
@@ -32,16 +28,23 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
     Raises:
         OSError: `parent` cannot be written.
     """
+    from filelock import FileLock, Timeout  # here, as its import takes longer than the rest of a short command
+
     _clear(parent, name)
     while True:
         folder = Path(tempfile.mkdtemp(prefix=_prefix(name), dir=parent))
+        lock = FileLock(folder / _LOCK, blocking=False)
         try:
-            with locked(folder / _LOCK):
-                yield folder
-                return
-        except Taken:  # another process took it for left behind before it was locked
+            lock.acquire()
+        except (Timeout, FileNotFoundError):  # another process took it for left behind
             continue
+        except (OSError, NotImplementedError):  # this disk has no locks
+            pass
+        try:
+            yield folder
+            return
         finally:
+            lock.release()
             _remove(folder, parent / name)
 
 
@@ -66,11 +69,11 @@ def _prefix(name: str) -> str:
 
 def _clear(parent: Path, name: str) -> None:
     """Remove the folders that no living process holds."""
-    with suppress(FileNotFoundError):
-        for path in [path for path in parent.iterdir() if path.name.startswith(_prefix(name))]:
-            with suppress(OSError, Taken), locked(path / _LOCK) as known:
-                if known or time.time() - path.stat().st_mtime > _FORGOTTEN_S:
-                    _remove(path, parent / name)
+    from filelock import FileLock
+
+    for path in [path for path in parent.iterdir() if path.name.startswith(_prefix(name))]:
+        with suppress(OSError, NotImplementedError), FileLock(path / _LOCK, blocking=False):
+            _remove(path, parent / name)
 
 
 def _remove(folder: Path, target: Path) -> None:
