@@ -25,6 +25,8 @@ DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs
 DENSE_FORMAT = b"dense 4"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 
+_here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep
+
 Report = Callable[[float], None]
 
 
@@ -58,7 +60,7 @@ def golden_of(
             return golden
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
     name = f"{scene.id}-{_hash_of_problem(problem)}"
-    path = cache.entry("golden", name)
+    path = _here.get(name) or cache.entry("golden", name)
     if path is not None:
         with suppress(DatasetError, InputError, OSError):
             golden = _loaded(path)
@@ -103,11 +105,7 @@ def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, rep
     solution = solve(scene, report=report)
     path = cache.store("golden", name, lambda path: write(solution, path))
     if path is None:
-        got, advice = (
-            f"no place in {cache.root()} or a temporary folder",
-            "Set FOUCAULT_CACHE to a folder on another disk.",
-        )
-        raise InputError("FOUCAULT_CACHE", got, "room for a golden dataset", advice)
+        path = _here[name] = write(solution, cache.temporary() / name)
     return path
 
 

@@ -16,7 +16,7 @@ from string import Template
 from types import ModuleType
 from typing import Any
 
-from reference.system.cache import entry, store
+from reference.system.cache import discard, entry, store
 from reference.system.workspace import replace_file
 
 from .straight_line import FUNCTIONS, Program
@@ -59,8 +59,7 @@ def unpacked(letter: str, array: str, count: int) -> str:
 def compiled(body: str) -> ModuleType:
     """Return the module of a source whose functions numba compiles; decorators write `**OPTIONS`.
 
-    Machine code is read from the cache if it belongs to the very same text; if that cannot be written, it stays in
-    memory.
+    Machine code is read from the cache if it belongs to the very same text; if that cannot be used, it stays in memory.
     """
     on_disk = HEADER.replace("CACHE", "True") + body
     path = _stored(on_disk.encode())
@@ -70,13 +69,15 @@ def compiled(body: str) -> ModuleType:
 
 
 def _stored(text: bytes) -> Path | None:
-    """Return the cached file of a text, written if need be; None if it can be kept nowhere."""
+    """Return the cached file of a text, written if need be; None if the cache cannot be used."""
     name = f"f{hashlib.sha256(text).hexdigest()[:32]}.py"
-    path = entry("generated", name, executed=True)
-    with suppress(OSError):
-        if path is not None and path.read_bytes() == text:  # rewriting it would make numba compile again
-            return path
-    return store("generated", name, lambda path: replace_file(path, lambda stream: stream.write(text)), executed=True)
+    path = entry("generated", name)
+    if path is not None:
+        with suppress(OSError):
+            if path.read_bytes() == text:  # rewriting it would make numba compile again
+                return path
+        discard(path)
+    return store("generated", name, lambda path: replace_file(path, lambda stream: stream.write(text)))
 
 
 def _in_memory(text: str) -> ModuleType:

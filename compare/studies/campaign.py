@@ -111,7 +111,7 @@ def campaign(
     for item in items:
         if item not in results:
             groups.setdefault(item[:-1], []).append(item)
-    cache.prepare()
+    cache.check()
     for group in groups.values():
         with closing(_isolated(measure, arguments, group, patience_s, failed)) as answers:
             for item in group:

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from reference import IntegrationError
-from reference.system.cache import entry, store
+from reference.system.cache import entry, store, temporary
 from reference.system.workspace import workspace
 
 from ...candidates.external import run_program
@@ -65,7 +65,7 @@ def prepared(
         link: its files to link with.
 
     Raises:
-        IntegrationError: it cannot be compiled, or kept anywhere; the compiler's words.
+        IntegrationError: it cannot be compiled; the compiler's words.
     """
     program = _compiled(source(problem, parts), library, defines, link)
     start = [tolerance, float(len(problem.times)), *problem.sizes, *problem.start]
@@ -142,7 +142,9 @@ def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequenc
                 raise IntegrationError(f"a program for {library.name} does not compile here: {first}")
             made.replace(path)
 
-    path = entry("native", name, executed=True) or store("native", name, put, executed=True)
+    path = entry("native", name) or store("native", name, put)
     if path is None:
-        raise IntegrationError("a compiled program can be kept nowhere; FOUCAULT_CACHE names a folder")
+        path = temporary() / name
+        if not path.exists():
+            put(path)
     return path
