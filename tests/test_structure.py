@@ -157,7 +157,7 @@ PUBLIC = {
     "reference.sweeps.sweep": "asked_for opened run",
     "reference.sweeps.values": "TEXTS",
     "reference.system": "cache",
-    "reference.system.cache": "arrays entry store",
+    "reference.system.cache": "arrays discard entry store temporary",
     "reference.system.capture": "captured",
     "reference.system.documents": "json_document json_lines open_at_once",
     "reference.system.imports": "Registry lazy missing switched_off",

@@ -20,7 +20,7 @@ RUN = {"t_end": "20", "grid_step": "5", "digits": 22}
 @pytest.fixture(autouse=True)
 def own_cache(tmp_path, monkeypatch):
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path / "cache"))
-    monkeypatch.setenv("FOUCAULT_SPARE_CACHE", "")
+    monkeypatch.setenv("FOUCAULT_CACHE_SAID", "")
     return tmp_path / "cache"
 
 
