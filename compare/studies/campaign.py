@@ -9,11 +9,12 @@ import hashlib
 import json
 import os
 import threading
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing, suppress
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from pydantic import TypeAdapter
 
@@ -22,7 +23,7 @@ from reference.errors import finite
 from reference.status import Status
 from reference.system import cache
 from reference.system.documents import json_lines
-from reference.system.process import Worker, alarm
+from reference.system.process import Emit, Worker, alarm
 
 from ..methods import METHODS, available
 from .machine import load_per_core, machine, single_thread
@@ -69,16 +70,38 @@ def check_usable(methods: Sequence[str] | None) -> None:
         raise InputError("methods", ", ".join(reasons), "a method that can run here", f"{why}.")
 
 
+@dataclass(frozen=True)
+class Measurement(ABC, Generic[Item, Result]):
+    """What a campaign measures; it is pickled into the child processes.
+
+    Attributes:
+        recipe: what else than the items decides the results, to be written as JSON; together with machine and versions
+            of libraries it must be equal for a stored result to be used again.
+        patience_s: wall-clock seconds for one item, on a machine with a core for it; then its process is killed.
+        kind: class of the results.
+    """
+
+    recipe: Any
+    patience_s: float
+    kind: ClassVar[type[Any]]
+
+    def recipe_of(self, item: Item) -> tuple[Any, ...]:
+        """Return what else decides the result of one item, beside the item itself."""
+        return ()
+
+    @abstractmethod
+    def measure(self, item: Item) -> Result:
+        """Return the result of an item, in a child process."""
+
+    @abstractmethod
+    def failed(self, item: Item, status: Status, reason: str) -> Result:
+        """Return the result of an item that was lost, from the status OUT_OF_TIME or CRASHED and the reason."""
+
+
 def campaign(
-    measure: Callable[..., None],
-    arguments: tuple[Any, ...],
+    measurement: Measurement[Item, Result],
     items: Sequence[Item],
     *,
-    kind: type[Result],
-    failed: Callable[[Item, Status, str], Result],
-    patience_s: float,
-    recipe: Any,
-    recipe_of: Callable[[Item], Any] | None = None,
     journal_path: Path | None = None,
     report: Counted | None = None,
 ) -> list[Result]:
@@ -87,25 +110,17 @@ def campaign(
     Items that differ in nothing but their last part share a process, one after the other.
 
     Args:
-        measure: called in a child process as `measure(emit, *arguments, items)`; it emits one result for each item, in
-            order. At the top level of a module, so that it can be pickled.
-        arguments: anything that can be pickled.
+        measurement: of each item.
         items: tuples of words and numbers, the first of which is shown as what runs now.
-        kind: class of the results.
-        failed: makes the result of an item that was lost, from the status OUT_OF_TIME or CRASHED and the reason.
-        patience_s: wall-clock seconds for one item, on a machine with a core for it; then its process is killed.
-        recipe: what else decides the results, to be written as JSON; together with machine and versions of libraries it
-            must be equal for a stored result to be used again.
-        recipe_of: what else decides the result of one item, beside the item itself.
         journal_path: a file of JSON lines to which results are appended; None if nothing is to be stored.
         report: called before each measurement with the number of finished items, of all items, and what runs now.
 
     Raises:
         InputError: the journal cannot be written.
     """
-    common = [JUDGED, recipe, machine()]
-    marks = {item: _mark(common if recipe_of is None else [*common, recipe_of(item)]) for item in items}
-    stored = dict(_stored(journal_path, kind))
+    common = [JUDGED, measurement.recipe, machine()]
+    marks = {item: _mark([*common, *measurement.recipe_of(item)]) for item in items}
+    stored = dict(_stored(journal_path, measurement.kind))
     results = {item: stored[mark, item] for item, mark in marks.items() if (mark, item) in stored}
     groups: dict[tuple[Any, ...], list[Item]] = {}
     for item in items:
@@ -113,7 +128,7 @@ def campaign(
             groups.setdefault(item[:-1], []).append(item)
     cache.check()
     for group in groups.values():
-        with closing(_isolated(measure, arguments, group, patience_s, failed)) as answers:
+        with closing(_isolated(measurement, group)) as answers:
             for item in group:
                 if report is not None:
                     report(len(results), len(items), str(item[0]))
@@ -122,11 +137,17 @@ def campaign(
     return [results[item] for item in items]
 
 
+def measured(emit: Emit, measurement: Measurement[Item, Result], items: Sequence[Item]) -> None:
+    """Measure items one after the other, in a child process, and send each result."""
+    for item in items:
+        emit(measurement.measure(item))
+
+
 def _mark(recipe: Any) -> str:
     return hashlib.sha256(json.dumps(recipe, sort_keys=True).encode()).hexdigest()[:16]
 
 
-def _stored(path: Path | None, kind: type[Result]) -> Iterator[tuple[tuple[str, tuple[Any, ...]], Result]]:
+def _stored(path: Path | None, kind: type[Any]) -> Iterator[tuple[tuple[str, tuple[Any, ...]], Any]]:
     """Yield marks with items, and results, in order; a line that is no result of this kind is skipped."""
     if path is None or not path.exists():
         return
@@ -153,26 +174,19 @@ def _store(path: Path | None, record: dict[str, Any]) -> None:
         raise InputError("--out", str(path), "a folder that can be written to", f"{error.strerror}.") from None
 
 
-def _isolated(
-    measure: Callable[..., None],
-    arguments: tuple[Any, ...],
-    items: Sequence[Item],
-    patience_s: float,
-    failed: Callable[[Item, Status, str], Result],
-) -> Generator[Result, None, None]:
+def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> Generator[Result, None, None]:
     """Yield the result of each item; after a hang or a crash a new process goes on with the next one."""
     remaining = list(items)
     while remaining:
         with single_thread():
-            worker = Worker(measure, *arguments, remaining)
+            worker = Worker(measured, measurement, remaining)
         timed_out = threading.Event()
         answers = iter(worker)
-        starting_s, waited_s = STARTING_S, patience_s
+        starting_s, waited_s = STARTING_S, measurement.patience_s
         try:
             while remaining:
-                waited_s = patience_s * max(
-                    1.0, load_per_core() or 1.0
-                )  # where processes share a core, all take longer
+                # where processes share a core, all take longer
+                waited_s = measurement.patience_s * max(1.0, load_per_core() or 1.0)
                 with alarm(waited_s + starting_s, _end, worker, timed_out):
                     result = next(answers)
                 starting_s = 0.0
@@ -180,9 +194,9 @@ def _isolated(
                 remaining.pop(0)
         except (IntegrationError, StopIteration) as error:
             if timed_out.is_set():
-                yield failed(remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {waited_s:.3g} s")
+                yield measurement.failed(remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {waited_s:.3g} s")
             else:
-                yield failed(remaining.pop(0), Status.CRASHED, f"its process ended: {error}")
+                yield measurement.failed(remaining.pop(0), Status.CRASHED, f"its process ended: {error}")
         finally:
             worker.kill()
             worker.stop()

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -16,12 +16,11 @@ import numpy as np
 
 from reference import Scene, load, load_scene, parse_scene
 from reference.status import Status
-from reference.system.process import Emit
 
 from ..methods import METHODS, Problem, available
 from ..observed.power_law import power_of_time
 from ..truth import golden_of
-from .campaign import Counted, campaign
+from .campaign import Counted, Measurement, campaign
 from .failure import FAILURES, failure
 from .measure import timed
 from .method_errors import GridTruth
@@ -103,39 +102,44 @@ def long_runs(
     golden = golden_of(
         scene, TRUTH_DIGITS, report=solving and (lambda t: solving(t / DAY_S, days)), level=TRUTH_LEVEL, grid=True
     )
-    return campaign(
-        errors_over_time,
-        (scene.model_dump(exclude_none=True), golden.path),
-        items,
-        kind=LongRun,
-        failed=lambda item, status, reason: LongRun(*item, status, reason),
-        patience_s=PATIENCE_S,
-        recipe=[scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256],
-        journal_path=journal_path,
-        report=report,
-    )
+    recipe = [scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256]
+    runs = _Runs(recipe, PATIENCE_S, scene.model_dump(exclude_none=True), golden.path)
+    return campaign(runs, items, journal_path=journal_path, report=report)
 
 
-def errors_over_time(emit: Emit, document: dict[str, Any], folder: Path, items: list[Item]) -> None:
-    """Run methods over the whole span, in a child process, and send each one's error at the grid times."""
-    scene = parse_scene(document)
-    truth = GridTruth(load(folder), float(scene.exact.t_end))
-    bound_m = float(truth.golden.manifest.bounds.position_m)
-    for name, formulation, setting in items:
-        run = partial(LongRun, name, formulation, setting)
-        method = METHODS[name]
+@dataclass(frozen=True)
+class _Runs(Measurement[Item, LongRun]):
+    """Runs of methods over the whole span, with their errors at the grid times."""
+
+    document: dict[str, Any]
+    golden: Path
+
+    kind = LongRun
+
+    @cached_property
+    def _scene(self) -> Scene:
+        return parse_scene(self.document)
+
+    @cached_property
+    def _truth(self) -> GridTruth:
+        return GridTruth(load(self.golden), float(self._scene.exact.t_end))
+
+    def measure(self, item: Item) -> LongRun:
+        name, formulation, setting = item
+        run, method, truth = partial(LongRun, *item), METHODS[name], self._truth
         missing = available(method)
         if missing is not None:
-            emit(run(Status.NOT_INSTALLED, missing))
-            continue
+            return run(Status.NOT_INSTALLED, missing)
         try:
-            outcome, cpu_s = timed(method.prepare(Problem.of(scene, formulation, truth.times), setting))
+            outcome, cpu_s = timed(method.prepare(Problem.of(self._scene, formulation, truth.times), setting))
         except FAILURES as error:
-            emit(run(*failure(error)))
-            continue
+            return run(*failure(error))
         errors = truth.position_errors(outcome)
-        t = truth.times[: len(errors)]
-        emit(run(outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m))
+        t, bound_m = truth.times[: len(errors)], float(truth.golden.manifest.bounds.position_m)
+        return run(outcome.status, outcome.reason, t.tolist(), errors.tolist(), cpu_s, bound_m)
+
+    def failed(self, item: Item, status: Status, reason: str) -> LongRun:
+        return LongRun(*item, status, reason)
 
 
 def laws(rows: Sequence[LongRun]) -> Iterator[str]:

@@ -12,19 +12,17 @@ import math
 import os
 import statistics
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from reference import Scene, load, parse_scene
+from reference import Scene
 from reference.numbers.precision import Array
 from reference.status import Status
-from reference.system.process import Emit
 
-from ..methods import METHODS, Method, Outcome, Problem, Work, available, external, suited
+from ..methods import Method, Outcome, Problem, Work, available
+from ..rhs.swing import suited
 from .failure import FAILURES, failure
 from .machine import load_per_core
 from .method_errors import GridTruth, h_drift
@@ -188,22 +186,3 @@ def timed(work: Work) -> tuple[Outcome, float]:
     outcome = work()
     spent = time.process_time() - started
     return outcome, spent if outcome.cpu_s is None else outcome.cpu_s
-
-
-def ladder(
-    emit: Emit,
-    scene: dict[str, Any],
-    golden: Path,
-    t_end: float,
-    limit_s: float,
-    programs: Mapping[str, str],
-    items: list[Any],
-) -> None:
-    """Measure (method, formulation, setting) one after the other, in a child process, and send each row.
-
-    A method is a declared one, or the program of that name: `programs` holds their commands.
-    """
-    bench = Bench(parse_scene(scene), GridTruth(load(golden), t_end), limit_s)
-    for name, formulation, setting in items:
-        method = external(programs[name], name=name) if name in programs else METHODS[name]
-        emit(bench.row(method, formulation, setting))

@@ -21,12 +21,11 @@ from reference import Golden, Scene, UnreachableError, load, load_scene, parse_s
 from reference.model.constants import constants_in_double
 from reference.numbers.columns import STATE
 from reference.status import Status
-from reference.system.process import Emit
 
 from ..methods import METHODS
 from ..truth import golden_of
 from . import users_program
-from .campaign import Counted, campaign, declared
+from .campaign import Counted, Measurement, campaign, declared
 from .character import Character, character
 from .grid import on_doubles
 from .measure import Bench
@@ -135,20 +134,11 @@ def stability(
     items: list[Item] = [(*run, name) for run in runs for name in cuts]
     solved = [item for item in items if item[-1] in problems]
     orders = {name: method.order for name, method in METHODS.items() if method.setting == "step"}
-    cells = campaign(
-        cells_of,
-        (problems, limit_s, commands),
-        solved,
-        kind=Cell,
-        failed=_failed,
-        patience_s=PATIENCE * limit_s,
-        recipe=[limit_s, SWINGS, orders],  # orders decide the digits asked for
-        recipe_of=lambda item: commands.get(item[0]),
-        journal_path=journal_path,
-        report=report,
-    )
-    finished = dict(zip(solved, cells, strict=True))
-    return [finished.get(item) or _failed(item, Status.UNREACHABLE, unsolved[item[-1]]) for item in items]
+    recipe = [limit_s, SWINGS, orders]  # orders decide the digits asked for
+    cells = _Cells(recipe, PATIENCE * limit_s, problems, limit_s, commands)
+    measured = campaign(cells, solved, journal_path=journal_path, report=report)
+    finished = dict(zip(solved, measured, strict=True))
+    return [finished.get(item) or cells.failed(item, Status.UNREACHABLE, unsolved[item[-1]]) for item in items]
 
 
 def _traits(scene: Scene, golden: Golden) -> Character:
@@ -162,36 +152,46 @@ def _moved(solving: Callable[[float, int], None], solved: int, scenes: int, t_en
     solving(solved + t / t_end, scenes)
 
 
-def _failed(item: Item, status: Status, reason: str) -> Cell:
-    method, formulation, setting, scene = item
-    kind = METHODS[method].setting if method in METHODS else "step"
-    used = None if kind == "step" else setting  # a step depends on the scene's rates
-    asked, precision = digits_asked(method, setting), _precision(method, formulation)
-    return Cell(scene, method, precision, status, None, asked, None, reason, setting=used, kind=kind)
-
-
 def _precision(method: str, formulation: str | None) -> str:
     if method not in METHODS:
         return users_program.NUMBER
     return METHODS[method].number + (f", {formulation}" if formulation else "")
 
 
-def cells_of(emit: Emit, problems: Problems, limit_s: float, programs: dict[str, str], items: list[Item]) -> None:
-    """Run methods and programs on scenes, in a child process, and send each cell."""
-    for item in items:
+@dataclass(frozen=True)
+class _Cells(Measurement[Item, Cell]):
+    """Methods and programs on scenes."""
+
+    problems: Problems
+    limit_s: float
+    commands: Mapping[str, str]
+
+    kind = Cell
+
+    def recipe_of(self, item: Item) -> tuple[Any, ...]:
+        return (self.commands.get(item[0]),)
+
+    def measure(self, item: Item) -> Cell:
         name, formulation, setting, scene_id = item
-        document, folder, traits = problems[scene_id]
+        document, folder, traits = self.problems[scene_id]
         scene, golden = parse_scene(document), load(folder)
-        truth = GridTruth(golden, float(scene.exact.t_end))
+        length = float(scene.exact.length)
         step = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
-        if name in programs:
-            run = users_program.measured(name, programs[name], step, scene, golden, limit_s)
-            emit(_of_program(item, run, traits, float(scene.exact.length), limit_s))
-            continue
+        if name in self.commands:
+            run = users_program.measured(name, self.commands[name], step, scene, golden, self.limit_s)
+            return _of_program(item, run, traits, length, self.limit_s)
         method = METHODS[name]
         used = step if method.setting == "step" else setting
-        row = Bench(scene, truth, limit_s, repeats=1, transits=False).row(method, formulation, used)
-        emit(_judged(item, row, traits, float(scene.exact.length), limit_s))
+        truth = GridTruth(golden, float(scene.exact.t_end))
+        row = Bench(scene, truth, self.limit_s, repeats=1, transits=False).row(method, formulation, used)
+        return _judged(item, row, traits, length, self.limit_s)
+
+    def failed(self, item: Item, status: Status, reason: str) -> Cell:
+        method, formulation, setting, scene = item
+        kind = METHODS[method].setting if method in METHODS else "step"
+        used = None if kind == "step" else setting  # a step depends on the scene's rates
+        asked, precision = digits_asked(method, setting), _precision(method, formulation)
+        return Cell(scene, method, precision, status, None, asked, None, reason, setting=used, kind=kind)
 
 
 def _judged(item: Item, row: Row, traits: Character, length: float, limit_s: float) -> Cell:

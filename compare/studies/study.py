@@ -9,19 +9,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from reference import Golden, Scene, load_scene
+from reference import Golden, Scene, load, load_scene, parse_scene
 from reference.status import Status
 
 from ..candidates.candidate import Candidate
-from ..methods import METHODS, suited
+from ..methods import METHODS, external
+from ..rhs.swing import suited
 from ..truth import Report, golden_of
-from .campaign import Counted, campaign, check_usable
+from .campaign import Counted, Measurement, campaign, check_usable
 from .grid import on_doubles
 from .machine import machine
-from .measure import ladder
+from .measure import Bench
+from .method_errors import GridTruth
 from .observed_order import orders
 from .row import Row
 from .users_program import file_row
@@ -108,6 +111,35 @@ def plan(scene: Scene, methods: Sequence[str] | None = None, formulations: bool 
     return list(dict.fromkeys(items))
 
 
+@dataclass(frozen=True)
+class _Runs(Measurement[Item, Row]):
+    """Runs of methods and of programs on a scene, with their costs and errors."""
+
+    document: dict[str, Any]
+    golden: Path
+    limit_s: float
+    commands: Mapping[str, str]
+
+    kind = Row
+
+    @cached_property
+    def _bench(self) -> Bench:
+        scene = parse_scene(self.document)
+        return Bench(scene, GridTruth(load(self.golden), float(scene.exact.t_end)), self.limit_s)
+
+    def recipe_of(self, item: Item) -> tuple[Any, ...]:
+        return (self.commands.get(item[0]),)
+
+    def measure(self, item: Item) -> Row:
+        name, formulation, setting = item
+        method = external(self.commands[name], name=name) if name in self.commands else METHODS[name]
+        return self._bench.row(method, formulation, setting)
+
+    def failed(self, item: Item, status: Status, reason: str) -> Row:
+        kind = "step" if item[0] in self.commands else METHODS[item[0]].setting
+        return Row(*item, kind, self.document["inputs"], status, reason)
+
+
 def study(
     scene: Scene | str,
     methods: Sequence[str] | None = None,
@@ -151,23 +183,15 @@ def study(
     problem = on_doubles(asked.with_values(["inputs=binary64", *span]))
     golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)
     commands = programs or {}
-
-    def failed(item: Item, status: Status, reason: str) -> Row:
-        kind = "step" if item[0] in commands else METHODS[item[0]].setting
-        return Row(*item, kind, problem.inputs, status, reason)
-
-    rows = campaign(
-        ladder,
-        (problem.model_dump(exclude_none=True), golden.path, float(problem.exact.t_end), limit_s, commands),
-        list(items or plan(asked, methods, formulations)),
-        kind=Row,
-        failed=failed,
-        patience_s=PATIENCE * limit_s,
-        recipe=[problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s],
-        recipe_of=lambda item: commands.get(item[0]),
-        journal_path=journal_path,
-        report=report,
+    runs = _Runs(
+        [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s],
+        PATIENCE * limit_s,
+        problem.model_dump(exclude_none=True),
+        golden.path,
+        limit_s,
+        commands,
     )
+    rows = campaign(runs, list(items or plan(asked, methods, formulations)), journal_path=journal_path, report=report)
     files = [file_row(name, *file, problem, golden) for name, file in (candidates or {}).items()]
     names = tuple(candidates or ())
     return Study(problem, float(problem.exact.t_end), limit_s, golden, [*rows, *files], machine(), commands, names)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import signal
 from dataclasses import dataclass
+from typing import Any
 
+from compare.studies.campaign import Measurement
 from compare.studies.row import Record
 from reference.status import Status
-from reference.system.process import Emit
 
 
 @dataclass(frozen=True)
@@ -21,11 +22,23 @@ class Answer(Record):
     threads: str = ""
 
 
-def answers(emit: Emit, offset: int, items: list[tuple[str, str]]) -> None:
-    """Send a word back for each item; `hangs` hangs, and `dies` ends the process."""
-    for _, word in items:
+@dataclass(frozen=True)
+class Answers(Measurement[tuple[str, str], Answer]):
+    """A word that is sent back for each item; `hangs` hangs, and `dies` ends the process."""
+
+    recipe: Any = "one"
+    patience_s: float = 2.0
+    offset: int = 7
+
+    kind = Answer
+
+    def measure(self, item: tuple[str, str]) -> Answer:
+        word = item[-1]
         if word == "hangs":
             signal.pause()
         if word == "dies":
             os._exit(3)
-        emit(Answer(f"{word} {offset}", process=os.getpid(), threads=os.environ["OMP_NUM_THREADS"]))
+        return Answer(f"{word} {self.offset}", process=os.getpid(), threads=os.environ["OMP_NUM_THREADS"])
+
+    def failed(self, item: tuple[str, str], status: Status, reason: str) -> Answer:
+        return Answer(f"{item[-1]}: {reason}", status)

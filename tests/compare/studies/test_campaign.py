@@ -8,21 +8,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from answering import Answer, answers
+from answering import Answer, Answers
 
 import compare.studies.campaign as module
-from compare.studies.campaign import campaign, declared
+from compare.studies.campaign import Counted, campaign, declared
 from reference import InputError
-from reference.status import Status
 
 
-def failed(item: tuple[str, str], status: Status, reason: str) -> Answer:
-    return Answer(f"{item[-1]}: {reason}", status)
-
-
-def run(items: list[tuple[str, str]], **keywords: Any) -> list[Answer]:
-    keywords = {"patience_s": 2.0, "recipe": "one"} | keywords
-    return campaign(answers, (7,), items, kind=Answer, failed=failed, **keywords)
+def run(
+    items: list[tuple[str, str]], journal_path: Path | None = None, report: Counted | None = None, **fields: Any
+) -> list[Answer]:
+    return campaign(Answers(**fields), items, journal_path=journal_path, report=report)
 
 
 def test_an_item_that_hangs_or_dies_is_named_and_the_others_are_done(monkeypatch: pytest.MonkeyPatch) -> None:
