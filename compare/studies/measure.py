@@ -21,8 +21,7 @@ from reference import Scene
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..methods import Method, Outcome, Problem, Work, available
-from ..rhs.swing import suited
+from ..methods import Method, Outcome, Problem, Work, available, suited
 from .failure import FAILURES, failure
 from .machine import load_per_core
 from .method_errors import GridTruth, h_drift

@@ -17,8 +17,7 @@ from reference import Golden, Scene, load, load_scene, parse_scene
 from reference.status import Status
 
 from ..candidates.candidate import Candidate
-from ..methods import METHODS, external
-from ..rhs.swing import suited
+from ..methods import METHODS, external, suited
 from ..truth import Report, golden_of
 from .campaign import Counted, Measurement, campaign, check_usable
 from .grid import on_doubles

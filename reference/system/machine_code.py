@@ -35,7 +35,7 @@ def folder_of(sources: Iterable[Path]) -> Path | None:
         return Path(chosen, name)
     if os.access(HERE, os.W_OK):
         return HERE / "__pycache__" / name
-    return store("machine_code", name, lambda path: path.mkdir(exist_ok=True), executed=True)
+    return store("machine_code", name, lambda path: path.mkdir(exist_ok=True))
 
 
 def is_kept(name: str, folder: Path | str | None) -> bool:
