@@ -8,7 +8,8 @@ from itertools import islice
 
 from .scored import Score
 
-MERE = ("decimals", "digits", "single_precision", "z_constant", "off_the_sphere")  # nothing to put right
+# nothing to put right
+HARMLESS_CONVENTIONS = ("decimals", "digits", "single_precision", "z_constant", "off_the_sphere")
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
 
 
@@ -77,7 +78,7 @@ def explanation_lines(score: Score) -> Iterator[str]:
         yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
     if found.slip:
         yield found.slip
-    if found.causes or any(one.id not in MERE for one in found.conventions):
+    if found.causes or any(one.id not in HARMLESS_CONVENTIONS for one in found.conventions):
         yield f"With {'this' if len(found.causes) == 1 else 'all this'} put right, {found.corrected_m:.2g} m are left."
     elif not found.slip:
         yield "No mistake known to foucault explains the error."

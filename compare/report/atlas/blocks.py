@@ -11,7 +11,7 @@ from reference.status import Status
 
 from ..page import Column, Html, TableRow, facts, table, text
 from .entry import Entry
-from .studied import Fared, Kept
+from .studied import MethodResult, StudyResults
 
 THEOREMS = {"radius": "by one radius, Theorem C", "columns": "by six columns, Theorem E"}  # of the proof's THEOREM.md
 
@@ -99,7 +99,7 @@ def inputs(golden: Golden) -> Html:
     return facts(fields)
 
 
-def methods(kept: Kept) -> list[Html]:
+def methods(kept: StudyResults) -> list[Html]:
     """Return tables of how methods fared, as far as studies are kept: none, one or two."""
     parts = []
     if kept.asked:
@@ -117,7 +117,7 @@ def methods(kept: Kept) -> list[Html]:
     return parts
 
 
-def _kind(one: Fared) -> str:
+def _kind(one: MethodResult) -> str:
     return "" if one.status is Status.OK else "failed"
 
 
@@ -125,5 +125,5 @@ def _one(digits: float | None) -> str:
     return "" if digits is None else f"{max(digits, 0.0):.1f}"
 
 
-def _cpu(one: Fared) -> str:
+def _cpu(one: MethodResult) -> str:
     return "" if one.cpu_s is None else f"{one.cpu_s:.2g}"

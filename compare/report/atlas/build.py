@@ -11,7 +11,7 @@ from ..folder import PAGE, check_folder, write_files
 from ..motion import Motion
 from .entry import entries
 from .pages import index_page, scene_page
-from .studied import Kept, kept_studies
+from .studied import StudyResults, kept_studies
 
 
 def build(
@@ -42,7 +42,7 @@ def build(
         report(count, len(scenes), one.id)
         own = motion_svgs(Motion.of_golden(one.golden))
         svgs.append(own)
-        pages[f"{one.id}.html"] = scene_page(one, own, kept.get(one.id, Kept()), base)
+        pages[f"{one.id}.html"] = scene_page(one, own, kept.get(one.id, StudyResults()), base)
     pages[PAGE] = index_page(scenes, svgs, kept, base)
     write_files(out, pages)
     report(len(scenes), len(scenes), PAGE)

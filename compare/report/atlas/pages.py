@@ -14,12 +14,12 @@ from ..page import Html, facts, page, paragraph, section, text
 from . import blocks
 from .embedded import embedded, vocabulary
 from .entry import Entry
-from .studied import Kept
+from .studied import StudyResults
 
 SHOWN = ("level", "behind it", "bounds", "transits")  # on the page over all scenes
 
 
-def index_page(scenes: Sequence[Entry], svgs: Sequence[Sequence[str]], kept: dict[str, Kept], base: str) -> str:
+def index_page(scenes: Sequence[Entry], svgs: Sequence[Sequence[str]], kept: dict[str, StudyResults], base: str) -> str:
     """Return the page over all scenes.
 
     Args:
@@ -28,7 +28,7 @@ def index_page(scenes: Sequence[Entry], svgs: Sequence[Sequence[str]], kept: dic
         kept: how methods fared, by scene.
         base: where the datasets' folders stand, as a URL or a path; empty for no links to files.
     """
-    cards = [_card(one, own, kept.get(one.id, Kept()), base) for one, own in zip(scenes, svgs, strict=True)]
+    cards = [_card(one, own, kept.get(one.id, StudyResults()), base) for one, own in zip(scenes, svgs, strict=True)]
     datasets = sum(len(one.datasets) for one in scenes)
     return page(
         "Atlas of the Foucault pendulum",
@@ -43,7 +43,7 @@ def index_page(scenes: Sequence[Entry], svgs: Sequence[Sequence[str]], kept: dic
     )
 
 
-def scene_page(entry: Entry, svgs: Sequence[str], kept: Kept, base: str) -> str:
+def scene_page(entry: Entry, svgs: Sequence[str], kept: StudyResults, base: str) -> str:
     """Return the page of a scene, which holds its golden rows and judges a file by them."""
     first, *others = entry.datasets
     fared = blocks.methods(kept)
@@ -77,7 +77,7 @@ def _sentence(entry: Entry) -> str:
     return f"{entry.golden.manifest.title.rstrip('.')}."
 
 
-def _card(entry: Entry, svgs: Sequence[str], kept: Kept, base: str) -> Html:
+def _card(entry: Entry, svgs: Sequence[str], kept: StudyResults, base: str) -> Html:
     manifest, told = entry.golden.manifest, blocks.trust(entry.golden)
     shown = {name: told[name] for name in SHOWN}
     of_files = [" ".join(blocks.linked(one, name, base) for name in one.manifest.files) for one in entry.datasets]

@@ -15,8 +15,8 @@ from reference.system.documents import json_document
 
 
 @dataclass(frozen=True)
-class Fared:
-    """How a method fared on a scene.
+class MethodResult:
+    """The result of one method on a scene.
 
     Attributes:
         method: its name, with its number type and formulation where they are told.
@@ -36,7 +36,7 @@ class Fared:
 
 
 @dataclass(frozen=True)
-class Kept:
+class StudyResults:
     """Results of the kept studies for one scene: runs asked for the same digits, and the least error of each method.
 
     Attributes:
@@ -45,8 +45,8 @@ class Kept:
         span_s: in s; 0 if there is no such study.
     """
 
-    asked: Sequence[Fared] = ()
-    least: Sequence[Fared] = ()
+    asked: Sequence[MethodResult] = ()
+    least: Sequence[MethodResult] = ()
     span_s: float = 0.0
 
     def sentence(self) -> str:
@@ -68,14 +68,14 @@ def studies_folder() -> Path | None:
     return data_root().parent / "docs" / "studies" if in_checkout() else None
 
 
-def kept_studies(folder: Path | None) -> dict[str, Kept]:
+def kept_studies(folder: Path | None) -> dict[str, StudyResults]:
     """Return what the studies in a folder say, by scene; nothing if there is no folder.
 
     Raises:
         InputError: a file is no study.
     """
-    asked: dict[str, dict[str, Fared]] = {}
-    least: dict[str, tuple[float, list[Fared]]] = {}
+    asked: dict[str, dict[str, MethodResult]] = {}
+    least: dict[str, tuple[float, list[MethodResult]]] = {}
     for path in sorted(folder.glob("*.json")) if folder is not None else ():
         try:
             document = json_document(path, "--studies")
@@ -90,27 +90,28 @@ def kept_studies(folder: Path | None) -> dict[str, Kept]:
             raise _no_study(path, error.advice) from None
         except (OSError, ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
             raise _no_study(path, f"{error}.") from None
-    return {
-        name: Kept(tuple(asked.get(name, {}).values()), least.get(name, (0.0, ()))[1], least.get(name, (0.0, ()))[0])
-        for name in {*asked, *least}
-    }
+    results = {}
+    for name in {*asked, *least}:
+        span_s, best = least.get(name, (0.0, []))
+        results[name] = StudyResults(tuple(asked.get(name, {}).values()), best, span_s)
+    return results
 
 
 def _no_study(path: Path, reason: str) -> InputError:
     return InputError("--studies", str(path), "a study as `foucault study` writes it", reason)
 
 
-def _asked(row: dict[str, Any]) -> Fared:
+def _asked(row: dict[str, Any]) -> MethodResult:
     name = " ".join(part for part in (row["method"], row["precision"].removeprefix("double, ")) if part)
-    return Fared(name, Status(row["status"]), row.get("digits"), row.get("asked"), cpu_s=row.get("cpu_s"))
+    return MethodResult(name, Status(row["status"]), row.get("digits"), row.get("asked"), cpu_s=row.get("cpu_s"))
 
 
-def _least(rows: Sequence[dict[str, Any]]) -> list[Fared]:
+def _least(rows: Sequence[dict[str, Any]]) -> list[MethodResult]:
     """Return the most accurate run of each method and formulation, the best first."""
-    best: dict[str, Fared] = {}
+    best: dict[str, MethodResult] = {}
     for row in rows:
         name = " ".join(part for part in (row["method"], row.get("formulation", "")) if part)
         error = row.get("error_m")
         if row["status"] == Status.OK and error is not None and error < (best[name].error_m if name in best else 1e300):
-            best[name] = Fared(name, Status.OK, error_m=error, cpu_s=row.get("cpu_s"))
+            best[name] = MethodResult(name, Status.OK, error_m=error, cpu_s=row.get("cpu_s"))
     return sorted(best.values(), key=lambda one: one.error_m or 0.0)

@@ -15,7 +15,7 @@ from ...approximations import APPROXIMATIONS, Motion
 from .causes import NAMED
 from .conventions import made_right
 from .findings import Explanation, Model, SizedCause
-from .fitted import HARMLESS, Case, best_of, told
+from .fitted import HARMLESS, Case, best_of, explanation_of
 from .formulas import slip_in_formula
 from .naming import sized
 from .pendulum import Pendulum
@@ -113,9 +113,9 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     if found.slip:
         return found
     if vague or (not found.causes and found.corrected_m > max(allowed_m, 1.5 * read.noise)):
-        told = slip(read.times, read.positions, scene)
-        if told:  # one term of a formula, as no integrator changes it
-            return Explanation(found.conventions, slip=told)
+        wrong_term = slip(read.times, read.positions, scene)
+        if wrong_term:  # one term of a formula, as no integrator changes it
+            return Explanation(found.conventions, slip=wrong_term)
     return found
 
 
@@ -133,7 +133,7 @@ def _of_rows(
     if case.error <= case.floor:
         return plain
     best = best_of(case)
-    named = None if best is None else told(case, best)
+    named = None if best is None else explanation_of(case, best)
     if named is not None and named.corrected_m <= case.enough:
         return named
     vague = named is None or any(cause.stage == "integrator" for cause in named.causes)

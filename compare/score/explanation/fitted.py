@@ -148,7 +148,7 @@ def _polished(case: Case, best: Best) -> Reading:
     return reading
 
 
-def told(case: Case, best: Best) -> Explanation:
+def explanation_of(case: Case, best: Best) -> Explanation:
     """Return the explanation that the best reading of a case makes up."""
     rows, right = case.rows, case.right
     reading = _without_needless_step(case, best.reading)

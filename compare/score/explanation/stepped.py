@@ -20,7 +20,7 @@ from reference.numbers.precision import Array
 from .causes import FITTED, NAMED
 from .families import pendulum_of, positions_of
 from .findings import Explanation, SizedCause
-from .fitted import Case, best_of, told
+from .fitted import Case, best_of, explanation_of
 from .pendulum import Pendulum
 from .programs import Program
 from .rows import Rows, largest, rms
@@ -72,7 +72,7 @@ def of_steps(case: Case) -> Explanation | None:
             program = best.reading.program
         if not enough or program.kind != "sphere":
             continue
-        found = Explanation(rows.conventions) if best is None else told(seen, best)
+        found = Explanation(rows.conventions) if best is None else explanation_of(seen, best)
         step = float(rows.times[1]) / steps.every
         text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
         cause = SizedCause(f"integrator_{steps.method}", text, largest(effect), "integrator", step, step, 0.0)

@@ -14,7 +14,7 @@ import reference
 from compare import judge
 from compare.report.atlas.entry import Entry, entries
 from compare.report.atlas.pages import scene_page
-from compare.report.atlas.studied import Kept, kept_studies, studies_folder
+from compare.report.atlas.studied import StudyResults, kept_studies, studies_folder
 from reference.scenes.shipped import golden_root
 
 CHROMIUM = next(
@@ -96,7 +96,7 @@ def test_a_study_is_a_regular_file(tmp_path):
 def test_without_a_study_the_page_says_nothing_of_methods(atlas, readings):
     (paris,) = entries(readings)
     assert "How methods fare" in (atlas / "paris.html").read_text()
-    assert "How methods fare" not in scene_page(paris, [], Kept(), "")
+    assert "How methods fare" not in scene_page(paris, [], StudyResults(), "")
 
 
 def test_the_command_to_score_says_what_differs_from_the_scene(readings):
