@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, fields
 
-from ..report.folder import PAGE, csv_text, json_text
-from ..report.page import Column, Html, TableRow, choices, faint, page, paragraph, plate, section, strong, table
+from ..report.folder import PAGE, json_text
+from ..report.page import Html, choices, faint, page, paragraph, plate, section, strong
+from ..report.table import Table
 from .checks import VERDICTS, JudgedRow
 from .figures import FIGURES
 
@@ -44,7 +45,7 @@ def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, st
     documents = [document(row) for row in rows]
     return {
         **{f"figure_{number}.svg": svg for number, svg in figures.items()},
-        "rows.csv": csv_text((field.name for field in fields(JudgedRow)), documents),
+        "rows.csv": Table.of_records((field.name for field in fields(JudgedRow)), documents).csv(),
         "rows.json": json_text({"rows": documents}),
         PAGE: page_text(rows, figures),
     }
@@ -81,21 +82,18 @@ def _lead(count: int) -> Html:
 
 
 def _counted(counts: dict[str, int]) -> Html:
-    columns = [Column("verdict"), Column("lines", "number"), Column("meaning", "prose")]
-    return table(columns, [TableRow([strong(word), str(count), MEANING[word]], word) for word, count in counts.items()])
+    rows = [(strong(word), count, MEANING[word]) for word, count in counts.items()]
+    return Table({"verdict": "", "lines": "number", "meaning": "prose"}, rows, list(counts)).html()
 
 
 def _not_judged() -> Html:
-    columns = [Column("place"), Column("printed", "prose"), Column("why there is no verdict", "prose")]
-    return table(columns, [TableRow(cells) for cells in NOT_JUDGED])
+    return Table({"place": "", "printed": "prose", "why there is no verdict": "prose"}, NOT_JUDGED).html()
 
 
 def _lines(rows: Sequence[JudgedRow]) -> Html:
-    columns = [Column(title, "wrapped") for title in ("place", "printed", "recomputed", "verdict")]
-    return table(
-        columns,
-        [TableRow([row.place, row.printed, row.recomputed, _verdict(row)], row.verdict, row.id) for row in rows],
-    )
+    columns = dict.fromkeys(("place", "printed", "recomputed", "verdict"), "wrapped")
+    cells = [(row.place, row.printed, row.recomputed, _verdict(row)) for row in rows]
+    return Table(columns, cells, [row.verdict for row in rows], [row.id for row in rows]).html()
 
 
 def _verdict(row: JudgedRow) -> Html:

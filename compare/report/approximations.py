@@ -16,7 +16,8 @@ from ..studies.approximation_errors import error_table, quantity_table
 from ..studies.approximation_limits import LIMITS, SWEEP_S, limits, sweep
 from .charts.approximations import plot
 from .folder import Report
-from .page import Column, Html, TableRow, figure, page, paragraph, section, table
+from .page import Html, figure, page, paragraph, section
+from .table import Table
 
 OVERS = ("time", "amplitude", "latitude", "length")
 CURVE_TIMES = 80  # points of a curve over time
@@ -57,22 +58,18 @@ def text_table(report: dict[str, Any]) -> str:
     errors = {(row["approximation"], row["t"]): row for row in report["rows"]}
     names = list(dict.fromkeys(row["approximation"] for row in report["rows"]))
     good = {(row["approximation"], row["limit"]): row for row in report["limits"] if row["over"] == "time"}
-    heads = "".join(f"{f'{t:g} s':>12}" for t in times) + "".join(f"{f'within {name}':>16}" for name, _, _ in LIMITS)
+    rows: list[list[str]] = []
+    for name in names:
+        values = [errors[name, t]["error_m"] for t in times]
+        cells = ["" if value is None else f"{value:.2e}" for value in values]
+        intervals = [good[name, limit]["good"] for limit, _, _ in LIMITS]
+        first = [name, cells[0] or "does not apply", *cells[1:]]
+        rows.append([*first, *(f"{one[0][1]:.4g} s" if one else "–" for one in intervals)])
+    heads = (*(f"{t:g} s" for t in times), *(f"within {name}" for name, _, _ in LIMITS))
     lines = [
         f"{report['scene']}: largest position error in m up to a time, and how long it stays within a limit",
-        f"{'':22}{heads}",
+        *Table({"": "", **dict.fromkeys(heads, "number")}, rows).lines(),
     ]
-    for name in names:
-        cells: list[str] = []
-        for t in times:
-            error = errors[name, t]["error_m"]
-            cells.append(
-                f"{'does not apply' if error is None and not cells else '' if error is None else f'{error:.2e}':>12}"
-            )
-        for limit, _, _ in LIMITS:
-            intervals = good[name, limit]["good"]
-            cells.append(f"{f'{intervals[0][1]:.4g} s' if intervals else '–':>16}")
-        lines.append(f"{name:22}" + "".join(cells))
     lines.append("")
     for row in report["quantities"]:
         error = "" if row["relative_error"] is None else f"  relative error {row['relative_error']:.1e}"
@@ -123,27 +120,23 @@ def _errors(report: dict[str, Any]) -> Html:
     """Return a table with one row for each approximation: errors of position and swing plane up to each time."""
     times = sorted({row["t"] for row in report["rows"]})
     by_key = {(row["approximation"], row["t"]): row for row in report["rows"]}
-    columns = [Column("approximation")]
-    columns += [Column(f"m, up to {t:g} s", "number") for t in times]
-    columns += [Column(f"arcsec, up to {t:g} s", "number") for t in times]
+    heads = (*(f"m, up to {t:g} s" for t in times), *(f"arcsec, up to {t:g} s" for t in times))
     rows = []
     for name in dict.fromkeys(row["approximation"] for row in report["rows"]):
         values = [by_key[name, t][what] for what in ("error_m", "plane_error_arcsec") for t in times]
         remark = "" if by_key[name, times[0]]["status"] == Status.OK else "does not apply to this scene"
-        rows.append(TableRow((name, *("" if value is None else f"{value:.3g}" for value in values), remark)))
-    return table(
-        [*columns, Column("remark", "prose")], rows, "Largest errors of position and of the swing plane's direction"
-    )
+        rows.append((name, *("" if value is None else f"{value:.3g}" for value in values), remark))
+    columns = {"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}
+    return Table(columns, rows).html("Largest errors of position and of the swing plane's direction")
 
 
 def _limits(report: dict[str, Any], over: str) -> Html:
     rows = [row for row in report["limits"] if row["over"] == over]
     names = list(dict.fromkeys(row["approximation"] for row in rows))
     by_key = {(row["approximation"], row["limit"]): row for row in rows}
-    columns = [Column("approximation"), *(Column(f"within {name}", "number") for name, _, _ in LIMITS)]
-    body = [TableRow((name, *(_intervals(by_key[name, limit]) for limit, _, _ in LIMITS))) for name in names]
-    unit = rows[0]["unit"] if rows else ""
-    return table(columns, body, f"Ranges of {over} in {unit}")
+    columns = {"approximation": "", **{f"within {name}": "number" for name, _, _ in LIMITS}}
+    cells = [(name, *(_intervals(by_key[name, limit]) for limit, _, _ in LIMITS)) for name in names]
+    return Table(columns, cells).html(f"Ranges of {over} in {rows[0]['unit'] if rows else ''}")
 
 
 def _intervals(row: dict[str, Any]) -> str:
@@ -151,20 +144,17 @@ def _intervals(row: dict[str, Any]) -> str:
 
 
 def _quantities(report: dict[str, Any]) -> Html:
-    columns = [Column("approximation"), Column("value", "number"), Column("reference", "number"), Column("unit")]
+    columns = {"approximation": "", "value": "number", "reference": "number", "unit": "", "relative error": "number"}
     rows = [
-        TableRow(
-            (
-                row["approximation"], row["value"] or row["reason"], row["truth"] or "", row["unit"],
-                "" if row["relative_error"] is None else f"{row['relative_error']:.1e}",
-            )
+        (
+            row["approximation"], row["value"] or row["reason"], row["truth"], row["unit"],
+            "" if row["relative_error"] is None else f"{row['relative_error']:.1e}",
         )
         for row in report["quantities"]
     ]  # fmt: skip
-    return table([*columns, Column("relative error", "number")], rows)
+    return Table(columns, rows).html()
 
 
 def _about() -> Html:
-    columns = [Column("id"), Column("description", "prose"), Column("source", "prose"), Column("leaves out", "prose")]
-    rows = [TableRow((one.id, one.title, one.where, one.drops)) for one in APPROXIMATIONS.values()]
-    return table(columns, rows)
+    columns = {"id": "", "description": "prose", "source": "prose", "leaves out": "prose"}
+    return Table(columns, [(one.id, one.title, one.where, one.drops) for one in APPROXIMATIONS.values()]).html()

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from reference import InputError
-from reference.errors import plain_json, plain_lines
-from reference.system.workspace import replace_file
+from reference.errors import plain_json
 
 from .page import MARK
+from .table import Table
 
 CSV, PAGE = "rows.csv", "index.html"
-_FORMULA = ("=", "+", "-", "@", "\t", "\n")  # may begin a formula in a spreadsheet, as OWASP lists them
 _HEAD = 1024  # bytes at the start of a page that hold its mark
 
 
@@ -45,7 +40,7 @@ class Report:
         """Write the files as `write_files` does, and return the path of the page; `document["rows"]` is the table."""
         if out is None:
             return None
-        rows = csv_text(document["rows"][0], document["rows"])
+        rows = Table.of_records(document["rows"][0], document["rows"]).csv()
         write_files(out, {CSV: rows, self.json: json_text(document), PAGE: self.page(document)})
         return out / PAGE
 
@@ -108,31 +103,6 @@ def _write(path: Path, text: str) -> None:
     # a name on the command line may hold bytes that are not UTF-8; JSON too reads the escapes
     data = text.encode(errors="backslashreplace")
     replace_file(path, lambda stream: stream.write(data))
-
-
-def csv_text(columns: Iterable[str], rows: Iterable[Mapping[str, Any]]) -> str:
-    """Return rows as CSV: a header line, doubles with all their digits, an empty field where there is no value.
-
-    Control characters are written out, and what a spreadsheet would run as a formula begins with an apostrophe.
-    """
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, list(columns), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows({name: _harmless(value) for name, value in row.items()} for row in rows)
-    return stream.getvalue()
-
-
-def _harmless(value: Any) -> Any:
-    if not isinstance(value, str):
-        return value
-    text = plain_lines(value)
-    if not text.startswith(_FORMULA):
-        return text
-    try:
-        float(text)
-    except ValueError:
-        return f"'{text}"
-    return text
 
 
 def json_text(document: Any) -> str:

@@ -1,4 +1,4 @@
-"""HTML building blocks: sections, tables, figures, and a self-contained page with its styles and without scripts.
+"""HTML building blocks: sections, figures, and a self-contained page with its styles and without scripts.
 
 Text is escaped wherever it is inserted, unless its type `Html` says that it is HTML already.
 """
@@ -9,7 +9,6 @@ import base64
 import html
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
@@ -24,35 +23,6 @@ class Html(str):
     """Text that is already HTML and is inserted without escaping."""
 
     __slots__ = ()
-
-
-@dataclass(frozen=True)
-class Column:
-    """A column of a table.
-
-    Attributes:
-        title: heading of the column.
-        kind: `text`, `number` (aligned right), `prose` (wrapped), `line` (wrapped, but wider), or `wrapped` (wrapped
-            anywhere; a table of only such columns is as wide as the page).
-    """
-
-    title: str
-    kind: str = "text"
-
-
-@dataclass(frozen=True)
-class TableRow:
-    """A row of a table.
-
-    Attributes:
-        cells: one for each column.
-        kind: CSS classes: `front`, `failed`, `first` (of a group), a verdict, several of them, or none.
-        anchor: id by which the row can be linked to, or empty.
-    """
-
-    cells: Sequence[str]
-    kind: str = ""
-    anchor: str = ""
 
 
 def text(value: str) -> Html:
@@ -114,29 +84,6 @@ def choices(kinds: Mapping[str, str]) -> Html:
     return Html('<p class="choices">\n' + "\n".join(boxes) + "\n</p>")
 
 
-def table(columns: Sequence[Column], rows: Iterable[TableRow], caption: str = "") -> Html:
-    """Return a table, which scrolls where it is wider than the screen; one with prose becomes cards on a telephone."""
-    cards = any(one.kind in ("prose", "wrapped", "line") for one in columns)
-    head = "".join(f'<th scope="col"{_class(one)}>{text(one.title)}</th>' for one in columns)
-    body = []
-    for row in rows:
-        cells = "".join(
-            f"<td{_class(one)}{_name(one) if cards and i else ''}>{text(cell)}</td>"
-            for i, (one, cell) in enumerate(zip(columns, row.cells, strict=True))
-        )
-        kind = f' class="{row.kind}"' if row.kind else ""
-        named = f' id="{text(row.anchor)}"' if row.anchor else ""
-        body.append(f"<tr{kind}{named}>{cells}</tr>")
-    title = [f"<figcaption>{text(caption)}</figcaption>"] if caption else []
-    inside = [f"<thead><tr>{head}</tr></thead>", "<tbody>", *body, "</tbody>"]
-    around = ("whole" if all(one.kind == "wrapped" for one in columns) else "wide") + (" cards" if cards else "")
-    return Html(
-        "\n".join(
-            ["<figure>", *title, f'<div class="{around}">', "<table>", *inside, "</table>", "</div>", "</figure>"]
-        )
-    )
-
-
 def section(heading: str, *parts: str) -> Html:
     """Return a section of the page with a heading that can be linked to."""
     return Html(f'<section id="{anchor(heading)}">\n<h2>{text(heading)}</h2>\n{join(parts)}\n</section>')
@@ -166,14 +113,6 @@ def page(title: str, sections: Sequence[str], *, lead: str = "", script: str = "
         f"<title>{text(title)}</title>\n<style>\n{_styles()}{styles}</style>\n</head>\n<body>\n<header>\n<h1>{text(title)}</h1>\n"
         f"{text(lead)}\n</header>\n<nav>\n{links}\n</nav>\n<main>\n{join(sections)}\n</main>\n{script}</body>\n</html>\n"
     )
-
-
-def _class(column: Column) -> str:
-    return "" if column.kind == "text" else f' class="{column.kind}"'
-
-
-def _name(column: Column) -> str:
-    return f' data-name="{text(column.title)}"'
 
 
 @cache

@@ -22,8 +22,9 @@ from .busy import busy
 from .charts import ErrorHistory, Field, error_growth, heat_map
 from .charts.heat_map import LETTERS
 from .folder import Report
-from .page import Column, Html, TableRow, facts, figure, findings, page, paragraph, section, table
-from .tables import LONGEST_COMMAND, advice, cpu, setting, tidy, words
+from .page import Html, facts, figure, findings, page, paragraph, section
+from .study_tables import LONGEST_COMMAND, advice, cpu, setting, tidy, words
+from .table import Table
 
 COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
@@ -175,70 +176,58 @@ def _short(precision: str) -> str:
 def _reasons(cells: Sequence[Cell]) -> Html:
     if not cells:
         return paragraph("None.")
-    columns = [Column("scene"), Column("method"), Column("precision"), Column("setting"), Column("status")]
-    columns += [Column("digits", "number"), Column("asked for", "number"), Column("reason", "prose")]
+    columns = {**dict.fromkeys(("scene", "method", "precision", "setting", "status"), ""), "digits": "number"}
     rows = [
-        TableRow(
-            (
-                cell.scene, cell.method, cell.precision, setting(cell), cell.status.words,
-                "" if cell.digits is None else f"{max(cell.digits, 0):.1f}", f"{cell.asked:.1f}", cell.reason,
-            )
+        (
+            cell.scene, cell.method, cell.precision, setting(cell), cell.status.words,
+            "" if cell.digits is None else f"{max(cell.digits, 0):.1f}", f"{cell.asked:.1f}", cell.reason,
         )
         for cell in cells
     ]  # fmt: skip
-    return table(columns, rows)
+    return Table({**columns, "asked for": "number", "reason": "prose"}, rows).html()
 
 
 def _asked(cells: Sequence[Cell]) -> Html:
     """Return each cell's setting, the digits that it was asked for, and those that it kept."""
-    columns = [Column("scene"), Column("method"), Column("precision"), Column("setting"), Column("asked for", "number")]
-    columns += [Column("kept", "number"), Column("CPU s", "number"), Column("status")]
+    texts, numbers = ("scene", "method", "precision", "setting"), ("asked for", "kept", "CPU s")
     rows = [
-        TableRow(
-            (
-                cell.scene, cell.method, cell.precision, setting(cell), f"{cell.asked:.1f}",
-                "" if cell.digits is None else f"{cell.digits:.1f}", cpu(cell.cpu_s), cell.status.words,
-            )
+        (
+            cell.scene, cell.method, cell.precision, setting(cell), f"{cell.asked:.1f}",
+            "" if cell.digits is None else f"{cell.digits:.1f}", cpu(cell.cpu_s), cell.status.words,
         )
         for cell in cells
     ]  # fmt: skip
-    return table(columns, rows)
+    return Table({**dict.fromkeys(texts, ""), **dict.fromkeys(numbers, "number"), "status": ""}, rows).html()
 
 
 def _programs(programs: Mapping[str, str]) -> Html:
-    columns = [Column("name", "wrapped"), Column("command", "wrapped")]
-    rows = [TableRow((name, shortened(command, LONGEST_COMMAND))) for name, command in programs.items()]
-    return table(columns, rows)
+    rows = [(name, shortened(command, LONGEST_COMMAND)) for name, command in programs.items()]
+    return Table({"name": "wrapped", "command": "wrapped"}, rows).html()
 
 
 def _scenes(cells: Sequence[Cell]) -> Html:
-    names = list(dict.fromkeys(cell.scene for cell in cells))
     rows = []
-    for name in names:
+    for name in dict.fromkeys(cell.scene for cell in cells):
         scene = load_scene(name)
         statuses = [cell.status for cell in cells if cell.scene == name]
         correct, failed = statuses.count(Status.OK), sum(one not in (Status.OK, *NOT_TRIED) for one in statuses)
-        rows.append(TableRow((name, scene.title, ", ".join(scene.flags), f"{correct}", f"{failed}")))
-    columns = [Column("scene"), Column("description", "prose"), Column("flags", "prose")]
-    return table([*columns, Column("correct", "number"), Column("failed", "number")], rows)
+        rows.append((name, scene.title, ", ".join(scene.flags), correct, failed))
+    columns = {"scene": "", "description": "prose", "flags": "prose", "correct": "number", "failed": "number"}
+    return Table(columns, rows).html()
 
 
 def text_table(document: dict[str, Any]) -> str:
     """Return main results and one line for each method, as text for a terminal."""
     cells, runs = _parsed(document)
-    names = list(dict.fromkeys((cell.method, cell.precision) for cell in cells))
     present = [one for one in Status if one in {cell.status for cell in cells}]
-    lines = [
-        *headlines(cells),
-        f"load: {busy(cells)}",
-        "",
-        f"{'method':20}{'precision':24}{'setting':>12}{'asked':>7}" + "".join(f"{one.words:>16}" for one in present),
-    ]
-    for method, precision in names:
+    rows = []
+    for method, precision in dict.fromkeys((cell.method, cell.precision) for cell in cells):
         own = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
         counts = Counter(cell.status for cell in own)
-        head = f"{method:20}{precision:24}{_settings(own):>12}{own[0].asked:>7.1f}"
-        lines.append(head + "".join(f"{counts[one] or '':>16}" for one in present))
+        rows.append((method, precision, _settings(own), f"{own[0].asked:.1f}", *(counts[one] or "" for one in present)))
+    numbers = ("setting", "asked", *(one.words for one in present))
+    table = Table({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
+    lines = [*headlines(cells), f"load: {busy(cells)}", "", *table.lines()]
     return "\n".join([*lines, "", *advice(present), *([""] if runs else []), *laws(runs)])
 
 

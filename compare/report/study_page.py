@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ..studies.row import Row
-from . import explanations, tables
+from . import explanations, study_tables
 from .busy import busy
 from .folder import Report
 from .page import Html, facts, figure, findings, join, page, paragraph, section
@@ -18,20 +18,20 @@ def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML; `title` of the scene and `limit_s` of a run are used if the document has them."""
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
     conclusions = sentences(document)
-    failed, lost = tables.failures(rows), {row.status for row in rows if not row.measured}
+    failed, lost = study_tables.failures(rows), {row.status for row in rows if not row.measured}
     programs, files = document.get("programs", {}), document.get("candidates", ())
     parts = [
         section(
             "Main results",
             findings(conclusions) if conclusions else paragraph("No method reached an error of 1e-3 m."),
         ),
-        section("Least cost of an error", tables.costs(rows, bound_m)),
+        section("Least cost of an error", study_tables.costs(rows, bound_m)),
         *_pictures(document, rows, bound_m),
-        section("The Pareto front", tables.pareto_front(rows, bound_m)),
-        section("Every row", tables.every_row(rows, bound_m)),
-        *([section("What failed, and why", failed, tables.words(lost))] if failed else []),
+        section("The Pareto front", study_tables.pareto_front(rows, bound_m)),
+        section("Every row", study_tables.every_row(rows, bound_m)),
+        *([section("What failed, and why", failed, study_tables.words(lost))] if failed else []),
         section("How it was measured", *map(paragraph, explanations.measured(document.get("limit_s")))),
-        section("The methods", tables.methods(rows, bound_m, programs, files)),
+        section("The methods", study_tables.methods(rows, bound_m, programs, files)),
     ]
     return page(f"Error against run time: {document.get('title') or document['scene']}", parts, lead=_lead(document))
 
@@ -69,4 +69,4 @@ def _pictures(document: dict[str, Any], rows: Sequence[Row], bound_m: float) -> 
     return [section(heading, figure(svg, caption)) for heading, svg, caption in pictures if svg is not None]
 
 
-REPORT = Report("study.json", tables.text_table, page_text)
+REPORT = Report("study.json", study_tables.text_table, page_text)

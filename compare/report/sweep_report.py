@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from reference.status import Status
 
+from .table import Table
+
 if TYPE_CHECKING:
     from reference import Swept
     from reference.sweeps.request import Request
@@ -19,7 +21,6 @@ SHOWN = {
     "max_angle_deg": "angle (°)",
     "position_error_m": "error (m)",
 }  # columns of the table, and their heads
-WIDTH = 20  # of a column of the table
 
 
 def document(swept: Swept, out: Path | None, workers: int | None, cluster: str | None) -> dict[str, Any]:
@@ -78,17 +79,14 @@ def text(swept: Swept, out: Path | None) -> str:
     if out is None:
         names = [name for name in SHOWN if name in swept.names]
         keys = list(swept.request.table.keys)
-        widths = [max(16, len(key) + 2) for key in keys]
-        head = [key.rjust(width) for key, width in zip(keys, widths, strict=True)]
-        lines.append("".join(head) + "".join(SHOWN[name].rjust(WIDTH) for name in names))
+        rows = []
         for number, row in enumerate(swept.rows()):
             texts = swept.request.table.texts(number)
-            values = "".join(texts[key].rjust(width) for key, width in zip(keys, widths, strict=True))
             ok = row["status"] == Status.OK.value
-            lines.append(
-                values
-                + ("".join(_cell(name, row[name]) for name in names) if ok else f"    {row['status']}: {row['reason']}")
-            )
+            results = [_cell(name, row[name]) if ok else "" for name in names]
+            rows.append((*(texts[key] for key in keys), *results, "" if ok else f"{row['status']}: {row['reason']}"))
+        heads = (*keys, *(SHOWN[name] for name in names))
+        lines += Table({**dict.fromkeys(heads, "number"), "": ""}, rows).lines()
     else:
         lines.append(f"{out}: {swept.request.parts} parts in Parquet")
     if swept.audit is not None:
@@ -99,7 +97,7 @@ def text(swept: Swept, out: Path | None) -> str:
 
 def _cell(name: str, value: Any) -> str:
     if value is None:
-        return "–".rjust(WIDTH)
+        return "–"
     if isinstance(value, int):
-        return str(value).rjust(WIDTH)
-    return (f"{value:.1e}" if name.endswith("error_m") else f"{value:.12g}").rjust(WIDTH)
+        return str(value)
+    return f"{value:.1e}" if name.endswith("error_m") else f"{value:.12g}"

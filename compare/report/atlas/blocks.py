@@ -9,7 +9,8 @@ from reference.dataset.certified import MEANING
 from reference.numbers.columns import STATE
 from reference.status import Status
 
-from ..page import Column, Html, TableRow, facts, table, text
+from ..page import Html, facts, text
+from ..table import Table
 from .entry import Entry
 from .studied import MethodResult, StudyResults
 
@@ -33,11 +34,10 @@ def state(golden: Golden) -> Html:
     manifest, last = golden.manifest, {name: golden.decimals(name)[-1] for name in ("t", *STATE)}
     units = {name: "m/s" if name.startswith("v") else "m" for name in STATE}
     rows = [
-        TableRow((name, Html(f'<span class="digits">{last[name]}</span>'), units[name], manifest.bounds.grid[name]))
+        (name, Html(f'<span class="digits">{last[name]}</span>'), units[name], manifest.bounds.grid[name])
         for name in STATE
     ]
-    columns = [Column(""), Column(f"state at t = {last['t']} s", "value"), Column("in"), Column("within", "number")]
-    return table(columns, rows)
+    return Table({"": "", f"state at t = {last['t']} s": "value", "in": "", "within": "number"}, rows).html()
 
 
 def trust(golden: Golden) -> Mapping[str, str]:
@@ -74,12 +74,12 @@ def _none(reason: str) -> str:
 
 def dataset(golden: Golden, base: str) -> Html:
     """Return all that is to be said of a dataset: trust, and its files with sizes and hashes."""
-    columns = [Column("file"), Column("bytes", "number"), Column("sha256", "digest")]
     rows = [
-        TableRow((linked(golden, name, base), f"{record.bytes:,}", record.sha256))
+        (linked(golden, name, base), f"{record.bytes:,}", record.sha256)
         for name, record in golden.manifest.files.items()
     ]
-    return Html(f"{facts(trust(golden))}\n{table(columns, rows)}")
+    files = Table({"file": "", "bytes": "number", "sha256": "digest"}, rows)
+    return Html(f"{facts(trust(golden))}\n{files.html()}")
 
 
 def linked(golden: Golden, name: str, base: str) -> Html:
@@ -103,22 +103,18 @@ def methods(kept: StudyResults) -> list[Html]:
     """Return tables of how methods fared, as far as studies are kept: none, one or two."""
     parts = []
     if kept.asked:
-        columns = [Column("method"), Column("outcome"), Column("asked for", "number"), Column("digits kept", "number")]
-        rows = [
-            TableRow((one.method, one.status.words, _one(one.asked), _one(one.digits), _cpu(one)), _kind(one))
-            for one in sorted(kept.asked, key=lambda one: -(one.digits if one.digits is not None else -1.0))
-        ]
-        caption = "Runs that were asked for the same digits (docs/studies.md)"
-        parts.append(table([*columns, Column("CPU s", "number")], rows, caption))
+        best_first = sorted(kept.asked, key=lambda one: -(one.digits if one.digits is not None else -1.0))
+        asked = Table(
+            {"method": "", "outcome": "", "asked for": "number", "digits kept": "number", "CPU s": "number"},
+            [(one.method, one.status.words, _one(one.asked), _one(one.digits), _cpu(one)) for one in best_first],
+            ["" if one.status is Status.OK else "failed" for one in best_first],
+        )
+        parts.append(asked.html("Runs that were asked for the same digits (docs/studies.md)"))
     if kept.least:
-        columns = [Column("method"), Column("least error", "number"), Column("its CPU s", "number")]
-        rows = [TableRow((one.method, f"{one.error_m:.2g} m", _cpu(one))) for one in kept.least]
-        parts.append(table(columns, rows, f"The most accurate run of each method over {kept.span_s:g} s"))
+        rows = [(one.method, f"{one.error_m:.2g} m", _cpu(one)) for one in kept.least]
+        least = Table({"method": "", "least error": "number", "its CPU s": "number"}, rows)
+        parts.append(least.html(f"The most accurate run of each method over {kept.span_s:g} s"))
     return parts
-
-
-def _kind(one: MethodResult) -> str:
-    return "" if one.status is Status.OK else "failed"
 
 
 def _one(digits: float | None) -> str:

@@ -9,8 +9,9 @@ from typing import Any
 from reference.scenes.shipped import DATA_VERSION
 
 from ...score.verdict import percent
-from ..folder import check_folder, csv_text, json_text, write_files
-from ..page import Column, Html, TableRow, findings, page, paragraph, section, table, text
+from ..folder import check_folder, json_text, write_files
+from ..page import Html, findings, page, paragraph, section, text
+from ..table import Table
 from .badge import badge, fewest_digits, message
 from .outcome import Outcome, worst_verdict
 
@@ -40,23 +41,19 @@ def check(out: Path) -> None:
 def write(outcomes: Sequence[Outcome], out: Path) -> Path:
     """Write page, badge, JSON and CSV into a folder, and return the path of the page."""
     document = suite_document(outcomes)
-    rows = [{key: row.get(key) for key in KEYS} for row in document["rows"]]
-    texts = {CSV: csv_text(KEYS, rows), JSON: json_text(document), BADGE: badge(outcomes), PAGE: page_text(outcomes)}
+    rows = Table.of_records(KEYS, document["rows"]).csv()
+    texts = {CSV: rows, JSON: json_text(document), BADGE: badge(outcomes), PAGE: page_text(outcomes)}
     write_files(out, texts)
     return out / PAGE
 
 
 def page_text(outcomes: Sequence[Outcome]) -> str:
     """Return the page as HTML."""
-    columns = [Column("scene"), Column("verdict"), Column("covered", "number"), Column("largest error", "number")]
-    columns += [
-        Column("tolerance", "number"),
-        Column("digits", "number"),
-        Column("transits"),
-        Column("candidate", "prose"),
-    ]
-    rows = [TableRow(_cells(one), "" if one.verdict == "agrees" else "failed") for one in outcomes]
-    parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table(columns, rows))]
+    numbers = ("covered", "largest error", "tolerance", "digits")
+    columns = {"scene": "", "verdict": "", **dict.fromkeys(numbers, "number"), "transits": "", "candidate": "prose"}
+    kinds = ["" if one.verdict == "agrees" else "failed" for one in outcomes]
+    table = Table(columns, list(map(_cells, outcomes)), kinds)
+    parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table.html())]
     others = [one for one in outcomes if one.verdict != "agrees"]
     if others:
         parts.append(section("What was found", *(_found(one) for one in others)))

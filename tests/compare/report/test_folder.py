@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from compare.report.folder import check_folder, csv_text, json_text, write_files
+from compare.report.folder import check_folder, json_text, write_files
 from compare.report.page import page
+from compare.report.table import Table
 from reference import InputError
 
 FILES = {"rows.csv": "new", "rows.json": "new", "index.html": page("new", [])}
@@ -97,7 +98,7 @@ def test_checking_a_folder_makes_none(tmp_path: Path) -> None:
 
 
 def test_csv_has_one_header_line_all_digits_unix_line_ends_and_nothing_for_none() -> None:
-    text = csv_text(["a", "b"], [{"a": 0.1 + 0.2, "b": None}, {"a": "x,\ny", "b": 1}])
+    text = Table.of_records(["a", "b"], [{"a": 0.1 + 0.2, "b": None}, {"a": "x,\ny", "b": 1}]).csv()
     assert text.startswith("a,b\n0.30000000000000004,\n")
     assert "\r" not in text
     assert list(csv.reader(io.StringIO(text)))[2] == ["x,\ny", "1"]
@@ -111,17 +112,19 @@ def test_numbers_that_are_none_become_null_in_json() -> None:
 
 @pytest.mark.parametrize("text", ["=1+1", "+cmd", "-x", "@SUM(A1)", "\t=1", "\n=1", "-1e", "+-1"])
 def test_a_spreadsheet_runs_no_text_of_ours(text):
-    (cell,) = next(csv.reader(io.StringIO(csv_text(["name"], [{"name": text}]).partition("\n")[2], newline="")))
+    (cell,) = next(
+        csv.reader(io.StringIO(Table.of_records(["name"], [{"name": text}]).csv().partition("\n")[2], newline=""))
+    )
     assert cell == f"'{text}"
 
 
 def test_a_carriage_return_begins_no_new_row():
-    assert csv_text(["a"], [{"a": "b\rc\x1b"}]) == "a\nb\\rc\\x1b\n"
+    assert Table.of_records(["a"], [{"a": "b\rc\x1b"}]).csv() == "a\nb\\rc\\x1b\n"
 
 
 def test_numbers_and_harmless_text_stay_as_they_are_in_csv():
     row = {"a": -1.5, "b": "-1.5e-3", "c": "+2", "d": "rk4", "e": None, "f": "external: ./a -x =b"}
-    assert csv_text(row, [row]).splitlines()[1] == "-1.5,-1.5e-3,+2,rk4,,external: ./a -x =b"
+    assert Table.of_records(row, [row]).csv().splitlines()[1] == "-1.5,-1.5e-3,+2,rk4,,external: ./a -x =b"
 
 
 def test_names_that_are_no_utf_8_are_written_as_escapes(tmp_path):

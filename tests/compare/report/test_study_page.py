@@ -17,8 +17,9 @@ from places import ROOT
 
 from compare.report import page as parts
 from compare.report import study_page
-from compare.report.page import Column, Html, TableRow
-from compare.report.tables import cpu, setting, tidy
+from compare.report.page import Html
+from compare.report.study_tables import cpu, setting, tidy
+from compare.report.table import Table
 from compare.studies.row import Row
 from reference import InputError
 from reference.status import Status
@@ -270,7 +271,7 @@ def test_cpu_seconds_have_three_digits(value, text):
 def test_parts_escape_text_and_keep_html():
     assert parts.text("a < b") == "a &lt; b"
     assert parts.text(Html("<b>")) == "<b>"
-    made_table = parts.table([Column("<x>", "number")], [TableRow(["1 & 2"], "front")], "a < b")
+    made_table = Table({"<x>": "number"}, [["1 & 2"]], ["front"]).html("a < b")
     for piece in ("&lt;x&gt;", "1 &amp; 2", "a &lt; b", '<tr class="front">', 'class="number"'):
         assert piece in made_table
     assert "<em>" in parts.page("t", [parts.section("A b, c", Html("<em>x</em>"))])
@@ -279,9 +280,16 @@ def test_parts_escape_text_and_keep_html():
     assert link not in parts.page("t", [parts.section("A b, c", "x")])  # of one heading alone
 
 
+def test_a_table_says_the_same_as_html_as_text_and_as_csv():
+    table = Table({"name": "", "size": "number"}, [["one", 0.1 + 0.2], ["two & more", None]])
+    assert table.lines() == ["name                       size", "one         0.30000000000000004", "two & more"]
+    assert table.csv() == "name,size\none,0.30000000000000004\ntwo & more,\n"
+    assert '<td>two &amp; more</td><td class="number"></td>' in table.html()
+
+
 def test_a_row_of_a_table_has_a_cell_for_every_column():
     with pytest.raises(ValueError, match="zip"):
-        parts.table([Column("one"), Column("two")], [TableRow(["1"])])
+        Table({"one": "", "two": ""}, [["1"]]).html()
 
 
 def test_neither_the_report_nor_its_parts_load_matplotlib():

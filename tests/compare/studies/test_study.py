@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 import compare.studies.measure as measure
 from compare.methods import METHODS, Problem
 from compare.report.pareto import front
-from compare.report.tables import transit_error
+from compare.report.study_tables import transit_error
 from compare.studies import users_program
 from compare.studies.measure import Bench
 from compare.studies.method_errors import GridTruth

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from operator import itemgetter
 from textwrap import wrap
 from typing import Any
 
@@ -17,8 +18,9 @@ from ..studies.stability import Cell
 from ..studies.users_program import FILE
 from . import explanations
 from .busy import busy
-from .page import Column, Html, TableRow, strong, table
+from .page import Html, strong
 from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
+from .table import Table
 
 FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
@@ -34,9 +36,9 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
         if any(reached):
             order = [(cost is None, cost.cpu_s if cost else 0.0) for cost in reversed(reached)]
             cells = [_cost_cell(one, best) for one, best in zip(reached, least, strict=True)]
-            placed.append((order, TableRow([curve.label, *cells])))
-    columns = [Column("method"), *[Column(f"{tidy(error_m)} m", "number") for error_m in TARGETS_M]]
-    return table(columns, [row for _, row in sorted(placed, key=lambda one: one[0])], explanations.COSTS)
+            placed.append((order, [curve.label, *cells]))
+    columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
+    return Table(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(explanations.COSTS)
 
 
 def _cost_cell(one: CostAtError | None, least: float | None) -> str:
@@ -49,40 +51,36 @@ def _cost_cell(one: CostAtError | None, least: float | None) -> str:
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
     """Return the rows of the Pareto front, cheapest first."""
     labels = {row.key: curve.label for curve in curves(rows) for row in curve.rows}
-    columns = [Column("method"), Column("setting"), Column("error m", "number"), Column("CPU s", "number"), Column("")]
-    return table(
-        columns,
-        [
-            TableRow([labels[row.key], setting(row), number(row.error_m), cost(row), row.reason])
-            for row in front(rows, bound_m)
-        ],
-        explanations.FRONT,
-    )
+    cells = [
+        (labels[row.key], setting(row), number(row.error_m), cost(row), row.reason) for row in front(rows, bound_m)
+    ]
+    columns = {"method": "", "setting": "", "error m": "number", "CPU s": "number", "": ""}
+    return Table(columns, cells).html(explanations.FRONT)
 
 
 def every_row(rows: Sequence[Row], bound_m: float) -> Html:
     """Return all rows with every measured value, method by method from the loosest setting to the tightest."""
     best = {row.key for row in front(rows, bound_m)}
-    columns = [
-        Column(""), Column("method"), Column("formulation"), Column("setting"), Column("status"),
-        *[Column(title, "number") for title in (
-            "error m", "end error m", "transit error s", "h drift", "CPU s", "spread", "compile s", "evaluations",
-            "steps", "last t, s",
-        )], Column("reason", "line"),
-    ]  # fmt: skip
-    body = []
+    numbers = (
+        "error m", "end error m", "transit error s", "h drift", "CPU s", "spread", "compile s", "evaluations", "steps",
+        "last t, s",
+    )  # fmt: skip
+    texts = ("", "method", "formulation", "setting", "status")
+    columns = {**dict.fromkeys(texts, ""), **dict.fromkeys(numbers, "number"), "reason": "line"}
+    cells, kinds = [], []
     for curve in curves(rows):
         for i, row in enumerate(curve.rows):
-            kinds = ["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * (not row.measured)
-            cells = [
+            kinds.append(
+                " ".join(["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * (not row.measured))
+            )
+            cells.append((
                 FRONT_MARK if row.key in best else "", row.method, row.formulation, setting(row),
                 row.status.words, number(row.error_m), number(row.end_error_m), transit_error(row),
                 number(row.h_drift), cost(row), "" if row.cpu_spread is None else f"{100 * row.cpu_spread:.0f} %",
                 cpu(row.compile_s), count(row.rhs_evaluations), count(row.steps),
                 "" if row.reached_t is None else f"{row.reached_t:g}", row.reason,
-            ]  # fmt: skip
-            body.append(TableRow(cells, " ".join(kinds)))
-    return table(columns, body, explanations.ROWS)
+            ))  # fmt: skip
+    return Table(columns, cells, kinds).html(explanations.ROWS)
 
 
 def failures(rows: Sequence[Row]) -> Html | None:
@@ -94,25 +92,19 @@ def failures(rows: Sequence[Row]) -> Html | None:
                 groups.setdefault((curve.label, row.status, row.reason), []).append(row)
     if not groups:
         return None
-    body = []
+    cells = []
     for (label, status, reason), group in groups.items():
         reached = {f"{row.reached_t:g}" for row in group if row.reached_t is not None}
         settings = ", ".join(setting(row) for row in group)
-        body.append(TableRow([label, settings, status.words, ", ".join(sorted(reached)), reason], "failed"))
-    columns = [
-        Column("method"),
-        Column("settings", "prose"),
-        Column("status"),
-        Column("last t, s"),
-        Column("reason", "prose"),
-    ]
-    return table(columns, body, explanations.FAILED)
+        cells.append((label, settings, status.words, ", ".join(sorted(reached)), reason))
+    columns = {"method": "", "settings": "prose", "status": "", "last t, s": "", "reason": "prose"}
+    return Table(columns, cells, ["failed"] * len(cells)).html(explanations.FAILED)
 
 
 def words(statuses: Collection[Status]) -> Html:
     """Return the meaning of the words that stand for these statuses, and what to do about each."""
-    columns = [Column("word"), Column("meaning", "prose"), Column("what to do", "prose")]
-    return table(columns, [TableRow([one.words, one.meaning, one.advice]) for one in Status if one in statuses])
+    columns = {"word": "", "meaning": "prose", "what to do": "prose"}
+    return Table(columns, [(one.words, one.meaning, one.advice) for one in Status if one in statuses]).html()
 
 
 def advice(statuses: Collection[Status]) -> list[str]:
@@ -126,19 +118,15 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], fi
     found: dict[str, Order] = {}
     for one in orders(rows, bound_m):
         found.setdefault(one.method, one)  # the first formulation is the method's own
-    columns = [
-        Column("method"), Column("", "prose"), Column("order"), Column("observed"),
-        Column("source", "prose"), Column("licence"), Column("extra"),
-    ]  # fmt: skip
     body = [
-        TableRow([one.id, one.title, str(one.order or ABSENT), observed(found.get(one.id)), one.source, one.licence,
-                  one.extra or ""])
+        (one.id, one.title, one.order or ABSENT, observed(found.get(one.id)), one.source, one.licence, one.extra)
         for one in known
-    ]  # fmt: skip
+    ]
     yours = {name: (shortened(command, LONGEST_COMMAND), "--run") for name, command in programs.items()}
     yours |= dict.fromkeys(files, ("", "--candidates"))
-    rest = [TableRow([name, command, "", "", source, "", ""]) for name, (command, source) in yours.items()]
-    return table(columns, [*body, *rest], explanations.ORDERS)
+    rest = [(name, command, "", "", source, "", "") for name, (command, source) in yours.items()]
+    columns = {"method": "", "": "prose", "order": "", "observed": "", "source": "prose", "licence": "", "extra": ""}
+    return Table(columns, [*body, *rest]).html(explanations.ORDERS)
 
 
 def observed(order: Order | None) -> str:
@@ -165,35 +153,30 @@ def text_table(document: dict[str, Any]) -> str:
     rows, reference = rows_of(document), document["reference"]
     bound_m = float(reference["bound_m"])
     best = {row.key for row in front(rows, bound_m)}
-    head = f"{document['scene']}: {document['t_end']:g} s, reference {reference['level']}, bound {bound_m:.1e} m"
-    lines = [
-        head,
-        f"load: {busy(rows)}",
-        "",
-        f"  {'method':<28}{'setting':>10}{'error m':>11}{'transits s':>11}{'h drift':>10}{'CPU s':>11}{'calls':>13}",
-    ]
-    failed = []
+    measured, failed = [], []
     for curve in curves(rows):
         for row in curve.rows:
-            values = [
-                number(row.error_m),
-                transit_error(row),
-                number(row.h_drift),
-                cost(row),
-                count(row.rhs_evaluations),
-            ]
             if row.measured:
-                mark = "*" if row.key in best else " "
-                widths = zip(values, (11, 11, 10, 11, 13), strict=True)
-                lines.append(f"{mark} {curve.label:<28}{setting(row):>10}" + "".join(f"{v:>{w}}" for v, w in widths))
+                mark = "*" if row.key in best else ""
+                errors = number(row.error_m), transit_error(row), number(row.h_drift)
+                measured.append((mark, curve.label, setting(row), *errors, cost(row), count(row.rhs_evaluations)))
             else:
-                failed.append(f"  {curve.label:<28}{setting(row):>10}  {_why(row)}")
-    lines += [
+                failed.append(("", curve.label, setting(row), _why(row)))
+    columns = {"": "", "method": ""} | dict.fromkeys(
+        ("setting", "error m", "transits s", "h drift", "CPU s", "calls"), "number"
+    )
+    lines = [
+        f"{document['scene']}: {document['t_end']:g} s, reference {reference['level']}, bound {bound_m:.1e} m",
+        f"load: {busy(rows)}",
+        "",
+        *Table(columns, measured).lines(),
         "",
         f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span; the errors are those of that part",
     ]
     lost = {row.status for row in rows if not row.measured}
-    lines += ["", "Failed:", *failed, "", *advice(lost)] if failed else []
+    if failed:
+        reasons = Table({"": "", "method": "", "setting": "number", "reason": ""}, failed).lines()
+        lines += ["", "Failed:", *reasons, "", *advice(lost)]
     return "\n".join([*lines, *_orders_as_text(rows, bound_m), "", *sentences(document)]) + "\n"
 
 
