@@ -16,7 +16,7 @@ from ..methods import METHODS, Problem, available
 from ..observed.position_error import difference, distance
 from ..observed.swing_plane import rest_in_metres
 from ..report.charts.drawing import COLOURS, FAINT, GUIDE
-from ..report.charts.labels import Line
+from ..report.charts.lines import Line
 from ..report.charts.panels import Panel, dots, drawn, line
 from .digits import degrees, mpf
 from .first_principles import rest_angle
@@ -63,12 +63,12 @@ def _triangle() -> list[Panel]:
         ("g'", pivot, end, GREEN, "-"),
         ("rod", pivot, -0.45 * end, BLUE, DASHES[1]),
     )
-    lines, names = [], []  # each name stands beside the middle of its side
+    lines, names = [], []  # each name stands beside the middle of its side, a little below
     for name, begin, stop, colour, dashes in sides:
         x, y = np.linspace(begin, stop, 9).T
         lines.append(line("", x, y, colour, dashes, 1.8))
-        names.append(dots(name, x[4:5], y[4:5], colour, size=0))
-    angles = [dots("φ", [-0.03], [-0.25], FAINT, size=0), dots("ϕ", [-0.04], [-0.84], FAINT, size=0)]
+        names.append(dots(name, x[4:5], y[4:5] - 0.05, colour, size=0))
+    angles = [dots("φ", [-0.003], [-0.32], FAINT, size=0), dots("ϕ", [-0.03], [-0.8], FAINT, size=0)]
     return [Panel([*lines, *names, *angles], bare=True, level=True, xlim=(-0.8, 0.8), ylim=(-1.05, 0.4))]
 
 

@@ -12,8 +12,8 @@ from reference import InputError
 from ...studies.approximation_errors import TimeRow
 from ...studies.approximation_limits import SweepRow
 from ...studies.variation import UNITS
-from .drawing import COLOURS, GUIDE, limits, line_style, logarithmic, sheet, svg_text
-from .labels import Line, draw, place
+from .drawing import COLOURS, FAINT, GUIDE, limits, line_style, logarithmic, sheet, svg_text
+from .lines import Line, draw, legend
 
 _SAME = 0.15  # relative difference: lines that differ by less everywhere are drawn as one
 _WRAP = 2  # names per line of a label
@@ -52,17 +52,17 @@ def plot(rows: Sequence[TimeRow | SweepRow], what: str = "error_m", title: str =
             logarithmic(axes, "x", *ends)
         draw(axes, lines)
         low, high = axes.get_ylim()
-        marks = [
-            Line(name, np.linspace(*ends, 9).tolist(), [height] * 9, GUIDE)
-            for height, name in _MARKS[what]
-            if low < height < high
-        ]
-        draw(axes, marks)
+        for height, name in _MARKS[what]:
+            if low < height < high:
+                axes.axhline(height, **GUIDE)
+                axes.text(
+                    0.995, height, name, transform=axes.get_yaxis_transform(), ha="right", va="bottom", color=FAINT,
+                    fontsize=8,
+                )  # fmt: skip
         axes.set_xlabel("time since release, s" if over == "time" else f"{over.replace('_', ' ')}, {UNITS[over]}")
         axes.set_ylabel(_NAMES[what])
         axes.set_title(title)
-        place(axes, lines, margin=True)
-        place(axes, marks, lines)
+        legend(axes, lines)
         names = ", ".join(line.name.replace("\n", ", ") for line in lines)
         return svg_text(figure, f"{over}-{what}", f"{_NAMES[what].capitalize()}, against {over}: {names}.")
 

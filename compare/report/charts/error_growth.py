@@ -13,8 +13,8 @@ from reference.numbers.precision import Array
 
 from ...observed.power_law import largest_so_far
 from .drawing import COLOURS, GUIDE, line_style, logarithmic, sheet, svg_text
-from .labels import Line, draw, place
 from .ladders import band
+from .lines import Line, draw, legend, name_ends
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
 _POINTS = 240  # points of a line
@@ -74,10 +74,8 @@ def error_growth(histories: Sequence[ErrorHistory], bound_m: float) -> str:
         band(axes, bound_m)
         draw(axes, [*lines, *guides])
         axes.set(xlabel="time in s", ylabel="largest error of position so far in m")
-        place(axes, lines, margin=True)
-        slopes = "\n".join(name for _, name in reversed(SLOPES))
-        middle = guides[1 :: len(SLOPES)]  # of each fan
-        place(axes, [Line(slopes, one.x[-1:], one.y[-1:], GUIDE) for one in middle], [*lines, *guides])
+        legend(axes, sorted(lines, key=lambda line: -line.y[-1]))
+        name_ends(axes, guides)
         names = ", ".join(one.label for one in histories)
         return svg_text(figure, "growth", f"Error over time, log-log: {names}.")
 

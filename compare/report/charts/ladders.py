@@ -16,7 +16,7 @@ from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import Curve, error_of
 from .drawing import BAND, COLOURS, FAINT, line_style
-from .labels import Line
+from .lines import Line
 
 Coordinate = Callable[[Row], float | None]
 

@@ -11,8 +11,8 @@ from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import cost_of, curves, error_of, front
 from .drawing import BAND, FAINT, RULE, limits, logarithmic, sheet, svg_text
-from .labels import Line, draw, place
 from .ladders import CPU, ERROR, FAMILY_COLOURS, Ladder, band, error_above, family_of, ladders
+from .lines import Line, draw, legend
 
 FINEST_M = 1e-20  # m: the upper panel shows the methods of fixed precision, but no errors below this
 _SPLIT = 4.0  # the panels meet at the smallest error of these methods divided by this
@@ -35,9 +35,8 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
     scales, staircase = _scales(lines, bound_m), _staircase(best, bound_m)
     with sheet((9.5, 8.6 if len(scales) > 1 else 6.6)) as figure:
         grid = figure.subplots(len(scales), sharex=True, height_ratios=(3.4, 1.2)[: len(scales)], squeeze=False)
-        panels = list(zip(grid[:, 0], scales, (18, 8), strict=False))
         x_limits = limits([row.cpu_s for row in rows if row.cpu_s], 0.5, 3.0)
-        for axes, scale, labels in panels:
+        for axes, scale, labels in zip(grid[:, 0], scales, (18, 8), strict=False):
             logarithmic(axes, "x", *x_limits, 12)
             logarithmic(axes, "y", *scale, labels)
             band(axes, bound_m)
@@ -46,9 +45,7 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
         _failed(grid[0, 0], rows)
         grid[-1, 0].set_xlabel(CPU)
         figure.supylabel(ERROR, fontsize=9)
-        for axes, (low, high), _ in panels:
-            ending = [one for one in lines if low <= one.y[-1] < high]
-            place(axes, ending, [*(one for one in lines if one not in ending), staircase])
+        legend(grid[0, 0], lines)
         names = ", ".join(one.name for one in lines)
         return svg_text(figure, "overview", f"Largest position error against CPU seconds, log-log, of {names}.")
 
@@ -82,8 +79,7 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
         grid = figure.subplots(count, min(_COLUMNS, len(families)), sharex=True, sharey=True, squeeze=False)
         for panel in grid.flat[len(families) :]:
             panel.set_axis_off()
-        panels = list(zip(grid.flat, families, strict=False))
-        for i, (panel, family) in enumerate(panels):
+        for i, (panel, family) in enumerate(zip(grid.flat, families, strict=False)):
             logarithmic(panel, "x", *x_limits, 6)
             logarithmic(panel, "y", *y_limits, 9)
             panel.tick_params(labelbottom=i + _COLUMNS >= len(families))
@@ -91,11 +87,11 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
             for one in lines:
                 if one.family != family:
                     panel.plot(one.x, one.y, color=RULE, linewidth=1.0, zorder=1)
-            draw(panel, [one for one in lines if one.family == family])
+            own = [one for one in lines if one.family == family]
+            draw(panel, own)
+            legend(panel, own, size=7, inside=True)
         figure.supxlabel(CPU, fontsize=9)
         figure.supylabel(ERROR, fontsize=9)
-        for panel, family in panels:
-            place(panel, [one for one in lines if one.family == family], size=7.5)
         return svg_text(figure, "families", f"Error against CPU seconds in small multiples: {', '.join(families)}.")
 
 

@@ -1,4 +1,4 @@
-"""Panels above one another in one style, for figures after a paper: one of them names its lines in the margin."""
+"""Panels above one another in one style, for figures after a paper: one of them has a legend."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from .drawing import limits, logarithmic, picture, sheet
-from .labels import Line, draw, place
+from .lines import Line, draw, legend, name_ends
 
 WIDE = 4.8  # inches: as wide as a telephone's screen, where the letters then are as large as the text beside them
 EDGE = 0.5  # inches of a figure's height that no panel has
@@ -22,13 +22,13 @@ class Panel:
         x: name of the x axis, or "".
         y: name of the y axis, or "".
         title: its title, or "".
-        named: the names of the lines stand in the margin; in a figure one panel at most.
+        named: the lines are named in a legend beside the panel, inside it where it is level.
         height: in inches.
         xlim, ylim: ends of the axes; None for those of the lines.
         xticks, yticks: ticks; None for matplotlib's choice.
         log: the y axis is logarithmic.
         level: both axes have one scale.
-        bare: no axes; the lines are named beside themselves.
+        bare: no axes; the lines are named beside their ends.
     """
 
     lines: Sequence[Line]
@@ -69,9 +69,6 @@ def drawn(panels: Sequence[Panel]) -> str:
         rows = figure.subplots(len(panels), 1, squeeze=False, height_ratios=[panel.height for panel in panels])[:, 0]
         for axes, panel in zip(rows, panels, strict=True):
             _draw(axes, panel)
-        for axes, panel in zip(rows, panels, strict=True):
-            if panel.named or panel.bare:
-                place(axes, [one for one in panel.lines if one.name], panel.lines, size=9, margin=panel.named)
         return picture(figure).decode()
 
 
@@ -94,5 +91,9 @@ def _draw(axes: Any, panel: Panel) -> None:
             getattr(axes, f"set_{which}ticks")(ticks)
     if panel.level:
         axes.set_aspect("equal")
+    names = [one for one in panel.lines if one.name]
     if panel.bare:
         axes.set_axis_off()
+        name_ends(axes, names, size=9)
+    elif panel.named:
+        legend(axes, names, size=9, inside=panel.level)

@@ -10,8 +10,8 @@ from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import Curve, cost_of, costs_of_digits, curves, digits_of
 from .drawing import BAND, FAINT, limits, logarithmic, sheet, svg_text
-from .labels import draw, place
 from .ladders import CPU, family_of, ladders
+from .lines import draw, legend
 
 _TICKS = (1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 50, 70, 100, 150, 200, 300, 500)
 
@@ -45,7 +45,7 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
             ends = [law.low, law.high]
             axes.plot(ends, [law(digits) for digits in ends], color=FAINT, linewidth=6, alpha=0.3, zorder=1)
         axes.set(xlabel="digits achieved, −log₁₀ of the largest error in m", ylabel=CPU)
-        place(axes, lines)
+        legend(axes, lines, inside=True)
         return svg_text(figure, "precision", "CPU seconds against digits achieved, log-log, with fitted power laws.")
 
 

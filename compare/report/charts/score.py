@@ -15,8 +15,8 @@ from reference.system.workspace import replace_file
 
 from ...score.scored import Score
 from .drawing import COLOURS, GUIDE, check_matplotlib, line_style, logarithmic, picture, sheet
-from .labels import Line, draw, place
 from .ladders import band
+from .lines import Line, draw, legend
 
 LONGEST_NAME = 32  # characters of a file's name beside its line
 SUFFIXES = (".svg", ".png", ".pdf")
@@ -76,7 +76,7 @@ def _draw(axes: Any, scores: Sequence[Score]) -> None:
     axes.set_title(f"{scores[0].scene.id}: error against time")
     band(axes, bound)
     draw(axes, lines)
-    place(axes, lines, margin=True)
+    legend(axes, lines)
 
 
 def _thinned(t: Array, error: Array, points: int = 2000) -> tuple[Array, Array]:

@@ -12,8 +12,8 @@ from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import cost_of, curves, whole_evaluations
 from .drawing import COLOURS, GUIDE, limits, line_style, logarithmic, sheet, svg_text
-from .labels import Line, draw, place
 from .ladders import CPU, ERROR, band, error_above, family_of, ladders
+from .lines import Line, draw, legend
 
 
 def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str | None:
@@ -64,5 +64,5 @@ def _single(lines: Sequence[Line], bound_m: float, words: tuple[str, str, str], 
             ends = np.geomspace(low, high, 9).tolist()
             others.append(Line(diagonal, ends, ends, GUIDE))
             draw(axes, others)
-        place(axes, [*lines, *others])
+        legend(axes, [*lines, *others])
         return svg_text(figure, words[0], f"{words[2]}, log-log: {', '.join(one.name for one in lines)}.")

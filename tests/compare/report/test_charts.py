@@ -1,4 +1,4 @@
-"""The charts: well-formed SVG, the same bytes every time, every method named, and labels that do not overlap."""
+"""The charts: well-formed SVG, the same bytes every time, every method named."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from compare.methods.method import Family
 from compare.report import charts
 from compare.report.charts.drawing import COLOURS, line_style, power_of_ten, sheet
 from compare.report.charts.heat_map import LETTERS
-from compare.report.charts.labels import Line, place
 from compare.report.charts.ladders import FAMILY_COLOURS, family_of, ladders
+from compare.report.charts.lines import Line, legend, name_ends
 from compare.report.pareto import cost_of, curves
 from compare.studies.row import Row
 from reference import InputError
@@ -212,58 +212,41 @@ def test_every_method_has_a_family_and_within_a_picture_no_two_look_alike():
     assert len(set(FAMILY_COLOURS.values())) == len(Family)
 
 
-def named(lines, **how):
-    """Draw names at lines; return the boxes that matplotlib draws them in, and the axes' own box."""
-    with sheet((6, 4)) as figure:
+def drawn_legend(size, inside=False):
+    """Draw a legend of so many lines; return the boxes of its names, of the axes and of the figure."""
+    lines = [Line(f"method {i}", [1, 10], [5, 5 + i], line_style(COLOURS[i % 7], i)) for i in range(size)]
+    with sheet((9.5, 8.6)) as figure:
         axes = figure.subplots()
         axes.set(xlim=(0, 10), ylim=(0, 10))
-        place(axes, lines, **how)
-        renderer = figure.canvas.get_renderer()
-        boxes = {one.get_text(): one.get_window_extent(renderer) for one in axes.texts}
-        return boxes, axes.get_window_extent(), figure.bbox
+        legend(axes, lines, inside=inside)
+        figure.canvas.draw()
+        return [one.get_window_extent() for one in axes.get_legend().get_texts()], axes.get_window_extent(), figure.bbox
 
 
-def lines_to(ends, x=8):
-    return [
-        Line(f"method {i}", [1, 5, x], [9, 5 + 0.1 * i, y], line_style(COLOURS[i % 7], i)) for i, y in enumerate(ends)
-    ]
+@pytest.mark.parametrize("size", [1, 45])
+def test_a_legend_stands_beside_the_axes_and_within_the_picture(size):
+    names, axes, page = drawn_legend(size)
+    assert len(names) == size
+    for i, one in enumerate(names):
+        assert axes.x1 < one.x0 < one.x1 <= page.x1 and page.y0 <= one.y0
+        assert not any(one.overlaps(other) for other in names[:i])
 
 
-@pytest.mark.parametrize(
-    "ends",
-    [[5 + 0.05 * i for i in range(8)], [5.0] * 8, [0.01 * i for i in range(8)], [10 - 0.01 * i for i in range(8)]],
-)
-@pytest.mark.parametrize("margin", [False, True])
-def test_names_do_not_cover_each_other(ends, margin):
-    boxes, axes, page = named(lines_to(ends, 10 if margin else 8), margin=margin)
-    assert len(boxes) == 8
-    for i, one in enumerate(boxes.values()):
-        assert not any(one.overlaps(other) for other in list(boxes.values())[:i])
-        assert (one.x0 > axes.x1) == margin
-        assert page.x0 <= one.x0 < one.x1 <= page.x1
-        assert page.y0 <= one.y0 < one.y1 <= page.y1
+def test_a_legend_inside_the_axes_takes_no_room_from_them():
+    names, axes, _ = drawn_legend(8, inside=True)
+    assert all(axes.x0 < one.x0 < one.x1 < axes.x1 for one in names)
 
 
-def test_names_in_the_margin_stand_in_the_order_of_their_lines_and_near_their_ends():
-    boxes, axes, _ = named(lines_to([9.0, 8.9, 8.8, 5.0, 1.0, 0.9], 10), margin=True)
-    middles = [(box.y0 + box.y1) / 2 for box in boxes.values()]
-    assert middles == sorted(middles, reverse=True)
-    assert middles[3] == pytest.approx(axes.y0 + axes.height / 2, abs=2)
-
-
-def test_no_line_strikes_through_a_name_where_many_run_side_by_side():
-    lines = [Line(f"method {i}", [1 + i / 4, 4 + i / 4], [9, 1], line_style(COLOURS[i % 7], i)) for i in range(12)]
-    boxes, axes, _ = named(lines)
-    parts = np.linspace(0, 1, 400)
-    for line in lines:
-        x, y = (np.interp(parts, (0, 1), ends) / 10 for ends in (line.x, line.y))
-        path = np.column_stack([axes.x0 + x * axes.width, axes.y0 + y * axes.height])
-        assert not any(box.contains(*point) for box in boxes.values() for point in path)
-
-
-def test_a_line_outside_the_axes_has_no_name():
-    boxes, *_ = named([Line("far", [20, 30], [1, 2], line_style(COLOURS[0], 0)), *lines_to([5.0])])
-    assert list(boxes) == ["method 0"]
+def test_names_at_ends_stand_on_the_side_away_from_the_middle():
+    lines = [Line(name, [0, x], [0, 1], line_style(COLOURS[0], 0)) for name, x in (("west", -0.5), ("east", 0.5))]
+    with sheet((6, 4)) as figure:
+        axes = figure.subplots()
+        axes.set(xlim=(-1, 1), ylim=(0, 2))
+        name_ends(axes, lines)
+        figure.canvas.draw()
+        boxes = {one.get_text(): one.get_window_extent() for one in axes.texts}
+        ends = {line.name: axes.transData.transform((line.x[-1], 1))[0] for line in lines}
+    assert boxes["west"].x1 < ends["west"] and ends["east"] < boxes["east"].x0
 
 
 @pytest.mark.parametrize(("value", "text"), [(1e-9, "10⁻⁹"), (0.01, "0.01"), (1000, "1000"), (1e12, "10¹²")])
