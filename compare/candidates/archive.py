@@ -15,8 +15,8 @@ from reference.numbers.precision import Array
 
 from .candidate import COLUMNS, Candidate, candidate_of, checked_transits
 from .layout import Layout, Naming, guessed, layout, unnamed
-from .lines import CHUNK, MAX_BYTES
 from .names import meaning
+from .spelling import CHUNK, MAX_BYTES
 
 MAX_UNPACKED = 1 << 28  # bytes of the arrays that are read, unpacked: two million rows of long doubles
 MOST_ARRAYS = 1000

@@ -28,7 +28,7 @@ from reference import InputError, Scene
 from reference.model.start import Start
 from reference.system.process import terminable
 
-from .lines import MAX_BYTES
+from .spelling import MAX_BYTES
 
 MAX_COMMAND = 1 << 14  # characters; the time to split it into words grows with the square
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double

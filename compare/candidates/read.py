@@ -21,9 +21,8 @@ from reference.system.documents import open_at_once
 
 from .archive import read_archive, read_array
 from .candidate import Candidate, checked_transits
-from .column_reader import ColumnReader
 from .layout import Naming
-from .text import read_text
+from .text import ColumnReader, read_text
 
 _TELLING = 6  # bytes that tell an archive from text
 _READERS = {b"PK": read_archive, b"\x93NUMPY": read_array}

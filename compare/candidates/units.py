@@ -5,7 +5,10 @@ from __future__ import annotations
 import re
 from fractions import Fraction
 
+import numpy as np
+
 from reference import InputError
+from reference.numbers.precision import Array
 
 TIMES = {
     "s": Fraction(1), "ms": Fraction(1, 10**3), "us": Fraction(1, 10**6), "ns": Fraction(1, 10**9),
@@ -70,3 +73,13 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
             raise InputError("--units", ",".join(words), "one unit of time and one of length at most")
         units |= {column: f"{unit}/s" if column.startswith("v") else unit for column in columns}
     return units
+
+
+def multiplied(near: Array, low: Array, factor: Fraction) -> tuple[Array, Array]:
+    """Multiply doubles with low parts; what is not finite, and will be refused, stays as it is."""
+    scaled, rest = near.copy(), np.zeros_like(low)
+    for i in np.flatnonzero(np.isfinite(near)).tolist():
+        exact = (Fraction(float(near[i])) + Fraction(float(low[i]))) * factor
+        scaled[i] = float(exact)
+        rest[i] = float(exact - Fraction(float(scaled[i])))
+    return scaled, rest

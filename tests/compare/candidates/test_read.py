@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from places import ROOT
 
 from compare.candidates.archive import MAX_UNPACKED
-from compare.candidates.column_reader import MAX_ROWS
 from compare.candidates.read import read, read_stream, read_transits
+from compare.candidates.text import MAX_ROWS
 from reference import InputError
 
 ROWS = [
@@ -192,7 +192,7 @@ def test_a_last_line_without_its_end_is_noted():
 
 
 def test_a_number_is_split_over_two_chunks_without_harm(monkeypatch):
-    monkeypatch.setattr("compare.candidates.lines.CHUNK", 7)
+    monkeypatch.setattr("compare.candidates.spelling.CHUNK", 7)
     assert_read(read_stream(csv(), "run"))
 
 
@@ -463,7 +463,7 @@ def test_a_gigabyte_of_nothing_is_refused_in_bounded_memory(head, piece, said):
 
 
 def test_more_rows_than_are_judged_are_refused(monkeypatch):
-    monkeypatch.setattr("compare.candidates.column_reader.MAX_ROWS", 2)
+    monkeypatch.setattr("compare.candidates.text.MAX_ROWS", 2)
     refused(csv(), "more than 2 rows")
     assert MAX_ROWS >= 1_000_000
 
