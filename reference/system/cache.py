@@ -25,7 +25,7 @@ from ..numbers.precision import Array
 from .workspace import replace_file, workspace
 
 KEEP = 40  # entries of one kind at most; the least recently used are deleted first
-ROOM = bytes(1 << 18)  # a disk without room for this much is full
+_ROOM = bytes(1 << 18)  # a disk without room for this much is full
 _SAID = "FOUCAULT_CACHE_SAID"  # tells child processes, too, that the line was printed
 _NAME = "entry"  # array of an entry that holds its name
 
@@ -81,7 +81,7 @@ def store(kind: str, name: str, put: Callable[[Path], object]) -> Path | None:
 
 def check() -> None:
     """Find out whether the cache can be used before child processes do, so that only one line says that it cannot."""
-    path = store("generated", f".{os.getpid()}", lambda path: path.write_bytes(ROOM))
+    path = store("generated", ".room", lambda path: replace_file(path, lambda stream: stream.write(_ROOM)))
     if path is not None:
         discard(path)
 
