@@ -46,8 +46,9 @@ def trust(golden: Golden) -> Mapping[str, str]:
     behind = [MEANING[manifest.level]]
     if manifest.enclosure is not None:
         proof = manifest.enclosure
+        theorem = THEOREMS.get(proof.method, proof.method)
         behind.append(
-            f"Before rounding every position is known to {proof.position_radius_m} m ({THEOREMS[proof.method]}); "
+            f"Before rounding every position is known to {proof.position_radius_m} m ({theorem}); "
             f"the run agrees with it to {proof.agreement_bits} bits."
         )
     behind += [

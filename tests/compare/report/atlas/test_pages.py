@@ -9,6 +9,7 @@ import shutil
 import subprocess
 
 import pytest
+from forgery import forge
 
 import reference
 from compare import judge
@@ -97,6 +98,21 @@ def test_without_a_study_the_page_says_nothing_of_methods(atlas, readings):
     (paris,) = entries(readings)
     assert "How methods fare" in (atlas / "paris.html").read_text()
     assert "How methods fare" not in scene_page(paris, [], StudyResults(), "")
+
+
+def test_a_dataset_of_hostile_words_has_a_page(foucault, tmp_path):
+    pytest.importorskip("matplotlib")
+    evil = "<script>alert(1)</script>"
+    shutil.copytree(golden_root() / "conical", tmp_path / "data" / "conical")
+
+    def change(manifest):
+        manifest["enclosure"]["method"] = evil
+        manifest |= {"title": evil, "flags": [evil], "notes": {evil: evil}, "units": {evil: evil}}
+
+    forge(tmp_path / "data" / "conical", manifest=change)
+    status, _, err = foucault("atlas", "--data", tmp_path / "data", "--out", tmp_path / "out")
+    assert (status, err) == (0, "")
+    assert all(evil not in path.read_text() for path in (tmp_path / "out").iterdir())
 
 
 def test_the_command_to_score_says_what_differs_from_the_scene(readings):
