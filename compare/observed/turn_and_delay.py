@@ -14,11 +14,14 @@ For wide swings the same fit gives the turn about the vertical and the delay tha
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from reference.numbers.precision import Array
+
+from .least_squares import gauss_newton
 
 BLOCKS = 48  # parts of the run at most, in each of which turn and delay are fitted
 FEWEST = 3  # rows of a run at least: one row has as many equations as unknowns, so that nothing checks the fit
@@ -71,15 +74,14 @@ def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, 
     """Return turn and delay of one part."""
     u = truth[:, :2] - np.array(rest)
     rate = truth[:, 3:5]
-    turn = delay = 0.0
-    for _ in range(TURNS):
+
+    def left(numbers: Array) -> tuple[Array, Callable[[], Array]]:
+        turn, delay = numbers.tolist()
         sin, cos_minus_1 = np.sin(turn), -2 * np.sin(turn / 2) ** 2  # written so that nothing cancels
         change = np.column_stack([cos_minus_1 * u[:, 0] - sin * u[:, 1], sin * u[:, 0] + cos_minus_1 * u[:, 1]])
         turned = u + change
-        columns = np.stack([np.column_stack([-turned[:, 1], turned[:, 0]]).ravel(), -rate.ravel()], axis=1)
-        size = np.sqrt((columns**2).sum(axis=0))
-        if not size.all():
-            return 0.0, 0.0
-        step = np.linalg.lstsq(columns / size, (error - change).ravel(), rcond=1e-9)[0] / size
-        turn, delay = turn + float(step[0]), float(step[1])
-    return turn, delay
+        slopes = np.stack([np.column_stack([-turned[:, 1], turned[:, 0]]).ravel(), -rate.ravel()], axis=1)
+        return (error - change + delay * rate).ravel(), lambda: slopes
+
+    (turn, delay), _ = gauss_newton(left, np.zeros(2), steps=TURNS, gain=1.0)
+    return float(turn), float(delay)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from reference.numbers.precision import Array
 
+from ...observed.least_squares import gauss_newton
 from .causes import Cause, causes
 from .families import Family, families_of, positions_of
 from .findings import Explanation, SizedCause
@@ -127,25 +129,38 @@ def _polished(case: Case, best: Best) -> Reading:
 
     The numbers of a reading are linear in those of the fit, which a number that is far off is not.
     """
-    rows, pendulum, reading = case.rows, case.pendulum, best.reading
+    reading, rows = best.reading, case.rows
     names = [cause.free for cause in reading.causes if cause.free]
-    for _ in range(POLISHED if names else 0):
+    if not names:
+        return reading
+
+    def with_numbers(values: Array) -> Program:
         program = reading.program
-        base = positions_of(program, pendulum, rows)
-        slopes, nudges = [], [best.reader.nudge(program, name) for name in names]
-        for name, nudge in zip(names, nudges, strict=True):
-            ahead = program.with_input(name, float(getattr(program, name)) + nudge)
-            slopes.append((positions_of(ahead, pendulum, rows) - base).ravel())
-        if not np.isfinite(slopes).all():
-            break
-        change = np.linalg.lstsq(np.column_stack(slopes), (rows.positions - base).ravel(), rcond=1e-12)[0]
-        for name, nudge, share in zip(names, nudges, change, strict=True):
-            program = program.with_input(name, float(getattr(program, name) + share * nudge))
-        rest = rms(rows.positions - positions_of(program, pendulum, rows)) if program.sensible else math.inf
-        if not rest < BETTER * reading.rest:
-            break
-        reading = best.reader.scored(reading.causes, program, rest)
-    return reading
+        for name, value in zip(names, values.tolist(), strict=True):
+            program = program.with_input(name, value)
+        return program
+
+    def left(values: Array) -> tuple[Array, Callable[[], Array]]:
+        program = with_numbers(values)
+        if not program.sensible:
+            return np.full(rows.positions.size, np.nan), lambda: np.empty(0)
+        base = positions_of(program, case.pendulum, rows)
+
+        def slopes() -> Array:
+            nudges = [best.reader.nudge(program, name) for name in names]
+            moved = [with_numbers(values + one) for one in np.diag(nudges)]
+            return np.column_stack([
+                (positions_of(one, case.pendulum, rows) - base).ravel() / nudge
+                for one, nudge in zip(moved, nudges, strict=True)
+            ])  # fmt: skip
+
+        return (rows.positions - base).ravel(), slopes
+
+    start = np.array([float(getattr(reading.program, name)) for name in names])
+    values, size = gauss_newton(left, start, steps=POLISHED, gain=BETTER)
+    if (values == start).all():
+        return reading
+    return best.reader.scored(reading.causes, with_numbers(values), size / math.sqrt(len(rows.positions)))
 
 
 def explanation_of(case: Case, best: Best) -> Explanation:

@@ -10,22 +10,25 @@ A program that solves no equation but prints a formula keeps its rates whatever 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from reference.numbers.precision import Array
 
+from ...observed.least_squares import gauss_newton
 from .causes import NAMED, Cause
 from .pendulum import NAMES, Fit
 from .programs import Program
 from .readings import Reader, Reading
-from .rows import Rows, rms
+from .rows import Rows
 
 PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
 LEAST = 24  # rows, twice the numbers that are fitted
 STEPS = 12  # Gauss-Newton steps in one window at most
+GAIN = 0.9  # of what was left: a step that leaves more is not taken
 WINDOW = 4.0  # ratio of the lengths of one window and the one before
 HELD = 1e-9  # of the amplitude: what holds a rate that a window does not show
 SAME = 1e-6  # of the amplitude: coefficients that differ by less are one
@@ -185,36 +188,35 @@ def _slopes(times: Array, omega: float, beta: float, coefficients: Array) -> Ite
 
 def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula | None:
     """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
-    omega, beta = guess
-    size = float(np.abs(plane).max())
+    rates = np.array(guess)
+    hold = HELD * float(np.abs(plane).max())
     ends, span = [len(times)], float(times[-1])
     while ends[-1] > LEAST and span > 0:
         span /= WINDOW
         ends.append(max(LEAST, int(np.searchsorted(times, span)) + 1))
-    best: Formula | None = None
+    left = math.inf
     for count in sorted(set(ends)):
-        t, p = times[:count], plane[:count]
-        best = None
-        for _ in range(STEPS):
-            basis = _basis(t, omega, beta)
-            coefficients = np.asarray(np.linalg.lstsq(basis, p, rcond=1e-12)[0], dtype=np.float64)
-            left = p - basis @ coefficients
-            rest = rms(left)
-            if not math.isfinite(rest):
-                return None
-            if best is not None and rest > 0.9 * best.rest:
-                break
-            best = Formula(omega, beta, coefficients, rest)
-            moved = np.column_stack([slope.ravel() for slope in _slopes(t, omega, beta, coefficients)])
-            linear = np.kron(basis, np.eye(2))
-            matrix = np.column_stack([moved, linear])
-            scale = np.linalg.norm(matrix, axis=0)
-            scale[scale == 0] = 1.0
-            hold = HELD * size * math.sqrt(count) * np.eye(2, matrix.shape[1])
-            target = np.concatenate([left.ravel(), np.zeros(2)])
-            change = np.linalg.lstsq(np.vstack([matrix / scale, hold / scale]), target, rcond=1e-13)[0] / scale
-            omega, beta = omega + float(change[0]), beta + float(change[1])
-        if best is None:
+        model = partial(_left, times[:count], plane[:count], hold * math.sqrt(count))
+        rates, left = gauss_newton(model, rates, steps=STEPS, gain=GAIN)
+        if not math.isfinite(left):
             return None
-        omega, beta = best.omega, best.beta
-    return best
+    omega, beta = rates.tolist()
+    return Formula(omega, beta, _linear(_basis(times, omega, beta), plane), left / math.sqrt(len(times)))
+
+
+def _linear(basis: Array, plane: Array) -> Array:
+    return np.asarray(np.linalg.lstsq(basis, plane, rcond=1e-12)[0], dtype=np.float64)
+
+
+def _left(times: Array, plane: Array, hold: float, rates: Array) -> tuple[Array, Callable[[], Array]]:
+    """Return what products of two rates leave, and its slopes by the rates, each held, then by the coefficients."""
+    omega, beta = rates.tolist()
+    basis = _basis(times, omega, beta)
+    coefficients = _linear(basis, plane)
+
+    def slopes() -> Array:
+        moved = np.column_stack([slope.ravel() for slope in _slopes(times, omega, beta, coefficients)])
+        matrix = np.column_stack([moved, np.kron(basis, np.eye(2))])
+        return np.vstack([matrix, hold * np.eye(2, matrix.shape[1])])
+
+    return np.concatenate([(plane - basis @ coefficients).ravel(), np.zeros(2)]), slopes

@@ -17,6 +17,8 @@ from reference.engines.trajectory import Variants
 from reference.model.constants import Constants
 from reference.numbers.precision import Array
 
+from ...observed.least_squares import best_change
+
 NAMES = (
     "turn_x", "turn_y", "turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy", "length", "gradient",
     "point_mass",
@@ -174,14 +176,6 @@ def _in_window(
 
 
 def _step(slopes: Array, left: Array, off: Array, noise: float, damping: float) -> Array:
-    """Return the change of theta in scales that least squares ask for, each number held near its guess.
-
-    Damping holds back what the rows hardly tell: directions whose slope is less than it, of slopes made 1 each.
-    """
+    """Return the change of theta in scales that least squares ask for, each number held near its guess."""
     holds = noise / WIDTHS
-    matrix = np.vstack([slopes, np.diag(holds)])
-    norms = np.linalg.norm(matrix, axis=0)
-    matrix = np.vstack([matrix / norms, damping * np.eye(len(norms))])
-    target = np.concatenate([left, -holds * off, np.zeros(len(norms))])
-    found: Array = np.linalg.lstsq(matrix, target, rcond=1e-14)[0] / norms
-    return found
+    return best_change(np.vstack([slopes, np.diag(holds)]), np.concatenate([left, -holds * off]), damping)

@@ -11,16 +11,21 @@ values of both, Gauss-Newton the best ones; A, B, C are linear.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from reference.numbers.precision import Array
 
+from ...observed.least_squares import gauss_newton
+
 ComplexArray = npt.NDArray[np.complex128]
 STEPS = 30  # Gauss-Newton steps at most
-SETTLED = 1e-15  # change of the phase at the last row, in radians, below which the fit is settled
+GAIN = 0.999  # of what was left: a step that leaves more ends the fit
+OVERFLOW = 1e8  # of the first row: phasors that grow by more are not followed
 
 
 @dataclass(frozen=True)
@@ -149,7 +154,7 @@ def _longest(even: npt.NDArray[np.bool_]) -> tuple[int, int]:
 
 def _refined(times: Array, rows: ComplexArray, guess: tuple[complex, complex]) -> tuple[Phasors, float] | None:
     """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
-    rates = np.array(guess)
+    rates: ComplexArray = np.array(guess)
     span = times[-1] - times[0]
     result: tuple[Phasors, float] | None = None
     windows = sorted({max(12, int(np.searchsorted(times, times[0] + span * 4.0**-k)) + 1) for k in range(6)})
@@ -157,27 +162,30 @@ def _refined(times: Array, rows: ComplexArray, guess: tuple[complex, complex]) -
         t, w = times[:count], rows[:count]
         if len(t) < 8:
             continue
-        last = math.inf
-        for _ in range(STEPS):
-            with np.errstate(over="ignore", invalid="ignore"):
-                basis = np.column_stack([np.exp(1j * rates[0] * t), np.exp(1j * rates[1] * t), np.ones_like(t)])
-            if not np.isfinite(basis).all() or np.abs(basis).max() > 1e8:
-                return result
-            linear = np.linalg.lstsq(basis, w, rcond=None)[0]
-            left = w - basis @ linear
-            slopes = np.column_stack([1j * t * basis[:, 0] * linear[0], 1j * t * basis[:, 1] * linear[1], basis])
-            scale = np.linalg.norm(slopes, axis=0)
-            scale[scale == 0] = 1
-            change = np.linalg.lstsq(slopes / scale, left, rcond=1e-14)[0] / scale
-            size = float(np.linalg.norm(left))
-            result = (
-                Phasors((complex(rates[0]), complex(rates[1])), (linear[0], linear[1]), complex(linear[2])),
-                size / math.sqrt(len(t)),
-            )
-            if size >= last * (1 - 1e-3) and size > 0.5 * last:
-                break
-            last = size
-            rates = rates + change[:2]
-            if np.abs(change[:2]).max() * t[-1] < SETTLED:
-                break
+        rates, size = gauss_newton(partial(_left, t, w), rates, steps=STEPS, gain=GAIN)
+        if not math.isfinite(size):
+            return result
+        a, b, centre = _linear(_basis(t, rates), w)
+        phasors = Phasors((complex(rates[0]), complex(rates[1])), (complex(a), complex(b)), complex(centre))
+        result = phasors, size / math.sqrt(len(t))
     return result
+
+
+def _basis(times: Array, rates: ComplexArray) -> ComplexArray:
+    with np.errstate(over="ignore", invalid="ignore"):
+        turning: ComplexArray = np.exp(1j * times[:, None] * rates)
+    return np.column_stack([turning, np.ones_like(times)])
+
+
+def _linear(basis: ComplexArray, rows: ComplexArray) -> ComplexArray:
+    """Return A, B and C."""
+    return np.asarray(np.linalg.lstsq(basis, rows, rcond=None)[0], dtype=np.complex128)
+
+
+def _left(times: Array, rows: ComplexArray, rates: ComplexArray) -> tuple[ComplexArray, Callable[[], ComplexArray]]:
+    """Return what two phasors leave, and its slopes by their rates, then by A, B and C."""
+    basis = _basis(times, rates)
+    if not np.isfinite(basis).all() or np.abs(basis).max() > OVERFLOW:
+        return np.full_like(rows, np.nan), lambda: basis
+    linear = _linear(basis, rows)
+    return rows - basis @ linear, lambda: np.column_stack([1j * times[:, None] * basis[:, :2] * linear[:2], basis])

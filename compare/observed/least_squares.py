@@ -1,0 +1,58 @@
+"""Least squares by Gauss-Newton: the numbers of a model moved to where the model leaves least of some rows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Numbers = npt.NDArray[Any]  # real or complex
+Model = Callable[[Numbers], tuple[Numbers, Callable[[], Numbers]]]
+
+
+def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers:
+    """Return the change of numbers by which slopes come nearest to what is left.
+
+    Args:
+        slopes: what the rows change by with each number, shape (rows, numbers); all are brought to one size first.
+        left: the rows, less what the model has in their place, shape (rows,).
+        damping: holds back what the rows hardly tell: directions whose slope, of slopes made 1 each, is less than it.
+    """
+    scale = np.linalg.norm(slopes, axis=0)
+    scale[scale == 0] = 1.0
+    matrix = slopes / scale
+    if damping:
+        matrix = np.vstack([matrix, damping * np.eye(len(scale))])
+        left = np.concatenate([left, np.zeros(len(scale))])
+    change: Numbers = np.linalg.lstsq(matrix, left, rcond=1e-14)[0] / scale
+    return change
+
+
+def gauss_newton(model: Model, start: Numbers, *, steps: int, gain: float) -> tuple[Numbers, float]:
+    """Return the numbers that leave least, and the norm of what they leave; infinity where the first leave no numbers.
+
+    Args:
+        model: returns what numbers leave, and a function that makes the slopes of `best_change` there; further slopes
+            are those of numbers that the model fits itself, because it is linear in them.
+        start: first numbers.
+        steps: that are taken at most.
+        gain: share of what was left that a step has to come below, or it is not taken and the search ends.
+    """
+    numbers, (left, slopes) = start, model(start)
+    least = float(np.linalg.norm(left))
+    if not math.isfinite(least):
+        return start, math.inf
+    for _ in range(steps):
+        made = slopes()
+        if not np.isfinite(made).all():
+            break
+        moved = numbers + best_change(made, left)[: len(numbers)]
+        left, slopes = model(moved)
+        size = float(np.linalg.norm(left))
+        if not size < gain * least:
+            break
+        numbers, least = moved, size
+    return numbers, least

@@ -1,0 +1,63 @@
+"""Gauss-Newton: known numbers come back, and a search that leads nowhere keeps what it had."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from compare.observed.least_squares import Numbers, best_change, gauss_newton
+
+TIMES = np.linspace(0.0, 3.0, 40)
+
+
+def decay(rows: Numbers) -> Callable[[Numbers], tuple[Numbers, Callable[[], Numbers]]]:
+    """Return the model a exp(-k t) of a and k."""
+
+    def model(numbers: Numbers) -> tuple[Numbers, Callable[[], Numbers]]:
+        a, k = numbers
+        shape = np.exp(-k * TIMES)
+        return rows - a * shape, lambda: np.column_stack([shape, -a * TIMES * shape])
+
+    return model
+
+
+@pytest.mark.parametrize("numbers", [(2.0, 0.7), (1e-9, 0.7), (2.0, 0.7 + 3j)])
+def test_the_numbers_of_exact_rows_come_back(numbers: tuple[complex, complex]) -> None:
+    a, k = numbers
+    start = np.array([1.3 * a, k + 0.1])
+    found, left = gauss_newton(decay(a * np.exp(-k * TIMES)), start, steps=12, gain=0.9)
+    assert found == pytest.approx(np.array(numbers), rel=1e-12)
+    assert left < 1e-13 * abs(a)
+
+
+def test_a_linear_model_needs_one_step() -> None:
+    slopes = np.column_stack([np.ones_like(TIMES), 1e9 * TIMES])
+    rows = slopes @ [3.0, -2e-9]
+    found, _ = gauss_newton(lambda numbers: (rows - slopes @ numbers, lambda: slopes), np.zeros(2), steps=1, gain=1.0)
+    assert found == pytest.approx(np.array([3.0, -2e-9]), rel=1e-12)
+
+
+def test_a_number_that_changes_nothing_is_left_alone() -> None:
+    change = best_change(np.column_stack([TIMES, np.zeros_like(TIMES)]), 2.0 * TIMES)
+    assert change == pytest.approx(np.array([2.0, 0.0]))
+
+
+def test_damping_holds_back_what_rows_hardly_tell_apart() -> None:
+    slopes, left = np.column_stack([TIMES, TIMES + 1e-9 * TIMES**2]), TIMES**2
+    free, held = best_change(slopes, left), best_change(slopes, left, damping=1e-3)
+    assert np.abs(free).max() > 1e8 > 10 > np.abs(held).max()
+
+
+def test_a_step_that_gains_too_little_is_not_taken() -> None:
+    start = np.array([2.0, 0.7])
+    rows = 2.0 * np.exp(-0.7 * TIMES) + np.cos(40 * TIMES)
+    found, left = gauss_newton(decay(rows), start, steps=12, gain=0.5)
+    assert found is start and left == pytest.approx(float(np.linalg.norm(np.cos(40 * TIMES))))
+
+
+def test_where_the_first_numbers_leave_none_the_rest_is_infinite() -> None:
+    found, left = gauss_newton(decay(np.full_like(TIMES, np.nan)), np.ones(2), steps=3, gain=0.9)
+    assert found.tolist() == [1.0, 1.0] and math.isinf(left)
