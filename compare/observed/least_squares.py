@@ -31,6 +31,23 @@ def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers
     return change
 
 
+def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges: Numbers) -> Model:
+    """Return a model, for `gauss_newton`, whose slopes are taken by differences.
+
+    Args:
+        rows_of: returns the rows that numbers make; NaN where they make none.
+        rows: those that are to be met.
+        nudges: by which each number is moved for its slope.
+    """
+
+    def model(numbers: Numbers) -> tuple[Numbers, Callable[[], Numbers]]:
+        base = rows_of(numbers)
+        moves = np.diag(nudges)
+        return rows - base, lambda: np.column_stack([(rows_of(numbers + one) - base) / one.sum() for one in moves])
+
+    return model
+
+
 def gauss_newton(model: Model, start: Numbers, *, steps: int, gain: float) -> tuple[Numbers, float]:
     """Return the numbers that leave least, and the norm of what they leave; infinity where the first leave no numbers.
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from reference.numbers.precision import Array
 
-from ...observed.least_squares import gauss_newton
+from ...observed.least_squares import by_differences, gauss_newton
 from .causes import Cause, causes
 from .families import Family, families_of, positions_of
 from .findings import Explanation, SizedCause
@@ -129,38 +128,24 @@ def _polished(case: Case, best: Best) -> Reading:
 
     The numbers of a reading are linear in those of the fit, which a number that is far off is not.
     """
-    reading, rows = best.reading, case.rows
+    reading, positions = best.reading, case.rows.positions
     names = [cause.free for cause in reading.causes if cause.free]
     if not names:
         return reading
 
-    def with_numbers(values: Array) -> Program:
-        program = reading.program
-        for name, value in zip(names, values.tolist(), strict=True):
-            program = program.with_input(name, value)
-        return program
-
-    def left(values: Array) -> tuple[Array, Callable[[], Array]]:
-        program = with_numbers(values)
-        if not program.sensible:
-            return np.full(rows.positions.size, np.nan), lambda: np.empty(0)
-        base = positions_of(program, case.pendulum, rows)
-
-        def slopes() -> Array:
-            nudges = [best.reader.nudge(program, name) for name in names]
-            moved = [with_numbers(values + one) for one in np.diag(nudges)]
-            return np.column_stack([
-                (positions_of(one, case.pendulum, rows) - base).ravel() / nudge
-                for one, nudge in zip(moved, nudges, strict=True)
-            ])  # fmt: skip
-
-        return (rows.positions - base).ravel(), slopes
+    def rows_of(values: Array) -> Array:
+        program = reading.program.with_inputs(names, values)
+        found = positions_of(program, case.pendulum, case.rows) if program.sensible else np.full_like(positions, np.nan)
+        return found.ravel()
 
     start = np.array([float(getattr(reading.program, name)) for name in names])
-    values, size = gauss_newton(left, start, steps=POLISHED, gain=BETTER)
+    nudges = np.array([best.reader.nudge(reading.program, name) for name in names])
+    model = by_differences(rows_of, positions.ravel(), nudges)
+    values, size = gauss_newton(model, start, steps=POLISHED, gain=BETTER)
     if (values == start).all():
         return reading
-    return best.reader.scored(reading.causes, with_numbers(values), size / math.sqrt(len(rows.positions)))
+    program = reading.program.with_inputs(names, values)
+    return best.reader.scored(reading.causes, program, size / math.sqrt(len(positions)))
 
 
 def explanation_of(case: Case, best: Best) -> Explanation:

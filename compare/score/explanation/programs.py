@@ -7,6 +7,7 @@ motion depends on (`pendulum.NAMES`), so that many programs are held against one
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -176,6 +177,10 @@ class Program:
         if self.method is not None or self.late or self.turned_plane or self.kind != "sphere":
             theta = self._as_computed(theta)
         return theta
+
+    def with_inputs(self, names: Sequence[str], values: Array) -> Program:
+        """Return the program with these numbers replaced."""
+        return replace(self, **dict(zip(names, values.tolist(), strict=True)))
 
     def with_input(self, name: str, value: float) -> Program:
         """Return the program with one number replaced."""

@@ -17,6 +17,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
+from ...observed.least_squares import best_change, by_differences, gauss_newton
 from .causes import Cause
 from .pendulum import Fit
 from .programs import Program
@@ -30,6 +31,7 @@ PHASES = (0.02, 0.06, 0.2, 0.6)  # ωh of a first step, where the leading error 
 HALVED = 0.5  # of what is left: a cause that leaves more does not count
 BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
 NEWTON = 6  # steps that fit the free numbers of a combination
+GAIN = 0.99  # of what was left: a step that leaves more is not taken
 
 
 @dataclass(frozen=True)
@@ -134,35 +136,21 @@ class Reader:
         own, free = program.theta(), list(self.fit.free)
         columns = [free.index(i) for i in (5, 6, 9, 10) if i in free]
         slopes = self._triangle[:, columns]
-        scale = np.linalg.norm(slopes, axis=0)
-        scale[scale == 0] = 1.0
-        change = np.linalg.lstsq(slopes / scale, self._off(program), rcond=1e-12)[0] / scale
+        change = best_change(slopes, self._off(program))
         return -float(own[5] + change[0]), float(own[6] + change[1])
 
-    def _fitted(self, together: tuple[Cause, ...], program: Program, free: list[str]) -> Reading | None:
-        """Fit the free numbers by Gauss-Newton; None if they leave their domains."""
-        last = math.inf
-        for _ in range(NEWTON):
-            off = self._off(program)
-            size = float(np.linalg.norm(off))
-            if size > 0.99 * last or not math.isfinite(size):
-                break
-            last = size
-            slopes, scales = [], []
-            for name in free:
-                value = getattr(program, name)
-                nudge = self.nudge(program, name)
-                slopes.append((self._off(program.with_input(name, value + nudge)) - off) / nudge)
-                scales.append(nudge)
-            matrix = np.column_stack(slopes) * np.array(scales)
-            if not np.isfinite(matrix).all():
-                return None
-            change = np.linalg.lstsq(matrix, -off, rcond=1e-12)[0] * np.array(scales)
-            for name, shift in zip(free, change, strict=True):
-                program = program.with_input(name, float(getattr(program, name) + shift))
-            if not program.sensible:
-                return None
-        return self._judged(together, program)
+    def _fitted(self, together: tuple[Cause, ...], program: Program, free: list[str]) -> Reading:
+        """Fit the free numbers by Gauss-Newton."""
+
+        def off_of(values: Array) -> Array:
+            one = program.with_inputs(free, values)
+            return self._off(one) if one.sensible else np.full(len(self._triangle), np.nan)
+
+        start = np.array([float(getattr(program, name)) for name in free])
+        nudges = np.array([self.nudge(program, name) for name in free])
+        model = by_differences(off_of, np.zeros(len(self._triangle)), nudges)
+        values, _ = gauss_newton(model, start, steps=NEWTON, gain=GAIN)
+        return self._judged(together, program.with_inputs(free, values))
 
     def like_a_step(self, reading: Reading, known: Sequence[Cause]) -> bool:
         """Return whether what a reading leaves is an integrator's, too little for its method to be named.

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from compare.observed.least_squares import Numbers, best_change, gauss_newton
+from compare.observed.least_squares import Numbers, best_change, by_differences, gauss_newton
 
 TIMES = np.linspace(0.0, 3.0, 40)
 
@@ -61,3 +61,9 @@ def test_a_step_that_gains_too_little_is_not_taken() -> None:
 def test_where_the_first_numbers_leave_none_the_rest_is_infinite() -> None:
     found, left = gauss_newton(decay(np.full_like(TIMES, np.nan)), np.ones(2), steps=3, gain=0.9)
     assert found.tolist() == [1.0, 1.0] and math.isinf(left)
+
+
+def test_slopes_by_differences_find_the_same_numbers() -> None:
+    model = by_differences(lambda n: n[0] * np.exp(-n[1] * TIMES), 2.0 * np.exp(-0.7 * TIMES), np.array([1e-6, 1e-6]))
+    found, _ = gauss_newton(model, np.array([1.5, 0.9]), steps=12, gain=0.9)
+    assert found == pytest.approx(np.array([2.0, 0.7]), rel=1e-12)
