@@ -10,7 +10,7 @@ every printed formula, number or sentence, with the computation to compare it wi
 - `digits.py`: arithmetic with 60 decimal digits: numbers, vectors, derivatives;
 - `runs.py`: runs of the reference that numbers and sentences rest on;
 - `figures.py`: the first paper's figures, drawn again, and their captions;
-- `page.py`: the rows and the figures as a page, and the rows as CSV and JSON.
+- `papers_page.py`: the rows and the figures as a page, and the rows as CSV and JSON.
 
 >>> from compare.papers import rows
 >>> judged = {row.id: row for row in rows()}                   # doctest: +SKIP
