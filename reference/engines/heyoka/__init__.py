@@ -1,17 +1,16 @@
 """heyoka, the Taylor integrator that compiles the equations of a scene: everything that uses it stands in this folder.
 
-heyoka's traps are dealt with here: constants enter in the run's own precision and never as Python floats; log lines,
-its only sign of a lost root, are caught; outcome codes are checked; arrays of `real` leak without the custom memory
-handler; the disk cache never hits beyond 128 bits and is switched off for `real`.
+heyoka's traps are dealt with here: constants enter in the run's own precision and never as Python floats; a root that
+it loses, which it tells its log alone, shows in signs; outcome codes are checked; arrays of `real` leak without the
+custom memory handler; the disk cache never hits beyond 128 bits and is switched off for `real`.
 
 - `engine`: its declaration; `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof.
-- `batch`, `batch_run`, `batch_zeros`, `batch_tolerances`: eight scenes side by side; `shared_log`: the log of threads.
+- `batch`, `loop`: many scenes, one after the other; `row_zeros`: what the zeros in a row say, guarded.
 - `numbers`: its number types, and exact conversions.
 - `system`: a formulation as its expressions.
 - `model`: a formulation with a scene's constants in a number type; its states in SI units.
 - `stepper`: one scene, step by step, with events, dense output and Taylor coefficients.
-- `transits`: guards around its event detection.
+- `events`: guards around its event detection.
 - `propagator`: any system without events, in one call.
 - `machine_code`: its cache on disk.
-- `log`: its log, captured.
 """

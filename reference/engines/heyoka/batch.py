@@ -1,38 +1,40 @@
-"""heyoka as an engine that solves many scenes side by side; it is imported when it runs."""
+"""heyoka as an engine that solves many scenes; it is imported when it runs."""
 
 from __future__ import annotations
 
 from importlib.metadata import version
 
 from ..batch_interface import Batch, Outcomes, Rows, Wanted
-from .batch_tolerances import MOVED_TOLERANCE, TOLERANCE
 
+TOLERANCE = 2.0**-52  # of a run, the relative error of a step: order 20
+MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
 COMPILE_S = 1.5  # CPU seconds, cold
-SWING_S = 8e-6  # of a default row over the period of a small swing
+SWING_S = 1.3e-5  # of a default row over the period of a small swing
 
 
 class HeyokaBatch(Batch):
-    """Batches of eight in `momentum`; events find the zeros, and a second pass gives the states there."""
+    """A loop over the rows in `momentum`; events find the zeros, and a second pass gives the states there."""
 
     name = "heyoka"
     requires = ("heyoka",)
     extra = ""
     drag = True
+    lanes = 1
 
     @property
     def identity(self) -> str:
         """Return version and tolerances."""
-        return f"heyoka {version('heyoka')}, {self.lanes} lanes, tolerances {TOLERANCE!r} and {MOVED_TOLERANCE!r}"
+        return f"heyoka {version('heyoka')}, tolerances {TOLERANCE!r} and {MOVED_TOLERANCE!r}"
 
     def prepare(self, wanted: Wanted, drag: bool) -> float:
         """Compile what such rows need in the calling thread."""
-        from .batch_run import prepare
+        from .loop import prepare
 
         return prepare(wanted, drag)
 
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
-        """Solve rows, eight at a time."""
-        from .batch_run import solve
+        """Solve rows, one after the other."""
+        from .loop import solve
 
         return solve(rows, wanted)
 

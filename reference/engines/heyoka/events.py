@@ -1,8 +1,8 @@
 """Transits by heyoka: guards around its event detection, so that no zero of xdot is lost and none counted twice.
 
 heyoka finds the zeros on the polynomial of each step, but it can lose one within about 2**-prec of the left edge of the
-step, and only a line in its log says so. If, for example, xdot is +0.3 mm/s at the start of a step and -0.2 mm/s at its
-end, there is a crossing in between, and if heyoka reports none, it has lost one.
+step, which it tells its log alone. If, for example, xdot is +0.3 mm/s at the start of a step and -0.2 mm/s at its end,
+there is a crossing in between, and if heyoka reports none, it has lost one.
 
 Signs alone do not show everything. If xdot is +0.3 mm/s and falling at the start, and +0.2 mm/s and rising at the end,
 it has a minimum in between. That may be +0.1 mm/s, with no transit, or -0.1 mm/s, with two close together, as happens
@@ -10,7 +10,6 @@ when the swing plane passes through north-south. To tell them apart, xdot is eva
 
 So a step is taken again, with its left edge moved, unless
 
-- heyoka wrote nothing to its log during it,
 - the crossings in it alternate, and lead from the sign of xdot at its start to the sign at its end,
 - xdot keeps its sign at a minimum of |xdot| inside it, if it has no crossing.
 
@@ -31,7 +30,6 @@ from ...errors import IntegrationError
 from ..plan import AT_REST
 
 if TYPE_CHECKING:
-    from ...system.capture import Capture
     from .stepper import Stepper, Zero
 
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up
@@ -40,7 +38,7 @@ MINIMUM_BISECTIONS = 60  # the minimum of |xdot| is found to this many bits of a
 
 
 class _Contradiction(Exception):
-    """The zeros of a step contradict each other, or heyoka wrote to its log."""
+    """The zeros of a step contradict each other."""
 
 
 def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
@@ -68,7 +66,6 @@ def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
 def march(
     stepper: Stepper,
     times: Sequence[Any],
-    watch: Capture,
     quiet: Fraction | None = None,
     report: Callable[[float], None] | None = None,
 ) -> tuple[Any, list[Zero]]:
@@ -77,7 +74,6 @@ def march(
     Args:
         stepper: at t = 0, with events.
         times: increasing, from 0, numbers of the run's type.
-        watch: heyoka's log.
         quiet: length in s of a first step that holds no zero but the one at t = 0.
         report: called with the simulated time after each step.
 
@@ -95,7 +91,6 @@ def march(
     if quiet is not None:
         stepper.advance(min(stepper.numbers.of(quiet), end))
         collect()
-        watch.fresh()
     last_starts: deque[tuple[Any, int, int]] = deque(maxlen=2)  # of the last two steps
     retries, at_start = 0, stepper.xdot_and_xddot(stepper.state)
     limit = end - stepper.time
@@ -103,7 +98,7 @@ def march(
         last_starts.append((stepper.mark(), len(states), len(zeros)))
         stepper.advance(limit)
         try:
-            zeros_of_step, at_start = _checked_zeros(stepper, last_starts[-1][0][0], at_start, watch)
+            zeros_of_step, at_start = _checked_zeros(stepper, last_starts[-1][0][0], at_start)
         except _Contradiction as contradiction:
             retries += 1
             if retries > MAX_RETRIES:
@@ -128,7 +123,7 @@ def march(
 
 
 def _checked_zeros(
-    stepper: Stepper, t_start: Any, at_start: tuple[float, float], watch: Capture
+    stepper: Stepper, t_start: Any, at_start: tuple[float, float]
 ) -> tuple[list[Zero], tuple[float, float]]:
     """Return the zeros of the last step, checked, and xdot and xddot at its end.
 
@@ -136,13 +131,10 @@ def _checked_zeros(
         stepper: after the step.
         t_start: where the step began.
         at_start: xdot and xddot there.
-        watch: heyoka's log.
 
     Raises:
         _Contradiction: a guard fails.
     """
-    if watch.fresh():
-        raise _Contradiction("heyoka's root finder gave up")
     zeros = sorted(stepper.zeros, key=lambda zero: zero.t)
     at_end = stepper.xdot_and_xddot(stepper.state)
     sign = np.sign(at_start[0])

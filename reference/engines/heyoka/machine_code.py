@@ -2,33 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
 import heyoka as hy
 
 from ...numbers.precision import NumberType
-from .log import watched_log
 
 FOLDER = "foucault"  # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
 MOST_BYTES = 1 << 25
 
 
-@contextmanager
-def compiling(number: NumberType) -> Iterator[None]:
-    """Compile meanwhile; what heyoka writes to stdout about its cache is not passed on.
+def keep_on_disk(number: NumberType) -> None:
+    """Have what is compiled from now on kept on disk, where that serves for numbers of this type.
 
     Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it is switched off.
     """
-    with watched_log():
-        keep_on_disk(number)
-        yield
-
-
-def keep_on_disk(number: NumberType) -> None:
-    """Have what is compiled from now on kept on disk, where that serves for numbers of this type."""
     hy.llvm_state.set_diskcache_enabled(number.hardware and _has_place())
 
 

@@ -17,6 +17,7 @@ from ...errors import IntegrationError
 from ...numbers.precision import DOUBLE, LONG_DOUBLE, Array, NumberType
 
 hy.install_custom_numpy_mem_handler()
+hy.set_logger_level_critical()  # its log is the process's stdout; what it would tell of lost roots is found otherwise
 
 _HARDWARE = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}  # type, and that of arrays
 

@@ -11,7 +11,7 @@ import heyoka as hy
 import numpy as np
 
 from ...numbers.precision import NumberType
-from .machine_code import compiling
+from .machine_code import keep_on_disk
 from .numbers import Numbers
 from .system import as_pairs
 
@@ -51,8 +51,8 @@ class Propagator:
             keywords["tol"] = self.numbers.of(Fraction(tolerance))
         started = time.process_time()
         zeros = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)
-        with compiling(number):
-            self._ta: Any = hy.taylor_adaptive(system, zeros, fp_type=self.numbers.type, **keywords)
+        keep_on_disk(number)
+        self._ta: Any = hy.taylor_adaptive(system, zeros, fp_type=self.numbers.type, **keywords)
         self.compile_s = time.process_time() - started
         self.steps = 0
 

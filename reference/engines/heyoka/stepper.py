@@ -17,7 +17,7 @@ from ...model.formulations import Formulation
 from ...model.start import Start
 from ...numbers.precision import NumberType
 from ..plan import Pace, Report
-from .machine_code import compiling
+from .machine_code import keep_on_disk
 from .model import RoundedModel
 from .system import System
 
@@ -79,11 +79,11 @@ class Stepper:
             keywords["nt_events"] = [event]
         state = np.array(self.model.release(start), dtype=self.numbers.dtype)
         started = time.process_time()
-        with compiling(number):
-            self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
-            if events:
-                outputs = [system.xdot, system.xddot]
-                self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **compiled)
+        keep_on_disk(number)
+        self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
+        if events:
+            outputs = [system.xdot, system.xddot]
+            self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **compiled)
         self.compile_s = time.process_time() - started
         self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)

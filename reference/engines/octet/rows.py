@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from ...numbers.double_double import DoubleDouble, square_root
 from ...numbers.precision import Array
 from ..batch_interface import CLOSE_PAIR, OK, Outcomes, Rows, Wanted
 from ..batch_interface import LEAST_BEND as LEAST
+from ..plumb_axes import PlumbAxes, moved, plumb_line, turned
 
 # of a row's numbers: state and constants in its unit of time, unit and span in s, multiplicities of zeros at release
 X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, CLOSE_S, SEEKS_X, SEEKS_U = range(17)
@@ -24,7 +23,6 @@ TOLERANCE = 2.0**-54  # the size that a step's last coefficients have, against t
 _ENGINES = Path(__file__).parents[1]
 SOURCES = [*_ENGINES.glob("*.py"), *_ENGINES.glob("limbs/*.py"), *_ENGINES.glob("octet/*.py")]  # of the kernel
 COMPILE_S, READ_S = 15, 1.2  # CPU seconds of numba and the kernel: cold, and kept on disk
-_SAME = 2.0**-94  # of a row's velocities: u' that is less at the release is zero
 
 
 def packed(rows: Rows, wanted: Wanted) -> Array:
@@ -32,29 +30,21 @@ def packed(rows: Rows, wanted: Wanted) -> Array:
 
     Constants and state are moved by an ulp as `wanted.moved` says.
     """
-    of, moved = DoubleDouble.from_pairs, wanted.moved
-    north, up = of(rows.pull[:, 1]), of(rows.pull[:, 2])
-    size = square_root(north * north + up * up)
-    sin, cos = _plumb_line(north, up, size, np.where(size.vanishes, 1.0, 0.0))
-    turn_p, turn_u = _turned(of(rows.turn[:, 1]), of(rows.turn[:, 2]), sin, cos)
-    x, (p, down) = of(rows.n[:, 0]), _turned(of(rows.n[:, 1]), of(rows.n[:, 2]), sin, cos)
-    v, s = _turned(of(rows.V[:, 1]), of(rows.V[:, 2]), sin, cos)
+    axes = PlumbAxes.of(rows)
+    (x, p, down), (east, v, s), (turn_p, turn_u) = axes.n, axes.V, axes.turn
     u = ((x * x + p * p) / (1.0 - down)).where(down.high < 0, 1.0 + down)
-    w = of(rows.V[:, 0]) + turn_p
-    udot = s + turn_p * x
-    speed = np.abs(rows.V[:, :, 0]).sum(1) + np.abs(rows.turn[:, :, 0]).sum(1)
+    w = east + turn_p
+    size, speed = axes.size, axes.speed
     numbers = np.zeros((len(rows), COLUMNS))
     for column, value in enumerate((x, p, u, w, v, s, turn_p, turn_u, size)):
-        high = value.high
-        beyond = np.copysign(np.inf, high) if moved > 0 else 0.0
-        numbers[:, column] = np.where(high == 0, 0.0, np.nextafter(high, beyond)) if moved else high
+        numbers[:, column] = moved(value.high, wanted.moved)
     rate = np.sqrt(size.high) + speed
     mantissa, exponent = np.frexp(np.where(rate > 0, rate, 1.0 / rows.t_end[:, 0]))
     unit = np.ldexp(1.0, (mantissa == 0.5) - exponent)  # a power of two: times the rate at most 1
     numbers[:, [TURN_P, TURN_U, W, V, S]] *= unit[:, None]
     numbers[:, PULL] *= unit * unit
     numbers[:, UNIT], numbers[:, END : END + 2] = unit, rows.t_end
-    numbers[:, ZEROS_X], numbers[:, ZEROS_U] = rows.zeros_at_release, np.abs(udot.high) <= _SAME * speed
+    numbers[:, ZEROS_X], numbers[:, ZEROS_U] = rows.zeros_at_release, axes.level
     numbers[:, SEEKS_X] = (wanted.transits or wanted.times) & ~rows.still
     numbers[:, SEEKS_U] = wanted.apsides
     with np.errstate(divide="ignore"):
@@ -69,9 +59,9 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     x, p, u, w, v, s = r[:6]
     north, up = rows.pull[:, 1, 0], rows.pull[:, 2, 0]
     size = np.sqrt(north * north + up * up)  # not hypot, which differs from libm to libm
-    sin, cos = _plumb_line(north, up, size, np.where(size == 0, 1.0, 0.0))
-    n = (x, *_turned(p, u - 1.0, -sin, cos))
-    velocity = (w - turn_p * u + turn_u * p, *_turned(v - turn_u * x, s + turn_p * x, -sin, cos))
+    sin, cos = plumb_line(north, up, size, np.where(size == 0, 1.0, 0.0))
+    n = (x, *turned(p, u - 1.0, -sin, cos))
+    velocity = (w - turn_p * u + turn_u * p, *turned(v - turn_u * x, s + turn_p * x, -sin, cos))
     result = Outcomes.empty(len(rows))
     result.fate[:] = r[FATE]
     result.steps[:] = r[STEPS]
@@ -89,13 +79,3 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     result.largest_angle[:] = 2.0 * np.arcsin(np.sqrt(np.clip(0.5 * r[HIGHEST], 0.0, 1.0)))
     result.state[result.fate != OK] = np.nan
     return replace(result, transit_row=moments[0], transit_t=moments[1], transit_direction=moments[2])
-
-
-def _plumb_line(north: Any, up: Any, size: Any, none: Array) -> tuple[Any, Any]:
-    """Return the unit vector up along -c; the vertical where there is no force, `none` 1 instead of 0."""
-    return -north / (size + none), (none - up) / (size + none)
-
-
-def _turned(north: Any, up: Any, sin: Any, cos: Any) -> tuple[Any, Any]:
-    """Return a vector's parts in the meridian and along the plumb line, which leans by (sin, cos) from the vertical."""
-    return cos * north - sin * up, sin * north + cos * up

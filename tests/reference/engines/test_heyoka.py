@@ -8,12 +8,12 @@ from fractions import Fraction
 import heyoka as hy
 import numpy as np
 import pytest
+from reference.engines.heyoka.log import watched_log
 from small_scenes import make_scene, model_at, stepper_of
 
 import reference.engines.heyoka.run as module
 from reference.engines.heyoka import machine_code
 from reference.engines.heyoka import stepper as stepper_module
-from reference.engines.heyoka.log import watched_log
 from reference.engines.heyoka.system import System, equations_text
 from reference.engines.plan import Plan
 from reference.errors import IntegrationError

@@ -5,7 +5,6 @@ from __future__ import annotations
 import subprocess
 import sys
 
-import pytest
 from places import ROOT
 
 PROGRAM = """
@@ -41,7 +40,6 @@ print("the end", same, flush=True)
 """
 
 
-@pytest.mark.xfail(strict=True, reason="the process's stdout is captured while heyoka runs, by several threads at once")
 def test_threads_lose_nothing_that_is_printed():
     done = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True, cwd=ROOT)
     *lines, last = done.stdout.splitlines()

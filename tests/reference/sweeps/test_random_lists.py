@@ -12,7 +12,7 @@ from reference.scenes.scene import load_scene
 from reference.sweeps.sweep import sweep
 
 SCENES = {"angles": "two_radians", "positions": "paris"}
-SAME = ("status", "level", "transits", "close_pairs")
+SAME = ("status", "transits", "close_pairs")
 ERRORS = {
     "frequency_hz": "frequency_error_hz",
     "t_first_s": "transit_error_s",
@@ -23,18 +23,14 @@ ERRORS = {
     **dict.fromkeys(("x_m", "y_m", "z_m"), "position_error_m"),
     **dict.fromkeys(("vx_m_s", "vy_m_s", "vz_m_s"), "velocity_error_m_s"),
 }
-APSES = "highest points are false, missing or without an error"
-CLOSE = "a row that the solver solved keeps the close pairs of the run in double"
 FAILING = {
-    "angles": dict.fromkeys((54, 65, 68, 110, 146, 150, 153, 178), APSES),
+    "angles": {},
     "positions": {
-        **dict.fromkeys((4, 7, 12, 15, 24, 25, 30, 34, 37, 56, 93, 101, 112, 118, 121, 123, 133, 166), APSES),
-        **dict.fromkeys((169, 184, 201, 217, 220, 221, 224, 227, 229, 233), APSES),
-        81: CLOSE,
+        **dict.fromkeys((7, 101, 217), "octet counts no highest points of some flat or tiny ellipses"),
+        81: "a row that the solver solved keeps the close pairs of the run in double",
+        166: "octet loses every second highest point of a tiny swing",
     },
-}  # fmt: skip
-
-pytestmark = pytest.mark.filterwarnings("ignore:.*encountered in divide:RuntimeWarning")
+}
 
 
 @cache
@@ -62,6 +58,7 @@ def differences(name, row):
 def test_the_engines_agree_over_a_list(name):
     wrong = {row: differences(name, row) for row in range(250) if row not in FAILING[name]}
     assert {row: columns for row, columns in wrong.items() if columns} == {}
+    assert sum(row["level"] != "computed" for engine in ("heyoka", "octet") for row in solved(name, engine)) < 15
 
 
 @pytest.mark.parametrize(
@@ -76,7 +73,6 @@ def test_the_engines_agree_over_a_row(name, row):
     assert differences(name, row) == []
 
 
-@pytest.mark.xfail(strict=True, reason=APSES)
 @pytest.mark.parametrize("drag", ["0", "1e-300"])
 def test_a_highest_point_soon_after_the_release_counts(drag):
     """Pushed outward, the bob rises for a moment: that is its first highest point, with and without drag."""

@@ -1,0 +1,175 @@
+"""Many rows by heyoka, one after the other: one pass finds the zeros by events, one more gives the states there."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import heyoka as hy
+import numpy as np
+
+from ...model.constants import Constants
+from ...numbers.precision import DOUBLE, Array
+from ..batch_interface import STOPPED, Outcomes, Rows, Wanted
+from ..plumb_axes import PlumbAxes, moved, turned
+from .batch import MOVED_TOLERANCE, TOLERANCE
+from .machine_code import keep_on_disk
+from .row_zeros import (
+    HEIGHT,
+    MODEL,
+    TRANSIT,
+    Motion,
+    Release,
+    Samples,
+    Zeros,
+    describe_highest_points,
+    describe_transits,
+)
+from .system import as_pairs, rates
+
+PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
+STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
+LEAST_STEPS = 10_000  # that are granted to any row
+
+Kind = tuple[tuple[int, ...], bool, float]  # the zeros that are looked for, whether there is drag, and the tolerance
+
+
+class Integrator:
+    """The equations compiled once, in the axes of the plumb line; not to be used by two threads at once."""
+
+    def __init__(self, sought: tuple[int, ...], drag: bool, tolerance: float) -> None:
+        names = PARAMETERS if drag else PARAMETERS[:-1]
+        k = Constants.of({name: hy.par[i] for i, name in enumerate(names)})
+        state = hy.make_vars(*MODEL.variables)
+        _, v = MODEL.cartesian(state, k, hy)
+        self._found: dict[int, list[float]] = {kind: [] for kind in sought}
+        rate = {TRANSIT: v[0], HEIGHT: v[2]}
+        events = [hy.nt_event(rate[kind], _recorder(found)) for kind, found in self._found.items()]
+        keep_on_disk(DOUBLE)
+        self._ta: Any = hy.taylor_adaptive(
+            as_pairs(state, rates(MODEL, k)(state, hy)), np.zeros(len(state)), tol=tolerance, nt_events=events
+        )
+        self._parameters = len(names)
+
+    def begin(self, k: Constants, state: Any) -> None:
+        """Set a row's constants and its state at t = 0."""
+        for found in self._found.values():
+            found.clear()
+        self._ta.time = 0.0
+        self._ta.state[:] = state
+        self._ta.pars[:] = [*k.turn[1:], k.pull[2], k.drag][: self._parameters]
+
+    def to_end(self, release: Release, most: int) -> tuple[Any, int, bool]:
+        """Return the state at the end, the steps taken, and whether the end was not reached.
+
+        A zero at the release may hide the next one from heyoka, if both are in one step: the first one is short.
+        """
+        if any(release.zero[kind] for kind in self._found):
+            self._ta.step(min(release.quiet, release.end))
+        outcome, _, _, steps, *_ = self._ta.propagate_until(release.end, max_steps=most)
+        state = self._ta.state.copy()
+        return state, int(steps), outcome != hy.taylor_outcome.time_limit or not np.isfinite(state).all()
+
+    def zeros(self, kind: int) -> Zeros:
+        """Return the zeros of a kind that were passed, in order."""
+        return Zeros.of(self._found.get(kind, []))
+
+    def at(self, times: Array) -> Any:
+        """Return the states at increasing times from 0, shape (variables, times)."""
+        return self._ta.propagate_grid(times)[-1].T
+
+
+def _recorder(found: list[float]) -> Callable[[Any, float, int], None]:
+    """Return what notes an event; heyoka deep-copies callbacks: a function stays itself, a bound method would not."""
+
+    def record(_: Any, t: float, direction: int) -> None:
+        found.extend((t, direction))
+
+    return record
+
+
+_free: dict[Kind, list[Integrator]] = {}
+
+
+@contextmanager
+def _lent(*kind: Any) -> Iterator[Integrator]:
+    """Lend an integrator of a `Kind` to the calling thread."""
+    free = _free.setdefault(kind, [])
+    try:
+        integrator = free.pop()
+    except IndexError:
+        integrator = Integrator(*kind)
+    try:
+        yield integrator
+    finally:
+        free.append(integrator)
+
+
+def _sought(wanted: Wanted) -> tuple[int, ...]:
+    asked = {TRANSIT: wanted.transits or wanted.times, HEIGHT: wanted.apsides}
+    return tuple(kind for kind, wish in asked.items() if wish)
+
+
+def prepare(wanted: Wanted, drag: bool) -> float:
+    """Compile what such rows need in the calling thread; return the CPU seconds that it took."""
+    started = time.thread_time()
+    for sought in {_sought(wanted), ()}:
+        with _lent(sought, drag, MOVED_TOLERANCE if wanted.moved else TOLERANCE):
+            pass
+    return time.thread_time() - started
+
+
+def solve(rows: Rows, wanted: Wanted) -> Outcomes:
+    """Solve rows; see `Batch.solve`."""
+    outcomes, axes = Outcomes.empty(len(rows)), PlumbAxes.of(rows)
+    numbers = np.array([part.high for part in (*axes.n, *axes.V, *axes.turn, -axes.size)])
+    numbers, drags = moved(numbers, wanted.moved), moved(rows.drag[:, 0], wanted.moved)
+    listed: list[tuple[int, Array, Array]] = []
+    with np.errstate(all="ignore"):
+        for row in range(len(rows)):
+            n, V, (turn_p, turn_u, pull) = np.split(numbers[:, row], 3)
+            k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[row])
+            state = [*n, *np.cross(n, V)]
+            release = Release.of(rows, axes, row, Motion.of(state, k))
+            transits = _solve(outcomes, row, release, k, state, wanted)
+            listed.append((row, transits.times, transits.directions))
+        _turn_back(outcomes, rows, axes)
+    return outcomes.with_transits(listed if wanted.times else [])
+
+
+def _solve(outcomes: Outcomes, row: int, release: Release, k: Constants, state: Any, wanted: Wanted) -> Zeros:
+    """Solve a row, its state at the end left in these axes and over l; return its transits."""
+    sought, kind = _sought(wanted), (bool(k.drag), MOVED_TOLERANCE if wanted.moved else TOLERANCE)
+    with _lent(sought, *kind) as first:
+        first.begin(k, state)
+        most = LEAST_STEPS + STEPS_PER_SWING * release.end * release.rate / (2 * np.pi)
+        last, steps, stopped = first.to_end(release, int(most))
+        transits, heights = (release.after(first.zeros(one), one) for one in (TRANSIT, HEIGHT))
+    if stopped:
+        outcomes.fate[row] = STOPPED
+        return Zeros.of([])
+    end = Motion.of(last, k)
+    outcomes.state[row], outcomes.steps[row] = [*end.n, *end.v], steps
+    if sought:
+        samples = np.linspace(0, release.end, steps + 1)
+        times, places = np.unique(np.concatenate([samples, transits.times, heights.times]), return_inverse=True)
+        with _lent((), *kind) as second:
+            second.begin(k, state)
+            motion = Motion.of(second.at(times), k)
+        at_samples, at_transits, at_heights = np.split(places, np.cumsum([len(samples), len(transits.times)]))
+        seen = Samples(samples, motion[at_samples])
+        if TRANSIT in sought and not release.still:
+            describe_transits(outcomes, row, release, transits, motion[at_transits], seen)
+        if HEIGHT in sought:
+            describe_highest_points(outcomes, row, release, heights, motion[at_heights], seen)
+    return transits
+
+
+def _turn_back(outcomes: Outcomes, rows: Rows, axes: PlumbAxes) -> None:
+    """Turn the states into the Earth's axes and SI units."""
+    x, p, u, vx, vp, vu = outcomes.state.T
+    sin, cos = axes.sin.high, axes.cos.high
+    state = (x, *turned(p, u, -sin, cos), vx, *turned(vp, vu, -sin, cos))
+    outcomes.state[:] = np.transpose(state) * rows.length[:, :1]
