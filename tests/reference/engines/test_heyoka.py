@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from fractions import Fraction
 
 import heyoka as hy
@@ -127,18 +126,6 @@ def test_one_time_is_the_release_itself(paris):
     stepper = stepper_of(paris, DOUBLE)
     states = stepper.propagate([0.0])
     assert states.shape == (1, 6)
-
-
-def test_what_others_print_during_a_run_is_passed_on_and_heyokas_log_is_not(capfd):
-    with watched_log() as watch:
-        os.write(1, b"somebody else\n")
-        assert watch.fresh()
-        os.write(1, b"[2026] [heyoka-7] [warning] lost\n")
-        assert watch.fresh()
-        assert not watch.fresh()
-    out = capfd.readouterr().out
-    assert "somebody else" in out
-    assert "lost" not in out
 
 
 def test_the_disk_cache_is_off_for_real_where_it_never_hits(paris):
