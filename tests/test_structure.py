@@ -35,7 +35,7 @@ FLOORS = {
         ["registry", "trajectory", "equations"],
         ["octet"],
         [*engine_names()],
-        ["interface"],
+        ["interface", "plumb_axes"],
         ["plan", "batch_interface"],
     ],
     "compare": [

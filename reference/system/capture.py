@@ -6,28 +6,18 @@ import ctypes
 import os
 import sys
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import BinaryIO
+
+_turn = threading.RLock()  # descriptors are the process's: of two threads the last to leave would restore the other's
 
 
 class Capture:
-    """The output of a library, as it is written; `data` is complete when the capture has ended."""
+    """The output of a library; `data` is complete when the capture has ended."""
 
-    def __init__(self, handle: BinaryIO) -> None:
-        self._handle, self._seen = handle, 0
+    def __init__(self) -> None:
         self.data = b""
-
-    @property
-    def size(self) -> int:
-        """Bytes written so far; only while the capture lasts."""
-        return os.fstat(self._handle.fileno()).st_size
-
-    def fresh(self) -> bool:
-        """Return whether anything was written since the last call; only while the capture lasts."""
-        size = self.size
-        changed, self._seen = size > self._seen, size
-        return changed
 
     def words(self, longest: int = 300) -> str:
         """Return the output on one line, cut to `longest` characters, to be quoted in a message."""
@@ -36,13 +26,16 @@ class Capture:
 
 @contextmanager
 def captured(*descriptors: int) -> Iterator[Capture]:
-    """Redirect file descriptors (1 for stdout, 2 for stderr) to a file while a library runs."""
+    """Redirect file descriptors (1 for stdout, 2 for stderr) to a file while a library runs, in one thread at a time.
+
+    What other threads print meanwhile is captured too.
+    """
     flush = ctypes.CDLL(None).fflush if os.name == "posix" else None
-    sys.stdout.flush()
-    sys.stderr.flush()
-    originals = [os.dup(descriptor) for descriptor in descriptors]
-    with tempfile.TemporaryFile() as handle:
-        capture = Capture(handle)
+    with _turn, tempfile.TemporaryFile() as handle:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        originals = [os.dup(descriptor) for descriptor in descriptors]
+        capture = Capture()
         try:
             for descriptor in descriptors:
                 os.dup2(handle.fileno(), descriptor)

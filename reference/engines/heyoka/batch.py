@@ -30,17 +30,21 @@ class HeyokaBatch(Batch):
         """Compile what such rows need in the calling thread."""
         from .loop import prepare
 
-        return prepare(wanted, drag)
+        return prepare(wanted, drag, _tolerance(wanted))
 
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
         """Solve rows, one after the other."""
         from .loop import solve
 
-        return solve(rows, wanted)
+        return solve(rows, wanted, _tolerance(wanted))
 
     def expected_s(self, swings: float) -> float:
         """Return the expected CPU seconds."""
         return COMPILE_S + swings * SWING_S
+
+
+def _tolerance(wanted: Wanted) -> float:
+    return MOVED_TOLERANCE if wanted.moved else TOLERANCE
 
 
 BATCH = HeyokaBatch()

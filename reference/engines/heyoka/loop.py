@@ -14,7 +14,6 @@ from ...model.constants import Constants
 from ...numbers.precision import DOUBLE, Array
 from ..batch_interface import STOPPED, Outcomes, Rows, Wanted
 from ..plumb_axes import PlumbAxes, moved, turned
-from .batch import MOVED_TOLERANCE, TOLERANCE
 from .machine_code import keep_on_disk
 from .row_zeros import (
     HEIGHT,
@@ -66,11 +65,12 @@ class Integrator:
 
         A zero at the release may hide the next one from heyoka, if both are in one step: the first one is short.
         """
-        if any(release.zero[kind] for kind in self._found):
+        short = any(release.zero[kind] for kind in self._found)
+        if short:
             self._ta.step(min(release.quiet, release.end))
         outcome, _, _, steps, *_ = self._ta.propagate_until(release.end, max_steps=most)
         state = self._ta.state.copy()
-        return state, int(steps), outcome != hy.taylor_outcome.time_limit or not np.isfinite(state).all()
+        return state, int(steps) + short, outcome != hy.taylor_outcome.time_limit or not np.isfinite(state).all()
 
     def zeros(self, kind: int) -> Zeros:
         """Return the zeros of a kind that were passed, in order."""
@@ -112,17 +112,17 @@ def _sought(wanted: Wanted) -> tuple[int, ...]:
     return tuple(kind for kind, wish in asked.items() if wish)
 
 
-def prepare(wanted: Wanted, drag: bool) -> float:
+def prepare(wanted: Wanted, drag: bool, tolerance: float) -> float:
     """Compile what such rows need in the calling thread; return the CPU seconds that it took."""
     started = time.thread_time()
     for sought in {_sought(wanted), ()}:
-        with _lent(sought, drag, MOVED_TOLERANCE if wanted.moved else TOLERANCE):
+        with _lent(sought, drag, tolerance):
             pass
     return time.thread_time() - started
 
 
-def solve(rows: Rows, wanted: Wanted) -> Outcomes:
-    """Solve rows; see `Batch.solve`."""
+def solve(rows: Rows, wanted: Wanted, tolerance: float) -> Outcomes:
+    """Solve rows to a relative error of a step; see `Batch.solve`."""
     outcomes, axes = Outcomes.empty(len(rows)), PlumbAxes.of(rows)
     numbers = np.array([part.high for part in (*axes.n, *axes.V, *axes.turn, -axes.size)])
     numbers, drags = moved(numbers, wanted.moved), moved(rows.drag[:, 0], wanted.moved)
@@ -133,15 +133,17 @@ def solve(rows: Rows, wanted: Wanted) -> Outcomes:
             k = Constants(turn=(0, turn_p, turn_u), pull=(0, 0, pull), drag=drags[row])
             state = [*n, *np.cross(n, V)]
             release = Release.of(rows, axes, row, Motion.of(state, k))
-            transits = _solve(outcomes, row, release, k, state, wanted)
+            transits = _solve(outcomes, row, release, k, state, wanted, tolerance)
             listed.append((row, transits.times, transits.directions))
         _turn_back(outcomes, rows, axes)
     return outcomes.with_transits(listed if wanted.times else [])
 
 
-def _solve(outcomes: Outcomes, row: int, release: Release, k: Constants, state: Any, wanted: Wanted) -> Zeros:
+def _solve(
+    outcomes: Outcomes, row: int, release: Release, k: Constants, state: Any, wanted: Wanted, tolerance: float
+) -> Zeros:
     """Solve a row, its state at the end left in these axes and over l; return its transits."""
-    sought, kind = _sought(wanted), (bool(k.drag), MOVED_TOLERANCE if wanted.moved else TOLERANCE)
+    sought, kind = _sought(wanted), (bool(k.drag), tolerance)
     with _lent(sought, *kind) as first:
         first.begin(k, state)
         most = LEAST_STEPS + STEPS_PER_SWING * release.end * release.rate / (2 * np.pi)

@@ -106,7 +106,8 @@ class Release:
 
     def after(self, zeros: Zeros, kind: int) -> Zeros:
         """Return the zeros of a kind in the span, without that of the release, which it reports at 1e-17 s or so."""
-        least = self.quiet if self.zero[kind] else 0.0
+        none = self.still and kind == TRANSIT
+        least = np.inf if none else self.quiet if self.zero[kind] else 0.0
         return zeros[(zeros.times > least) & (zeros.times <= self.end)]
 
 

@@ -9,6 +9,7 @@ from small_scenes import make_scene
 
 from reference.engines.batch_interface import DOUBTFUL, OK, STOPPED, Wanted
 from reference.engines.heyoka import loop
+from reference.engines.heyoka.batch import BATCH
 from reference.engines.heyoka.row_zeros import HEIGHT, TRANSIT, Zeros
 
 CLOSE_PAIRS = make_scene(
@@ -36,28 +37,28 @@ def losing(monkeypatch, kind, lost):
 @pytest.mark.parametrize("place", [0, 3, -1])
 def test_a_zero_that_is_lost_leaves_a_doubt(monkeypatch, paris, kind, place):
     rows = rows_of([paris.with_values(["run.t_end=120"]).exact])
-    assert loop.solve(rows, Wanted()).fate.tolist() == [OK]
+    assert BATCH.solve(rows, Wanted()).fate.tolist() == [OK]
     losing(monkeypatch, kind, lambda found: [np.flatnonzero(found.times > 1e-3)[place]])
-    assert loop.solve(rows, Wanted()).fate.tolist() == [DOUBTFUL]
+    assert BATCH.solve(rows, Wanted()).fate.tolist() == [DOUBTFUL]
 
 
 def test_a_close_pair_that_is_lost_together_leaves_a_doubt(monkeypatch):
     rows = rows_of([CLOSE_PAIRS.exact])
-    run = loop.solve(rows, Wanted(times=True))
+    run = BATCH.solve(rows, Wanted(times=True))
     assert run.fate.tolist() == [OK]
     gaps = np.diff(run.transit_t)
     assert gaps.min() < 0.03
     closest = int(np.argmin(gaps))
     losing(monkeypatch, TRANSIT, lambda _: [closest, closest + 1])
-    assert loop.solve(rows, Wanted(times=True)).fate.tolist() == [DOUBTFUL]
+    assert BATCH.solve(rows, Wanted(times=True)).fate.tolist() == [DOUBTFUL]
 
 
 @pytest.mark.parametrize("wanted", [Wanted(times=True), Wanted(False, False, moved=1)], ids=["run", "moved"])
 def test_a_row_is_the_same_alone_and_after_others(wanted):
     rows = rows_of(list(random_kinds(20261124, 10)))
-    together = loop.solve(rows, wanted)
+    together = BATCH.solve(rows, wanted)
     for row in range(len(rows)):
-        alone = loop.solve(rows[row : row + 1], wanted)
+        alone = BATCH.solve(rows[row : row + 1], wanted)
         for name in ("state", "t_first", "t_last", "turn", "largest_angle", "least_ax", "steps"):
             assert np.array_equal(getattr(alone, name)[0], getattr(together, name)[row], equal_nan=True), name
         own = together.transit_row == row
@@ -68,4 +69,4 @@ def test_steps_without_end_stop_a_row_alone(monkeypatch, paris):
     rows = rows_of([paris.with_values([f"run.t_end={t}"]).exact for t in (60, 600)])
     monkeypatch.setattr(loop, "LEAST_STEPS", 50)
     monkeypatch.setattr(loop, "STEPS_PER_SWING", 0)
-    assert loop.solve(rows, Wanted()).fate.tolist() == [OK, STOPPED]
+    assert BATCH.solve(rows, Wanted()).fate.tolist() == [OK, STOPPED]
