@@ -136,9 +136,9 @@ def main(count: int = 181, pairs: int = 5) -> None:
         ">= 6.5",
     )
     show("heyoka's scalar loop / octet, no events", lambda: silent.solve(rows), octet(bare), pairs, ">= 6.5")
-    show("heyoka's batch of 8 / octet, no events", heyoka(bare), octet(bare), pairs, ">= 1.7")
-    show("heyoka's batch of 8 / octet, all transits", heyoka(transits), octet(transits), pairs, "")
-    show("heyoka's batch of 8 / octet, with precession", heyoka(whole), octet(whole), pairs, "")
+    show("the engine heyoka / octet, no events", heyoka(bare), octet(bare), pairs, "")
+    show("the engine heyoka / octet, all transits", heyoka(transits), octet(transits), pairs, "")
+    show("the engine heyoka / octet, with precession", heyoka(whole), octet(whole), pairs, "")
     show("octet, default row (with its error) / bare row", default(OCTET), octet(whole), pairs, "<= 1.7")
     many = (
         [
@@ -154,7 +154,7 @@ def main(count: int = 181, pairs: int = 5) -> None:
         sides = [lambda one=one: solve_part(one, range(count)) for one in many]
         show("sweep in one process, default rows: heyoka / octet", *sides, pairs, ">= 3")
     else:
-        show("default rows: heyoka's batch / octet", default(HEYOKA), default(OCTET), pairs, ">= 3")
+        show("default rows: the engine heyoka / octet", default(HEYOKA), default(OCTET), pairs, ">= 3")
     print(f"{'all but the integration of a default row':66} {not_integration(8192):7.2f} us a row   <= 10")
 
 

@@ -199,8 +199,8 @@ def own(rows: Rows) -> list[Peer]:
 
     return [
         Peer("octet, all wanted", "all located", lambda: batch(OCTET, whole)),
-        Peer("heyoka, batch of 8, all wanted", "all located", lambda: batch(HEYOKA, whole)),
-        Peer("heyoka, batch of 8", "none", lambda: batch(HEYOKA, bare)),
+        Peer("the engine heyoka, all wanted", "all located", lambda: batch(HEYOKA, whole)),
+        Peer("the engine heyoka, states alone", "none", lambda: batch(HEYOKA, bare)),
         Peer("heyoka, scalar loop with events", "all located", lambda: timed(lambda: located.solve(rows))),
         Peer("heyoka, scalar loop", "none", lambda: timed(lambda: silent.solve(rows))),
         Peer("heyoka, ensemble, one thread", "none", lambda: timed(lambda: ensemble(rows, silent))),

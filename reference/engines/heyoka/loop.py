@@ -77,8 +77,9 @@ class Integrator:
         return Zeros.of(self._found.get(kind, []))
 
     def at(self, times: Array) -> Any:
-        """Return the states at increasing times from 0, shape (variables, times)."""
-        return self._ta.propagate_grid(times)[-1].T
+        """Return the states at increasing times, shape (variables, times)."""
+        grid = times if times[0] == 0 else np.concatenate([[0.0], times])
+        return self._ta.propagate_grid(grid)[-1][len(grid) - len(times) :].T
 
 
 def _recorder(found: list[float]) -> Callable[[Any, float, int], None]:
@@ -157,15 +158,19 @@ def _solve(
     if sought:
         samples = np.linspace(0, release.end, steps + 1)
         times, places = np.unique(np.concatenate([samples, transits.times, heights.times]), return_inverse=True)
-        with _lent((), *kind) as second:
-            second.begin(k, state)
-            motion = Motion.of(second.at(times), k)
         at_samples, at_transits, at_heights = np.split(places, np.cumsum([len(samples), len(transits.times)]))
-        seen = Samples(samples, motion[at_samples])
-        if TRANSIT in sought and not release.still:
-            describe_transits(outcomes, row, release, transits, motion[at_transits], seen)
-        if HEIGHT in sought:
-            describe_highest_points(outcomes, row, release, heights, motion[at_heights], seen)
+        with _lent((), *kind) as second:
+
+            def at(times: Array) -> Motion:
+                second.begin(k, state)
+                return Motion.of(second.at(times), k)
+
+            motion = at(times)
+            seen = Samples(samples, motion[at_samples], at)
+            if TRANSIT in sought and not release.still:
+                describe_transits(outcomes, row, release, transits, motion[at_transits], seen)
+            if HEIGHT in sought:
+                describe_highest_points(outcomes, row, release, heights, motion[at_heights], seen)
     return transits
 
 

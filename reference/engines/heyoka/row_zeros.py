@@ -6,7 +6,7 @@ end. Of two close together the rate itself tells, at samples of the run: between
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -70,6 +70,7 @@ class Release:
     """What is known of a row before it is solved.
 
     Attributes:
+        length: of the cord, in m.
         end: of the span, in s.
         rate: of a small swing, in rad/s.
         quiet: seconds after the release in which a zero is that of the release, if it has one by the exact inputs.
@@ -79,6 +80,7 @@ class Release:
         angle: from the plumb line, in rad.
     """
 
+    length: float
     end: float
     rate: float
     quiet: float
@@ -95,6 +97,7 @@ class Release:
         east = (motion.v[0], motion.a[0], -2 * cross(turn, motion.a)[0])[multiplicity]
         x, p, u = motion.n
         return cls(
+            length=rows.length[row, 0],
             end=rows.t_end[row, 0],
             rate=rate,
             quiet=QUIET * 2 * np.pi / (rate + axes.speed[row]),
@@ -113,24 +116,37 @@ class Release:
 
 @dataclass(frozen=True)
 class Samples:
-    """A row's motion at times from the release to the end, at equal distances."""
+    """A row's motion at times from the release to the end, at equal distances; `at` gives it at others, increasing."""
 
     times: Array
     motion: Motion
+    at: Callable[[Array], Motion]
 
     def lost(self, zeros: Zeros, sign: float, axis: int) -> bool:
         """Return whether a zero of n' along an axis is not among the zeros; `sign` is its sign after the release."""
-        rate, slope = self.motion.v[axis], self.motion.a[axis]
-        signs = np.concatenate([[sign], zeros.directions, [np.sign(rate[-1])]])
-        if (signs[:-2] * signs[1:-1] >= 0).any() or signs[-1] != signs[-2]:
-            return True
+        signs = np.concatenate([[sign], zeros.directions, [np.sign(self.motion.v[axis][-1])]])
+        alternate = (signs[:-2] * signs[1:-1] < 0).all() and signs[-1] == signs[-2]
+        return not alternate or self._dips(zeros, axis)
+
+    def _dips(self, zeros: Zeros, axis: int) -> bool:
+        """Return whether n' along an axis goes through zero and back between two samples without zeros between them.
+
+        The cubic through values and slopes says where that may be; there n' itself is asked, and the parabola there.
+        """
+        rate, slope = self.motion.v[axis], self.motion.a[axis] * self.times[1]
         towards, away = rate * slope < 0, rate * slope > 0
         dips = np.flatnonzero((rate[:-1] * rate[1:] > 0) & towards[:-1] & away[1:])
         dips = dips[np.diff(np.searchsorted(zeros.times, self.times[[dips, dips + 1]]), axis=0)[0] == 0]
-        (left, right), (before, after) = rate[[dips, dips + 1]], slope[[dips, dips + 1]] * self.times[1]
-        s = INSIDE
+        (left, right), (before, after), s = rate[[dips, dips + 1]], slope[[dips, dips + 1]], INSIDE
         cubic = (1 - s) ** 2 * ((1 + 2 * s) * left + s * before) + s**2 * ((3 - 2 * s) * right - (1 - s) * after)
-        return bool((cubic * left < 0).any())
+        height = cubic * np.sign(left)
+        low = np.flatnonzero(height.min(axis=0) < 0)
+        if not len(low):
+            return False
+        lowest = self.at(self.times[dips[low]] + INSIDE[np.argmin(height[:, low], axis=0), 0] * self.times[1])
+        bend = (after - before)[low]
+        least = lowest.v[axis] - (lowest.a[axis] * self.times[1]) ** 2 / (2 * bend)
+        return bool((least * left[low] <= 0).any())
 
 
 def describe_transits(
@@ -143,7 +159,7 @@ def describe_transits(
     outcomes.transits[row] = len(t)
     if len(t):
         outcomes.t_first[row], outcomes.t_last[row] = t[0], t[-1]
-        outcomes.least_ax[row] = np.abs(ax).min()
+        outcomes.least_ax[row] = np.abs(ax).min() * release.length
         outcomes.close_pairs[row] = np.count_nonzero(np.diff(t) < CLOSE_PAIR * 2 * np.pi / release.rate)
 
 

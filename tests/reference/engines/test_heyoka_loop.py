@@ -11,6 +11,7 @@ from reference.engines.batch_interface import DOUBTFUL, OK, STOPPED, Wanted
 from reference.engines.heyoka import loop
 from reference.engines.heyoka.batch import BATCH
 from reference.engines.heyoka.row_zeros import HEIGHT, TRANSIT, Zeros
+from reference.engines.octet.batch import BATCH as OCTET
 
 CLOSE_PAIRS = make_scene(
     pendulum={"length": "1"},
@@ -70,3 +71,15 @@ def test_steps_without_end_stop_a_row_alone(monkeypatch, paris):
     monkeypatch.setattr(loop, "LEAST_STEPS", 50)
     monkeypatch.setattr(loop, "STEPS_PER_SWING", 0)
     assert BATCH.solve(rows, Wanted()).fate.tolist() == [OK, STOPPED]
+
+
+def test_octet_says_the_same_of_every_row():
+    rows = rows_of(list(random_kinds(20261124, 20)))
+    wanted = Wanted(times=True)
+    own, other = BATCH.solve(rows, wanted), OCTET.solve(rows, wanted)
+    for name in ("fate", "transits", "close_pairs", "apsides", "transit_row", "transit_direction"):
+        assert np.array_equal(getattr(own, name), getattr(other, name)), name
+    for name in ("state", "t_first", "t_last", "apsis_first", "apsis_last", "turn", "largest_angle", "transit_t"):
+        assert np.allclose(getattr(own, name), getattr(other, name), rtol=1e-8, atol=1e-8, equal_nan=True), name
+    for name in ("least_ax", "least_bend"):
+        assert np.allclose(getattr(own, name), getattr(other, name), rtol=1e-5, atol=0, equal_nan=True), name
