@@ -1,4 +1,4 @@
-"""Many scenes solved side by side in double: what goes in, `Rows` and `Wanted`, what comes out, `Outcomes`.
+"""Many scenes solved in double: what goes in, `Rows` and `Wanted`, what comes out, `Outcomes`.
 
 An engine that can do this declares a `Batch` as `BATCH` in the file `batch.py` of its folder. A row comes out the same,
 bit for bit, whatever rows stand beside it.
@@ -192,7 +192,7 @@ class Outcomes:
 
 
 class Batch(ABC):
-    """An engine that solves many rows side by side in double.
+    """An engine that solves many rows in double.
 
     Attributes:
         name: the name of its folder.

@@ -7,7 +7,6 @@ from fractions import Fraction
 import heyoka as hy
 import numpy as np
 import pytest
-from reference.engines.heyoka.log import watched_log
 from small_scenes import make_scene, model_at, stepper_of
 
 import reference.engines.heyoka.run as module
