@@ -1,4 +1,4 @@
-"""README: every command and every line of output in it is true, and it is short."""
+"""README: every command and every line of output in it is true."""
 
 from __future__ import annotations
 
@@ -14,12 +14,8 @@ from places import ROOT
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 
 
-def test_it_fits_on_150_lines_and_has_commands():
-    assert len(README.splitlines()) <= 150
-    assert len(commands("README.md")) >= 5
-
-
 def test_every_command_in_its_turn_prints_what_the_readme_shows(tmp_path):
+    assert len(commands("README.md")) >= 5
     without_compiler = shutil.which("cc") is None  # a machine without a C compiler checks the rest
     for command, shown in commands("README.md"):
         if without_compiler and "/tmp/pendulum" in command:
