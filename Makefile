@@ -1,6 +1,7 @@
 # Two commands on a fresh machine with python3 (3.11 or newer) and make:
 #   make golden   makes .venv of what solving needs (requirements.lock), then data/golden/paris
 #   make test     adds what tests need (requirements-test.lock), then runs lint, types and tests
+#   make quick    runs the tests of every day, in two minutes
 #   make atlas    makes every dataset that ships and is missing, and a page over all
 # And `make peers` runs the tests of the methods that want a Fortran compiler, JAX or the GPL, in an environment of its own.
 PYTHON ?= python3
@@ -9,10 +10,10 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 PYTEST := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
-.PHONY: golden test atlas docs peers campaign coverage mutants studies lint lock clean
+.PHONY: golden test quick atlas docs peers campaign coverage mutants studies lint lock clean
 
 golden: .venv/solving
-	@echo "Proving 24 h of the pendulum in Paris, and confirming the proof by a second run: one to two minutes"
+	@echo "Proving 24 h of the pendulum in Paris, and confirming the proof by a second run: one to three minutes"
 	$(BIN)/foucault generate paris
 	@echo "Checking what was written"
 	$(BIN)/foucault verify paris
@@ -21,6 +22,12 @@ golden: .venv/solving
 test: lint
 	@echo "Running the tests: 7 to 20 minutes on two cores"
 	$(PYTEST)
+
+# For every day: structure, numbers, scenes, model, solver with its closed forms and proofs, score
+quick: .venv/testing
+	@echo "Running the tests of every day: below two minutes on two cores"
+	$(PYTEST) tests/test_structure.py tests/reference/numbers tests/reference/scenes tests/reference/model tests/reference/solver \
+	  tests/compare/score
 
 # Every dataset that ships and is missing, then atlas/index.html over all; what was stopped goes on where it was
 atlas: .venv/testing
