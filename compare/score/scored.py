@@ -16,7 +16,7 @@ from .explanation.findings import Explanation
 from .input_floor import input_floor
 from .transit_matching import TransitErrors
 
-WHOLE = 1e-6  # a program that counts its steps ends this near to the end, as a part of the span, and has covered it
+WHOLE = 1e-6  # a last row within this part of t_end counts as complete: a program that adds up its steps rounds
 
 
 class Worst(NamedTuple):

@@ -1,4 +1,4 @@
-"""Work that is done once on a machine, such as compiling: whoever listens is told before, and how long it takes."""
+"""Announce work that is done once on a machine, such as compiling, and how long it will take."""
 
 from __future__ import annotations
 
