@@ -1,7 +1,7 @@
 """The engines, integrators of the model, each in a folder; one run of a scene with its transits, and two at a time.
 
 - `batch_interface`: many scenes in double, what goes in and what comes out; `plumb_axes`: turned into the plumb line's.
-- `plan`: the input of an engine, `Plan`, and its output, `Run`; `engine`: the interface.
+- `plan`: the input of an engine, `Plan`, and its output, `Run`; `interface`: what an engine declares.
 - `registry`: the engines by name, which of them a run takes, and the run itself.
 - `side_by_side`: two runs at the same time.
 - `equations`: the compiled equations of a scene, as text.
