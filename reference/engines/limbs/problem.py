@@ -86,10 +86,10 @@ def limb_problem(inputs: Inputs, prec: int, order: int | None = None, other_step
         along=rows_of([1, sin, sin, 1, sin, sin, 1], limb_count),
         across=2 * rows_of([0, cos, -cos, 0, cos, -cos], limb_count),
     )
-    return LimbProblem(model, state_rows(start, unit, limb_count), unit, min(first, longest), start)
+    return LimbProblem(model, _state_rows(start, unit, limb_count), unit, min(first, longest), start)
 
 
-def state_rows(start: Start, unit: Fraction, limb_count: int) -> Array:
+def _state_rows(start: Start, unit: Fraction, limb_count: int) -> Array:
     """Return n and V in the unit of time, in the axes of the Earth, at a start: lanes 0 to 2 and 3 to 5."""
     ctx, k, n = start.ctx, start.k, start.n
     h = ctx.mpf(unit.numerator) / unit.denominator
