@@ -40,7 +40,7 @@ class Variants:
     )
 
     def __init__(self) -> None:
-        from .heyoka.propagator import Propagator
+        from .heyoka.model import Propagator
 
         self._propagator = Propagator(self._MODEL.variables, self._rates, DOUBLE, parameters=len(self._PARAMETERS))
 
@@ -120,7 +120,7 @@ def integrate(
         IntegrationError: heyoka stops before the last time, also because `max_steps` do not suffice, or a state is
             not finite.
     """
-    from .heyoka.propagator import Propagator
+    from .heyoka.model import Propagator
 
     propagator = Propagator(variables, derivatives, number, tolerance=tolerance)
     numbers = propagator.numbers

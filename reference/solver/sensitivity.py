@@ -158,7 +158,7 @@ class Sensitivity:
 
     @cached_property
     def _propagator(self) -> Any:
-        from ..engines.heyoka.propagator import Propagator
+        from ..engines.heyoka.model import Propagator
 
         count = 1 + 2 * len(_CONSTANTS)
         return Propagator(_MODEL.variables, _rates, DOUBLE, tolerance=_TOLERANCE, parameters=count, varied=True)

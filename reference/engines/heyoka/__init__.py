@@ -4,13 +4,11 @@ heyoka's traps are dealt with here: constants enter in the run's own precision a
 it loses, which it tells its log alone, shows in signs; outcome codes are checked; arrays of `real` leak without the
 custom memory handler; the disk cache never hits beyond 128 bits and is switched off for `real`.
 
-- `engine`: its declaration; `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof.
+- `engine`: its declaration; `run`: a plan integrated, and the polynomials of each step for a proof.
 - `batch`, `loop`: many scenes, one after the other; `row_zeros`: what the zeros in a row say, guarded.
 - `numbers`: its number types, and exact conversions.
-- `system`: a formulation as its expressions.
-- `model`: a formulation with a scene's constants in a number type; its states in SI units.
+- `system`: a formulation as its expressions; its cache on disk.
+- `model`: any system without events, in one call; a formulation with a scene's constants in a number type.
 - `stepper`: one scene, step by step, with events, dense output and Taylor coefficients.
 - `events`: guards around its event detection.
-- `propagator`: any system without events, in one call.
-- `machine_code`: its cache on disk.
 """

@@ -40,7 +40,7 @@ class Heyoka(Engine):
         self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
     ) -> Generator[TaylorStep, None, Run]:
         """Yield the Taylor steps of a run of `momentum` in MPFR: n east, north, up, then h H; return the run."""
-        from .taylor_steps import taylor_steps
+        from .run import taylor_steps
 
         return taylor_steps(inputs, times, prec, coefficient_bits)
 

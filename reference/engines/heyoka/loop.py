@@ -14,7 +14,6 @@ from ...model.constants import Constants
 from ...numbers.precision import DOUBLE, Array
 from ..batch_interface import STOPPED, Outcomes, Rows, Wanted
 from ..plumb_axes import PlumbAxes, moved, turned
-from .machine_code import keep_on_disk
 from .row_zeros import (
     HEIGHT,
     MODEL,
@@ -26,7 +25,7 @@ from .row_zeros import (
     describe_highest_points,
     describe_transits,
 )
-from .system import as_pairs, rates
+from .system import as_pairs, keep_on_disk, rates
 
 PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
 STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven

@@ -17,9 +17,8 @@ from ...model.formulations import Formulation
 from ...model.start import Start
 from ...numbers.precision import NumberType
 from ..plan import Pace, Report
-from .machine_code import keep_on_disk
 from .model import RoundedModel
-from .system import System
+from .system import System, keep_on_disk
 
 STEPS_PER_REPORT = 64  # steps between two reports of progress
 SHORT_RUN = 2000  # span times rate of a run beyond long double that is too short for optimised code to pay

@@ -1,9 +1,11 @@
-"""A formulation as heyoka expressions, ready to be compiled, and the same equations as text."""
+"""A formulation as heyoka expressions, ready to be compiled, and as text; heyoka's cache of machine code on disk."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import heyoka as hy
@@ -13,6 +15,33 @@ from ...model.carried import constant_variables
 from ...model.constants import Constants
 from ...model.force import acceleration
 from ...model.formulations import Formulation, Lagrangian
+from ...numbers.precision import NumberType
+
+FOLDER = "foucault"  # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
+MOST_BYTES = 1 << 25
+
+
+def keep_on_disk(number: NumberType) -> None:
+    """Have what is compiled from now on kept on disk, where that serves for numbers of this type.
+
+    Beyond hardware numbers the cache never hits, and without a home heyoka has no place for it: it is switched off.
+    """
+    hy.llvm_state.set_diskcache_enabled(number.hardware and _has_place())
+
+
+@cache
+def _has_place() -> bool:
+    """Give the cache a folder of its own, of bounded size; return whether it can be used."""
+    place = Path(hy.llvm_state.get_diskcache_path())
+    if not place.is_absolute():
+        return False
+    try:
+        hy.llvm_state.set_diskcache_path(place / FOLDER)
+        hy.llvm_state.set_diskcache_limit(MOST_BYTES)
+    except RuntimeError:  # it cannot be written, or is damaged
+        return False
+    return True
+
 
 NAMES = {
     "turn_1": "Omega_y", "turn_2": "Omega_z", "pull_1": "c_y", "pull_2": "c_z", "centrifugal_0": "Omega2",

@@ -4,12 +4,12 @@ A number is held in limbs of radix 2**22 (GMP's word), each an integer in a doub
 fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are the same on every machine.
 
 - `engine`: its declaration; `size`: limbs for a precision.
-- `run`, `taylor_steps`: a plan integrated, and the polynomials of each step for a proof; `integration`, in progress.
-- `problem`, `output_times`: a scene and its times in limbs.
+- `run`: a plan integrated, and the polynomials of each step for a proof; `integration`, in progress.
+- `problem`: a scene in limbs.
 - `march`, `march_state`, `step`: the loop of steps, what is carried from one to the next, and one of them.
 - `recurrence`, `products`, `series`, `unrolled`: the Taylor coefficients of a step, the sums of products in them, their
   arrays, and the innermost sums written out.
-- `outputs`: what is read from a step; `dense_output`: the state inside it; `zeros`, `polish`, `polynomial`, `xdot`: the
+- `dense_output`: the state inside it; `zeros`, `polish`, `polynomial`, `xdot`: the
   zeros of xdot on it.
 - `limb`, `lanes`: numbers of limbs, eight side by side.
 - `compiling`: how functions are compiled that compiled functions call.

@@ -48,7 +48,7 @@ class Limbs(Engine):
         self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
     ) -> Generator[TaylorStep, None, Run]:
         """Yield the Taylor steps of a run, in the axes of a proof; return the run."""
-        from .taylor_steps import taylor_steps
+        from .run import taylor_steps
 
         return taylor_steps(self.plan(inputs, prec, times, transits=False), coefficient_bits)
 

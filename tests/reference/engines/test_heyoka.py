@@ -10,8 +10,8 @@ import pytest
 from small_scenes import make_scene, model_at, stepper_of
 
 import reference.engines.heyoka.run as module
-from reference.engines.heyoka import machine_code
 from reference.engines.heyoka import stepper as stepper_module
+from reference.engines.heyoka import system
 from reference.engines.heyoka.system import System, equations_text
 from reference.engines.plan import Plan
 from reference.errors import IntegrationError
@@ -136,22 +136,22 @@ def test_the_disk_cache_is_off_for_real_where_it_never_hits(paris):
 
 def test_the_disk_cache_is_the_projects_own_and_bounded(paris):
     stepper_of(paris, DOUBLE)
-    assert hy.llvm_state.get_diskcache_path().name == machine_code.FOLDER
-    assert hy.llvm_state.get_diskcache_limit() == machine_code.MOST_BYTES
+    assert hy.llvm_state.get_diskcache_path().name == system.FOLDER
+    assert hy.llvm_state.get_diskcache_limit() == system.MOST_BYTES
 
 
 @pytest.mark.parametrize("place", ["relative", "", "/dev/null/no_folder"])
 def test_where_no_cache_can_be_heyoka_does_without(paris, monkeypatch, tmp_path, place):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(machine_code.hy.llvm_state, "get_diskcache_path", lambda: place)
-    machine_code._has_place.cache_clear()
+    monkeypatch.setattr(system.hy.llvm_state, "get_diskcache_path", lambda: place)
+    system._has_place.cache_clear()
     try:
         stepper_of(paris, DOUBLE)
         assert not hy.llvm_state.get_diskcache_enabled()
         assert not list(tmp_path.iterdir())
     finally:
         monkeypatch.undo()
-        machine_code._has_place.cache_clear()
+        system._has_place.cache_clear()
 
 
 @pytest.mark.parametrize("prec", [80, 200])
