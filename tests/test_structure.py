@@ -158,7 +158,6 @@ PUBLIC = {
     "reference.sweeps.values": "TEXTS",
     "reference.system": "cache",
     "reference.system.cache": "arrays discard entry store temporary",
-    "reference.system.capture": "captured",
     "reference.system.documents": "json_document json_lines open_at_once",
     "reference.system.imports": "Registry lazy missing switched_off",
     "reference.system.process": "Emit Worker alarm terminable usable_cores",

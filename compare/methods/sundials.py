@@ -11,7 +11,7 @@ from functools import partial
 
 import numpy as np
 
-from reference.system.capture import captured
+from compare.methods.capture import captured
 
 from ..rhs.problem import Array, Problem
 from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome

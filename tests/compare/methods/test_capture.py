@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import threading
 
-from reference.system.capture import captured
+from compare.methods.capture import captured
 
 
 def test_what_is_written_is_captured_and_quoted_on_one_line(capfd):
