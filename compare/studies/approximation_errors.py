@@ -20,7 +20,7 @@ from reference.status import Status
 from ..approximations import APPROXIMATIONS, Motion, Quantity, motions, quantities
 from ..observed.position_error import difference, distance
 from ..observed.swing_plane import Gauge
-from .failure import failure
+from .row import failure
 
 TIMES = (20.0, 3600.0, 12000.0, 86400.0)  # s: 20 s and 12000 s as in the paper's figure 3, an hour, and a day
 _PER_SWING = 16  # samples in a period

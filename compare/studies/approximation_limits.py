@@ -13,7 +13,7 @@ from reference.status import Status
 
 from ..approximations.approximation import Motion
 from .approximation_errors import TIMES, ReferenceMotion, chosen_motions
-from .failure import failure
+from .row import failure
 from .variation import UNITS, varied
 
 LIMITS = (("1 mm", "error_m", 1e-3), ("1 µm", "error_m", 1e-6), ("1 arcsec", "plane_error_arcsec", 1.0))

@@ -21,10 +21,9 @@ from ..methods import METHODS, Problem, available
 from ..observed.power_law import power_of_time
 from ..truth import golden_of
 from .campaign import Counted, Measurement, campaign
-from .failure import FAILURES, failure
 from .measure import timed
 from .method_errors import GridTruth
-from .row import Record
+from .row import FAILURES, Record, failure
 
 SCENE = "paris_30d"
 TRUTH_DIGITS = 36  # enough to judge runs in 113 bits

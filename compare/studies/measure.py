@@ -22,10 +22,9 @@ from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..methods import Method, Outcome, Problem, Work, available, suited
-from .failure import FAILURES, failure
 from .machine import load_per_core
 from .method_errors import GridTruth, h_drift
-from .row import Row
+from .row import FAILURES, Row, failure
 
 PROBE = 64  # the probe runs 1/64 of the span, to warm up and to predict the cost
 LEAST_ROWS = 4  # grid rows in any span

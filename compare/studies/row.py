@@ -1,11 +1,23 @@
-"""A row of a study: one method at one setting, its status, its errors and its cost."""
+"""A row of a study: one method at one setting, its status (of a failure too), its errors and its cost."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
 from typing import Any, Self
 
+from reference import FoucaultError, IntegrationError
 from reference.status import Status
+
+FAILURES = (FoucaultError, ArithmeticError, ValueError, RuntimeError, MemoryError)
+
+
+def failure(error: Exception) -> tuple[Status, str]:
+    """Return status and reason of a run that raised one of `FAILURES`."""
+    if isinstance(error, IntegrationError):
+        return Status.GAVE_UP, str(error)
+    if isinstance(error, FoucaultError):
+        return Status.REFUSED, str(error)
+    return Status.GAVE_UP, f"{type(error).__name__}: {error}"
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from compare.studies.failure import FAILURES, failure
+from compare.studies.row import FAILURES, failure
 from reference import InputError, IntegrationError, UnreachableError
 from reference.status import Status
 
