@@ -20,15 +20,16 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import BinaryIO
-
-import psutil
+from typing import TYPE_CHECKING, BinaryIO
 
 from reference import InputError, Scene
 from reference.model.start import Start
 from reference.system.process import terminable
 
 from .spelling import MAX_BYTES
+
+if TYPE_CHECKING:
+    from psutil import Process
 
 MAX_COMMAND = 1 << 14  # characters; the time to split it into words grows with the square
 PLACEHOLDER_BITS = 120  # precision of the release before it is printed as a double
@@ -175,6 +176,8 @@ def run_program(
 
 def _end_all(leader: int, mark: str) -> None:
     """Kill a process group, and every process with the mark, until none is left."""
+    import psutil
+
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.killpg(leader, signal.SIGKILL)
     for _ in range(ROUNDS):
@@ -187,8 +190,10 @@ def _end_all(leader: int, mark: str) -> None:
         psutil.wait_procs(left, timeout=0.1)
 
 
-def _marked(mark: str) -> Iterator[psutil.Process]:
+def _marked(mark: str) -> Iterator[Process]:
     """Yield the processes of this user that have the mark."""
+    import psutil
+
     for process in psutil.process_iter(["environ", "status"]):
         ended = process.info["status"] == psutil.STATUS_ZOMBIE
         if not ended and mark in (process.info["environ"] or {}).get(MARK, ""):
