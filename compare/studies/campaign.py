@@ -72,7 +72,7 @@ def check_usable(methods: Sequence[str] | None) -> None:
 
 @dataclass(frozen=True)
 class Measurement(ABC, Generic[Item, Result]):
-    """What a campaign measures; it is pickled into the child processes.
+    """The measurement that a campaign repeats; it is sent to the child processes by pickle.
 
     Attributes:
         recipe: what else than the items decides the results, to be written as JSON; together with machine and versions

@@ -138,7 +138,12 @@ def _no_dataset(folder: Path) -> InputError:
 
 
 def _read(path: Path, most: int, size: int | None = None) -> bytes:
-    """Return the bytes of a regular file: at most so many, and as many as the manifest says, if it does.
+    """Return the bytes of a regular file.
+
+    Args:
+        path: of the file.
+        most: the largest number of bytes that is read.
+        size: the number that the manifest gives; None if it gives none.
 
     Raises:
         OSError: it is something else; nothing of it is read then.

@@ -33,7 +33,7 @@ class Plan:
         number: type to compute in.
         times: times of output in s, increasing, from 0.
         transits: whether to find the zeros of xdot.
-        engine: a name of `registry.ENGINES`.
+        engine: the name of an engine, as `registry.engines` has them.
         other_steps: whether to take other steps than the engine would: for a run that checks one of the same engine.
     """
 

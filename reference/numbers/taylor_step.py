@@ -34,5 +34,5 @@ class TaylorStep(NamedTuple):
 
     @property
     def coefficients(self) -> Sequence[Any]:
-        """The rows: lists of integers, `packing.Words`, or FLINT's polynomials; a function is called now."""
+        """The rows: lists of integers, `packing.Digits`, or FLINT's polynomials; a function is called now."""
         return self.rows() if callable(self.rows) else self.rows

@@ -67,7 +67,7 @@ class Motion:
 
 @dataclass(frozen=True)
 class Release:
-    """What is known of a row before it is solved.
+    """The release of a row: quantities that follow from its inputs before it is solved.
 
     Attributes:
         length: of the cord, in m.
