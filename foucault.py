@@ -75,8 +75,8 @@ def main() -> None:
 
 def _run() -> None:
     from reference.errors import FoucaultError, Stopped, plain_lines
+    from reference.system.interruption import terminable
     from reference.system.plain_output import plain_output
-    from reference.system.process import terminable
 
     signals: list[int] = []
     try:

@@ -31,7 +31,7 @@ FLOORS = {
         ["numbers", "errors", "status"],
     ],
     "reference/engines": [
-        ["side_by_side"],
+        ["background"],
         ["registry", "trajectory", "equations"],
         ["octet"],
         [*engine_names()],
@@ -160,7 +160,8 @@ PUBLIC = {
     "reference.system.cache": "arrays discard entry store temporary",
     "reference.system.documents": "json_document json_lines open_at_once",
     "reference.system.imports": "Registry lazy missing switched_off",
-    "reference.system.process": "Emit Worker alarm terminable usable_cores",
+    "reference.system.interruption": "terminable",
+    "reference.system.workers": "Emit Worker usable_cores",
     "reference.system.workspace": "replace_file workspace",
 }
 

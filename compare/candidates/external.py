@@ -24,7 +24,7 @@ from typing import TYPE_CHECKING, BinaryIO
 
 from reference import InputError, Scene
 from reference.model.start import Start
-from reference.system.process import terminable
+from reference.system.interruption import terminable
 
 from .spelling import MAX_BYTES
 

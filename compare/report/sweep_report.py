@@ -33,7 +33,7 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
         cluster: address of the scheduler that had the work done, if one had.
     """
     from reference.engines.registry import batches
-    from reference.system.process import usable_cores
+    from reference.system.workers import usable_cores
 
     request, tally = swept.request, swept.tally
     plan, counts = request.document(), swept.counts

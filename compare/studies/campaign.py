@@ -8,7 +8,6 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-import threading
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import closing, suppress
@@ -23,7 +22,7 @@ from reference.errors import finite
 from reference.status import Status
 from reference.system import cache
 from reference.system.documents import json_lines
-from reference.system.process import Emit, Worker, alarm
+from reference.system.workers import Emit, Worker
 
 from ..methods import METHODS, available
 from .machine import load_per_core, machine, single_thread
@@ -180,28 +179,19 @@ def _isolated(measurement: Measurement[Item, Result], items: Sequence[Item]) -> 
     while remaining:
         with single_thread():
             worker = Worker(measured, measurement, remaining)
-        timed_out = threading.Event()
-        answers = iter(worker)
-        starting_s, waited_s = STARTING_S, measurement.patience_s
+        starting_s, patience_s = STARTING_S, measurement.patience_s
         try:
             while remaining:
                 # where processes share a core, all take longer
-                waited_s = measurement.patience_s * max(1.0, load_per_core() or 1.0)
-                with alarm(waited_s + starting_s, _end, worker, timed_out):
-                    result = next(answers)
+                patience_s = measurement.patience_s * max(1.0, load_per_core() or 1.0)
+                result = worker.receive(patience_s + starting_s)
                 starting_s = 0.0
                 yield result
                 remaining.pop(0)
-        except (IntegrationError, StopIteration) as error:
-            if timed_out.is_set():
-                yield measurement.failed(remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {waited_s:.3g} s")
-            else:
-                yield measurement.failed(remaining.pop(0), Status.CRASHED, f"its process ended: {error}")
+        except TimeoutError:
+            yield measurement.failed(remaining.pop(0), Status.OUT_OF_TIME, f"no answer within {patience_s:.3g} s")
+        except IntegrationError as error:
+            yield measurement.failed(remaining.pop(0), Status.CRASHED, f"its process ended: {error}")
         finally:
             worker.kill()
             worker.stop()
-
-
-def _end(worker: Worker, timed_out: threading.Event) -> None:
-    timed_out.set()
-    worker.kill()

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import queue
 from collections.abc import Callable, Iterable
 from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -73,19 +73,20 @@ def generate_all(
 
 def _made(left: list[Job], workers: int | None, cluster: str | None, report: Callable[[Row, int], None]) -> list[Row]:
     """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
-    from ..system.pool import WorkerDied, next_done
+    from ..dataset.shipping import isolated, made
+    from ..system.workers import Pool, WorkerDied, as_done, usable_cores
 
     rows: list[Row] = []
-    done: queue.SimpleQueue[Any] = queue.SimpleQueue()
     with ExitStack() as stack:
-        begin, executor = _executor(workers, cluster, len(left), stack)
-        at_work = {}
-        for job in left:
-            future = begin(job)
-            at_work[future] = job
-            future.add_done_callback(done.put)
-        while at_work:
-            job = at_work.pop(future := next_done(done, executor))
+        if cluster is not None:
+            from ..sweeps.cluster import Scheduler
+
+            scheduler = stack.enter_context(Scheduler(cluster))
+            begin, check = partial(scheduler.submit, isolated), scheduler.check
+        else:
+            pool = stack.enter_context(Pool(min(workers or usable_cores(), len(left))))
+            begin, check = partial(pool.submit, made), None
+        for job, future in as_done(begin, left, len(left), check):
             try:
                 row = _written(job, future.result())
             except WorkerDied as death:
@@ -93,23 +94,6 @@ def _made(left: list[Job], workers: int | None, cluster: str | None, report: Cal
             rows.append(row)
             report(row, len(rows))
     return sorted(rows, key=lambda row: str(row["dataset"]))
-
-
-def _executor(
-    workers: int | None, cluster: str | None, count: int, stack: ExitStack
-) -> tuple[Callable[[Job], Any], Any]:
-    """Return what begins a dataset, and what tells whether anything can still come."""
-    from ..dataset.shipping import isolated, serve
-    from ..system.pool import Pool
-    from ..system.process import usable_cores
-
-    if cluster is not None:
-        from ..sweeps.cluster import Scheduler
-
-        scheduler = stack.enter_context(Scheduler(cluster))
-        return lambda job: scheduler.begin(isolated, job), scheduler
-    pool = stack.enter_context(Pool(min(workers or usable_cores(), count), serve))
-    return pool.submit, pool
 
 
 def _written(job: Job, made: Made) -> Row:

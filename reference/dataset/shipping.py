@@ -18,7 +18,7 @@ from ..solver.rounding import grid_decimals
 from ..solver.solution import CrossCheck, Solution
 from ..solver.solve import solve
 from ..status import Status
-from ..system.process import Parent, Worker
+from ..system.workers import Pool
 from .files import read_files
 from .place import dataset_id, default_folder, is_of_shipped_scene, ships
 from .record import Making
@@ -122,22 +122,10 @@ def solved(scene: Scene, making: Making, report: Report | None = None) -> Soluti
     return solve(scene, engine=making.engine, audit=audit, confirm=confirm, report=report)
 
 
-def serve(parent: Parent) -> None:
-    """Make the datasets that the parent asks for, in a process of its own."""
-    for job in parent:
-        parent(made(job))
-
-
 def isolated(job: Job) -> Made:
     """Make a dataset in a process that is started for it: the solver is not made for several threads."""
-    worker = Worker(serve)
-    try:
-        worker.send(job)
-        result: Made = worker.receive()
-    except (IntegrationError, OSError) as error:
-        return Made(status=Status.CRASHED, reason=str(error))
-    finally:
-        worker.stop()
+    with Pool(1) as pool:
+        result: Made = pool.submit(made, job).result()
     return result
 
 

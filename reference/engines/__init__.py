@@ -3,7 +3,7 @@
 - `batch_interface`: many scenes in double, what goes in and what comes out; `plumb_axes`: turned into the plumb line's.
 - `plan`: the input of an engine, `Plan`, and its output, `Run`; `interface`: what an engine declares.
 - `registry`: the engines by name, which of them a run takes, and the run itself.
-- `side_by_side`: two runs at the same time.
+- `background`: a run, or other work, at the same time as this process works.
 - `equations`: the compiled equations of a scene, as text.
 - `trajectory`: single unconfirmed runs as binary64, of any system and with changed constants.
 - `heyoka/`: everything that uses heyoka, in any number type.

@@ -9,14 +9,14 @@ from functools import partial
 from typing import Any
 
 from ..engines import AUTO
+from ..engines.background import WORTH_A_PROCESS, Background, expected_s, in_background, reports, send_run, slowest
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
-from ..engines.side_by_side import WORTH_A_PROCESS, Beside, beside, expected_s, reports, send_run, slowest
 from ..errors import InputError, IntegrationError
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import LONG_DOUBLE
 from ..scenes.scene import Scene
-from ..system.process import Emit
+from ..system.workers import Emit
 from .agreement import bits_lacking
 from .choice import confirming_plan, first_prec, rounded_prec
 from .pilot import run_pilot
@@ -69,9 +69,9 @@ def solve_enclosed(
         return solution if confirm and not solution.possible else guarded(solution, problem.pilot)
 
 
-def begin_audit(problem: Problem) -> AbstractContextManager[Beside]:
+def begin_audit(problem: Problem) -> AbstractContextManager[Background]:
     """Begin a proof by FLINT alone; its result, the digits that it proves, is for `audited`."""
-    return beside(problem.pilot.steps >= AUDIT_STEPS, _send_digits, problem)
+    return in_background(problem.pilot.steps >= AUDIT_STEPS, _send_digits, problem)
 
 
 def audited(solution: Solution, digits: Any) -> Solution:
@@ -100,14 +100,14 @@ def _send_digits(emit: Emit, problem: Problem) -> None:
     emit(proved_digits(proved(problem, partial(enclose, flint_only=True), reports(emit))))
 
 
-def begin_confirmation(problem: Problem) -> AbstractContextManager[Beside]:
+def begin_confirmation(problem: Problem) -> AbstractContextManager[Background]:
     """Begin heyoka's run in another formulation; its result is for `confirmed`.
 
     Raises:
         UnreachableError: the run is out of reach.
     """
     plan = _confirming_plan(problem, first_prec(problem.scene, problem.pilot, AUTO))
-    return beside(expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS, send_run, plan)
+    return in_background(expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS, send_run, plan)
 
 
 def confirmed(problem: Problem, solution: Solution, witness: Run) -> Solution:

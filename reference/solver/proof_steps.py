@@ -11,13 +11,13 @@ from fractions import Fraction
 from itertools import chain, islice
 
 from ..engines import AUTO
+from ..engines.background import WORTH_A_PROCESS
 from ..engines.plan import Run
 from ..engines.registry import MANY_STEPS, engines, fastest
-from ..engines.side_by_side import WORTH_A_PROCESS
 from ..errors import IntegrationError
 from ..numbers.taylor_step import TaylorStep
 from ..scenes.inputs import Inputs
-from ..system.process import Emit, Worker
+from ..system.workers import Emit, Worker
 
 COEFFICIENT_BITS = 20  # coefficients carry this many bits below the run's epsilon, so that cutting them costs nothing
 BATCH = 32  # steps sent at once

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from fractions import Fraction
 
+from ..engines.background import run_both
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
-from ..engines.side_by_side import run_both
 from ..errors import InputError, UnreachableError
 from ..numbers.columns import GRID
 from ..numbers.precision import LONG_DOUBLE

@@ -5,11 +5,11 @@ dask sends a part again when its worker is lost. A part that was lost as often a
 
 from __future__ import annotations
 
-import json
 import logging
 from collections.abc import Callable
+from concurrent.futures import Future
 from contextlib import ExitStack
-from functools import lru_cache
+from functools import partial
 from pathlib import Path
 from secrets import token_hex
 from types import TracebackType
@@ -20,9 +20,9 @@ import distributed
 from distributed.scheduler import KilledWorker
 
 from ..errors import FoucaultError, InputError
-from ..system.pool import WorkerDied
+from ..system.workers import WorkerDied
 from .driver import work
-from .local import Isolated, prepared
+from .local import Isolated, prepared, request_of, text_of
 from .request import Request
 
 LOCAL = "local:"
@@ -65,9 +65,12 @@ class Scheduler:
         """Leave the scheduler; end one that was started here."""
         self._stack.close()
 
-    def begin(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """Begin a call on some worker; return its future."""
-        return _Awaited(self._client.submit(function, *arguments, pure=False, retries=RETRIES))
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Begin a call on some worker; its future may raise `WorkerDied` or `ClusterError`."""
+        future: Future[Any] = Future()
+        there = self._client.submit(function, *arguments, pure=False, retries=RETRIES)
+        there.add_done_callback(partial(_settle, future))
+        return future
 
     def check(self) -> None:
         """Raise if the scheduler is lost.
@@ -108,7 +111,7 @@ class ClusterExecutor(Scheduler):
 
     def __init__(self, request: Request, folder: Path | None, address: str) -> None:
         super().__init__(address)
-        self._document = json.dumps(request.document())
+        self._document = text_of(request)
         try:
             self.compile_s = max(self._client.run(_prepare, self._document).values())
             self._folder = self._shared(folder)
@@ -116,9 +119,9 @@ class ClusterExecutor(Scheduler):
             self._stack.close()
             raise
 
-    def submit(self, rows: range) -> Any:
+    def begin(self, rows: range) -> Future[Any]:
         """Begin a part, or some of its rows, on some worker."""
-        return self.begin(compute, self._document, rows, self._folder)
+        return self.submit(compute, self._document, rows, self._folder)
 
     def _shared(self, folder: Path | None) -> Path | None:
         """Return the folder if every worker sees it; a file of a random name tells."""
@@ -133,29 +136,16 @@ class ClusterExecutor(Scheduler):
             nonce.unlink()
 
 
-class _Awaited:
-    """A future of dask as `driver.drive` takes them: its own errors are told apart."""
-
-    def __init__(self, future: Any) -> None:
-        self._future = future
-
-    def add_done_callback(self, call: Callable[[Any], None]) -> None:
-        """Have `call` called with this when it is done."""
-        self._future.add_done_callback(lambda _: call(self))
-
-    def result(self) -> Any:
-        """Return what was computed; if it was lost with its worker meanwhile, wait until dask has it again.
-
-        Raises:
-            WorkerDied: it killed its workers.
-            ClusterError: the scheduler was lost.
-        """
-        try:
-            return self._future.result()
-        except KilledWorker:
-            raise WorkerDied("its workers died") from None
-        except distributed.client.FutureCancelledError:
-            raise ClusterError(LOST) from None
+def _settle(future: Future[Any], there: Any) -> None:
+    """Give a future the outcome of dask's; what was lost with its worker meanwhile is waited for."""
+    try:
+        future.set_result(there.result())
+    except KilledWorker:
+        future.set_exception(WorkerDied("its workers died"))
+    except distributed.client.FutureCancelledError:
+        future.set_exception(ClusterError(LOST))
+    except BaseException as error:
+        future.set_exception(error)
 
 
 def _connected(address: str, stack: ExitStack) -> Any:
@@ -182,16 +172,11 @@ def _connected(address: str, stack: ExitStack) -> Any:
 _promote = Isolated()
 
 
-@lru_cache(maxsize=1)
-def _request(document: str) -> Request:
-    return Request.of(json.loads(document))
-
-
 def _prepare(document: str) -> float:
     """Compile on a worker, once."""
-    return prepared(_request(document))
+    return prepared(request_of(document))
 
 
 def compute(document: str, rows: range, folder: Path | None) -> Any:
     """Compute rows on a worker."""
-    return work(_request(document), rows, folder, _promote)
+    return work(request_of(document), rows, folder, _promote)

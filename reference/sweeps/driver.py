@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import queue
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
+from concurrent.futures import Future
 from dataclasses import dataclass, field
-from itertools import islice
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
 from ..status import Status
-from ..system.pool import WorkerDied, next_done
+from ..system.workers import WorkerDied, as_done
 from .part import Part, Promote, solve_part, unsolved
 from .promote import promoted
 from .request import Request
@@ -49,13 +48,13 @@ class Tally:
 
 
 class Executor(Protocol):
-    """Computes rows: `submit` returns a future whose result is `work`'s, or which raises `WorkerDied`."""
+    """Computes rows."""
 
     workers: int
     compile_s: float  # CPU seconds
 
-    def submit(self, rows: range) -> Any:
-        """Begin a part, or some of its rows."""
+    def begin(self, rows: range) -> Future[Any]:
+        """Begin a part, or some of its rows: the result is that of `work`, or `WorkerDied` is raised."""
 
     def check(self) -> None:
         """Raise if nothing will come any more."""
@@ -114,7 +113,8 @@ def drive(
         report: called with the number of rows that were done since the last call.
     """
     total, died = Tally(), list[range]()
-    for rows, future in _done(executor, map(request.rows_of, parts), PER_WORKER * executor.workers):
+    at_once = PER_WORKER * executor.workers
+    for rows, future in as_done(executor.begin, map(request.rows_of, parts), at_once, executor.check):
         try:
             tally, solved = future.result()
         except WorkerDied:
@@ -126,7 +126,7 @@ def drive(
         report(len(rows))
     for rows in died:
         alone = []
-        for row, future in _done(executor, (range(number, number + 1) for number in rows), 1):
+        for row, future in as_done(executor.begin, (range(number, number + 1) for number in rows), 1, executor.check):
             try:
                 tally, solved = future.result()
             except WorkerDied as death:
@@ -139,21 +139,6 @@ def drive(
         if alone:
             keep(request.part_of(rows), joined(alone))
     return total
-
-
-def _done(executor: Executor, every: Iterable[range], at_once: int) -> Iterator[tuple[range, Any]]:
-    """Have rows computed, some of them at once; yield them with their futures as they are done."""
-    done: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    waiting, begun = iter(every), dict[Any, range]()
-    while True:
-        for rows in islice(waiting, at_once - len(begun)):
-            future = executor.submit(rows)
-            begun[future] = rows
-            future.add_done_callback(done.put)
-        if not begun:
-            return
-        future = next_done(done, executor)
-        yield begun.pop(future), future
 
 
 def crashed(request: Request, rows: range, reason: str) -> Part:

@@ -1,20 +1,20 @@
-"""The cores of this machine: threads for rows side by side, isolated processes for rows that the solver solves."""
+"""The cores of this machine: threads for rows side by side, processes for rows that the solver solves."""
 
 from __future__ import annotations
 
+import json
 import os
 import threading
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from ..engines.registry import batches
-from ..errors import IntegrationError
-from ..system.pool import Pool
-from ..system.process import Parent, Worker
+from ..system.workers import Pool, WorkerDied
 from .driver import work
 from .estimate import MOVED
 from .promote import Promoted, promoted
@@ -32,10 +32,10 @@ class LocalExecutor:
 
     def __init__(self, request: Request, folder: Path | None, workers: int) -> None:
         self.workers, self.compile_s = workers, 0.0
-        self._request, self._folder = request, folder
+        self._request, self._folder, self._document = request, folder, text_of(request)
         self._stop, self._promote = threading.Event(), Isolated()
         if request.promotes:
-            self._processes = Pool(workers, serve, request.document(), folder)
+            self._processes = Pool(workers)
         else:
             self._threads = ThreadPoolExecutor(workers, thread_name_prefix="sweep", initializer=self._prepare)
 
@@ -55,14 +55,44 @@ class LocalExecutor:
     def _prepare(self) -> None:
         self.compile_s += prepared(self._request)
 
-    def submit(self, rows: range) -> Future[Any]:
+    def begin(self, rows: range) -> Future[Any]:
         """Begin a part, or some of its rows."""
         if self._request.promotes:
-            return self._processes.submit(rows)
+            return self._processes.submit(compute, self._document, rows, self._folder)
         return self._threads.submit(work, self._request, rows, self._folder, self._promote, self._stop)
 
     def check(self) -> None:
         """Do nothing: threads do not get lost."""
+
+
+class Isolated:
+    """Calls `promoted` for threads in one process of its own: the solver is not made for several threads."""
+
+    def __init__(self) -> None:
+        self._pool = Pool(1)
+
+    def __call__(self, request: Request, row: int, *, doubtful: bool) -> Promoted:
+        """Return a row solved by itself; see `promote.promoted`."""
+        try:
+            result: Promoted = self._pool.submit(compute_alone, text_of(request), row, doubtful).result()
+        except WorkerDied as death:
+            return Promoted({}, ([], []), str(death))
+        return result
+
+    def stop(self) -> None:
+        """End the process."""
+        self._pool.__exit__(None)
+
+
+def text_of(request: Request) -> str:
+    """Return a sweep as a text that can be sent, and that `request_of` reads."""
+    return json.dumps(request.document())
+
+
+@lru_cache(maxsize=1)
+def request_of(document: str) -> Request:
+    """Return the sweep whose text was sent."""
+    return Request.of(json.loads(document))
 
 
 def prepared(request: Request) -> float:
@@ -74,54 +104,13 @@ def prepared(request: Request) -> float:
     return time.thread_time() - started
 
 
-def serve(parent: Parent, document: dict[str, Any], folder: Path | None) -> None:
-    """Compute the rows that the parent sends, in a process of its own."""
-    request = Request.of(document)
-    for rows in parent:
-        parent(work(request, rows, folder))
+def compute(document: str, rows: range, folder: Path | None) -> Any:
+    """Compute rows in a process of their own."""
+    return work(request_of(document), rows, folder)
 
 
-class Isolated:
-    """Calls `promoted` for threads in one process of its own: the solver is not made for several threads.
-
-    The process starts with the first row, and is replaced if it dies.
-    """
-
-    def __init__(self) -> None:
-        self._turn = threading.Lock()
-        self._worker: Worker | None = None
-        self._hash = ""
-
-    def __call__(self, request: Request, row: int, *, doubtful: bool) -> Promoted:
-        """Return a row solved by itself; see `promote.promoted`."""
-        with self._turn:
-            if self._hash != request.hash:
-                self._end()
-            try:
-                if self._worker is None:
-                    self._worker, self._hash = Worker(serve_promoted, request.document()), request.hash
-                self._worker.send((row, doubtful))
-                result: Promoted = self._worker.receive()
-            except (IntegrationError, OSError) as error:
-                self._end()
-                return Promoted({}, ([], []), str(error))
-            return result
-
-    def stop(self) -> None:
-        """End the process."""
-        with self._turn:
-            self._end()
-
-    def _end(self) -> None:
-        if self._worker is not None:
-            self._worker.stop()
-            self._worker = None
-
-
-def serve_promoted(parent: Parent, document: dict[str, Any]) -> None:
-    """Promote the rows that the parent sends."""
-    request = Request.of(document)
-    for row, doubtful in parent:
-        before = sum(os.times()[:4])
-        result = promoted(request, row, doubtful=doubtful)
-        parent(replace(result, cpu_s=sum(os.times()[:4]) - before))
+def compute_alone(document: str, row: int, doubtful: bool) -> Promoted:
+    """Have the solver solve a row in a process of its own; note what it cost, with the processes that it started."""
+    before = sum(os.times()[:4])
+    result = promoted(request_of(document), row, doubtful=doubtful)
+    return replace(result, cpu_s=sum(os.times()[:4]) - before)

@@ -13,7 +13,7 @@ from ..engines import AUTO
 from ..errors import InputError
 from ..scenes.scene import Scene
 from ..system.imports import missing
-from ..system.process import usable_cores
+from ..system.workers import usable_cores
 from .driver import Executor, Tally, drive, joined
 from .local import LocalExecutor
 from .part import Part

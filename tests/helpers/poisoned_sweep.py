@@ -26,13 +26,11 @@ def solved(*_: Any, **__: Any) -> Any:
     return Promoted({}, ([], []))
 
 
-def serve(parent: Any, document: dict[str, Any], folder: Any) -> None:
-    """Compute rows as `local.serve` does, with a solver that is done at once, but die at the row."""
+def compute_here(document: str, rows: range, folder: Any) -> Any:
+    """Compute rows as `local.compute` does, with a solver that is done at once, but die at the row."""
     from reference.sweeps.driver import work
-    from reference.sweeps.request import Request
+    from reference.sweeps.local import request_of
 
-    request = Request.of(document)
-    for rows in parent:
-        if POISON in rows:
-            os.kill(os.getpid(), signal.SIGKILL)
-        parent(work(request, rows, folder, solved))
+    if POISON in rows:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return work(request_of(document), rows, folder, solved)

@@ -91,7 +91,7 @@ def test_it_goes_on_with_what_is_missing_or_damaged(foucault, made, tmp_path, mo
 @pytest.mark.usefixtures("few")
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills processes")
 def test_a_scene_that_fails_costs_only_itself(foucault, tmp_path, monkeypatch):
-    monkeypatch.setattr("reference.dataset.shipping.serve", failing_datasets.serve)
+    monkeypatch.setattr("reference.dataset.shipping.made", failing_datasets.made)
     words = ("generate", "--all", *SHORT, "--workers", 1, "--out", tmp_path / "all", "--json")
     status, out, err = foucault(*words)
     assert status == 1

@@ -13,8 +13,8 @@ from reference.dataset.recompute import recompute
 from reference.dataset.record import NO_CONFIRM
 from reference.dataset.verify import problems_of
 from reference.dataset.write import write
-from reference.engines import side_by_side
-from reference.engines.side_by_side import Beside, send_run
+from reference.engines import background
+from reference.engines.background import Background, send_run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.solver import enclosed, reach
 
@@ -58,13 +58,13 @@ def test_a_manifest_that_claims_a_confirmation_has_to_show_it(confirmed, tmp_pat
 
 
 def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
-    honest = Beside.result
+    honest = Background.result
 
     def wrong(self, report=None):
         return dataclasses.replace(honest(self), directions=[])
 
-    monkeypatch.setattr(Beside, "result", wrong)
-    monkeypatch.setattr("reference.solver.enclosed.run", lambda plan: wrong(Beside(None, send_run, plan)))
+    monkeypatch.setattr(Background, "result", wrong)
+    monkeypatch.setattr("reference.solver.enclosed.run", lambda plan: wrong(Background(None, send_run, plan)))
     with pytest.raises(IntegrationError, match="does not confirm"):
         reference.solve(PARIS, **SHORT, confirm=True)
 
@@ -93,7 +93,7 @@ def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeyp
         return solution
 
     monkeypatch.setattr(enclosed, "proved", noted)
-    monkeypatch.setattr(side_by_side, "usable_cores", lambda: 2)
+    monkeypatch.setattr(background, "usable_cores", lambda: 2)
     monkeypatch.setattr("reference.solver.enclosed.WORTH_A_PROCESS", 0.0)
     end = 9000.0
     reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm=True, report=seen.append)

@@ -145,7 +145,7 @@ class Dying:
     def __init__(self, asked, folder):
         self._asked, self._folder = asked, folder
 
-    def submit(self, rows):
+    def begin(self, rows):
         from concurrent.futures import Future
 
         future: Future = Future()
@@ -177,7 +177,7 @@ def test_of_a_part_that_kills_its_worker_the_row_alone_crashes(whole, tmp_path):
 
 
 def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, monkeypatch):
-    monkeypatch.setattr(local, "serve", poisoned_sweep.serve)
+    monkeypatch.setattr(local, "compute", poisoned_sweep.compute_here)
     folder = tmp_path / "isolated"
     scene = load_scene("paris", ["run.t_end=2"])
     request = asked_for(scene, ["site.latitude=0:38:1"], None, folder, audit=0, digits=16, want=("state",))

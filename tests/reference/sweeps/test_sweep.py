@@ -210,13 +210,5 @@ def test_rows_that_another_process_solves_cost_what_they_cost_there(paris, monke
     part = solve_part(asked, range(2), lambda *_, **__: Promoted({}, ([], []), cpu_s=100.0))
     assert 200.0 < part.cpu_s < 300.0
 
-    class Rows(list):
-        """The rows that a parent sends, and what it gets."""
-
-        def __call__(self, result):
-            got.append(result)
-
-    got = []
     monkeypatch.setattr(local, "promoted", lambda *_, **__: Promoted({"x_m": sum(range(3 * 10**6))}, ([], [])))
-    local.serve_promoted(Rows([(0, True)]), asked.document())
-    assert got[0].cpu_s > 0
+    assert local.compute_alone(local.text_of(asked), 0, True).cpu_s > 0

@@ -1,4 +1,4 @@
-"""A child process: it takes objects while it works, streams its results, and ends with its parent."""
+"""Work in other processes: it streams its results, a death is told, and it ends with its parent."""
 
 from __future__ import annotations
 
@@ -9,16 +9,18 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import Future
+from multiprocessing.connection import Pipe
 from pathlib import Path
 
 import child
 import pytest
-from child import count_to, doubled, finalise, freeze, refuse
+from child import count_to, die, die_once, doubled, finalise, freeze, refuse
 from places import ROOT
 
 from reference.errors import IntegrationError
-from reference.system import process
-from reference.system.process import Worker
+from reference.system import workers
+from reference.system.workers import Pool, Worker, WorkerDied, as_done
 
 
 def test_results_come_in_order_and_end_with_the_function():
@@ -41,8 +43,10 @@ def test_a_child_takes_objects_while_it_works_and_ends_when_its_parent_stops():
 
 
 def test_a_child_whose_parent_ends_before_it_sends_anything_ends_without_a_word():
-    command = [sys.executable, "-c", process._START, *sys.path]
-    child = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
+    ours, theirs = Pipe()
+    ours.close()
+    command = [sys.executable, "-c", workers._START, str(theirs.fileno()), *sys.path]
+    child = subprocess.run(command, pass_fds=[theirs.fileno()], capture_output=True, check=False)
     assert (child.returncode, child.stdout, child.stderr) == (1, b"", b"")
 
 
@@ -74,7 +78,7 @@ def test_a_child_clears_away_what_it_began_when_its_parent_is_killed(tmp_path):
     code = f"""
 import sys; sys.path.insert(0, {str(Path(child.__file__).parent)!r})
 from child import hold
-from reference.system.process import Worker
+from reference.system.workers import Worker
 worker = Worker(hold, {str(tmp_path)!r})
 print(worker.receive(), flush=True)
 worker.receive()
@@ -106,7 +110,7 @@ def test_a_child_that_is_killed_is_an_error_and_no_silence():
 
 
 def test_a_child_that_does_not_end_is_killed_even_while_a_thread_waits_for_it(monkeypatch):
-    monkeypatch.setattr(process, "GRACE_S", 0.2)
+    monkeypatch.setattr(workers, "GRACE_S", 0.2)
     worker = Worker(freeze)
     os.waitid(os.P_PID, worker._process.pid, os.WSTOPPED | os.WNOWAIT)
     waiting = threading.Thread(target=_receive_nothing, args=(worker,), daemon=True)
@@ -120,3 +124,51 @@ def test_a_child_that_does_not_end_is_killed_even_while_a_thread_waits_for_it(mo
 def _receive_nothing(worker: Worker) -> None:
     with contextlib.suppress(IntegrationError, ValueError):  # the latter if the pipe is closed before it waits
         worker.receive()
+
+
+def test_a_result_that_takes_too_long_is_not_waited_for():
+    worker = Worker(doubled, 1)
+    with pytest.raises(TimeoutError):
+        worker.receive(0.01)
+    worker.send(2)
+    assert worker.receive(60) == 2
+    worker.stop()
+
+
+def test_a_pool_gives_results_and_tells_a_death_that_happens_twice(tmp_path):
+    with Pool(2) as pool:
+        sums = [pool.submit(sum, [number, 1]) for number in range(5)]
+        killed, second = pool.submit(die), pool.submit(die_once, str(tmp_path))
+        assert [future.result() for future in sums] == [1, 2, 3, 4, 5]
+        with pytest.raises(WorkerDied, match="ended without a result"):
+            killed.result()
+        assert second.result() == "alive"
+        with pytest.raises(FileNotFoundError):
+            pool.submit(os.stat, str(tmp_path / "none")).result()
+
+
+def test_a_pool_that_is_interrupted_ends_what_is_begun_and_begins_nothing_again():
+    started = time.monotonic()
+    with pytest.raises(KeyboardInterrupt), Pool(2) as pool:
+        sleeping = [pool.submit(time.sleep, 600) for _ in range(4)]
+        while not all(future.running() for future in sleeping[:2]):
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+    assert time.monotonic() - started < 60
+    assert all(future.done() for future in sleeping)
+
+
+def test_what_is_done_comes_first_and_no_more_is_begun_at_once_than_asked(monkeypatch):
+    monkeypatch.setattr(workers, "CHECK_S", 0.01)
+    begun: list[Future[int]] = []
+
+    def begin(item: int) -> Future[int]:
+        begun.append(Future())
+        assert sum(not future.done() for future in begun) <= 3
+        return begun[-1]
+
+    def check() -> None:
+        [*_, last] = [future for future in begun if not future.done()]
+        last.set_result(0)
+
+    assert [item for item, _ in as_done(begin, range(5), 3, check)] == [2, 3, 4, 1, 0]

@@ -1,0 +1,287 @@
+"""Work in other processes: a worker that streams its results, a pool of them, and one loop over what is done.
+
+Neither loky nor `multiprocessing` starts the processes, whose own a worker of dask is: it may start no others. Besides,
+`multiprocessing` runs the caller's script again in each. Its connections are used.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import pickle
+import queue
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from itertools import islice
+from multiprocessing.connection import Connection, Pipe
+from types import TracebackType
+from typing import Any, Self, TypeVar, cast
+
+from ..errors import FoucaultError, IntegrationError
+from .interruption import SIGNALS, held
+
+Emit = Callable[[Any], None]
+Item = TypeVar("Item")
+
+_START = "import sys; sys.path[:] = sys.argv[2:]; from reference.system.workers import serve; serve(int(sys.argv[1]))"
+STDERR = 2
+LEAVE_S = 0.5  # seconds in which a worker whose parent has ended can end what it has started itself
+GRACE_S = 10.0  # seconds in which a worker has to end once its parent has left it
+TRIES = 2  # of what a pool does: the first process may have been killed from outside
+CHECK_S = 5.0  # between two looks whether anything can still come
+
+
+def usable_cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class WorkerDied(Exception):
+    """The process that was at work ended without a result; the text says how."""
+
+
+class Worker:
+    """A process that runs `function(parent, *arguments)`; iterating yields the objects it sends, in order.
+
+    Args:
+        function: stands at the top level of a module; its first argument is a `Parent`.
+        arguments: any objects that can be pickled.
+    """
+
+    def __init__(self, function: Callable[..., None], *arguments: Any) -> None:
+        self._connection, theirs = Pipe()
+        line = theirs.fileno()
+        with held(), theirs:
+            self._process = subprocess.Popen(
+                [sys.executable, "-c", _START, str(line), *sys.path],
+                stdin=subprocess.DEVNULL,
+                stdout=STDERR,  # what a library prints there may not mix with the program's results
+                pass_fds=[line],
+            )
+        with contextlib.suppress(BrokenPipeError):  # a death is noticed when its results are read
+            self.send((function, arguments))
+
+    def send(self, item: Any) -> None:
+        """Send an object to the function; wait while the connection is full."""
+        self._connection.send(item)
+
+    def receive(self, timeout_s: float | None = None) -> Any:
+        """Return the next object that the function sends; None when it has returned.
+
+        Args:
+            timeout_s: wall-clock seconds after which TimeoutError is raised, if any.
+
+        Raises:
+            IntegrationError: the function failed, or the process ended before it returned.
+        """
+        try:
+            if not self._connection.poll(timeout_s):
+                raise TimeoutError
+            last, item = self._connection.recv()
+        except TimeoutError:
+            raise
+        except (EOFError, OSError, pickle.UnpicklingError):
+            raise IntegrationError("a child process of the solver ended without a result.") from None
+        if isinstance(item, BaseException):
+            raise item
+        return None if last else item
+
+    def __iter__(self) -> Iterator[Any]:
+        """Yield the objects that the function sends; raise as `receive`."""
+        while (item := self.receive()) is not None:
+            yield item
+
+    def stop(self) -> None:
+        """Leave the process, which ends it if it is still at work, and wait for its end; kill it after `GRACE_S`."""
+        if self._connection.closed:
+            return
+        with socket.socket(fileno=os.dup(self._connection.fileno())) as line, contextlib.suppress(OSError):
+            line.shutdown(socket.SHUT_RDWR)  # unlike closing, this wakes a thread that waits for a result
+        try:
+            self._process.wait(GRACE_S)
+        except subprocess.TimeoutExpired:
+            self.kill()
+            self._process.wait()
+        self._connection.close()
+
+    def kill(self) -> None:
+        """Kill the process (SIGKILL)."""
+        self._process.kill()
+
+
+class Pool:
+    """Processes that each do one thing at a time; one that dies costs what it was at, which is tried once more.
+
+    Args:
+        workers: how many processes at most; each starts when it is needed.
+    """
+
+    def __init__(self, workers: int) -> None:
+        self.workers = workers
+        self._of_thread, self._processes, self._ended = threading.local(), list[Worker](), threading.Event()
+        self._threads = ThreadPoolExecutor(workers, thread_name_prefix="pool")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: TracebackType | BaseException | None) -> None:
+        """Wait for what is begun; after an exception, end it."""
+        if kind:
+            self._ended.set()
+            for process in self._processes:
+                process.kill()
+        self._threads.shutdown(cancel_futures=kind is not None)
+        for process in self._processes:
+            process.stop()
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Begin a call of a function that stands at the top level of a module.
+
+        Its future has the function's result, or raises its OSError; or `WorkerDied`, also after another error.
+        """
+        return self._threads.submit(self._call, function, arguments)
+
+    def _call(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
+        reason = "the work was ended"
+        for _ in range(TRIES):
+            worker = self._worker()
+            if self._ended.is_set():  # asked when `__exit__` can see the process
+                break
+            try:
+                worker.send((function, arguments))
+                result, error = worker.receive()
+            except (IntegrationError, OSError) as death:
+                worker.stop()
+                self._processes.remove(worker)
+                del self._of_thread.worker
+                reason = str(death)
+                continue
+            if error is not None:
+                raise error
+            return result
+        raise WorkerDied(reason)
+
+    def _worker(self) -> Worker:
+        """Return this thread's process, a new one where it has none."""
+        if not hasattr(self._of_thread, "worker"):
+            self._of_thread.worker = Worker(_answer)
+            self._processes.append(self._of_thread.worker)
+        worker: Worker = self._of_thread.worker
+        return worker
+
+
+def as_done(
+    begin: Callable[[Item], Future[Any]], items: Iterable[Item], at_once: int, check: Callable[[], None] | None = None
+) -> Iterator[tuple[Item, Future[Any]]]:
+    """Begin items, and yield each with its future when it is done.
+
+    Args:
+        begin: begins an item.
+        items: in the order in which they begin.
+        at_once: how many are begun and not yet yielded, at most.
+        check: called now and then while nothing is done; raises if nothing will come any more.
+    """
+    waiting, begun = iter(items), dict[Future[Any], Item]()
+    while True:
+        for item in islice(waiting, at_once - len(begun)):
+            begun[begin(item)] = item
+        if not begun:
+            return
+        while not (finished := wait(begun, CHECK_S, FIRST_COMPLETED).done):
+            if check is not None:
+                check()
+        for future in finished:
+            yield begun.pop(future), future
+
+
+class Parent:
+    """A worker's view of its parent: call it to send an object, iterate over it to take those that the parent sends."""
+
+    def __init__(self, connection: Connection, received: queue.SimpleQueue[Any]) -> None:
+        self._connection, self._received = connection, received
+
+    def __call__(self, item: Any) -> None:
+        """Send an object to the parent."""
+        self.send(False, item)
+
+    def __iter__(self) -> Iterator[Any]:
+        """Yield the objects that the parent sends, for as long as the parent wants them; the process ends with it."""
+        while True:
+            yield self._received.get()
+
+    def send(self, last: bool, item: Any) -> None:
+        """Send an object, the last one or not."""
+        self._connection.send((last, item))
+
+
+def _answer(parent: Parent) -> None:
+    for function, arguments in parent:
+        try:
+            parent((function(*arguments), None))
+        except OSError as error:  # a full disk is no death
+            parent((None, error))
+
+
+def serve(line: int) -> None:
+    """Run in the worker: take the function and its arguments from the parent, call it, and end when the parent ends."""
+    ended = _leave_ending_to_parent()
+    connection = Connection(line)
+    try:
+        function, arguments = connection.recv()
+    except (EOFError, OSError):  # the parent has ended before it sent anything
+        os._exit(1)
+    received: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    threading.Thread(target=_receive, args=(connection, received, ended), daemon=True).start()
+    parent = Parent(connection, received)
+    try:
+        function(parent, *arguments)
+        parent.send(True, None)
+    except FoucaultError as error:
+        parent.send(True, IntegrationError(str(error)))
+    except SystemExit:
+        os._exit(0)
+    except BrokenPipeError:
+        os._exit(1)
+    except Exception:
+        if not ended.is_set():
+            raise
+        os._exit(0)  # code in C that is told to end while it is imported raises an ImportError
+
+
+def _leave_ending_to_parent() -> threading.Event:
+    """Take signals that a terminal or a service manager sends to the whole group: this process ends with its parent.
+
+    They are taken and not ignored, so that a program that is started here has its own way with them. Once the event
+    that is returned is set, they end this process by an exception, so that it can end such a program.
+    """
+    ended = threading.Event()
+    usual = sys.unraisablehook
+    sys.unraisablehook = lambda lost: None if ended.is_set() else usual(lost)  # the exception met a finaliser
+
+    def take(*_: object) -> None:
+        if ended.is_set():
+            raise SystemExit
+
+    for number in SIGNALS:
+        signal.signal(number, take)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+    return ended
+
+
+def _receive(connection: Connection, received: queue.SimpleQueue[Any], ended: threading.Event) -> None:
+    """Take what the parent sends; leave with the parent, which has ended or left when there is no more."""
+    with contextlib.suppress(EOFError, OSError):
+        while True:
+            received.put(connection.recv())
+    ended.set()
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(cast("int", threading.main_thread().ident), signal.SIGTERM)
+        time.sleep(LEAVE_S)
+    os._exit(0)
