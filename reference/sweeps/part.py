@@ -13,8 +13,8 @@ from ..engines.batch_interface import OK, STOPPED, Batch, Outcomes, Rows
 from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
+from .axes import Listed
 from .estimate import DEGREES_PER_HOUR, Errors, judged
-from .lists import Listed
 from .promote import DOUBTFUL_REASON, Promoted, fill, promoted
 from .request import Request
 from .row import STATE_COLUMNS, TIMES, empty

@@ -17,9 +17,8 @@ from ..system.workers import usable_cores
 from .driver import Executor, Tally, drive, joined
 from .local import LocalExecutor
 from .part import Part
-from .planning import default_audit, request
-from .request import Request
-from .resolved import Audit, resolved
+from .promote import Audit, resolved
+from .request import Request, default_audit, request
 from .swept import Swept
 
 if TYPE_CHECKING:
@@ -89,7 +88,7 @@ def sweep(
 def asked_for(
     scene: Scene, over: Iterable[str], rows: Path | None, out: Path | None, *, audit: int | None, **options: Any
 ) -> Request:
-    """Return a sweep, checked, its parts cut and its audit chosen for a folder or for memory; see `planning.request`.
+    """Return a sweep, checked, its parts cut and its audit chosen for a folder or for memory; see `request.request`.
 
     Raises:
         InputError: a wrong axis or option, or more rows than memory should hold.

@@ -14,8 +14,8 @@ from ..status import Status
 from ..system.imports import missing
 from .axes import Grid
 from .driver import Tally
+from .promote import Audit
 from .request import Request
-from .resolved import Audit
 from .values import TEXTS
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ from reference.numbers.double_double import DoubleDouble
 from reference.scenes.scene import load_scene
 from reference.sweeps.estimate import MOVED, errors, judged
 from reference.sweeps.part import solve_part
-from reference.sweeps.planning import request
+from reference.sweeps.request import request
 from reference.sweeps.row_constants import columns_of, row_constants
 
 SPAN = 12_000

@@ -19,7 +19,7 @@ from random_rows import KINDS, random_kinds
 from reference.engines.registry import batches
 
 WORDS = ["sweep", "paris", "--t-end", "60", "--audit", "0", "--workers", "1"]
-SMALL_PARTS = "import reference.sweeps.planning as planning; planning.PART_S = 0.0; from foucault import main; main()"
+SMALL_PARTS = "import reference.sweeps.request as request; request.PART_S = 0.0; from foucault import main; main()"
 
 
 @pytest.mark.parametrize("engine", ["heyoka", "octet"])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from reference import InputError, load_scene, solve, sweep
-from reference.sweeps.planning import request
 from reference.sweeps.promote import Promoted
+from reference.sweeps.request import request
 from reference.sweeps.sweep import asked_for
 
 LATITUDES = "site.latitude=-90,-30,0,48.846111,90"
@@ -149,14 +149,14 @@ def test_an_audit_finds_what_is_wrong(paris, monkeypatch):
     good = sweep(scene, ["site.latitude=0,10,20"], engine="heyoka", audit_rows=2)
     assert (good.audit.rows, good.audit.wrong) == (2, ())
     assert 0 < good.audit.worst_ratio < 1
-    from reference.sweeps import resolved
+    from reference.sweeps import promote
 
     def other(*arguments, **options):
         result = promoted(*arguments, **options)
         return Promoted(result.values | {"x_m": result.values["x_m"] + 1e-9}, result.times)
 
-    promoted = resolved.promoted
-    monkeypatch.setattr(resolved, "promoted", other)
+    promoted = promote.promoted
+    monkeypatch.setattr(promote, "promoted", other)
     assert len(sweep(scene, ["site.latitude=0,10,20"], engine="heyoka", audit_rows=2).audit.wrong) == 2
 
 
@@ -203,8 +203,8 @@ def test_more_than_memory_should_hold_needs_a_folder(paris, tmp_path):
 def test_rows_that_another_process_solves_cost_what_they_cost_there(paris, monkeypatch):
     from reference.sweeps import local
     from reference.sweeps.part import solve_part
-    from reference.sweeps.planning import request
     from reference.sweeps.promote import Promoted
+    from reference.sweeps.request import request
 
     asked = request(paris.with_values(["run.t_end=30"]), ["site.latitude=10,20"], engine="heyoka", tolerance=1e-30)
     part = solve_part(asked, range(2), lambda *_, **__: Promoted({}, ([], []), cpu_s=100.0))
