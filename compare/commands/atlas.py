@@ -38,8 +38,7 @@ def command(
 
     Pictures, bounds and files of each; the page of a scene judges a program's output that is dropped on it.
     """
-    from ..report.atlas.build import build
-    from ..report.atlas.pages import scenes_of
+    from ..report.atlas.pages import build, scenes_of
     from ..report.atlas.studied import studies_folder
     from ..report.folder import PAGE
 

@@ -19,8 +19,7 @@ from reference.system.imports import missing, switched_off
 
 from ..rhs.problem import Array, Problem
 from .native.library import Library
-from .runge_kutta.fixed_step import steps_through
-from .runge_kutta.steps import Step
+from .runge_kutta.fixed_step import Step, steps_through
 
 Setting = Literal["step", "tolerance", "precision"]
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
-from .runge_kutta.steps import runge_kutta
+from .runge_kutta.fixed_step import runge_kutta
 from .runge_kutta.tableau import Tableau, fractions, triangle
 
 TABLEAU = Tableau(

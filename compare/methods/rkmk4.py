@@ -15,7 +15,7 @@ from reference.model.constants import Vector, is_zero
 
 from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
 from .rk4 import TABLEAU
-from .runge_kutta.steps import Derivatives, combined, moved
+from .runge_kutta.fixed_step import Derivatives, combined, moved
 
 
 def turned(n: Vector, u: Vector) -> Vector:

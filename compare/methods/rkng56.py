@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .method import Family, explicit, fixed_step
-from .runge_kutta.steps import nystrom
+from .runge_kutta.fixed_step import nystrom
 from .runge_kutta.tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(

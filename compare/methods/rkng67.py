@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
-from .runge_kutta.steps import nystrom
+from .runge_kutta.fixed_step import nystrom
 from .runge_kutta.tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(

@@ -15,8 +15,7 @@ from ..approximations import APPROXIMATIONS, Motion
 from ..methods import METHODS, Problem, available
 from ..observed.position_error import difference, distance
 from ..observed.swing_plane import rest_in_metres
-from ..report.charts.drawing import COLOURS, FAINT, GUIDE
-from ..report.charts.lines import Line
+from ..report.charts.drawing import COLOURS, FAINT, GUIDE, Line
 from ..report.charts.panels import Panel, dots, drawn, line
 from .digits import degrees, mpf
 from .first_principles import rest_angle

@@ -19,8 +19,7 @@ from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS
 
 from .straight_line import Program
 from .swing import Swing
-from .tangent import differentiated
-from .tracing import record
+from .tracing import differentiated, record
 
 Array = npt.NDArray[np.float64]
 Rates = Callable[[Sequence[Any], Any, Mapping[str, Any]], Sequence[Any]]

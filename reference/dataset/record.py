@@ -9,12 +9,14 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from ..engines.equations import lines_and_left_out
-from ..numbers.columns import POSITION, UNITS, VELOCITY
-from ..numbers.precision import outward, rounded_up
+from ..model.constants import constants
+from ..model.force import invariant
+from ..numbers.fixed_point import FixedPoint, Integers
+from ..numbers.precision import bits_of, context, fixed_decimal, outward, rounded_up
+from ..numbers.table import POSITION, STATE, UNITS, VELOCITY
 from ..scenes.scene import Scene
 from ..scenes.shipped import DATA_VERSION, flag_meanings, scene_ids
 from ..solver.solution import Proof, Solution
-from .invariant import invariant_drift
 from .manifest import (
     Bounds,
     Counts,
@@ -38,6 +40,7 @@ AUDIT = "--audit"  # in a dataset's command, it says that FLINT alone proved the
 NO_CONFIRM = "--no-confirm"  # there, that a proof stands without heyoka's confirmation
 ENGINE = "--engine"
 PACKAGES = ("heyoka", "mpmath", "numba", "numpy", "python-flint")
+INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
 
 
 @dataclass(frozen=True)
@@ -202,3 +205,18 @@ def _enclosure(proof: Proof) -> EnclosureRecord:
 
 def _up(value: Fraction | None) -> str | None:
     return None if value is None else rounded_up(value)
+
+
+def invariants(scene: Scene, states: list[Integers], unit: int) -> list[Fraction]:
+    """Return h in m²/s² of states: their columns x, y, z, vx, vy, vz as integers over a unit."""
+    bits = bits_of(scene.run.digits) + INVARIANT_BITS
+    k = constants(scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
+    x, y, z, vx, vy, vz = (FixedPoint.column(column, unit, bits) / k.length for column in states)
+    h: FixedPoint = invariant((x, y, z), (vx, vy, vz), k)
+    return h.fractions()
+
+
+def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
+    """Return h of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
+    values = invariants(scene, *grid.integers(STATE))
+    return fixed_decimal(values[0], scene.run.digits), rounded_up(max(abs(value - values[0]) for value in values))

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from ..model.carried import constant_variables
 from ..model.formulations import FORMULATIONS
-from ..model.start import Start
-from ..model.vanishing import xdot_vanishes
+from ..model.start import Start, xdot_vanishes
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.scene import Scene
 from .heyoka.system import equations_text

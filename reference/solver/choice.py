@@ -11,8 +11,8 @@ from math import ceil, e, sqrt
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
-from ..numbers.columns import POSITION, VELOCITY
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
+from ..numbers.table import POSITION, VELOCITY
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .pilot import Pilot, run_pilot

@@ -14,8 +14,7 @@ import numpy as np
 
 from ..engines.batch_interface import Rows
 from ..model.algebra import add, cross
-from ..model.constants import Constants, Vector, turn_and_pull
-from ..model.earth import axis_distance
+from ..model.constants import Constants, Vector, axis_distance, turn_and_pull
 from ..model.force import force
 from ..model.start import at_angles
 from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
@@ -100,7 +99,7 @@ def _release(columns: Columns) -> tuple[Vector, Vector]:
 
 
 def _balanced(n: Vector, k: Constants) -> Any:
-    """Return where the force on the bob at rest has no component along the sphere: see `vanishing.xdot_vanishes`."""
+    """Return where the force on the bob at rest has no component along the sphere: see `model.start.xdot_vanishes`."""
     # in double first: few rows come near it
     rough = k.converted(lambda value: getattr(value, "high", value))
     high = (n[0].high, n[1].high, n[2].high)

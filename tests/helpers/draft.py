@@ -11,16 +11,15 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from reference.dataset.invariant import invariant_drift
 from reference.dataset.manifest import MANIFEST, Manifest
 from reference.dataset.place import dataset_id
-from reference.dataset.record import Making, command, following
+from reference.dataset.record import Making, command, following, invariant_drift
 from reference.dataset.render import derived_texts
 from reference.dataset.sheets import GRID_HEADER, TRANSITS_HEADER, Sheet, scene_inputs
 from reference.errors import FoucaultError
 from reference.model.start import Start
-from reference.numbers.columns import GRID, POSITION, VELOCITY
 from reference.numbers.precision import GUARD_BITS, bits_of, fixed_decimal, rounded_up, to_fraction
+from reference.numbers.table import GRID, POSITION, VELOCITY
 from reference.scenes.scene import Scene, parse_scene
 from reference.solver.rounding import exact_decimals
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from reference.dataset.files import Files, read_files
-from reference.dataset.invariant import invariant_drift
 from reference.dataset.manifest import MANIFEST, Manifest
+from reference.dataset.record import invariant_drift
 from reference.dataset.render import derived_texts
 from reference.dataset.sheets import NUMBERS, Sheet, binary64_sheet
 from reference.numbers.precision import fixed_decimal

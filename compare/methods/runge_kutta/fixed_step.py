@@ -1,19 +1,26 @@
-"""Integration at a fixed step size: a step is traced to code and compiled in a loop over the output times."""
+"""Integration at a fixed step size: a tableau's step, traced to code and compiled in a loop over the output times.
+
+The steps of Runge-Kutta and Runge-Kutta-Nyström tableaux are in the model's generic style.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
+from reference.model.algebra import plus, product
+
 from ...rhs.problem import Array, Problem
 from ...rhs.straight_line import Program
-from .steps import Step
+from .tableau import NystromTableau, Tableau
 
+Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
+Step = Callable[[Sequence[Any], Any, Derivatives], Sequence[Any]]
 # a step may be longer than the setting by this part: 60 s then hold 600 steps of 0.1 s, although 0.1 is not a double
 ROUNDING = 1e-9
-
 _MARCH = """
 @nb.njit("int64(float64[::1], float64[::1], float64[::1], int64[::1], float64[:, ::1])", **OPTIONS)
 def march(y, k, times, counts, states):
@@ -28,6 +35,49 @@ def march(y, k, times, counts, states):
             return row + 1
     return len(times)
 """
+
+
+def runge_kutta(tableau: Tableau) -> Step:
+    """Return the step of an explicit Runge-Kutta method."""
+
+    def step(state: Sequence[Any], h: Any, derivatives: Derivatives) -> Sequence[Any]:
+        slopes: list[Sequence[Any]] = []
+        for row in tableau.a:
+            slopes.append(derivatives(moved(state, h, row, slopes)))
+        return moved(state, h, tableau.b, slopes)
+
+    return step
+
+
+def nystrom(tableau: NystromTableau) -> Step:
+    """Return the step of an explicit Runge-Kutta-Nyström method, for formulations whose state is (y, y')."""
+
+    def step(state: Sequence[Any], h: Any, derivatives: Derivatives) -> Sequence[Any]:
+        half = len(state) // 2
+        y, rate = state[:half], state[half:]
+        forces: list[Sequence[Any]] = []
+
+        def stage(c: Fraction, position: Sequence[Fraction], velocity: Sequence[Fraction]) -> list[Any]:
+            straight = moved(y, 1, (c,), [[product(h, v) for v in rate]])
+            bent = [product(h, h, part) for part in combined(position, forces, half)]
+            return [*map(plus, straight, bent), *moved(rate, h, velocity, forces)]
+
+        for c, position, velocity in zip(tableau.c, tableau.position, tableau.velocity, strict=True):
+            forces.append(derivatives(stage(c, position, velocity))[half:])
+        return stage(Fraction(1), tableau.position_weights, tableau.velocity_weights)
+
+    return step
+
+
+def combined(weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]], size: int) -> list[Any]:
+    """Return Σ weight slope for each of `size` components; a slope with weight zero is left out."""
+    exact = [0 if weight == 0 else weight for weight in weights]
+    return [plus(*(product(w, slope[i]) for w, slope in zip(exact, slopes, strict=True))) for i in range(size)]
+
+
+def moved(state: Sequence[Any], h: Any, weights: Sequence[Fraction], slopes: Sequence[Sequence[Any]]) -> list[Any]:
+    """Return state + h Σ weight slope."""
+    return [plus(x, product(h, part)) for x, part in zip(state, combined(weights, slopes, len(state)), strict=True)]
 
 
 def traced_step(problem: Problem, step: Step) -> Program:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from reference import load_scene
-from reference.model.earth import axis_distance
+from reference.model.constants import axis_distance
 
 from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement, section
 from ..digits import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.earth import axis_distance
+from reference.model.constants import axis_distance
 
 from ..checks import Check, Finding, Identity, Statement, section
 from ..digits import MP, Vector, add, cos, cross, dot, norm, scale, shown, sin, sqrt, unit, vector_derivative

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 from .error_growth import ErrorHistory, error_growth
 from .heat_map import Field, heat_map
-from .overview import by_family, overview
-from .single_panels import achieved_tolerance, formulations, precision_ladder, right_hand_sides
+from .study import achieved_tolerance, by_family, formulations, overview, precision_ladder, right_hand_sides
 
 __all__ = [
     "ErrorHistory",

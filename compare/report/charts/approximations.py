@@ -12,8 +12,7 @@ from reference import InputError
 from ...studies.approximation_errors import TimeRow
 from ...studies.approximation_limits import SweepRow
 from ...studies.variation import UNITS
-from .drawing import COLOURS, FAINT, GUIDE, limits, line_style, logarithmic, sheet, svg_text
-from .lines import Line, draw, legend
+from .drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, line_style, logarithmic, sheet, svg_text
 
 _SAME = 0.15  # relative difference: lines that differ by less everywhere are drawn as one
 _WRAP = 2  # names per line of a label

@@ -12,9 +12,8 @@ from reference import InputError
 from reference.numbers.precision import Array
 
 from ...observed.power_law import largest_so_far
-from .drawing import COLOURS, GUIDE, line_style, logarithmic, sheet, svg_text
+from .drawing import COLOURS, GUIDE, Line, draw, legend, line_style, logarithmic, name_ends, sheet, svg_text
 from .ladders import band
-from .lines import Line, draw, legend, name_ends
 
 SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
 _POINTS = 240  # points of a line

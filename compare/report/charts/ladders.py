@@ -15,8 +15,7 @@ from ...methods import METHODS
 from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import Curve, error_of
-from .drawing import BAND, COLOURS, FAINT, line_style
-from .lines import Line
+from .drawing import BAND, COLOURS, FAINT, Line, line_style
 
 Coordinate = Callable[[Row], float | None]
 

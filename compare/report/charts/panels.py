@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from .drawing import limits, logarithmic, picture, sheet
-from .lines import Line, draw, legend, name_ends
+from .drawing import Line, draw, legend, limits, logarithmic, name_ends, picture, sheet
 
 WIDE = 4.8  # inches: as wide as a telephone's screen, where the letters then are as large as the text beside them
 EDGE = 0.5  # inches of a figure's height that no panel has

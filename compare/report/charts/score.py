@@ -14,9 +14,8 @@ from reference.numbers.precision import Array
 from reference.system.workspace import replace_file
 
 from ...score.scored import Score
-from .drawing import COLOURS, GUIDE, check_matplotlib, line_style, logarithmic, picture, sheet
+from .drawing import COLOURS, GUIDE, Line, check_matplotlib, draw, legend, line_style, logarithmic, picture, sheet
 from .ladders import band
-from .lines import Line, draw, legend
 
 LONGEST_NAME = 32  # characters of a file's name beside its line
 SUFFIXES = (".svg", ".png", ".pdf")

@@ -9,8 +9,7 @@ from itertools import product
 from ...engines import engine_names
 from ...errors import LONGEST_VALUE, shortened
 from ...model.formulations import FORMULATIONS
-from ...model.start import Start
-from ...model.vanishing import xdot_vanishes
+from ...model.start import Start, xdot_vanishes
 from ..files import Files
 from ..manifest import MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene

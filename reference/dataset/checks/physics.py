@@ -15,12 +15,11 @@ import numpy as np
 
 from ...model.constants import Constants, constants
 from ...model.force import acceleration, invariant
-from ...numbers.columns import STATE
 from ...numbers.fixed_point import FixedPoint, Integers, integers
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
-from ...numbers.table import bits_in
+from ...numbers.table import STATE, bits_in
 from ..files import Files
-from ..invariant import INVARIANT_BITS
+from ..record import INVARIANT_BITS
 from ..sheets import Sheet
 
 STEEP = 4  # where |z| is below l/4, z does not follow well enough from x and y

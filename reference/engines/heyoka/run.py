@@ -16,8 +16,7 @@ import numpy as np
 
 from ...model.carried import carried
 from ...model.formulations import FORMULATIONS
-from ...model.start import Start
-from ...model.vanishing import xdot_vanishes, zero_at_release
+from ...model.start import Start, xdot_vanishes, zero_at_release
 from ...numbers.precision import GUARD_BITS, real
 from ...numbers.table import Table
 from ...numbers.taylor_step import LOCAL, TaylorStep

@@ -6,11 +6,9 @@ fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are 
 - `engine`: its declaration; `size`: limbs for a precision.
 - `run`: a plan integrated, and the polynomials of each step for a proof; `integration`, in progress.
 - `problem`: a scene in limbs.
-- `march`, `march_state`, `step`: the loop of steps, what is carried from one to the next, and one of them.
-- `recurrence`, `products`, `series`, `unrolled`: the Taylor coefficients of a step, the sums of products in them, their
-  arrays, and the innermost sums written out.
-- `dense_output`: the state inside it; `zeros`, `polish`, `polynomial`, `xdot`: the
-  zeros of xdot on it.
+- `march`, `step`: the loop of steps with what is carried from one to the next, and one of them.
+- `recurrence`, `series`, `unrolled`: the Taylor coefficients of a step, their arrays, the innermost sums written out.
+- `dense_output`: the state inside it; `zeros`, `polish`, `polynomial`, `xdot`: the zeros of xdot on it.
 - `limb`, `lanes`: numbers of limbs, eight side by side.
 - `compiling`: how functions are compiled that compiled functions call.
 """

@@ -14,13 +14,12 @@ import numpy as np
 import numpy.typing as npt
 
 from ...errors import InputError, IntegrationError
-from ...model.vanishing import xdot_vanishes, zero_at_release
+from ...model.start import xdot_vanishes, zero_at_release
 from ...system.machine_code import prepare
 from ..plan import AT_REST, Pace, Plan, Report
 from .lanes import LANES
 from .limb import Array, aligned, joined
-from .march import DOUBTFUL, GOOD, STUCK, march
-from .march_state import COLUMNS, STEPS, TIME, ZEROS, Outputs, state_at_release
+from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Outputs, march, state_at_release
 from .problem import LimbProblem, limb_problem
 from .size import LIMB_BITS, MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS

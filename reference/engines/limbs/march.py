@@ -3,26 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
 
 from ...system.machine_code import kept
 from .compiling import OPTIONS, compiled
 from .dense_output import divide_place, evaluate, to_cartesian
 from .lanes import LANES, load, store
-from .march_state import (
-    LENGTH,
-    MULTIPLICITY,
-    NEXT,
-    ROWS,
-    SCALED,
-    SIGN,
-    STEPS,
-    TIME,
-    ZEROS,
-    MarchState,
-    Outputs,
-)
+from .limb import Array, aligned
 from .polish import polish
 from .recurrence import taylor_coefficients
+from .series import Counts, LinearTerms, Series, empty_series
 from .step import (
     LEAST_FACTOR,
     SAFETY_FACTOR,
@@ -35,7 +27,70 @@ from .step import (
     sum_series,
 )
 from .xdot import sign_after_release, sign_of_xdot
-from .zeros import GRAZING, MOST_ZEROS, bracket_zeros
+from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search
+
+COLUMNS = 7  # x, y, z, vx, vy, vz, ax
+TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # in `MarchState.counts`
+# why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
+GOOD, FULL, STUCK, DOUBTFUL = range(4)
+
+
+class MarchState(NamedTuple):
+    """State carried between steps, and working arrays.
+
+    Attributes:
+        now: rows of n, in the axes x, m, w, and of V in the unit of time.
+        counts: time and step length in grains; multiplicity of the zero of xdot at release; sign of xdot; steps;
+            output times passed; zeros written; the step length that `terms` is for; the next step's length.
+        s: the step's series.
+        terms: its linear terms.
+        rows, place: working arrays: all lanes at some place in the step, and that place.
+        search: working arrays for the step's zeros.
+    """
+
+    now: Array
+    counts: Counts
+    s: Series
+    terms: LinearTerms
+    rows: Array
+    place: Array
+    search: Search
+
+
+class Outputs(NamedTuple):
+    """Output times, the states at them, and zeros of xdot.
+
+    Attributes:
+        whole, remainders: times in whole grains, and the limbs of the remainders, shape (times * limb_count,).
+        states: `limb_count` rows per time, as `dense_output.to_cartesian` writes them.
+        moments: per zero the step's start and length in grains, and the crossing's sign.
+        places: per zero the limbs of its place in the step.
+        zero_states: `limb_count` rows per zero.
+        steps: start and length in grains of the first steps of a call, as many as there is room for.
+        series: the coefficients of as many steps, (order + 1) * `limb_count` rows each.
+    """
+
+    whole: Counts
+    remainders: Array
+    states: Array
+    moments: Counts
+    places: Array
+    zero_states: Array
+    steps: Counts
+    series: Array
+
+
+def state_at_release(start: Array, first: int, multiplicity: int, model: Model) -> MarchState:
+    """Return the state carried between steps, initialised at the release."""
+    order, limb_count = model.order, model.limb_count
+    counts = np.zeros(9, dtype=np.int64)
+    counts[LENGTH], counts[MULTIPLICITY] = first, multiplicity
+    terms = LinearTerms(*(aligned(LANES * (limb_count + 2)) for _ in LinearTerms._fields))
+    rows = aligned(LANES * (limb_count + 2))
+    now = aligned(len(start))
+    now[:] = start
+    series, search = empty_series(order, limb_count), empty_search(order, limb_count)
+    return MarchState(now, counts, series, terms, rows, np.zeros(limb_count + 2), search)
 
 
 @compiled
@@ -82,10 +137,6 @@ def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
         counts[ZEROS] += 1
     counts[SIGN] = after
     return True
-
-
-# why a march stops: end reached; arrays full or steps used up; no step short enough; zeros of xdot in doubt
-GOOD, FULL, STUCK, DOUBTFUL = range(4)
 
 
 @kept(*Path(__file__).parent.glob("*.py"), **OPTIONS)

@@ -11,15 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from ...numbers.columns import RUN
 from ...numbers.packing import Digits
-from ...numbers.table import Table
+from ...numbers.table import RUN, Table
 from ...numbers.taylor_step import TaylorStep
 from ..plan import Pace, Plan, Report, Run
 from .integration import Integration, integration_of
 from .lanes import LANES
 from .limb import Array
-from .march_state import STEPS
+from .march import STEPS
 from .series import TENSION, M, W, X
 from .size import fraction_bits
 

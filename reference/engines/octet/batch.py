@@ -34,8 +34,7 @@ class OctetBatch(Batch):
 
     def prepare(self, wanted: Wanted, drag: bool) -> float:
         """Compile the kernel, or read it from the disk, once a process: later calls find it done."""
-        from .found import empty_moments
-        from .march import empty_march, march
+        from .march import empty_march, empty_moments, march
 
         started = time.thread_time()
         arguments = _arguments(empty_march(), Wanted(), np.zeros(COLUMNS), np.zeros(RESULTS), empty_moments(0), 0)
@@ -44,8 +43,7 @@ class OctetBatch(Batch):
 
     def solve(self, rows: Rows, wanted: Wanted) -> Outcomes:
         """Solve rows without drag."""
-        from .found import empty_moments
-        from .march import empty_march, march
+        from .march import empty_march, empty_moments, march
 
         if rows.drag.any():
             raise ValueError("rows with drag are not for this kernel")

@@ -11,10 +11,9 @@ import pytest
 from compare.methods import METHODS
 from compare.methods.method import Family
 from compare.report import charts
-from compare.report.charts.drawing import COLOURS, line_style, power_of_ten, sheet
+from compare.report.charts.drawing import COLOURS, Line, legend, line_style, name_ends, power_of_ten, sheet
 from compare.report.charts.heat_map import LETTERS
 from compare.report.charts.ladders import FAMILY_COLOURS, family_of, ladders
-from compare.report.charts.lines import Line, legend, name_ends
 from compare.report.pareto import cost_of, curves
 from compare.studies.row import Row
 from reference import InputError

@@ -14,8 +14,7 @@ from small_scenes import make_scene
 
 import compare.rhs.tracing
 from compare.rhs.problem import FirstOrderSystem, Problem
-from compare.rhs.tangent import differentiated
-from compare.rhs.tracing import TracingError, record
+from compare.rhs.tracing import TracingError, differentiated, record
 from reference import InputError, load_scene
 from reference.model.constants import constants, constants_in_double
 from reference.model.formulations import FORMULATIONS

@@ -14,14 +14,13 @@ from small_scenes import make_scene
 
 from reference.dataset.checks import motion, physics, tables
 from reference.dataset.files import read_files
-from reference.dataset.invariant import INVARIANT_BITS
+from reference.dataset.record import INVARIANT_BITS
 from reference.dataset.sheets import Sheet
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
-from reference.numbers.columns import GRID
 from reference.numbers.fixed_point import integers
 from reference.numbers.precision import context, fixed_decimal
-from reference.numbers.table import Table
+from reference.numbers.table import GRID, Table
 
 ROW, WIDER = 3, 10**9  # bounds so wide that rounding, of which they consist, is nothing beside them
 

@@ -16,7 +16,7 @@ from reference.engines.heyoka.system import System
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import IntegrationError
-from reference.model.vanishing import xdot_vanishes, zero_at_release
+from reference.model.start import xdot_vanishes, zero_at_release
 from reference.numbers.precision import DOUBLE, LONG_DOUBLE, real
 
 

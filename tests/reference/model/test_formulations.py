@@ -14,8 +14,7 @@ from reference.engines.heyoka.numbers import Numbers
 from reference.engines.heyoka.system import System
 from reference.model.algebra import cross, dot, minus, plus, product
 from reference.model.carried import carried, constant_variables
-from reference.model.constants import Constants, constants
-from reference.model.earth import axis_distance
+from reference.model.constants import Constants, axis_distance, constants
 from reference.model.force import acceleration, force, invariant, rest_position, tension
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start, release

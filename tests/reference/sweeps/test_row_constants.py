@@ -11,8 +11,7 @@ import pytest
 from random_rows import KINDS, columns_of_many, random_inputs
 
 from reference.model.algebra import add, cross
-from reference.model.start import Start
-from reference.model.vanishing import xdot_vanishes, zero_at_release
+from reference.model.start import Start, xdot_vanishes, zero_at_release
 from reference.sweeps.row_constants import columns_of, row_constants
 
 BITS = 300

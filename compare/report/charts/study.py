@@ -1,0 +1,239 @@
+"""Charts of a study: error against CPU seconds, with the Pareto front and by family; against evaluations and tolerance.
+
+Besides: what formulations and right-hand sides do, and the cost of digits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from operator import attrgetter
+from typing import Any
+
+import numpy as np
+
+from ...methods.method import Family
+from ...studies.row import Row
+from ..pareto import Curve, cost_of, costs_of_digits, curves, digits_of, error_of, front, whole_evaluations
+from .drawing import (
+    BAND,
+    COLOURS,
+    FAINT,
+    GUIDE,
+    RULE,
+    Line,
+    draw,
+    legend,
+    limits,
+    line_style,
+    logarithmic,
+    sheet,
+    svg_text,
+)
+from .ladders import CPU, ERROR, FAMILY_COLOURS, Ladder, band, error_above, family_of, ladders
+
+FINEST_M = 1e-20  # m: the upper panel shows the methods of fixed precision, but no errors below this
+_SPLIT = 4.0  # the panels meet at the smallest error of these methods divided by this
+_BAND_WITHIN = 1e12  # the bound is shown if the smallest error is less than this many times larger
+_COLUMNS = 3  # panels side by side
+_STRIP = 0.95  # lower edge of the strip of failed rows, as a part of the height of the panel
+_TICKS = (1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 50, 70, 100, 150, 200, 300, 500)
+
+
+def overview(rows: Sequence[Row], bound_m: float) -> str | None:
+    """Draw error against CPU seconds, one line for each method, with the Pareto front and failed rows along the top.
+
+    Errors below those of the methods of fixed precision have a panel of their own. None if no row is measured.
+    """
+    best = front(rows, bound_m)
+    on_front = {row.key for row in best}
+    shown = [one for one in curves(rows) if one.own or any(row.key in on_front for row in one.rows)]
+    lines = ladders(shown, cost_of, error_above(bound_m))
+    if not lines:
+        return None
+    scales, staircase = _scales(lines, bound_m), _staircase(best, bound_m)
+    with sheet((9.5, 8.6 if len(scales) > 1 else 6.6)) as figure:
+        grid = figure.subplots(len(scales), sharex=True, height_ratios=(3.4, 1.2)[: len(scales)], squeeze=False)
+        x_limits = limits([row.cpu_s for row in rows if row.cpu_s], 0.5, 3.0)
+        for axes, scale, labels in zip(grid[:, 0], scales, (18, 8), strict=False):
+            logarithmic(axes, "x", *x_limits, 12)
+            logarithmic(axes, "y", *scale, labels)
+            band(axes, bound_m)
+            axes.plot(staircase.x, staircase.y, **staircase.style, zorder=2)
+            draw(axes, lines)
+        _failed(grid[0, 0], rows)
+        grid[-1, 0].set_xlabel(CPU)
+        figure.supylabel(ERROR, fontsize=9)
+        legend(grid[0, 0], lines)
+        names = ", ".join(one.name for one in lines)
+        return svg_text(figure, "overview", f"Largest position error against CPU seconds, log-log, of {names}.")
+
+
+def _scales(lines: Sequence[Ladder], bound_m: float) -> list[tuple[float, float]]:
+    """Return the lowest and the highest error of each panel."""
+    errors = [error for one in lines for error in one.y]
+    fixed = [error for one in lines if one.family != Family.MANY_DIGITS for error in one.y]
+    finest, most = min(errors), max(errors) * 30
+    split = max(min(fixed) / _SPLIT, FINEST_M) if fixed else 0.0
+    if finest >= split:
+        return [(finest / _SPLIT, most)]
+    lowest = bound_m if finest / _BAND_WITHIN < bound_m < finest else finest
+    return [(split, most), (lowest / 30, split)]
+
+
+def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
+    """Draw error against CPU seconds in one panel for each family, with all other methods in grey behind it.
+
+    The family of many digits is left to `precision_ladder` if there are others. None if no row is measured.
+    """
+    lines = ladders([one for one in curves(rows) if one.own], cost_of, error_above(bound_m))
+    coarse = [one for one in lines if one.family != Family.MANY_DIGITS] or lines
+    families = [family for family in Family if any(one.family == family for one in coarse)]
+    if not families:
+        return None
+    x_limits = limits([cpu_s for one in coarse for cpu_s in one.x])
+    y_limits = limits([error for one in coarse for error in one.y], 0.2, 6.0)
+    count = -(-len(families) // _COLUMNS)
+    with sheet((9.5, 2.9 * count)) as figure:
+        grid = figure.subplots(count, min(_COLUMNS, len(families)), sharex=True, sharey=True, squeeze=False)
+        for panel in grid.flat[len(families) :]:
+            panel.set_axis_off()
+        for i, (panel, family) in enumerate(zip(grid.flat, families, strict=False)):
+            logarithmic(panel, "x", *x_limits, 6)
+            logarithmic(panel, "y", *y_limits, 9)
+            panel.tick_params(labelbottom=i + _COLUMNS >= len(families))
+            panel.set_title(family)
+            for one in lines:
+                if one.family != family:
+                    panel.plot(one.x, one.y, color=RULE, linewidth=1.0, zorder=1)
+            own = [one for one in lines if one.family == family]
+            draw(panel, own)
+            legend(panel, own, size=7, inside=True)
+        figure.supxlabel(CPU, fontsize=9)
+        figure.supylabel(ERROR, fontsize=9)
+        return svg_text(figure, "families", f"Error against CPU seconds in small multiples: {', '.join(families)}.")
+
+
+def _staircase(best: Sequence[Row], bound_m: float) -> Line:
+    """Return the Pareto front as a broad line: across at the error of each row, then down to that of the next."""
+    x, y = [cost_of(row) for row in best], [error_of(row, bound_m) for row in best]
+    style = {"color": RULE, "linewidth": 7, "solid_joinstyle": "miter"}
+    return Line("", np.repeat(x, 2)[1:].tolist(), np.repeat(y, 2)[:-1].tolist(), style)
+
+
+def _failed(axes: Any, rows: Sequence[Row]) -> None:
+    """Draw failed rows that have a cost as crosses in a strip along the top, in the colour of their family."""
+    failed = [row for row in rows if not row.measured and row.cpu_s]
+    strip = {"transform": axes.transAxes, "zorder": 0}
+    axes.fill([0, 1, 1, 0], [_STRIP, _STRIP, 1, 1], color=BAND, linewidth=0, **strip)
+    middle = (1 + _STRIP) / 2
+    axes.text(0.995, middle, "failed", ha="right", va="center_baseline", color=FAINT, fontsize=8, **strip)
+    for row in failed:
+        axes.plot(
+            [row.cpu_s], [middle], marker="x", markersize=5, color=FAMILY_COLOURS[family_of(row.method)],
+            transform=axes.get_xaxis_transform(), zorder=5,
+        )  # fmt: skip
+
+
+def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
+    """Draw CPU seconds against digits achieved; None if no method's setting is the precision.
+
+    The chart shows methods that can compute at several precisions, each in its own formulation. Where the cost of one
+    is fitted, the fit is a broad and faint line, and its exponent stands beside the name.
+    """
+    laws = costs_of_digits(rows, bound_m)
+    own = [one for one in curves(rows) if one.own and family_of(one.method) in (Family.MANY_DIGITS, Family.HEYOKA)]
+    if not any(one.kind == "precision" and one.measured for one in own):
+        return None
+
+    def digits(row: Row) -> float | None:
+        return digits_of(row, bound_m) if row.error_m and row.error_m < 0.1 else None
+
+    def name(curve: Curve) -> str:
+        law = laws.get(curve.label)
+        return curve.label if law is None else f"{curve.label}, ∝ digits^{law.exponent:.2f} ± {law.standard_error:.2f}"
+
+    lines = ladders(own, digits, cost_of, name)
+    with sheet((9.5, 5.2)) as figure:
+        axes = figure.subplots()
+        logarithmic(axes, "y", *limits([cpu for line in lines for cpu in line.y], 0.4, 3.0), 12)
+        _digits(axes, *limits([digits for line in lines for digits in line.x], 0.8, 1.4))
+        _known(axes, bound_m)
+        draw(axes, lines)
+        for law in laws.values():
+            ends = [law.low, law.high]
+            axes.plot(ends, [law(digits) for digits in ends], color=FAINT, linewidth=6, alpha=0.3, zorder=1)
+        axes.set(xlabel="digits achieved, −log₁₀ of the largest error in m", ylabel=CPU)
+        legend(axes, lines, inside=True)
+        return svg_text(figure, "precision", "CPU seconds against digits achieved, log-log, with fitted power laws.")
+
+
+def _digits(axes: Any, low: float, high: float) -> None:
+    from matplotlib.ticker import FixedLocator, FuncFormatter
+
+    logarithmic(axes, "x", low, high)
+    axes.xaxis.set_major_locator(FixedLocator([tick for tick in _TICKS if low < tick < high]))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _known(axes: Any, bound_m: float) -> None:
+    """Draw a band over the digits that the reference itself does not have."""
+    high = axes.get_xlim()[1]
+    most = -math.log10(bound_m) if bound_m > 0 else math.inf
+    if most < high:
+        axes.axvspan(most, high, color=BAND, linewidth=0, zorder=0)
+        text = f"beyond the reference ({most:.0f} digits) "
+        axes.text(high, 0.01, text, transform=axes.get_xaxis_transform(), color=FAINT, fontsize=8, ha="right")
+
+
+def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str | None:
+    """Draw error against evaluations of the right-hand side, for methods that count them; None if there are none."""
+    own = [one for one in curves(rows) if one.own]
+    return _single(
+        ladders(own, lambda row: whole_evaluations(row, t_end), error_above(bound_m)),
+        bound_m,
+        ("evaluations", "evaluations of the right-hand side", "Error against evaluations of the right-hand side"),
+    )
+
+
+def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
+    """Draw the error achieved against the relative tolerance asked for; None if no method takes a tolerance."""
+    own = [one for one in curves(rows) if one.own and one.kind == "tolerance"]
+    coarse = [one for one in own if family_of(one.method) != Family.MANY_DIGITS]
+    words = ("tolerance", "relative tolerance asked for", "Error achieved against the tolerance asked for")
+    lines = ladders(coarse, attrgetter("setting"), error_above(bound_m))
+    return _single(lines, bound_m, words, diagonal="error in m = tolerance")
+
+
+def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
+    """Draw error against CPU seconds of formulations of the same equations with one method; None without such rows."""
+    every = curves(rows)
+    compared = {one.method for one in every if not one.own}
+    ladders_of_all = ladders(
+        [one for one in every if one.method in compared], cost_of, error_above(bound_m), attrgetter("formulation")
+    )
+    words = ("formulations", CPU, "Error against CPU seconds of formulations of the same equations")
+    lines = [replace(one, style=line_style(COLOURS[i % 6], i)) for i, one in enumerate(ladders_of_all)]
+    return _single(lines, bound_m, words)
+
+
+def _single(lines: Sequence[Line], bound_m: float, words: tuple[str, str, str], diagonal: str = "") -> str | None:
+    """Draw one panel; `words` are the picture's name, the label of the horizontal axis and the description."""
+    if not lines:
+        return None
+    with sheet((9.5, 5.6)) as figure:
+        axes = figure.subplots()
+        logarithmic(axes, "x", *limits([x for one in lines for x in one.x], 0.4, 3.0), 12)
+        logarithmic(axes, "y", *limits([y for one in lines for y in one.y], 0.2, 5.0), 16)
+        axes.set(xlabel=words[1], ylabel=ERROR)
+        band(axes, bound_m)
+        draw(axes, lines)
+        others = []
+        if diagonal:
+            low, high = axes.get_xlim()
+            ends = np.geomspace(low, high, 9).tolist()
+            others.append(Line(diagonal, ends, ends, GUIDE))
+            draw(axes, others)
+        legend(axes, [*lines, *others])
+        return svg_text(figure, words[0], f"{words[2]}, log-log: {', '.join(one.name for one in lines)}.")
