@@ -27,7 +27,7 @@ def output(covered: Covered, time: Fraction) -> list[Interval]:
 '''
 # what is done to each file that the recipe names
 EDITS = {
-    "reference/numbers/table.py": lambda text: re.sub("^GRID = STATE", 'GRID = (*STATE, "ax")', text, flags=re.M),
+    "reference/numbers/columns.py": lambda text: re.sub("^GRID = STATE", 'GRID = (*STATE, "ax")', text, flags=re.M),
     "reference/enclosure/bound.py": lambda text: text + BALL,
     "reference/enclosure/printed.py": lambda text: re.sub('^GRID = "t,x.*vz', r"\g<0>,ax", text, flags=re.M),
     "tests/reference/dataset/test_write_and_read.py": lambda text: text.replace('"t,x,y,z,vx,vy,vz"', "its header"),

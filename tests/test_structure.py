@@ -142,9 +142,10 @@ PUBLIC = {
     "reference.model.force": "acceleration invariant rest_position tension",
     "reference.model.formulations": "FORMULATIONS",
     "reference.model.start": "Start scaled",
+    "reference.numbers.columns": "STATE",
     "reference.numbers.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType "
     "bits_of context fixed_decimal real to_fraction to_mpf",
-    "reference.numbers.table": "STATE Table",
+    "reference.numbers.table": "Table",
     "reference.scenes.inputs": "Inputs",
     "reference.scenes.scene": "LEVELS MAX_ROWS RunTable",
     "reference.scenes.shipped": "DATA_VERSION data_root golden_root in_checkout seals",

@@ -16,8 +16,9 @@ from reference import IntegrationError
 from reference.model.carried import carried
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
+from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE, DOUBLE_BITS, GUARD_BITS, LONG_DOUBLE, LONG_DOUBLE_BITS, NumberType, real
-from reference.numbers.table import STATE, Table
+from reference.numbers.table import Table
 from reference.status import Status
 
 from ..rhs.problem import Problem

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from reference.numbers.table import STATE
+from reference.numbers.columns import STATE
 from reference.status import Status
 
 from ..rhs.problem import Array, Problem

@@ -8,8 +8,9 @@ from typing import Any
 
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
+from reference.numbers.columns import STATE
 from reference.numbers.precision import GUARD_BITS, context, to_fraction, to_mpf
-from reference.numbers.table import STATE, Table
+from reference.numbers.table import Table
 from reference.status import Status
 
 from ..rhs.problem import Array, Problem

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from reference import FoucaultError, Golden, UnreachableError, trajectory
+from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
-from reference.numbers.table import STATE
 
 from ..candidates.candidate import Candidate
 from ..observed.swing_plane import Gauge

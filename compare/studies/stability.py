@@ -19,7 +19,7 @@ import numpy as np
 
 from reference import Golden, Scene, UnreachableError, load, load_scene, parse_scene, scene_ids
 from reference.model.constants import constants_in_double
-from reference.numbers.table import STATE
+from reference.numbers.columns import STATE
 from reference.status import Status
 
 from ..methods import METHODS

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 import typer
 
 from ..errors import plain
-from ..system.machine_code import announced_to
+from ..system.first_use import announced_to
 from ..system.plain_output import terminal_of
 
 NOTICE_S = 20.0  # work that takes no longer than this goes without a notice

@@ -19,8 +19,8 @@ import numpy.typing as npt
 from ..errors import InputError
 from ..model.constants import Constants, constants
 from ..model.formulations import FORMULATIONS
+from ..numbers.columns import STATE
 from ..numbers.precision import GUARD_BITS, LONG_DOUBLE, Array, NumberType, context, real
-from ..numbers.table import STATE
 from .read import Golden
 
 TYPES = (LONG_DOUBLE, real(128), real(192), real(256))  # if one loses too many digits, the next is tried

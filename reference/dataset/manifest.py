@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from ..numbers.table import GRID, TRANSITS
+from ..numbers.columns import GRID, TRANSITS
 from ..scenes.scene import Level, Reading
 
 MANIFEST = "manifest.json"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 
-from ..numbers.table import TRANSITS
+from ..numbers.columns import TRANSITS
 from ..solver.solution import Solution
 from .certified import certified_page
 from .manifest import MANIFEST, FileRecord, Manifest

@@ -6,9 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 
+from ..numbers.columns import GRID, TRANSITS
 from ..numbers.fixed_point import Integers, integers
 from ..numbers.precision import fixed_decimal, rounded_up
-from ..numbers.table import GRID, TRANSITS, Table
+from ..numbers.table import Table
 from ..scenes.scene import Scene
 from ..solver.rounding import exact_decimals, grid_decimals, transit_decimals
 from ..solver.solution import Solution

@@ -11,7 +11,7 @@ from typing import Any
 from ..engines import AUTO
 from ..engines.plan import Report
 from ..errors import FoucaultError, IntegrationError, UnreachableError
-from ..numbers.table import POSITION
+from ..numbers.columns import POSITION
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import index, scene_ids, seals
 from ..solver.rounding import grid_decimals

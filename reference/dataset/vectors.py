@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from ..numbers.table import KINDS, UNITS
+from ..numbers.columns import KINDS, UNITS
 from .manifest import FORMAT, Decimal, Manifest, Name, Part, Text
 from .sheets import NUMBERS, Sheet
 

@@ -1,4 +1,4 @@
-"""TRUSTED. The error bound: the scene in balls, defect of a step, Theorem C from step to step (THEOREM.md, 1 to 7).
+"""TRUSTED. The error bound of a step: scene in balls, defect, how the radius grows: Theorem C (THEOREM.md, 1 to 7).
 
 Time on a step is s = (t - centre)/h; h Ω, h² c, h γ, h H are written Ω, c, γ, H. A name of a size is an upper bound.
 """

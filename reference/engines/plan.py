@@ -11,8 +11,9 @@ import numpy as np
 
 from ..model.force import tension
 from ..model.start import Start
+from ..numbers.columns import STATE
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, NumberType
-from ..numbers.table import STATE, Table
+from ..numbers.table import Table
 from ..scenes.inputs import Inputs
 
 Report = Callable[[float], None]  # called with the simulated time reached, in s

@@ -1,6 +1,4 @@
-"""The fixed-point table: exact numbers as integers over a power of two, in columns, with bounds on their errors.
-
-The columns of all tables are listed here, with their kinds and units.
+"""The fixed-point table: exact numbers as integers over a power of two, in named columns, with bounds on their errors.
 
 It tells the largest number of each column, how far two tables are apart, the decimals that print it, and whether the
 bounds decide every printed digit.
@@ -16,20 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from .columns import KINDS
 from .precision import Array, decimals_for, rounded, with_decimal_point
-
-POSITION = ("x", "y", "z")
-VELOCITY = ("vx", "vy", "vz")
-STATE = POSITION + VELOCITY
-RUN = (*STATE, "ax")  # an engine's results at each output time, and after t at each transit
-
-GRID = STATE  # of grid.csv, after t
-TRANSITS = ("t", "x", "y", "z", "vy", "ax")  # of transits.csv, beside number, direction and bound
-
-UNITS = {("t",): "s", POSITION: "m", VELOCITY: "m/s", ("ax",): "m/s^2"}  # of the columns of each kind
-KINDS = {name: kind for kind in UNITS for name in kind}  # the columns of a column's kind, whose sizes are alike
-HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair}  # the same errors are assumed of both
-
 
 NOISE = 8  # a column whose largest number is within this many times its error is taken for zero
 

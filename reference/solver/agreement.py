@@ -9,8 +9,9 @@ from fractions import Fraction
 from ..engines.plan import Run
 from ..errors import IntegrationError
 from ..model.start import Start
+from ..numbers.columns import GRID, POSITION, TRANSITS, VELOCITY
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, to_fraction
-from ..numbers.table import GRID, POSITION, TRANSITS, VELOCITY, Table, bits_in, decimals_of, resolved
+from ..numbers.table import Table, bits_in, decimals_of, resolved
 from .pilot import MARGIN_BITS
 
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit

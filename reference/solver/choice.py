@@ -1,4 +1,4 @@
-"""The run that a scene's published numbers come from: its bits, engine and form of the equations; chosen here alone.
+"""The run that a scene's digits come from: how many bits they take, its engine, its form of the equations.
 
 `solve` begins with it, and `foucault show --equations` prints its equations.
 """
@@ -11,8 +11,8 @@ from math import ceil, e, sqrt
 from ..engines import AUTO
 from ..engines.plan import Plan
 from ..engines.registry import fastest
+from ..numbers.columns import POSITION, VELOCITY
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, bits_of, log2, real
-from ..numbers.table import POSITION, VELOCITY
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .pilot import Pilot, run_pilot

@@ -13,8 +13,8 @@ from ..engines.background import WORTH_A_PROCESS, Background, expected_s, in_bac
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import InputError, IntegrationError
+from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import LONG_DOUBLE
-from ..numbers.table import GRID, TRANSITS
 from ..scenes.scene import Scene
 from ..system.workers import Emit
 from .agreement import bits_lacking

@@ -17,8 +17,9 @@ from ..engines.plan import Plan
 from ..engines.registry import fastest, run
 from ..errors import BeyondDoublesError, UnreachableError
 from ..model.start import Start
+from ..numbers.columns import GRID, HORIZONTAL, POSITION, VELOCITY
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, decimals_for, real
-from ..numbers.table import GRID, HORIZONTAL, POSITION, VELOCITY, Table, bits_in, decimals_of, resolved
+from ..numbers.table import Table, bits_in, decimals_of, resolved
 from ..scenes.inputs import Inputs
 from .reach import MAX_PREC, MAX_STEPS, Pace, effort
 

@@ -12,8 +12,9 @@ from typing import Any
 
 from ..engines.plan import Report, Run
 from ..errors import UnreachableError
+from ..numbers.columns import GRID, POSITION, TRANSITS
 from ..numbers.precision import rounded_up
-from ..numbers.table import GRID, POSITION, TRANSITS, Table, bits_in
+from ..numbers.table import Table, bits_in
 from ..scenes.scene import Scene
 from .choice import first_radius, late_radius
 from .pilot import Pilot

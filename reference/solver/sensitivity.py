@@ -22,8 +22,8 @@ from ..errors import UnreachableError
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
+from ..numbers.columns import GRID
 from ..numbers.precision import DOUBLE, LONG_DOUBLE, Array, real, to_fraction
-from ..numbers.table import GRID
 from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .pilot import Pilot, run_pilot

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from ..engines.plan import Run
+from ..numbers.columns import GRID, POSITION, VELOCITY
 from ..numbers.precision import Array
-from ..numbers.table import GRID, POSITION, VELOCITY, Table
+from ..numbers.table import Table
 from ..scenes.scene import Level, Scene
 from ..system.imports import no_attribute
 

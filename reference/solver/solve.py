@@ -15,8 +15,9 @@ from ..engines.background import run_both
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
 from ..errors import InputError, UnreachableError
+from ..numbers.columns import GRID
 from ..numbers.precision import LONG_DOUBLE
-from ..numbers.table import GRID, Table
+from ..numbers.table import Table
 from ..scenes.scene import Scene
 from .agreement import Agreement
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec

@@ -22,8 +22,9 @@ from ..model.algebra import dot
 from ..model.constants import Vector
 from ..model.force import acceleration, force
 from ..model.start import Start
+from ..numbers.columns import POSITION, TRANSITS, VELOCITY
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, Array
-from ..numbers.table import POSITION, TRANSITS, VELOCITY, Table, bits_in
+from ..numbers.table import Table, bits_in
 
 UNKNOWN = 10**9  # the error stated, in SI units, where xdot only grazes zero: as good as unknown
 ROUNDED_UP = 1 + 2.0**-40  # far more than the rounding of the binary64 arithmetic here

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import FoucaultError
-from ..numbers.table import POSITION, STATE, VELOCITY
+from ..numbers.columns import POSITION, STATE, VELOCITY
 from ..scenes.scene import LEVELS, Level
 from ..status import Status
 from .request import Request

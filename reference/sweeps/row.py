@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..numbers.table import POSITION, VELOCITY
+from ..numbers.columns import POSITION, VELOCITY
 from .values import TEXTS
 
 FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = "frequency", "precession", "transits", "state", "amplitude"

@@ -134,7 +134,7 @@ class Pool:
         """Wait for what is begun; after an exception, end it."""
         if kind:
             self._ended.set()
-            for process in self._processes:
+            for process in list(self._processes):  # a thread may be taking one out
                 process.kill()
         self._threads.shutdown(cancel_futures=kind is not None)
         for process in self._processes:

@@ -19,8 +19,8 @@ from reference.dataset.verify import verify
 from reference.dataset.write import write
 from reference.model.constants import constants
 from reference.model.force import acceleration
+from reference.numbers.columns import GRID, TRANSITS
 from reference.numbers.precision import context, fixed_decimal, to_fraction, to_mpf
-from reference.numbers.table import GRID, TRANSITS
 
 BOUNDS = 30  # a forgery changes some number by more than this many bounds
 SCENES = {

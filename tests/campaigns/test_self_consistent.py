@@ -11,8 +11,8 @@ from small_scenes import make_scene
 import reference
 from reference.engines.plan import Plan
 from reference.engines.registry import run
+from reference.numbers.columns import GRID, TRANSITS
 from reference.numbers.precision import real
-from reference.numbers.table import GRID, TRANSITS
 
 FINER_BITS = 60  # of the truth, more than the published run has
 SMALL_SWING_BITS = 70  # and as many more, as heyoka's numbers count from l where the rest position is off the vertical

@@ -18,8 +18,8 @@ from reference.dataset.render import derived_texts
 from reference.dataset.sheets import GRID_HEADER, TRANSITS_HEADER, Sheet, scene_inputs
 from reference.errors import FoucaultError
 from reference.model.start import Start
+from reference.numbers.columns import GRID, POSITION, VELOCITY
 from reference.numbers.precision import GUARD_BITS, bits_of, fixed_decimal, rounded_up, to_fraction
-from reference.numbers.table import GRID, POSITION, VELOCITY
 from reference.scenes.scene import Scene, parse_scene
 from reference.solver.rounding import exact_decimals
 

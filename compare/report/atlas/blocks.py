@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from reference import Golden
 from reference.dataset.certified import MEANING
-from reference.numbers.table import STATE
+from reference.numbers.columns import STATE
 from reference.status import Status
 
 from ..page import Html, facts, text

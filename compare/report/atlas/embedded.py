@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from reference import Golden
+from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
-from reference.numbers.table import STATE
 
 from ...candidates import names, units
 from ...observed.position_error import distance

@@ -17,8 +17,9 @@ from ...engines.plan import Run
 from ...engines.registry import engines
 from ...errors import IntegrationError, UnreachableError
 from ...model.start import Start
+from ...numbers.columns import GRID, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
-from ...numbers.table import GRID, TRANSITS, VELOCITY, Table
+from ...numbers.table import Table
 from ..files import Files
 from ..manifest import Manifest
 from ..sheets import Sheet

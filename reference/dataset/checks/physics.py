@@ -15,9 +15,10 @@ import numpy as np
 
 from ...model.constants import Constants, constants
 from ...model.force import acceleration, invariant
+from ...numbers.columns import STATE
 from ...numbers.fixed_point import FixedPoint, Integers, integers
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
-from ...numbers.table import STATE, bits_in
+from ...numbers.table import bits_in
 from ..files import Files
 from ..record import INVARIANT_BITS
 from ..sheets import Sheet

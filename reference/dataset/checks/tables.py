@@ -7,8 +7,8 @@ from fractions import Fraction
 from itertools import pairwise
 
 from ...model.start import Start
+from ...numbers.columns import GRID, STATE, VELOCITY
 from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
-from ...numbers.table import GRID, STATE, VELOCITY
 from ...solver.rounding import exact_decimals
 from ..files import Files
 from ..manifest import MANIFEST

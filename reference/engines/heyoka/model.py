@@ -14,8 +14,9 @@ from ...model.constants import Constants
 from ...model.force import acceleration
 from ...model.formulations import Formulation
 from ...model.start import Start
+from ...numbers.columns import RUN
 from ...numbers.precision import Array, NumberType
-from ...numbers.table import RUN, Table
+from ...numbers.table import Table
 from .numbers import Numbers
 from .system import as_pairs, keep_on_disk, rates
 

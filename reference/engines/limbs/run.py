@@ -11,8 +11,9 @@ from typing import Any
 
 import numpy as np
 
+from ...numbers.columns import RUN
 from ...numbers.packing import Digits
-from ...numbers.table import RUN, Table
+from ...numbers.table import Table
 from ...numbers.taylor_step import TaylorStep
 from ..plan import Pace, Plan, Report, Run
 from .integration import Integration, integration_of

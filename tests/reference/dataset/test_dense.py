@@ -11,8 +11,8 @@ from small_scenes import make_scene
 from reference import InputError, load, solve
 from reference.dataset.dense import dense
 from reference.dataset.write import write
+from reference.numbers.columns import STATE
 from reference.numbers.precision import LONG_DOUBLE
-from reference.numbers.table import STATE
 
 
 @pytest.fixture(scope="module")

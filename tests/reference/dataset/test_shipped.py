@@ -11,7 +11,7 @@ from reference.dataset.record import AUDIT, NO_CONFIRM
 from reference.dataset.verify import problems_of
 from reference.engines import AUTO
 from reference.engines.registry import engines, run
-from reference.numbers.table import STATE
+from reference.numbers.columns import STATE
 from reference.scenes.shipped import data_root, seals
 from reference.solver.choice import confirming_plan, first_prec
 from reference.solver.pilot import run_pilot

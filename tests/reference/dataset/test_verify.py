@@ -26,8 +26,8 @@ from reference.engines.limbs import integration
 from reference.engines.limbs.size import MOST_PREC
 from reference.engines.registry import engines
 from reference.errors import DatasetError
+from reference.numbers.columns import TRANSITS
 from reference.numbers.precision import fixed_decimal
-from reference.numbers.table import TRANSITS
 
 
 def problems(dataset: Path) -> str:

@@ -12,7 +12,7 @@ import reference
 from reference.dataset.render import render
 from reference.enclosure.printed import check_grid, check_transits
 from reference.errors import FoucaultError
-from reference.numbers.table import GRID
+from reference.numbers.columns import GRID
 
 
 @pytest.fixture(scope="module")

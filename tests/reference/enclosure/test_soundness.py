@@ -22,9 +22,9 @@ from reference.enclosure.frames import ColumnSource
 from reference.enclosure.six_columns import Columns
 from reference.engines.plan import Plan
 from reference.engines.registry import run
+from reference.numbers.columns import TRANSITS
 from reference.numbers.packing import DIGIT_BITS, Digits
 from reference.numbers.precision import real
-from reference.numbers.table import TRANSITS
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth

@@ -16,8 +16,8 @@ from reference.engines.heyoka.system import System, equations_text
 from reference.engines.plan import Plan
 from reference.errors import IntegrationError
 from reference.model.formulations import FORMULATIONS
+from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE, LONG_DOUBLE, real
-from reference.numbers.table import STATE
 
 
 def end_of(scene, number, name="momentum", t_end=60):

@@ -11,7 +11,7 @@ from places import ROOT
 from reference.engines import AUTO, engine_names
 from reference.engines.registry import checked, engines, fastest, run
 from reference.errors import InputError
-from reference.numbers.table import RUN
+from reference.numbers.columns import RUN
 from reference.numbers.taylor_step import EARTH, LOCAL
 
 TIMES = (Fraction(0), Fraction(7), Fraction(60))

@@ -10,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from reference.enclosure.shapes import Interval
+from reference.numbers.columns import GRID, KINDS, RUN, TRANSITS, UNITS
 from reference.numbers.precision import rounded
-from reference.numbers.table import GRID, KINDS, RUN, TRANSITS, UNITS, Table, decimals_of, resolved
+from reference.numbers.table import Table, decimals_of, resolved
 
 numbers = st.integers(min_value=-(2**80), max_value=2**80)
 

@@ -16,8 +16,9 @@ from reference.engines.registry import run
 from reference.errors import IntegrationError
 from reference.model.force import acceleration, force, tension
 from reference.model.start import Start
+from reference.numbers.columns import GRID, TRANSITS
 from reference.numbers.precision import DOUBLE, real
-from reference.numbers.table import GRID, TRANSITS, Table
+from reference.numbers.table import Table
 from reference.solver import solve as solver
 from reference.solver.agreement import Agreement, bits_lacking
 from reference.solver.pilot import MARGIN_BITS

@@ -14,8 +14,9 @@ import reference
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, run
 from reference.errors import IntegrationError, UnreachableError
+from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE
-from reference.numbers.table import STATE, bits_in
+from reference.numbers.table import bits_in
 from reference.scenes.scene import LEVELS, load_scene
 from reference.solver import pilot as pilot_runs
 from reference.solver import reach

@@ -8,7 +8,7 @@ from fractions import Fraction
 import pytest
 
 import reference
-from reference.numbers.table import GRID, TRANSITS
+from reference.numbers.columns import GRID, TRANSITS
 from reference.solver.rounding import (
     UndecidedRounding,
     check_decided,

@@ -21,8 +21,8 @@ from reference.engines.background import run_both
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import InputError, IntegrationError, UnreachableError
+from reference.numbers.columns import GRID
 from reference.numbers.precision import DOUBLE, real
-from reference.numbers.table import GRID
 from reference.solver import pilot as pilot_runs
 from reference.solver import reach
 from reference.solver import solve as solver

@@ -32,7 +32,7 @@ sys.path.insert(0, {str(ROOT)!r})
 from pathlib import Path
 from numba import config
 from callee import slow
-from reference.system.machine_code import announced_to
+from reference.system.first_use import announced_to
 from reference.system.machine_code import kept, prepare
 
 @kept(*Path(__file__).parent.glob("*.py"), error_model="numpy")
@@ -117,14 +117,3 @@ def test_where_nothing_can_be_kept_it_is_compiled_for_this_process(folder):
     (folder / "file").touch()
     assert [said(begun(folder, numba="file/numba")) for _ in range(2)] == [COLD, COLD]
     assert not [*folder.rglob("*.nb?")]
-
-
-def test_who_listens_to_announcements_is_told_once(monkeypatch):
-    monkeypatch.setattr(machine_code, "_announced", set())
-    told: list[str] = []
-    machine_code.announce("limbs", 20)  # nobody listens
-    with machine_code.announced_to(told.append):
-        machine_code.announce("limbs", 20)
-        machine_code.announce("limbs", 20)
-    machine_code.announce("others", 5)
-    assert told == ["First use on this machine: limbs are compiled, once, for about 20 seconds."]

@@ -21,8 +21,8 @@ from reference.engines.limbs.size import MOST_PREC
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.errors import InputError, IntegrationError
+from reference.numbers.columns import POSITION, STATE, VELOCITY
 from reference.numbers.precision import real
-from reference.numbers.table import POSITION, STATE, VELOCITY
 
 PARIS = {"release": {"x": "0.3", "y": "0.4"}}
 SCENES = {
@@ -193,7 +193,7 @@ def test_a_machine_without_fused_multiplication_gives_the_same_bits(tmp_path, ca
 
 
 FIRST_USE = """
-from reference.system.machine_code import announced_to
+from reference.system.first_use import announced_to
 with announced_to(lambda line: print("announced")):
     exec(SHORT)
 """
