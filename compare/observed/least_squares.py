@@ -40,10 +40,11 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
         nudges: by which each number is moved for its slope.
     """
 
+    moves = list(zip(np.diag(nudges), nudges, strict=True))
+
     def model(numbers: Numbers) -> tuple[Numbers, Callable[[], Numbers]]:
         base = rows_of(numbers)
-        moves = np.diag(nudges)
-        return rows - base, lambda: np.column_stack([(rows_of(numbers + one) - base) / one.sum() for one in moves])
+        return rows - base, lambda: np.array([(rows_of(numbers + move) - base) / nudge for move, nudge in moves]).T
 
     return model
 

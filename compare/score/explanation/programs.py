@@ -180,7 +180,7 @@ class Program:
 
     def with_inputs(self, names: Sequence[str], values: Array) -> Program:
         """Return the program with these numbers replaced."""
-        return replace(self, **dict(zip(names, values.tolist(), strict=True)))
+        return Program(**(vars(self) | dict(zip(names, values.tolist(), strict=True))))  # `replace` takes twice as long
 
     def with_input(self, name: str, value: float) -> Program:
         """Return the program with one number replaced."""

@@ -205,10 +205,9 @@ class Reader:
 
     def _off(self, program: Program) -> Array:
         """Return the vector whose length is the root mean square, in m, between a program and the fit."""
-        with np.errstate(all="ignore"):
-            change = self.fit.theta - program.theta()
-        found: Array = self._triangle @ change[list(self.fit.free)]
-        return found
+        change = self.fit.theta - program.theta()
+        off: Array = self._triangle @ change[list(self.fit.free)]
+        return off
 
     @cached_property
     def _triangle(self) -> Array:
