@@ -39,7 +39,6 @@ def by_differences(rows_of: Callable[[Numbers], Numbers], rows: Numbers, nudges:
         rows: those that are to be met.
         nudges: by which each number is moved for its slope.
     """
-
     moves = list(zip(np.diag(nudges), nudges, strict=True))
 
     def model(numbers: Numbers) -> tuple[Numbers, Callable[[], Numbers]]:

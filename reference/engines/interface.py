@@ -19,7 +19,7 @@ class Engine(ABC):
 
     Attributes:
         name: its name on the command line and in datasets.
-        formulation: the formulation that suits it best.
+        formulation: the formulation that suits it best; not `space` or `spin`, in which heyoka confirms other runs.
         requires: modules that must be installed.
         extra: the extra of `pip install 'foucault-reference[…]'` that installs them.
         bits: lowest and highest precision that it is chosen for.
@@ -70,6 +70,8 @@ class Engine(ABC):
         self, inputs: Inputs, times: tuple[Fraction, ...], prec: int, coefficient_bits: int
     ) -> Generator[TaylorStep, None, Run]:
         """Yield the Taylor steps of a run from t = 0 to one step beyond the last time, in order; return the run.
+
+        The run's plan names this engine.
 
         Args:
             inputs: the exact inputs of a scene.

@@ -27,10 +27,11 @@ def problems(files: Files) -> Iterator[str]:
 
 
 def _is_copy(manifest: Manifest, ships: Path) -> bool:
-    """Return whether a dataset must be that which ships: the same scene, not made here with other versions."""
+    """Return whether a dataset must be that which ships: made by the same command, not here with other versions."""
     try:
         shipped = read_manifest(ships)
     except FoucaultError:
         return False
     made_otherwise = shipped.generator != manifest.generator == generator()
-    return manifest.scene == shipped.scene and not made_otherwise
+    same = manifest.scene == shipped.scene and manifest.command == shipped.command
+    return same and not made_otherwise

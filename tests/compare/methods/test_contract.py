@@ -161,7 +161,8 @@ def test_an_unknown_method_is_refused_by_name():
 def test_methods_are_listed_by_family_and_then_by_file():
     families = [method.family for method in METHODS.values()]
     assert families == sorted(families, key=list(Family).index)
-    assert list(METHODS)[:5] == ["rk4", "rkng56", "rkng67", "gauss_legendre", "rkmk4"]
+    by_file = ["rk4", "rkng56", "rkng67", "gauss_legendre", "rkmk4"]
+    assert [name for name in METHODS if name in by_file] == by_file
 
 
 def test_declarations_load_no_library():

@@ -42,9 +42,10 @@ def test_in_its_place_or_copied_from_there_a_dataset_has_the_seal_of_the_index(s
     assert len(seals_of(aside.rename(shipped))) == 1
 
 
-def test_another_scene_and_other_versions_of_here_need_not_have_it(shipped, tmp_path):
+def test_another_scene_or_command_and_other_versions_of_here_need_not_have_it(shipped, tmp_path):
     for name, change in (
         ("scene", lambda m: m["scene"]["run"].update(t_end="60")),
+        ("command", lambda m: m.update(command=m["command"] + " --no-confirm")),
         ("versions", lambda m: m.update(title="another")),
     ):
         copied = Path(shutil.copytree(shipped, tmp_path / name / "paris"))
