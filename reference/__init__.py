@@ -19,7 +19,7 @@ from .scenes.shipped import scene_ids
 from .system.imports import lazy
 
 if TYPE_CHECKING:
-    from .dataset.read import Golden, load
+    from .dataset.golden import Golden, load
     from .dataset.write import write
     from .engines.trajectory import integrate, trajectory
     from .solver.solution import Solution
@@ -52,11 +52,11 @@ __all__ = [
 __getattr__, __dir__ = lazy(
     __name__,
     {
-        "Golden": "dataset.read",
+        "Golden": "dataset.golden",
         "Solution": "solver.solution",
         "Swept": "sweeps.swept",
         "integrate": "engines.trajectory",
-        "load": "dataset.read",
+        "load": "dataset.golden",
         "load_sweep": "sweeps.sweep",
         "solve": "solver.solve",
         "sweep": "sweeps.sweep",

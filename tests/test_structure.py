@@ -126,7 +126,7 @@ PUBLIC = {
     "reference.commands.progress": "progress",
     "reference.commands.terminal": "AsJson Assignments Cluster EndTime SceneWord Workers chosen completion emit "
     "refuse replacements stoppable",
-    "reference.dataset.certified": "MEANING",
+    "reference.dataset.render": "MEANING",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.dataset.manifest": "MANIFEST",
     "reference.dataset.place": "changes golden_folder",

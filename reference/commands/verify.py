@@ -28,7 +28,7 @@ def command(
 ) -> None:
     """Check golden datasets, and integrate their motion again."""
     from ..dataset.place import golden_folder
-    from ..dataset.recompute import recompute as recomputed
+    from ..dataset.verify import recompute as recomputed
     from ..dataset.verify import verify
 
     folders = [golden_folder(path) for path in paths or ()] or [golden_root() / name for name in seals()]

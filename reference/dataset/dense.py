@@ -21,7 +21,7 @@ from ..model.constants import Constants, constants
 from ..model.formulations import FORMULATIONS
 from ..numbers.columns import STATE
 from ..numbers.precision import GUARD_BITS, LONG_DOUBLE, Array, NumberType, context, real
-from .read import Golden
+from .golden import Golden
 
 TYPES = (LONG_DOUBLE, real(128), real(192), real(256))  # if one loses too many digits, the next is tried
 WITHIN = 2.0**-58  # error allowed, relative to the cord length: enough to judge programs in double

@@ -220,9 +220,3 @@ def differences(old: Any, new: Any, place: str = "") -> Iterator[tuple[str, Any,
             yield from differences(one, other, f"{place}[{i}]")
     elif old != new:
         yield place, old, new
-
-
-def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of a manifest, as published in `schema/manifest.schema.json`."""
-    schema = Manifest.model_json_schema()
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -19,7 +19,7 @@ from ..solver.solution import CrossCheck, Solution
 from ..solver.solve import solve
 from ..status import Status
 from ..system.workers import Pool
-from .files import read_files
+from .golden import read_files
 from .place import dataset_id, default_folder, is_of_shipped_scene, ships
 from .record import Making
 from .render import render

@@ -128,8 +128,3 @@ def _values(manifest: Manifest, tables: Mapping[str, Sheet], kind: Any, i: int) 
     return {
         name: Value(decimal=row[name], hexfloat=hexfloats[f"{name}_hex"], bound=bounds[name]) for name in NUMBERS[kind]
     }
-
-
-def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of vectors, as published in `schema/vectors.schema.json`."""
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Vectors.model_json_schema()}

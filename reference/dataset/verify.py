@@ -1,17 +1,27 @@
-"""Verify a golden dataset: its files, what follows from its scene, each row's physics, and the motion as a whole."""
+"""Verify a golden dataset: files, what follows from its scene, each row, the motion, the seal; or solve it again."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, zip_longest
 from pathlib import Path
 
-from ..errors import BeyondDoublesError, DatasetError
-from .checks import index, manifest_check, motion, physics, tables
-from .files import Files, read_files
+from ..errors import BeyondDoublesError, DatasetError, FoucaultError
+from ..numbers.precision import DOUBLE, LONG_DOUBLE
+from ..scenes.shipped import golden_root, seals
+from .checks import manifest_check, motion, physics, tables
+from .golden import Files, read_files, read_manifest
+from .manifest import MANIFEST, Manifest, differences
+from .record import AUDIT, Making, generator
+from .render import render
+from .shipping import solved
 
 MAX_PROBLEMS = 20  # sentences returned at most
 BEYOND = "a number of the scene or of a table, or what follows from it, is beyond the range of binary64"
+FOLLOWS = ("seal", "files")  # from everything else
+MEASURED = ("run", "cross_checks", "enclosure", "generator")  # may differ with the machine or the libraries
+HARDWARE = (DOUBLE.name, LONG_DOUBLE.name)
 
 
 @dataclass(frozen=True)
@@ -50,7 +60,7 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
         return Verification(error.problems[:MAX_PROBLEMS], [], [])
     foreign = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:MAX_PROBLEMS]]
     foreign += [f"and {more} more"] if (more := len(files.foreign) - MAX_PROBLEMS) > 0 else []
-    problems = [*islice(index.problems(files), MAX_PROBLEMS), *_row_by_row(files)]
+    problems = [*islice(seal_problems(files), MAX_PROBLEMS), *_row_by_row(files)]
     left_out: list[str] = []
     if not problems:
         try:
@@ -82,3 +92,73 @@ def _row_by_row(files: Files) -> list[str]:
         if problems:
             return problems
     return []
+
+
+def seal_problems(files: Files) -> Iterator[str]:
+    """Check the seal of a dataset that ships, in its place or copied from there."""
+    manifest, ships = files.manifest, golden_root() / files.manifest.id
+    in_place = files.folder.resolve() == ships.resolve()
+    if in_place and manifest.level == "enclosed" and AUDIT not in manifest.command.split():
+        yield f"{MANIFEST}: a proof that ships must be audited: make it again with {AUDIT}"
+    seal = seals().get(manifest.id)
+    if seal in (None, manifest.seal):
+        return
+    if in_place or _is_copy(manifest, ships):
+        own, other = manifest.seal[:12], seal[:12]
+        yield f"{MANIFEST}: its seal {own}… is not that of the dataset that ships, {other}… (index.json)"
+
+
+def _is_copy(manifest: Manifest, ships: Path) -> bool:
+    """Return whether a dataset must be that which ships: made by the same command, not here with other versions."""
+    try:
+        shipped = read_manifest(ships)
+    except FoucaultError:
+        return False
+    made_otherwise = shipped.generator != manifest.generator == generator()
+    same = manifest.scene == shipped.scene and manifest.command == shipped.command
+    return same and not made_otherwise
+
+
+def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list[str], list[str]]:
+    """Solve the scene of a dataset again, and compare.
+
+    Returns:
+        A sentence for each field and file that differs, and a note where only figures differ that are measured: those
+        of runs in double or long double, or of other versions of the libraries.
+
+    Raises:
+        InputError, DatasetError: as `read_files`.
+        UnreachableError: the scene cannot be solved here.
+    """
+    files = read_files(folder)
+    manifest, end = files.manifest, float(files.scene.exact.t_end)
+    solution = solved(files.scene, Making.of(manifest.command), report and (lambda t: report(t, end)))
+    texts = render(solution, manifest.id)
+    made = Manifest.model_validate_json(texts.pop(MANIFEST))
+    fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), made.model_dump(exclude={*FOLLOWS}))]
+    lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
+    wrong = [line for name, text in texts.items() if (line := _first_line(name, files.texts.get(name), text))]
+    if wrong or not fields:
+        return [*wrong, *lines], []
+    runs = [manifest.run, made.run, *manifest.cross_checks, *made.cross_checks]
+    excused = manifest.generator != made.generator or any(run.number in HARDWARE for run in runs)
+    if excused and all(place.startswith(MEASURED) for place, *_ in fields):
+        said = f"every digit and bound is the same; {_differ(len(fields), 'measured figure')}"
+        return [], [said, *lines]
+    return lines, []
+
+
+def _first_line(name: str, old: str | None, new: str) -> str:
+    """Return how a file differs: in how many lines, and the first of them; empty if it does not."""
+    if old is None:
+        return f"{name}: recomputing gives this file too"
+    pairs = enumerate(zip_longest(old.splitlines(), new.splitlines(), fillvalue="nothing"), 1)
+    other = [(number, one, two) for number, (one, two) in pairs if one != two]
+    if not other:
+        return ""
+    number, one, two = other[0]
+    return f"{name}: {_differ(len(other), 'line')}; line {number} is {one}, recomputed {two}"
+
+
+def _differ(count: int, what: str) -> str:
+    return f"{count} {what}s differ" if count > 1 else f"1 {what} differs"

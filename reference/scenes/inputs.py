@@ -1,14 +1,28 @@
-"""The exact numbers of a scene, as the model, the engines and the solver take them."""
+"""The inputs of a scene: checked text of each field, what is said of a wrong one, and the exact numbers."""
 
 from __future__ import annotations
 
+import re
+import sys
+from collections.abc import Iterable
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
-from typing import Literal
+from typing import Annotated, Literal
+
+from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo
+
+from ..errors import InputError, did_you_mean, is_plain
 
 GravityIs = Literal["ellipsoid", "effective"]
 
 SAME_TIME = Fraction(1, 1 << 30)  # of a grid step: times nearer than this differ only by the rounding of the inputs
+MAX_EXPONENT = 400  # keeps a slip of typing such as 1e999999999 from filling the memory
+MAX_LENGTH = 2000  # characters of a number
+_EXPONENT_DIGITS = 9  # a Decimal can hold these; far above what is allowed
+_LONGEST_KEY = 80  # characters of a wrong key that a message quotes
+
+_DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?0*(\d+))?", re.ASCII)
 
 
 @dataclass(frozen=True)
@@ -51,3 +65,128 @@ class Inputs:
         """True if the bob is released without any velocity."""
         moving = self.position[2:] if self.position else (self.angles or ())[2:]
         return not any(moving)
+
+
+class Refused(ValueError):
+    """Raised by a validator with its expectation and advice; becomes an `InputError` with the field's name."""
+
+    def __init__(self, expected: str, advice: str = "") -> None:
+        super().__init__(expected)
+        self.expected, self.advice = expected, advice
+
+
+def as_read(text: str, reading: str) -> Fraction:
+    """Return the exact value of a decimal number, or that of the nearest double if `reading` is binary64.
+
+    Raises:
+        OverflowError: no double is as large.
+    """
+    value = Fraction(text)
+    return Fraction(float(value)) if reading == "binary64" else value
+
+
+def _reading(info: ValidationInfo) -> str:
+    """Return how the numbers of the scene are read that is being checked."""
+    return str((info.context or {}).get("inputs"))
+
+
+def _as_text(value: object) -> object:
+    if isinstance(value, float):
+        raise Refused("a decimal number in quotes", 'A bare TOML float is rounded: write it as a string, "0.3".')
+    if isinstance(value, int) and not isinstance(value, bool):
+        if abs(value) >= 10**MAX_LENGTH:
+            raise Refused(_SIZES)
+        return str(value)
+    return value
+
+
+_SIZES = f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size"
+
+
+def _decimal(text: str, info: ValidationInfo) -> str:
+    match = _DECIMAL.fullmatch(text) if len(text) <= MAX_LENGTH else None
+    if match is None:
+        raise Refused("a decimal number such as 67 or 7.292115e-5", "NaN and inf are not numbers here.")
+    # zero as well: 0e999999999 is computed with a power of ten
+    if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > MAX_EXPONENT:
+        raise Refused(_SIZES)
+    try:
+        as_read(text, _reading(info))
+    except OverflowError:
+        raise Refused(f"a number that a double holds, at most {sys.float_info.max:.3g} in size", _DOUBLES) from None
+    return text
+
+
+_DOUBLES = "The numbers are read as binary64 here."
+
+
+def _decimal_or_inf(text: str, info: ValidationInfo) -> str:
+    return text if text == "inf" else _decimal(text, info)
+
+
+def _one_line(text: str) -> str:
+    if not is_plain(text):
+        raise Refused("one line of text without control characters")
+    return text
+
+
+def within(low: str | None, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
+    """Return the check that a number lies in a range, with its ends or (`open_low`) without the lower one."""
+    words = [
+        *([f"{'above' if open_low else 'at least'} {low}"] if low is not None else []),
+        *([f"at most {high}"] if high is not None else []),
+    ]
+
+    def check(text: str, info: ValidationInfo) -> str:
+        if text == "inf":
+            return text
+        value = as_read(text, _reading(info))
+        too_low = low is not None and (value < Fraction(low) or (open_low and value == Fraction(low)))
+        if too_low or (high is not None and value > Fraction(high)):
+            raise Refused("a number " + " and ".join(words), _DOUBLES if value != Fraction(text) else "")
+        return text
+
+    return AfterValidator(check)
+
+
+Line = Annotated[str, AfterValidator(_one_line)]
+Number = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal)]
+NumberOrInf = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal_or_inf)]
+Positive = Annotated[Number, within("0", open_low=True)]
+NotNegative = Annotated[Number, within("0")]
+
+
+_TEXTS = ("id", "title", "source", "flags")
+
+
+def explained(error: ValidationError, known: Iterable[str]) -> InputError:
+    """Return the error that a user reads: the first wrong field, what it got, what was expected.
+
+    Args:
+        error: as pydantic raised it.
+        known: names of the fields that there are.
+    """
+    details = error.errors()[0]
+    field = ".".join(str(part)[:_LONGEST_KEY] for part in details["loc"])
+    kind, got = details["type"], details["input"]
+    cause = details.get("ctx", {}).get("error")
+    if isinstance(cause, Refused):
+        return InputError(field, got, cause.expected, cause.advice)
+    if kind == "extra_forbidden":
+        return InputError(
+            field, got, "a field that scenes have", did_you_mean(field, known, "`foucault show SCENE` lists them.")
+        )
+    if kind == "missing":
+        return InputError(field, "nothing", "a value", "Add this field to the scene.")
+    expected = {
+        "literal_error": "one of " + str(details.get("ctx", {}).get("expected", "")),
+        "int_parsing": "a whole number",
+        "int_type": "a whole number",
+        "int_from_float": "a whole number",
+        "bool_parsing": "true or false",
+        "bool_type": "true or false",
+        "string_type": "text in quotes" if field.partition(".")[0] in _TEXTS else "a number in quotes",
+        "tuple_type": "a list of words",
+        "model_type": f"a table, written [{field}]",
+    }.get(kind, details["msg"])
+    return InputError(field, got, expected)

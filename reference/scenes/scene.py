@@ -17,8 +17,19 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, Validat
 
 from ..errors import InputError, unknown
 from ..system.documents import toml_document
-from .fields import Line, NotNegative, Number, NumberOrInf, Positive, Refused, as_read, explained, within
-from .inputs import GravityIs, Inputs
+from .inputs import (
+    GravityIs,
+    Inputs,
+    Line,
+    NotNegative,
+    Number,
+    NumberOrInf,
+    Positive,
+    Refused,
+    as_read,
+    explained,
+    within,
+)
 from .shipped import data_root, scene_ids
 
 MAX_DIGITS = 1000

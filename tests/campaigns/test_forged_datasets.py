@@ -14,7 +14,7 @@ import pytest
 from forgery import bound_of, forge, moved
 
 import reference
-from reference.dataset.files import read_files
+from reference.dataset.golden import read_files
 from reference.dataset.verify import verify
 from reference.dataset.write import write
 from reference.model.constants import constants

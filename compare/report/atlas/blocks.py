@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from reference import Golden
-from reference.dataset.certified import MEANING
+from reference.dataset.render import MEANING
 from reference.numbers.columns import STATE
 from reference.status import Status
 

@@ -3,6 +3,5 @@
 - `manifest_check`: what follows from the scene is made again: frame, equations, command, bounds, page, vectors, …
 - `tables`: grid times, the first row, doubles, the digits of each column, order and directions of the transits.
 - `physics`: each row by itself: sphere, velocity along it, invariant, the acceleration at a transit.
-- `index`: the seal of a dataset that ships, against the one inside the package.
 - `motion`: the rows together: the scene is integrated again from its release.
 """

@@ -10,7 +10,7 @@ from ...engines import engine_names
 from ...errors import LONGEST_VALUE, shortened
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start, xdot_vanishes
-from ..files import Files
+from ..golden import Files
 from ..manifest import MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
 from ..record import NO_CONFIRM, Making, bounds_of, command, completeness, following

@@ -20,7 +20,7 @@ from ...model.start import Start
 from ...numbers.columns import GRID, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
-from ..files import Files
+from ..golden import Files
 from ..manifest import Manifest
 from ..sheets import Sheet
 

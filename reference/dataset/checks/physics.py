@@ -19,7 +19,7 @@ from ...numbers.columns import STATE
 from ...numbers.fixed_point import FixedPoint, Integers, integers
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
 from ...numbers.table import bits_in
-from ..files import Files
+from ..golden import Files
 from ..record import INVARIANT_BITS
 from ..sheets import Sheet
 

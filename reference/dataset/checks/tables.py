@@ -10,7 +10,7 @@ from ...model.start import Start
 from ...numbers.columns import GRID, STATE, VELOCITY
 from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
 from ...solver.rounding import exact_decimals
-from ..files import Files
+from ..golden import Files
 from ..manifest import MANIFEST
 from ..sheets import NUMBERS, Sheet, exact
 

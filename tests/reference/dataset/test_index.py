@@ -9,22 +9,22 @@ from pathlib import Path
 import pytest
 from forgery import forge
 
-from reference.dataset.checks import index
-from reference.dataset.files import read_files
+from reference.dataset import verify
+from reference.dataset.golden import read_files
 from reference.errors import InputError
 
 
 @pytest.fixture
 def shipped(dataset, tmp_path, monkeypatch):
     """The dataset as if it came with the project."""
-    monkeypatch.setattr(index, "golden_root", lambda: tmp_path)
+    monkeypatch.setattr(verify, "golden_root", lambda: tmp_path)
     seal = read_files(dataset).manifest.seal
-    monkeypatch.setattr(index, "seals", lambda: {"paris": seal})
+    monkeypatch.setattr(verify, "seals", lambda: {"paris": seal})
     return dataset
 
 
 def seals_of(folder):
-    return list(index.problems(read_files(folder)))
+    return list(verify.seal_problems(read_files(folder)))
 
 
 def test_in_its_place_or_copied_from_there_a_dataset_has_the_seal_of_the_index(shipped, tmp_path):
@@ -62,7 +62,7 @@ def test_a_proof_in_its_place_says_that_it_was_audited(shipped, tmp_path):
     aside = read_files(Path(shutil.copytree(shipped, tmp_path / "elsewhere" / "paris")))
 
     def said(files, **changes):
-        return list(index.problems(replace(files, manifest=files.manifest.model_copy(update=changes))))
+        return list(verify.seal_problems(replace(files, manifest=files.manifest.model_copy(update=changes))))
 
     command = files.manifest.command
     assert said(files, level="enclosed") == [

@@ -20,7 +20,7 @@ from small_scenes import make_scene
 import reference
 from reference.dataset.checks import manifest_check
 from reference.dataset.checks.tables import _order, _signs_on_grid
-from reference.dataset.files import read_files
+from reference.dataset.golden import read_files
 from reference.dataset.manifest import ALWAYS, MANIFEST, Manifest
 from reference.dataset.place import MAX_ID, dataset_id
 from reference.dataset.sheets import Sheet

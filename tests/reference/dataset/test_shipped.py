@@ -6,9 +6,8 @@ import pytest
 from sampled import one_in
 
 import reference
-from reference.dataset.recompute import recompute
 from reference.dataset.record import AUDIT, NO_CONFIRM
-from reference.dataset.verify import problems_of
+from reference.dataset.verify import problems_of, recompute
 from reference.engines import AUTO
 from reference.engines.registry import engines, run
 from reference.numbers.columns import STATE

@@ -13,7 +13,7 @@ import pytest
 from small_scenes import make_scene
 
 from reference.dataset.checks import motion, physics, tables
-from reference.dataset.files import read_files
+from reference.dataset.golden import read_files
 from reference.dataset.record import INVARIANT_BITS
 from reference.dataset.sheets import Sheet
 from reference.model.constants import constants

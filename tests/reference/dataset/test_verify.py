@@ -16,11 +16,10 @@ from small_scenes import make_scene
 
 import reference
 from reference.dataset.checks import motion
-from reference.dataset.files import read_files
+from reference.dataset.golden import read_files
 from reference.dataset.manifest import MANIFEST
-from reference.dataset.recompute import recompute
 from reference.dataset.sheets import GRID_HEADER
-from reference.dataset.verify import problems_of, verify
+from reference.dataset.verify import problems_of, recompute, verify
 from reference.dataset.write import write
 from reference.engines.limbs import integration
 from reference.engines.limbs.size import MOST_PREC

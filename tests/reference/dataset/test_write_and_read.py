@@ -9,23 +9,21 @@ import os
 import subprocess
 import sys
 from fractions import Fraction
-from importlib.resources import files
 from pathlib import Path
 from types import SimpleNamespace
 
 import jsonschema
 import numpy as np
 import pytest
+import schemas
 from small_scenes import make_scene
 
 import reference
-from reference.dataset import manifest as manifests
 from reference.dataset import place, vectors
 from reference.dataset import write as writer
-from reference.dataset.files import read_files
+from reference.dataset.golden import load, read_files
 from reference.dataset.manifest import ALWAYS, MANIFEST, OPTIONAL
 from reference.dataset.place import dataset_id, default_folder, golden_folder
-from reference.dataset.read import load
 from reference.dataset.record import Making, command
 from reference.dataset.render import render
 from reference.dataset.sheets import Sheet, nearest_doubles
@@ -114,13 +112,12 @@ def test_doubles_are_nearest_to_the_truth_that_is_known_and_not_to_the_digits_th
         assert nearest["doubles"] > 0.95 * nearest["all"] > nearest["decimals"]
 
 
-@pytest.mark.parametrize("name, module", [(MANIFEST, manifests), ("vectors.json", vectors)])
-def test_the_manifest_and_the_vectors_follow_their_published_schemas(dataset, name, module):
+@pytest.mark.parametrize("name", schemas.SCHEMAS)
+def test_the_manifest_and_the_vectors_follow_their_published_schemas(dataset, name):
     document = json.loads((dataset / name).read_text())
-    file = f"dataset/schema/{name.partition('.')[0]}.schema.json"
-    schema = json.loads(files("reference").joinpath(file).read_text())
+    schema = json.loads(schemas.path_of(name).read_text())
     jsonschema.validate(document, schema)
-    assert schema == module.json_schema(), "run: python -m reference.dataset.schema"
+    assert schema == schemas.schema_of(name), "run: python tests/helpers/schemas.py"
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate({**document, "extra": 1}, schema)
 

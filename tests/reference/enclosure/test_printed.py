@@ -100,15 +100,14 @@ def test_a_proof_ships_only_when_it_was_audited(solution, tmp_path, monkeypatch)
     assert not (tmp_path / "paris").exists()
     audited = replace(solution, proof=replace(solution.proof, audited=True))
     reference.write(audited, tmp_path / "paris")
-    from reference.dataset.checks import index
-    from reference.dataset.files import read_files
-    from reference.dataset.verify import problems_of
+    from reference.dataset import verify
+    from reference.dataset.golden import read_files
 
-    assert problems_of(tmp_path / "paris") == []
-    monkeypatch.setattr(index, "golden_root", lambda: tmp_path)
-    monkeypatch.setattr(index, "seals", dict)
-    assert list(index.problems(read_files(tmp_path / "paris"))) == []
+    assert verify.problems_of(tmp_path / "paris") == []
+    monkeypatch.setattr(verify, "golden_root", lambda: tmp_path)
+    monkeypatch.setattr(verify, "seals", dict)
+    assert list(verify.seal_problems(read_files(tmp_path / "paris"))) == []
     reference.write(solution, tmp_path / "elsewhere" / "paris")
     (tmp_path / "paris").rename(tmp_path / "older")
     (tmp_path / "elsewhere" / "paris").rename(tmp_path / "paris")
-    assert any("audit" in problem for problem in index.problems(read_files(tmp_path / "paris")))
+    assert any("audit" in problem for problem in verify.seal_problems(read_files(tmp_path / "paris")))

@@ -8,10 +8,9 @@ from fractions import Fraction
 import pytest
 
 import reference
-from reference.dataset.files import read_files
-from reference.dataset.recompute import recompute
+from reference.dataset.golden import read_files
 from reference.dataset.record import NO_CONFIRM
-from reference.dataset.verify import problems_of
+from reference.dataset.verify import problems_of, recompute
 from reference.dataset.write import write
 from reference.engines import background
 from reference.engines.background import Background, send_run

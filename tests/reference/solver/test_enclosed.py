@@ -15,7 +15,7 @@ from small_scenes import make_scene
 
 import reference
 from reference import enclosure
-from reference.dataset.read import load
+from reference.dataset.golden import load
 from reference.dataset.sheets import grid_sheet, transits_sheet
 from reference.dataset.verify import problems_of
 from reference.dataset.write import write
