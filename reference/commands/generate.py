@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from contextlib import ExitStack
-from dataclasses import replace
+from collections.abc import Generator, Iterable
+from contextlib import ExitStack, closing
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -32,9 +31,7 @@ from .terminal import (
 )
 
 if TYPE_CHECKING:
-    from ..dataset.shipping import Job, Made
-
-Row = dict[str, Any]
+    from ..dataset.shipping import Job, Row
 
 ENGINES = (AUTO, *engine_names())
 
@@ -125,6 +122,7 @@ def command(
     if scene_word is None:
         raise InputError("SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them.")
     from ..dataset.place import dataset_id, default_folder
+    from ..dataset.record import Making
     from ..dataset.shipping import making_of, solved, summary
     from ..dataset.write import check_target, write
 
@@ -133,12 +131,14 @@ def command(
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
     check_target(folder)
-    proving = scene.run.level == "enclosed"
-    refuse({"--no-confirm": no_confirm and not proving}, "without --level enclosed")
-    refuse({"--audit": audit and not proving}, "without --level enclosed")
+    if scene.run.level != "enclosed":
+        refuse({"--no-confirm": no_confirm, "--audit": audit}, "without --level enclosed")
     usual = making_of(scene, name, folder)
-    wanted = usual.engine if engine == AUTO else engine
-    making = replace(usual, engine=wanted, audit=audit or usual.audit, confirm=usual.confirm and not no_confirm)
+    making = Making(
+        engine=usual.engine if engine == AUTO else engine,
+        audit=audit or usual.audit,
+        confirm=usual.confirm and not no_confirm,
+    )
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
         solution = solved(scene, making, report)
@@ -147,41 +147,28 @@ def command(
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
     with stoppable("nothing half was written"):
         write(solution, folder, name)
-    found = summary(solution, folder)
+    measured, run = summary(solution, folder), solution.run
     if as_json:
-        emit(found)
+        emit(measured)
         return
-    source = solution.run
-    rows = f"{len(solution.times)} grid times, {found['transits']} transits"
+    rows = f"{len(solution.times)} grid times, {measured['transits']} transits"
     typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}")
     if solution.not_checked:
         typer.echo(
             f"The proof finds all transits; no run with event detection confirms them: {solution.not_checked}", err=True
         )
-    typer.echo(
-        f"every position within {found['bound_m']} m; {source.formulation}, {source.number}, {source.steps} steps"
-    )
-    typer.echo(
-        f"CPU: run {solution.run.cpu_s:.2f} s, check {found['check_cpu_s']:.2f} s, pilot {solution.pilot_s:.2f} s"
-    )
+    typer.echo(f"every position within {measured['bound_m']} m; {run.formulation}, {run.number}, {run.steps} steps")
+    typer.echo(f"CPU: run {run.cpu_s:.2f} s, check {measured['check_cpu_s']:.2f} s, pilot {solution.pilot_s:.2f} s")
 
 
 def _generate_all(
     replaced: Iterable[str], out: Path | None, workers: int | None, cluster: str | None, as_json: bool
 ) -> None:
-    """Make what is missing or not sealed; a scene that fails costs only itself.
-
-    Args:
-        replaced: fields of every scene, each as section.key=value.
-        out: the folder of all datasets; None for those of `generate`.
-        workers: how many processes; None for one a core.
-        cluster: the address of a scheduler of dask, or None.
-        as_json: print one document instead of text.
+    """Make what is missing or not sealed, each in a process of its own; a scene that fails costs only itself.
 
     Raises:
         InputError: a wrong option, or a folder that cannot be written.
-        UnreachableError: all that failed was out of reach.
-        typer.Exit: others failed, with status 1.
+        typer.Exit: a dataset failed, with the status of `UnreachableError` if all that failed were out of reach.
     """
     from ..dataset.shipping import is_done, jobs
     from ..dataset.write import check_target
@@ -192,36 +179,38 @@ def _generate_all(
         raise InputError("--workers", workers, "a whole number from 1")
     every = jobs(replaced, out)
     with stoppable("what is done stays, and the same command goes on"), progress() as show:
-        left = [job for job in every if not is_done(job)]
-        for job in left:
+        undone = [job for job in every if not is_done(job)]
+        for job in undone:
             check_target(job.folder)
-        move = show("datasets", len(left), "datasets")
-
-        def report(row: Row, count: int) -> None:
-            move(count, item=row["scene"])
-            if not as_json:
-                typer.echo(_line(row))
-
-        rows = _made(left, workers, cluster, report) if left else []
+        move, rows = show("datasets", len(undone), "datasets"), []
+        with closing(_made(undone, workers, cluster)) as outcomes:
+            for row in outcomes:
+                rows.append(row)
+                move(len(rows), item=row["scene"])
+                if not as_json:
+                    typer.echo(_line(row))
+    rows.sort(key=lambda row: str(row["dataset"]))
     failed = [row for row in rows if row["status"] != Status.OK.value]
-    counts = {"datasets": len(every), "sealed_before": len(every) - len(left), "failed": len(failed)}
+    counts = {"datasets": len(every), "sealed_before": len(every) - len(undone), "failed": len(failed)}
     if as_json:
         emit({"rows": rows, **counts})
     else:
-        made = len(left) - len(failed)
-        typer.echo(f"{len(every)} datasets: {len(every) - len(left)} were there, {made} made, {len(failed)} failed")
+        made = len(undone) - len(failed)
+        typer.echo(f"{len(every)} datasets: {len(every) - len(undone)} were there, {made} made, {len(failed)} failed")
     if failed:
         typer.echo(f"foucault: {len(failed)} of {len(every)} datasets failed, first {failed[0]['dataset']}", err=True)
         unreachable = all(row["status"] == Status.UNREACHABLE.value for row in failed)
         raise typer.Exit(UnreachableError.exit_status if unreachable else 1)
 
 
-def _made(left: list[Job], workers: int | None, cluster: str | None, report: Callable[[Row, int], None]) -> list[Row]:
+def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Generator[Row, None, None]:
     """Make datasets side by side, and write each as it comes: by this process alone, which keeps the index of seals."""
     from ..dataset.shipping import isolated, made
+    from ..dataset.write import write_texts
     from ..system.workers import Pool, WorkerDied, as_done, usable_cores
 
-    rows: list[Row] = []
+    if not undone:
+        return
     with ExitStack() as stack:
         if cluster is not None:
             from ..sweeps.cluster import Scheduler
@@ -229,33 +218,18 @@ def _made(left: list[Job], workers: int | None, cluster: str | None, report: Cal
             scheduler = stack.enter_context(Scheduler(cluster))
             begin, check = partial(scheduler.submit, isolated), scheduler.check
         else:
-            pool = stack.enter_context(Pool(min(workers or usable_cores(), len(left))))
+            pool = stack.enter_context(Pool(min(workers or usable_cores(), len(undone))))
             begin, check = partial(pool.submit, made), None
-        for job, future in as_done(begin, left, len(left), check):
+        for job, future in as_done(begin, undone, len(undone), check):
             try:
-                row = _written(job, future.result())
+                row, texts = future.result()
+                if texts:
+                    write_texts(texts, job.folder)
             except WorkerDied as death:
-                row = _row(job, Status.CRASHED, str(death))
-            rows.append(row)
-            report(row, len(rows))
-    return sorted(rows, key=lambda row: str(row["dataset"]))
-
-
-def _written(job: Job, made: Made) -> Row:
-    """Write a dataset, if there is one; return what became of it."""
-    from ..dataset.write import write_texts
-
-    if made.status is not Status.OK:
-        return _row(job, made.status, made.reason)
-    try:
-        write_texts(made.texts, job.folder)
-    except DatasetError as error:
-        return _row(job, Status.DOUBTFUL, str(error))
-    return _row(job, Status.OK, None) | made.document
-
-
-def _row(job: Job, status: Status, reason: str | None) -> Row:
-    return {"dataset": job.name, "scene": job.scene, "out": str(job.folder), "status": status.value, "reason": reason}
+                row = job.row(Status.CRASHED, str(death))
+            except DatasetError as error:
+                row = job.row(Status.DOUBTFUL, str(error))
+            yield row
 
 
 def _line(row: Row) -> str:

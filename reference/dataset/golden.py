@@ -7,11 +7,11 @@ import io
 import json
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -21,12 +21,10 @@ from ..numbers.precision import Array
 from ..scenes.scene import Scene, parse_scene
 from ..scenes.shipped import seals
 from ..system.imports import no_attribute
-from .manifest import FORMAT, MANIFEST, OPTIONAL, Manifest
+from .manifest import FORMAT, MANIFEST, Manifest
 from .place import golden_folder
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 
-MAX_MANIFEST = 1 << 20  # bytes
-MAX_FILE = 1 << 28
 HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER}
 _BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
 _PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND}
@@ -63,26 +61,34 @@ def read_files(folder: Path) -> Files:
         DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
     """
     manifest = read_manifest(folder)
+    name_of_scene = manifest.id.partition("+")[0].removesuffix(f".{manifest.inputs}")
+    top = manifest.model_dump(include={"title", "source", "flags", "inputs"})
     try:
-        scene = scene_of(manifest)
+        scene = parse_scene({"id": name_of_scene, **top, **manifest.scene})
     except FoucaultError as error:
         raise DatasetError(str(folder), [f"the manifest's scene is refused: {error}"]) from None
     texts: dict[str, str] = {}
+    tables: dict[str, Sheet] = {}
     problems = []
     for name, record in manifest.files.items():
         try:
-            data = _read(folder / name, MAX_FILE, record.bytes)
-            if hashlib.sha256(data).hexdigest() != record.sha256:
+            data = (folder / name).read_bytes()
+            if len(data) != record.bytes:
+                problems.append(f"{name}: {len(data)} bytes, the manifest says {record.bytes}")
+            elif hashlib.sha256(data).hexdigest() != record.sha256:
                 problems.append(f"{name}: a byte was changed (sha256 differs)")
             else:
                 texts[name] = data.decode()
+                if name.endswith(".csv"):
+                    tables[name] = _table(name, texts[name], manifest)
         except OSError as error:
             problems.append(f"{name}: {error.strerror}")
         except UnicodeDecodeError:
             problems.append(f"{name}: not UTF-8")
+        except ValueError as error:
+            problems.append(f"{name}: {error}")
     if problems:
         raise DatasetError(str(folder), problems)
-    tables = _tables(folder, manifest, texts)
     foreign = sorted(set(os.listdir(folder)) - {MANIFEST, *manifest.files})
     return Files(folder, manifest, scene, texts, tables, foreign)
 
@@ -106,7 +112,7 @@ def read_manifest(folder: Path) -> Manifest:
     except OSError as error:
         raise InputError("PATH", str(folder), "a readable folder", f"{error.strerror}.") from None
     try:
-        text = _read(folder / MANIFEST, MAX_MANIFEST).decode()
+        text = (folder / MANIFEST).read_bytes().decode()
         document = json.loads(text)
         manifest = Manifest.model_validate(document)
     except OSError as error:
@@ -127,77 +133,16 @@ def read_manifest(folder: Path) -> Manifest:
     return manifest
 
 
-def scene_of(manifest: Manifest) -> Scene:
-    """Return the scene that a manifest describes.
-
-    Raises:
-        InputError: it is no scene.
-    """
-    top = {key: getattr(manifest, key) for key in ("title", "source", "flags", "inputs")}
-    name = manifest.id.partition("+")[0].removesuffix(f".{manifest.inputs}")
-    return parse_scene({"id": name, **top, **manifest.scene})
-
-
 def _no_dataset(folder: Path) -> InputError:
     advice = did_you_mean(folder.name, seals(), "Make it with `foucault generate`.")
     return InputError("PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", advice)
 
 
-def _read(path: Path, most: int, size: int | None = None) -> bytes:
-    """Return the bytes of a regular file.
-
-    Args:
-        path: of the file.
-        most: the largest number of bytes that is read.
-        size: the number that the manifest gives; None if it gives none.
-
-    Raises:
-        OSError: it is something else; nothing of it is read then.
-    """
-    found = path.stat().st_size
-    if not path.is_file():  # a named pipe would wait for a writer
-        raise OSError(0, "not a regular file")
-    if size is not None and found != size:
-        raise OSError(0, f"{found} bytes, the manifest says {size}")
-    if found > most:
-        raise OSError(0, f"{found} bytes, at most {most} are read")
-    return path.read_bytes()
-
-
-def _tables(folder: Path, manifest: Manifest, texts: Mapping[str, str]) -> dict[str, Sheet]:
-    """Return the CSV tables.
-
-    Raises:
-        DatasetError: one has another header, another number of rows, or a row that is malformed.
-    """
-    tables, problems = {}, []
-    for name in ("grid.csv", *OPTIONAL):
-        kind = name.partition(".")[0]
-        if name not in texts or kind not in HEADERS:
-            continue
-        try:
-            tables[name] = _parsed(texts[name], _patterns(name, kind, manifest), getattr(manifest.counts, kind))
-        except ValueError as error:
-            problems.append(f"{name}: {error}")
-    if problems:
-        raise DatasetError(str(folder), problems)
-    return tables
-
-
-def _patterns(name: str, kind: str, manifest: Manifest) -> dict[str, str]:
-    """Return the pattern of each column's numbers, in the order of the columns."""
-    doubles, decimals = name.endswith(".binary64.csv"), manifest.decimals.get(kind, {})  # type: ignore[call-overload]
-    found = {}
-    for column in HEADERS[kind]:
-        places = decimals.get(column)
-        plain = "-?[0-9]{1,308}" + (f"[.][0-9]{{{places}}}" if places else "")
-        found[column] = _PATTERNS.get(column, _DOUBLE if doubles else plain)
-    return found | ({f"{column}_hex": _HEXFLOAT for column in NUMBERS[kind]} if doubles else {})
-
-
-def _parsed(text: str, patterns: dict[str, str], count: int) -> Sheet:
+def _table(name: str, text: str, manifest: Manifest) -> Sheet:
     """Return a table from its text; ValueError says what is wrong with it."""
-    lines, header = io.StringIO(text), tuple(patterns)
+    kind = name.partition(".")[0]
+    patterns = _patterns(name, kind, manifest)
+    lines, header, count = io.StringIO(text), tuple(patterns), getattr(manifest.counts, kind)
     if next(lines, "") != ",".join(header) + "\n":
         raise ValueError(f"the header must be {','.join(header)}")
     if text.count("\n") != count + 1 or not text.endswith("\n"):
@@ -205,14 +150,25 @@ def _parsed(text: str, patterns: dict[str, str], count: int) -> Sheet:
     whole = re.compile(",".join(f"(?:{pattern})" for pattern in patterns.values()), re.ASCII)
     rows = []
     for number, line in enumerate(lines, 1):
-        row = line[:-1]
-        if not whole.fullmatch(row):
-            raise ValueError(f"row {number}: {_wrong_cell(row.split(','), patterns)}")
-        rows.append(tuple(row.split(",")))
+        cells = tuple(line[:-1].split(","))
+        if not whole.fullmatch(line[:-1]):
+            raise ValueError(f"row {number}: {_wrong_cell(cells, patterns)}")
+        rows.append(cells)
     return Sheet(header, rows, {})
 
 
-def _wrong_cell(cells: list[str], patterns: dict[str, str]) -> str:
+def _patterns(name: str, kind: str, manifest: Manifest) -> dict[str, str]:
+    """Return the pattern of each column's numbers, in the order of the columns."""
+    doubles, decimals = name.endswith(".binary64.csv"), manifest.decimals.get(kind, {})  # type: ignore[call-overload]
+    patterns = {}
+    for column in HEADERS[kind]:
+        places = decimals.get(column)
+        plain = "-?[0-9]{1,308}" + (f"[.][0-9]{{{places}}}" if places else "")
+        patterns[column] = _PATTERNS.get(column, _DOUBLE if doubles else plain)
+    return patterns | ({f"{column}_hex": _HEXFLOAT for column in NUMBERS[kind]} if doubles else {})
+
+
+def _wrong_cell(cells: Sequence[str], patterns: dict[str, str]) -> str:
     if len(cells) != len(patterns):
         return f"{len(cells)} numbers, not {len(patterns)}"
     pairs = zip(patterns.items(), cells, strict=True)
@@ -220,20 +176,21 @@ def _wrong_cell(cells: list[str], patterns: dict[str, str]) -> str:
     return f"{name} = {cell[:80]!r} is not a number of this column's form"
 
 
+@dataclass(frozen=True, repr=False)
 class PrintedTable:
-    """A CSV table of a dataset: columns of decimals, by name.
+    """A CSV table of a dataset: columns of decimals, by name, and the largest bound of each."""
 
-    Attributes:
-        columns: their names, in order.
-    """
+    _sheet: Sheet
+    _bounds: Mapping[str, str]
 
-    def __init__(self, sheet: Sheet, kind: Literal["grid", "transits"], manifest: Manifest) -> None:
-        self.columns = sheet.header
-        self._rows, self._kind, self._manifest = sheet.rows, kind, manifest
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """The names of the columns, in order."""
+        return self._sheet.header
 
     def __len__(self) -> int:
         """Return the number of rows."""
-        return len(self._rows)
+        return len(self._sheet.rows)
 
     def __getitem__(self, name: str) -> Array:
         """Return a column as the nearest doubles, shape (rows,)."""
@@ -251,17 +208,16 @@ class PrintedTable:
         """Return bounds on the errors of a column's printed values: a transit time's own, else the column's largest."""
         if name == "t":
             return self.exact("bound") if "bound" in self.columns else [Fraction(0)] * len(self)
-        bounds = getattr(self._manifest.bounds, self._kind)
-        if name not in bounds:
-            raise KeyError(f"a dataset bounds t, {', '.join(bounds)}, not {name!r}")
-        return [Fraction(bounds[name])] * len(self)
+        if name not in self._bounds:
+            raise KeyError(f"a dataset bounds t, {', '.join(self._bounds)}, not {name!r}")
+        return [Fraction(self._bounds[name])] * len(self)
 
     def decimals(self, name: str) -> list[str]:
         """Return a column as printed."""
         if name not in self.columns:
             raise KeyError(f"{name!r} is no column; there are {', '.join(self.columns)}")
         i = self.columns.index(name)
-        return [row[i] for row in self._rows]
+        return [row[i] for row in self._sheet.rows]
 
 
 @dataclass(frozen=True, repr=False)
@@ -327,7 +283,7 @@ def load(name: str | Path) -> Golden:
         DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
     """
     files = read_files(golden_folder(name))
-    sheets = files.tables["grid.csv"], files.tables.get("transits.csv", Sheet(TRANSITS_HEADER, [], {}))
-    kinds: tuple[Literal["grid", "transits"], ...] = ("grid", "transits")
-    tables = (PrintedTable(sheet, kind, files.manifest) for sheet, kind in zip(sheets, kinds, strict=True))
-    return Golden(files.folder, files.manifest, files.scene, *tables)
+    bounds, none = files.manifest.bounds, Sheet(TRANSITS_HEADER, [], {})
+    grid = PrintedTable(files.tables["grid.csv"], bounds.grid)
+    transits = PrintedTable(files.tables.get("transits.csv", none), bounds.transits)
+    return Golden(files.folder, files.manifest, files.scene, grid, transits)

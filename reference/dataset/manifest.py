@@ -7,36 +7,45 @@ import json
 import math
 from collections.abc import Iterator
 from fractions import Fraction
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal, Self, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from ..numbers.columns import GRID, TRANSITS
+from ..numbers.precision import rounded_up
 from ..scenes.scene import Level, Reading
 
 MANIFEST = "manifest.json"
 FORMAT = 3
-ALWAYS = ("grid.csv", "certified.txt")
-OPTIONAL = ("transits.csv", "grid.binary64.csv", "transits.binary64.csv", "vectors.json")
-NUMBER = (
-    r"^-?[0-9]{1,1100}(\.[0-9]{1,1100})?(e[+-][0-9]{1,4})?$"  # bounded: an exponent of nine digits fills the memory
-)
+# bounded: an exponent of nine digits fills the memory
+NUMBER = r"^-?[0-9]{1,1100}(\.[0-9]{1,1100})?(e[+-][0-9]{1,4})?$"
 
-Decimal = Annotated[str, Field(pattern=NUMBER)]
+
+def _bound_as_text(value: object) -> object:
+    return rounded_up(value) if isinstance(value, Fraction) else value
+
+
+Decimal = Annotated[str, Field(pattern=NUMBER), BeforeValidator(_bound_as_text)]
 Sha256 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 Name = Annotated[str, Field(max_length=400)]
 Text = Annotated[str, Field(max_length=20_000)]
+Kind = Literal["grid", "transits"]  # of a table
 Count = Annotated[int, Field(ge=0, le=10**10)]
 Decimals = Annotated[int, Field(ge=0, le=2000)]  # digits after the point
 FileName = Literal[
     "grid.csv", "certified.txt", "transits.csv", "grid.binary64.csv", "transits.binary64.csv", "vectors.json"
 ]
+ALWAYS, OPTIONAL = get_args(FileName)[:2], get_args(FileName)[2:]
 
 
 class Part(BaseModel):
-    """A part of a document: frozen, without extra keys."""
+    """A document or a part of one: frozen, without extra keys; read from a dictionary or from what has its names."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, from_attributes=True)
+
+    def text(self) -> str:
+        """Return the text of the file that holds the document, in the one form that is accepted."""
+        return json.dumps(self.model_dump(), indent=1, ensure_ascii=False) + "\n"
 
 
 class Bounds(Part):
@@ -140,7 +149,7 @@ class Manifest(Part):
     units: dict[Name, Name]
     level: Level
     digits: Count
-    decimals: dict[Literal["grid", "transits"], dict[Name, Decimals]]
+    decimals: dict[Kind, dict[Name, Decimals]]
     bounds: Bounds
     counts: Counts
     transits: Literal["complete", "undecided intervals", "not asked for", "xdot is identically zero"]
@@ -156,46 +165,27 @@ class Manifest(Part):
 
     @model_validator(mode="after")
     def _agrees_with_itself(self) -> Self:
-        run = self.scene.get("run", {})
-        largest = {"grid": (self.bounds.position_m, self.bounds.velocity_m_s), "transits": (self.bounds.transit_s,)}
+        bounds, transits = self.bounds, TRANSITS if self.counts.transits else ()
         rules = {
-            "level: the scene asks for another": run.get("level") == self.level,
-            "digits: the scene asks for another number": run.get("digits") == str(self.digits),
             "level: a proof and the level enclosed belong together": (self.level == "enclosed") == bool(self.enclosure),
             "level: no run agrees with the published one": bool(self.cross_checks) or self.level == "computed",
             "level: a single run has no cross-checks": not (self.cross_checks and self.level == "computed"),
-            "counts: the possible transits are others": self.counts.possible == len(self.possible),
-            "transits: undecided intervals and possible transits belong together": bool(self.possible)
-            == (self.transits == "undecided intervals"),
-            "transits: the scene says whether they are asked for": (run.get("transits") == "true")
-            == (self.transits != "not asked for"),
             "counts: a grid has two times at least": self.counts.grid >= 2,
-            f"bounds.grid: must name the columns {', '.join(GRID)}": tuple(self.bounds.grid) == GRID,
-            f"bounds.transits: must name the columns {', '.join(TRANSITS)}": tuple(self.bounds.transits)
-            == (TRANSITS if self.counts.transits else ()),
+            f"bounds.grid: must name the columns {', '.join(GRID)}": tuple(bounds.grid) == GRID,
+            f"bounds.transits: must name the columns {', '.join(TRANSITS)}": tuple(bounds.transits) == transits,
             "bounds: a number beyond the range of binary64": all(
-                math.isfinite(float(bound)) for bound in (*self.bounds.grid.values(), *self.bounds.transits.values())
+                math.isfinite(float(bound)) for bound in (*bounds.grid.values(), *bounds.transits.values())
             ),
             f"decimals.grid: must name the columns {', '.join(('t', *GRID))}": {*self.decimals.get("grid", ())}
             == {"t", *GRID},
             f"decimals.transits: must name the columns {', '.join(TRANSITS)}": {*self.decimals.get("transits", ())}
-            in ([{*TRANSITS}] if self.counts.transits else [{*TRANSITS}, set()]),
-            "notes: one for each flag": set(self.notes) == set(self.flags),
+            in ({*TRANSITS}, {*transits}),
             f"files: {' and '.join(ALWAYS)} belong to every dataset": set(ALWAYS) <= set(self.files),
         }
-        for table, numbers in largest.items():
-            for number in numbers:
-                rules[f"bounds: {number} is that of no column"] = (
-                    number is None or number in getattr(self.bounds, table).values()
-                )
         broken = [rule for rule, holds in rules.items() if not holds]
         if broken:
             raise ValueError(broken[0])
         return self
-
-    def text(self) -> str:
-        """Return the text of `manifest.json`, in the one form that is accepted."""
-        return json.dumps(self.model_dump(), indent=1, ensure_ascii=False) + "\n"
 
     def expected_seal(self) -> str:
         """Return the seal that belongs to everything else in the manifest."""
@@ -205,7 +195,7 @@ class Manifest(Part):
         """Return the manifest with its seal."""
         return self.model_copy(update={"seal": self.expected_seal()})
 
-    def bound(self, table: Literal["grid", "transits"], column: str) -> Fraction:
+    def bound(self, table: Kind, column: str) -> Fraction:
         """Return the bound on a column's printed numbers, the largest of all rows."""
         return Fraction(getattr(self.bounds, table)[column])
 
@@ -216,7 +206,7 @@ def differences(old: Any, new: Any, place: str = "") -> Iterator[tuple[str, Any,
         for key in {**old, **new}:
             yield from differences(old.get(key), new.get(key), f"{place}.{key}" if place else key)
     elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
-        for i, (one, other) in enumerate(zip(old, new, strict=True)):
-            yield from differences(one, other, f"{place}[{i}]")
+        for i, (old_item, new_item) in enumerate(zip(old, new, strict=True)):
+            yield from differences(old_item, new_item, f"{place}[{i}]")
     elif old != new:
         yield place, old, new

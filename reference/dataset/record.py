@@ -12,7 +12,7 @@ from ..engines.equations import lines_and_left_out
 from ..model.constants import constants
 from ..model.force import invariant
 from ..numbers.columns import POSITION, STATE, UNITS, VELOCITY
-from ..numbers.fixed_point import FixedPoint, Integers
+from ..numbers.fixed_point import FixedPoint
 from ..numbers.precision import bits_of, context, fixed_decimal, outward, rounded_up
 from ..scenes.scene import Scene
 from ..scenes.shipped import DATA_VERSION, flag_meanings, scene_ids
@@ -31,10 +31,7 @@ from .manifest import (
 from .place import changes, changes_in, dataset_id, shipped_scene
 from .sheets import Sheet, column_bounds, scene_inputs
 
-_UP = {
-    "ellipsoid": "z up",
-    "effective": "z up along the plumb line",
-}
+_UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
 UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
 AUDIT = "--audit"  # in a dataset's command, it says that FLINT alone proved the same digits
 NO_CONFIRM = "--no-confirm"  # there, that a proof stands without heyoka's confirmation
@@ -65,8 +62,9 @@ class Making:
 
 def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | None = None) -> Manifest:
     """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id."""
-    scene, run = solution.scene, solution.run
+    scene, run, proof = solution.scene, solution.run, solution.proof
     name = name or dataset_id(scene)
+    making = Making(run.engine, proof is not None and proof.audited, proof is None or proof.confirmed)
     return Manifest.model_construct(
         schema_version=3,
         seal="",
@@ -85,22 +83,11 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
             Possible.model_validate({"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity})
             for low, high, parity in solution.possible
         ],
-        run=RunRecord(formulation=run.formulation, number=run.number, order=run.order, steps=run.steps),
-        cross_checks=[
-            CrossCheckRecord(
-                formulation=check.formulation,
-                number=check.number,
-                order=check.order,
-                steps=check.steps,
-                position_m=rounded_up(check.position_m),
-                velocity_m_s=rounded_up(check.velocity_m_s),
-                transit_s=_up(check.transit_s),
-            )
-            for check in solution.checks
-        ],
-        enclosure=None if solution.proof is None else _enclosure(solution.proof),
+        run=RunRecord.model_validate(run),
+        cross_checks=[CrossCheckRecord.model_validate(check) for check in solution.checks],
+        enclosure=None if proof is None else _enclosure(proof),
         generator=generator(),
-        command=command(scene, name, _making(solution)),
+        command=command(scene, name, making),
         files={},
         **following(scene, run.formulation, run.number, grid),
     )
@@ -132,11 +119,6 @@ def generator() -> dict[str, str]:
         with suppress(PackageNotFoundError):
             found[name] = version(name)
     return found
-
-
-def _making(solution: Solution) -> Making:
-    proof = solution.proof
-    return Making(solution.run.engine, proof is not None and proof.audited, proof is None or proof.confirmed)
 
 
 def command(scene: Scene, name: str, making: Making) -> str:
@@ -191,32 +173,21 @@ def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:
 
 
 def _enclosure(proof: Proof) -> EnclosureRecord:
-    return EnclosureRecord(
-        method=proof.method,
-        prec=proof.prec,
-        order=proof.order,
-        steps=proof.steps,
-        position_radius_m=rounded_up(proof.position_radius),
-        velocity_radius_m_s=rounded_up(proof.velocity_radius),
-        transit_radius_s=_up(proof.transit_radius),
-        agreement_bits=proof.agreement_bits,
-    )
-
-
-def _up(value: Fraction | None) -> str | None:
-    return None if value is None else rounded_up(value)
-
-
-def invariants(scene: Scene, states: list[Integers], unit: int) -> list[Fraction]:
-    """Return h in m²/s² of states: their columns x, y, z, vx, vy, vz as integers over a unit."""
-    bits = bits_of(scene.run.digits) + INVARIANT_BITS
-    k = constants(scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
-    x, y, z, vx, vy, vz = (FixedPoint.column(column, unit, bits) / k.length for column in states)
-    h: FixedPoint = invariant((x, y, z), (vx, vy, vz), k)
-    return h.fractions()
+    radii = {
+        "position_radius_m": proof.position_radius,
+        "velocity_radius_m_s": proof.velocity_radius,
+        "transit_radius_s": proof.transit_radius,
+    }
+    same = {name: getattr(proof, name) for name in EnclosureRecord.model_fields if name not in radii}
+    return EnclosureRecord.model_validate(same | radii)
 
 
 def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
     """Return h of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
-    values = invariants(scene, *grid.integers(STATE))
+    bits = bits_of(scene.run.digits) + INVARIANT_BITS
+    k = constants(scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
+    states, unit = grid.integers(STATE)
+    x, y, z, vx, vy, vz = (FixedPoint.column(column, unit, bits) / k.length for column in states)
+    h: FixedPoint = invariant((x, y, z), (vx, vy, vz), k)
+    values = h.fractions()
     return fixed_decimal(values[0], scene.run.digits), rounded_up(max(abs(value - values[0]) for value in values))

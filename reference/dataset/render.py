@@ -5,7 +5,8 @@ from __future__ import annotations
 import hashlib
 
 from ..numbers.columns import TRANSITS
-from ..scenes.scene import LEVELS
+from ..numbers.table import Table
+from ..scenes.scene import Level
 from ..solver.solution import Solution
 from .manifest import MANIFEST, FileRecord, Manifest
 from .record import manifest_of
@@ -13,18 +14,12 @@ from .sheets import GRID_HEADER, Sheet, binary64_sheet, grid_sheet, nearest_doub
 from .vectors import vectors
 
 MOST_DOUBLES = 1000  # transits; more are written as decimals alone, which read as the same doubles
-MEANING = dict(
-    zip(
-        LEVELS,
-        (
-            "One run; its error is estimated, not checked.",
-            "Two runs with different precisions, tolerances and steps agree to every printed digit.",
-            "Two runs in different formulations, precisions and tolerances agree to every printed digit.",
-            "A proof encloses every printed digit (interval arithmetic, rounding included).",
-        ),
-        strict=True,
-    )
-)
+MEANING: dict[Level, str] = {
+    "computed": "One run; its error is estimated, not checked.",
+    "self_consistent": "Two runs with different precisions, tolerances and steps agree to every printed digit.",
+    "confirmed": "Two runs in different formulations, precisions and tolerances agree to every printed digit.",
+    "enclosed": "A proof encloses every printed digit (interval arithmetic, rounding included).",
+}
 _GRAVITY = {
     "ellipsoid": "gravity g points along the ellipsoid's normal, the centrifugal force is explicit.",
     "effective": "gravity g is effective: it points along the plumb line and contains the centrifugal force there.",
@@ -34,32 +29,26 @@ _GRAVITY = {
 def render(solution: Solution, name: str | None = None) -> dict[str, str]:
     """Return the text of every file of a dataset, by file name; `name` is its id, by default the scene's own."""
     grid, transits = grid_sheet(solution), transits_sheet(solution)
-    tables = {"grid.csv": grid, "grid.binary64.csv": binary64_sheet(grid, _grid_doubles(solution, grid))}
+    of_grid = {"t": [float(t) for t in solution.times], **nearest_doubles(solution.grid, grid)}
+    tables = {"grid.csv": grid, "grid.binary64.csv": binary64_sheet(grid, of_grid)}
     if solution.scene.run.transits:
         tables["transits.csv"] = transits
         if len(transits.rows) <= MOST_DOUBLES:
-            none: dict[str, list[float]] = {name: [] for name in TRANSITS}
-            doubles = nearest_doubles(solution.transits, transits) if solution.transits is not None else none
-            tables["transits.binary64.csv"] = binary64_sheet(transits, doubles)
+            of_transits = nearest_doubles(solution.transits or Table(TRANSITS, 0, []), transits)
+            tables["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
     record = manifest_of(solution, grid, transits, name)
     texts = {name: sheet.csv() for name, sheet in tables.items()} | derived_texts(record, tables)
-    _check_against_proof(solution, record, texts)
+    if solution.proof is not None:  # the tables, as they will be written, against the intervals that were proved
+        from ..enclosure.printed import check_grid, check_transits
+
+        proved = solution.proof.enclosed
+        check_grid(texts["grid.csv"], proved.times, proved.states, record.bounds.grid)
+        if "transits.csv" in texts:
+            check_transits(texts["transits.csv"], proved.transits or (), record.bounds.transits)
     manifest = Manifest.model_validate(
         {**dict(record), "files": {file: file_record(text) for file, text in texts.items()}}
     )
     return {MANIFEST: manifest.sealed().text(), **texts}
-
-
-def _check_against_proof(solution: Solution, record: Manifest, texts: dict[str, str]) -> None:
-    """Hold the tables, as they will be written, against the intervals that were proved."""
-    if solution.proof is None:
-        return
-    from ..enclosure.printed import check_grid, check_transits
-
-    proved = solution.proof.enclosed
-    check_grid(texts["grid.csv"], proved.times, proved.states, record.bounds.grid)
-    if "transits.csv" in texts:
-        check_transits(texts["transits.csv"], proved.transits or (), record.bounds.transits)
 
 
 def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str]:
@@ -72,10 +61,6 @@ def file_record(text: str) -> FileRecord:
     """Return size and hash of a file."""
     data = text.encode()
     return FileRecord(bytes=len(data), sha256=hashlib.sha256(data).hexdigest())
-
-
-def _grid_doubles(solution: Solution, grid: Sheet) -> dict[str, list[float]]:
-    return {"t": [float(t) for t in solution.times], **nearest_doubles(solution.grid, grid)}
 
 
 def certified_page(manifest: Manifest, grid: Sheet, transits: Sheet | None) -> str:

@@ -16,8 +16,7 @@ from ..solver.solution import Solution
 
 GRID_HEADER = ("t", *GRID)
 TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")
-WORDS = frozenset({"k", "direction", "bound"})  # columns that are not decimals with a fixed number of digits
-NUMBERS = {"grid": ("t", *GRID), "transits": TRANSITS}  # the others, which are also given as doubles
+NUMBERS = {"grid": ("t", *GRID), "transits": TRANSITS}  # the decimals with a fixed number of digits, also doubles
 
 
 @dataclass(frozen=True)

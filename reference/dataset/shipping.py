@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ from ..numbers.columns import POSITION
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import index, scene_ids, seals
 from ..solver.rounding import grid_decimals
-from ..solver.solution import CrossCheck, Solution
+from ..solver.solution import Solution
 from ..solver.solve import solve
 from ..status import Status
 from ..system.workers import Pool
@@ -24,6 +24,8 @@ from .place import dataset_id, default_folder, is_of_shipped_scene, ships
 from .record import Making
 from .render import render
 from .sheets import column_bounds, scene_inputs
+
+Row = dict[str, Any]
 
 BINARY64 = ".binary64"
 
@@ -41,15 +43,10 @@ class Job:
         """Return the scene."""
         return load_scene(self.scene, list(self.replaced))
 
-
-@dataclass(frozen=True)
-class Made:
-    """A dataset's files as text, and what `generate --json` says of it; or why it could not be made."""
-
-    texts: dict[str, str] = field(default_factory=dict)
-    document: dict[str, Any] = field(default_factory=dict)
-    status: Status = Status.OK
-    reason: str = ""
+    def row(self, status: Status, reason: str | None = None) -> Row:
+        """Return what `generate --all --json` says of the dataset, but for what was measured."""
+        identity = {"dataset": self.name, "scene": self.scene, "out": str(self.folder)}
+        return {**identity, "status": status.value, "reason": reason}
 
 
 def jobs(replaced: Iterable[str], out: Path | None) -> list[Job]:
@@ -64,14 +61,15 @@ def jobs(replaced: Iterable[str], out: Path | None) -> list[Job]:
     """
     readings = [name.removesuffix(BINARY64) for name in seals() if name.endswith(BINARY64)]
     wanted = [(name, ()) for name in scene_ids()] + [(name, ("inputs=binary64",)) for name in readings]
-    found = []
+    spans, every = {}, []
     for word, reading in wanted:
         fields = (*reading, *replaced)
         scene = load_scene(word, list(fields))
         name = dataset_id(scene)
         folder = out / name if out is not None else default_folder(scene, name)
-        found.append((-float(scene.exact.t_end), name, Job(word, fields, name, folder)))
-    return [job for *_, job in sorted(found, key=lambda one: one[:2])]
+        spans[name] = scene.exact.t_end
+        every.append(Job(word, fields, name, folder))
+    return sorted(every, key=lambda job: (-spans[job.name], job.name))
 
 
 def is_done(job: Job) -> bool:
@@ -86,17 +84,17 @@ def is_done(job: Job) -> bool:
     return sealed and same and files.manifest.id == job.name
 
 
-def made(job: Job) -> Made:
-    """Solve a scene and return its dataset, or why there is none."""
+def made(job: Job) -> tuple[Row, dict[str, str]]:
+    """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
     try:
         scene = job.load()
         solution = solved(scene, making_of(scene, job.name, job.folder))
-        return Made(render(solution, job.name), summary(solution, job.folder))
+        return job.row(Status.OK) | summary(solution, job.folder), render(solution, job.name)
     except UnreachableError as error:
         status = Status.GAVE_UP if isinstance(error, IntegrationError) else Status.UNREACHABLE
-        return Made(status=status, reason=str(error))
+        return job.row(status, str(error)), {}
     except FoucaultError as error:
-        return Made(status=Status.INVALID, reason=str(error))
+        return job.row(Status.INVALID, str(error)), {}
 
 
 def making_of(scene: Scene, name: str, folder: Path) -> Making:
@@ -122,18 +120,23 @@ def solved(scene: Scene, making: Making, report: Report | None = None) -> Soluti
     return solve(scene, engine=making.engine, audit=audit, confirm=confirm, report=report)
 
 
-def isolated(job: Job) -> Made:
+def isolated(job: Job) -> tuple[Row, dict[str, str]]:
     """Make a dataset in a process that is started for it: the solver is not made for several threads."""
     with Pool(1) as pool:
-        result: Made = pool.submit(made, job).result()
+        result: tuple[Row, dict[str, str]] = pool.submit(made, job).result()
     return result
 
 
-def summary(solution: Solution, folder: Path) -> dict[str, Any]:
+def summary(solution: Solution, folder: Path) -> Row:
     """Return what `generate --json` says of a dataset, also what was measured on the way and stands in no file."""
     bounds = column_bounds(solution.grid, grid_decimals(solution))
     proof_s = sum((solution.proof.cpu_s if solution.proof else {}).values())
     checks_s = sum(check.cpu_s for check in solution.checks) + proof_s
+    guard = None
+    if solution.guard is not None:  # its distances are fractions
+        guard = {
+            name: float(value) if isinstance(value, Fraction) else value for name, value in vars(solution.guard).items()
+        }
     return {
         "scene": solution.scene.id,
         "out": str(folder),
@@ -149,10 +152,5 @@ def summary(solution: Solution, folder: Path) -> dict[str, Any]:
         "compile_s": solution.run.compile_s,
         "number": solution.run.number,
         "steps": solution.run.steps,
-        "guard": None if solution.guard is None else _measured(solution.guard),
+        "guard": guard,
     }
-
-
-def _measured(guard: CrossCheck) -> dict[str, Any]:
-    """Return what a guard measured, its distances as floats."""
-    return {name: float(value) if isinstance(value, Fraction) else value for name, value in vars(guard).items()}

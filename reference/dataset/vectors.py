@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -58,28 +57,22 @@ class Vectors(Part):
     states: list[StateVector]
     transits: list[TransitVector]
 
-    def text(self) -> str:
-        """Return the text of `vectors.json`."""
-        return json.dumps(self.model_dump(), indent=1, ensure_ascii=False) + "\n"
-
 
 def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
     """Return the vectors of a dataset from its manifest and its tables, evenly spread over their rows."""
     grid, transits = tables["grid.csv"], tables.get("transits.csv", Sheet((), [], {}))
     pair = _closest_pair(transits)
+    of_grid = {"release": [0], "end": [len(grid.rows) - 1]}
+    of_transits = {"end": [len(transits.rows) - 1], "closest_pair": pair}
     states = [
-        StateVector(
-            row=i + 1,
-            flags=_flags({"release": 0, "end": len(grid.rows) - 1}, i),
-            values=_values(manifest, tables, "grid", i),
-        )
+        StateVector(row=i + 1, flags=_flags(of_grid, i), values=_values(manifest, tables, "grid", i))
         for i in _spread(len(grid.rows), MOST)
     ]
     zeros = [
         TransitVector(
             k=i + 1,
             direction=int(transits.rows[i][transits.header.index("direction")]),
-            flags=[*_flags({"end": len(transits.rows) - 1}, i), *(["closest_pair"] if i in pair else [])],
+            flags=_flags(of_transits, i),
             values=_values(manifest, tables, "transits", i),
         )
         for i in sorted({*_spread(len(transits.rows), MOST - len(pair)), *pair})
@@ -87,12 +80,7 @@ def vectors(manifest: Manifest, tables: Mapping[str, Sheet]) -> Vectors:
     used = {flag for state in states for flag in state.flags} | {flag for zero in zeros for flag in zero.flags}
     return Vectors(
         schema_version=FORMAT,
-        id=manifest.id,
-        level=manifest.level,
-        digits=manifest.digits,
-        inputs=manifest.inputs,
-        frame=manifest.frame,
-        scene=manifest.scene,
+        **manifest.model_dump(include={"id", "level", "digits", "inputs", "frame", "scene"}),
         columns={name: UNITS[KINDS[name]] for name in dict.fromkeys((*NUMBERS["grid"], *NUMBERS["transits"]))},
         notes={**manifest.notes, **{flag: note for flag, note in NOTES.items() if flag in used}},
         states=states,
@@ -105,8 +93,8 @@ def _spread(count: int, most: int) -> list[int]:
     return list(range(count)) if count <= most else [i * (count - 1) // (most - 1) for i in range(most)]
 
 
-def _flags(places: Mapping[str, int], i: int) -> list[str]:
-    return [flag for flag, place in places.items() if place == i]
+def _flags(places: Mapping[str, list[int]], i: int) -> list[str]:
+    return [flag for flag, rows in places.items() if i in rows]
 
 
 def _closest_pair(transits: Sheet) -> list[int]:

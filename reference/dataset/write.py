@@ -85,14 +85,9 @@ def write_texts(texts: Mapping[str, str], folder: Path) -> None:
         problems = problems_of(new)
         if problems:
             raise DatasetError(str(folder), problems)
-        _put_in_place(new, target)
+        if target.exists():
+            target.rename(work / OLD)  # after an end between the two renames, `workspace` puts it back
+        new.rename(target)
         if ships(target):
             manifest = json.loads(texts[MANIFEST])
             keep_seal(target.name, manifest["seal"], Making.of(manifest["command"]).options)
-
-
-def _put_in_place(new: Path, target: Path) -> None:
-    """Replace `target` by `new`."""
-    if target.exists():
-        target.rename(new.with_name(OLD))  # after an end between the two renames, `workspace` puts it back
-    new.rename(target)

@@ -15,5 +15,5 @@ def made(job: Any) -> Any:
     if job.name == "conical":
         os.kill(os.getpid(), signal.SIGKILL)
     if job.name == "pantheon":
-        return shipping.Made(status=Status.UNREACHABLE, reason="So many digits cannot be reached.")
+        return job.row(Status.UNREACHABLE, "So many digits cannot be reached."), {}
     return shipping.made(job)

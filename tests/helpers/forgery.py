@@ -41,7 +41,7 @@ def forge(
         initial, drift = invariant_drift(files.scene, tables["grid.csv"])
         document["invariant"] = {"h_m2_s2": initial, "drift_m2_s2": drift}
     texts |= {name: sheet.csv() for name, sheet in tables.items()}
-    with contextlib.suppress(ValueError):  # a manifest that contradicts itself has no page
+    with contextlib.suppress(ValueError, KeyError):  # a manifest that contradicts itself has no page
         texts |= derived_texts(Manifest.model_validate(document), tables)
     seal(folder, document, texts)
 

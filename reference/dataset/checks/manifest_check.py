@@ -30,6 +30,9 @@ def problems(files: Files) -> Iterator[str]:
     made = manifest.model_copy(
         update={
             **following(scene, run.formulation, run.number, files.tables["grid.csv"]),
+            "level": scene.run.level,
+            "digits": scene.run.digits,
+            "counts": manifest.counts.model_copy(update={"possible": len(manifest.possible)}),
             "bounds": bounds_of(manifest.bounds.grid, manifest.bounds.transits),
             "transits": completeness(scene, vanishes, bool(manifest.possible)),
         }
@@ -37,7 +40,7 @@ def problems(files: Files) -> Iterator[str]:
     for place, *both in differences(manifest.model_dump(), made.model_dump()):
         old, new = (shortened(str(value), LONGEST_VALUE) for value in both)
         yield f"{MANIFEST}: {place} = {old} does not follow from the scene and the tables, which give {new}"
-    if manifest.scene != made.scene:  # what is checked below needs it whole
+    if (manifest.scene, manifest.notes) != (made.scene, made.notes):  # what is checked below needs them whole
         return
     if not _is_its_id(files):
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"

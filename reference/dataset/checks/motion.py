@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import re
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 
 from ...engines.limbs.size import LEAST_PREC, LIMB_BITS, MOST_PREC
@@ -21,7 +20,7 @@ from ...numbers.columns import GRID, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
 from ..golden import Files
-from ..manifest import Manifest
+from ..manifest import Kind, Manifest
 from ..sheets import Sheet
 
 BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
@@ -35,30 +34,32 @@ class _TooLong(Exception):
     """The runs have taken `PATIENCE` times what they may."""
 
 
-@dataclass
-class _Budget:
-    """CPU seconds that are left for the steps of all runs; compiling, before the first step, does not count."""
+class _Watch:
+    """What the runs call from time to time: it counts the CPU seconds of their steps, and passes the time reached on.
 
-    left: float
+    Compiling, before the first call of a run, does not count.
 
-    def watched(self, report: Callable[[float], None]) -> Callable[[float], None]:
-        """Return what a run calls from time to time; it passes the simulated time on.
+    Raises:
+        _TooLong: nothing is left of the seconds that all runs may take.
+    """
 
-        Raises:
-            _TooLong: nothing is left.
-        """
-        last: float | None = None
+    def __init__(self, allowed_s: float, t_end: float, report: Progress | None) -> None:
+        self._left, self._t_end, self._report = allowed_s, t_end, report
+        self._last: float | None = None
 
-        def watch(t: float) -> None:
-            nonlocal last
-            now = time.process_time()
-            self.left -= now - (now if last is None else last)
-            last = now
-            if self.left <= 0:
-                raise _TooLong
-            report(t)
+    def begin(self) -> None:
+        """Begin a run."""
+        self._last = None
 
-        return watch
+    def __call__(self, t: float) -> None:
+        """Note that a run has come to this time."""
+        now = time.process_time()
+        self._left -= now - (now if self._last is None else self._last)
+        self._last = now
+        if self._left <= 0:
+            raise _TooLong
+        if self._report is not None:
+            self._report(t, self._t_end)
 
 
 def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
@@ -72,14 +73,14 @@ def problems(files: Files, report: Progress | None = None) -> tuple[list[str], l
     if expected > allowed:
         return [], _undecided(f"integrating it again would take about {expected:.0f} s")
     seek = files.scene.run.transits and manifest.transits == "complete" and "transits.csv" in files.tables
-    budget = _Budget(PATIENCE * allowed)
+    watch = _Watch(PATIENCE * allowed, float(files.scene.exact.t_end), report)
     try:
         while prec <= MOST_PREC:
-            coarse = _run(files, prec - LIMB_BITS, seek, budget, report)
-            fine = _run(files, prec, seek, budget, report)
-            found = _compared(files, coarse, fine)
-            if found is not None:
-                return found, []
+            coarse = _run(files, prec - LIMB_BITS, seek, watch)
+            fine = _run(files, prec, seek, watch)
+            differing = _compared(files, coarse, fine)
+            if differing is not None:
+                return differing, []
             prec += FINER_BITS
     except _TooLong:
         return [], _undecided(f"integrating it again takes more than {PATIENCE * allowed:.0f} s")
@@ -109,21 +110,15 @@ def _steps(files: Files) -> int:
     return int(min(1e15, float(files.scene.exact.t_end) * rate))
 
 
-def _run(files: Files, prec: int, seek: bool, budget: _Budget, report: Progress | None) -> Run:
+def _run(files: Files, prec: int, seek: bool, watch: _Watch) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
-
-    def show(t: float) -> None:
-        if report is not None:
-            report(t, float(inputs.t_end))
-
-    return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), budget.watched(show))
+    watch.begin()
+    return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), watch)
 
 
 def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     """Return the numbers that are off; None where the two runs are too far apart to tell."""
-    manifest = files.manifest
-    comparisons = [_Comparison.of(manifest, "grid", files.tables["grid.csv"], coarse.grid, fine.grid)]
-    found = []
+    kinds: list[tuple[Kind, Table, Table]] = [("grid", coarse.grid, fine.grid)]
     if fine.transits is not None:
         if coarse.directions != fine.directions:
             return None
@@ -133,53 +128,34 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
             return [f"transits.csv: {len(directions)} transits, the motion has {len(fine.directions)}"]
         assert coarse.transits is not None
         if directions:
-            comparisons.append(_Comparison.of(manifest, "transits", sheet, coarse.transits, fine.transits))
-    for comparison in comparisons:
-        if not comparison.decided:
+            kinds.append(("transits", coarse.transits, fine.transits))
+    differing = []
+    for kind, rough, table in kinds:
+        columns = table.only(GRID if kind == "grid" else TRANSITS)
+        apart = columns.distance(rough).largest()
+        bounds = {name: files.manifest.bound(kind, name) for name in columns.columns}
+        if any(apart[name] > bound for name, bound in bounds.items()):
             return None
-        found += comparison.problems()
-    return found
+        differing += _off(kind, files.tables[f"{kind}.csv"], columns, apart, bounds)
+    return differing
 
 
-@dataclass(frozen=True)
-class _Comparison:
-    """A printed table beside the same columns of two runs."""
-
-    kind: str
-    sheet: Sheet
-    table: Table
-    apart: dict[str, Fraction]
-    bounds: dict[str, Fraction]
-    decimals: dict[str, int]
-
-    @classmethod
-    def of(cls, manifest: Manifest, kind: str, sheet: Sheet, coarse: Table, fine: Table) -> _Comparison:
-        columns: Sequence[str] = GRID if kind == "grid" else TRANSITS
-        table = fine.only(tuple(columns))
-        bounds = {name: manifest.bound(kind, name) for name in columns}  # type: ignore[arg-type]
-        apart = table.distance(coarse).largest()
-        return cls(kind, sheet, table, apart, bounds, manifest.decimals[kind])  # type: ignore[index]
-
-    @property
-    def decided(self) -> bool:
-        """Whether the runs are nearer to each other than the bounds ask."""
-        return all(self.apart[name] <= bound for name, bound in self.bounds.items())
-
-    def problems(self) -> list[str]:
-        """Return a sentence for every printed number that is not within its bound."""
-        found, word = [], "transit" if self.kind == "transits" else "t ="
-        printed, ten = self.sheet.integers(self.table.columns)
-        of_row = list(self.sheet.numbers(("bound",))) if self.kind == "transits" else []
-        unit = ten << self.table.bits
-        for i, name in enumerate(self.table.columns):
-            bounds = (
-                [row[0] for row in of_row] if of_row and name == "t" else [self.bounds[name]] * len(self.sheet.rows)
-            )
-            limits = {bound: int((bound + self.apart[name]) * unit) for bound in set(bounds)}
-            rows = zip(self.sheet.rows, printed[i] << self.table.bits, self.table.values, bounds, strict=True)
-            for row, number, values, bound in rows:
-                off = abs(number - values[i] * ten)
-                if off > limits[bound]:
-                    where = f"{self.kind}.csv: {word} {row[0]}: {name} is off by {off / unit:.2g}"
-                    found.append(f"{where}, its bound is {float(bound):.2g}")
-        return found
+def _off(
+    kind: Kind, sheet: Sheet, table: Table, apart: Mapping[str, Fraction], bounds: Mapping[str, Fraction]
+) -> list[str]:
+    """Return a sentence for every printed number that is further from a run than its bound and the runs' distance."""
+    off, word = [], "transit" if kind == "transits" else "t ="
+    printed, ten = sheet.integers(table.columns)
+    unit = ten << table.bits
+    for i, name in enumerate(table.columns):
+        of_rows = [bounds[name]] * len(sheet.rows)
+        if name == "t":
+            of_rows = [bound for (bound,) in sheet.numbers(("bound",))]
+        limits = {bound: int((bound + apart[name]) * unit) for bound in set(of_rows)}
+        rows = zip(sheet.rows, printed[i] << table.bits, table.values, of_rows, strict=True)
+        for row, number, values, bound in rows:
+            gap = abs(number - values[i] * ten)
+            if gap > limits[bound]:
+                where = f"{kind}.csv: {word} {row[0]}: {name} is off by {gap / unit:.2g}"
+                off.append(f"{where}, its bound is {float(bound):.2g}")
+    return off

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import io
 import json
-import os
 import shutil
-import sys
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -47,57 +44,6 @@ def test_twenty_foreign_files_are_named_and_the_others_counted(dataset, more):
     notes = [note for note in verify(dataset).notes if "not part of the dataset" in note or note.startswith("and ")]
     assert len(notes) == min(20, 20 + more) + (more > 0)
     assert (notes[-1] == f"and {more} more") is (more > 0)
-
-
-@pytest.mark.parametrize("size, said", [(1 << 20, "is not JSON"), ((1 << 20) + 1, "at most 1048576 are read")])
-def test_a_manifest_of_more_than_a_mebibyte_is_not_read(dataset, size, said):
-    with (dataset / MANIFEST).open("wb") as stream:
-        stream.truncate(size)
-    assert said in problems(dataset)
-    assert said in "\n".join(problems_of(dataset))
-
-
-KINDS = {
-    "a named pipe": os.mkfifo,
-    "a folder": Path.mkdir,
-    "a device": lambda path: path.symlink_to("/dev/zero"),
-    "a link to itself": lambda path: path.symlink_to(path.name),
-    "a link to nothing": lambda path: path.symlink_to("nothing"),
-}
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no such files")
-@pytest.mark.parametrize("name", ["grid.csv", MANIFEST])
-@pytest.mark.parametrize("kind", KINDS)
-def test_what_is_no_file_is_found_and_not_waited_for(dataset, kind, name):
-    (dataset / name).unlink()
-    KINDS[kind](dataset / name)
-    (problem,) = problems(dataset).splitlines()
-    assert problem.startswith(name)
-    if kind in ("a named pipe", "a folder", "a device"):
-        assert "not a regular file" in problem
-
-
-def test_every_file_is_read_once(dataset, monkeypatch):
-    opened, honest = [], io.open
-
-    def noted(path, *more, **how):
-        opened.append(Path(path).name)
-        return honest(path, *more, **how)
-
-    monkeypatch.setattr(io, "open", noted)
-    files = read_files(dataset)
-    assert sorted(opened) == sorted([MANIFEST, *files.texts])
-
-
-@pytest.mark.parametrize("size, said", [(1 << 28, "a byte was changed"), ((1 << 28) + 1, "at most 268435456 are read")])
-def test_a_file_of_more_than_a_quarter_of_a_gibibyte_is_not_read(dataset, size, said):
-    document = json.loads((dataset / MANIFEST).read_text())
-    document["files"]["grid.csv"]["bytes"] = size
-    seal(dataset, document, {})
-    os.truncate(dataset / "grid.csv", size)
-    (problem,) = verify(dataset).problems
-    assert problem.startswith("grid.csv: ") and said in problem
 
 
 def sealed(dataset, name, old, new):

@@ -351,11 +351,14 @@ def test_at_a_transit_with_a_cord_that_may_be_level_not_all_is_known(z, level):
 def test_a_row_may_be_off_from_the_motion_by_its_bound_and_by_what_the_runs_are_apart_to_the_last_bit(
     bound, apart, found
 ):
-    """Printed are 1.5 and -1.5, the motion has 1 and -2, in halves."""
+    """Printed are 1.5 and -1.5, the motion has 1 and -2, in quarters."""
     sheet = Sheet(("t", *GRID), [("0", *["1.5"] * 6), ("1", *["-1.5"] * 6)], {})
-    run = Table(GRID, 1, [(2,) * 6, (-4,) * 6])
-    same = (dict.fromkeys(GRID, Fraction(text)) for text in (apart, bound))
-    comparison = motion._Comparison("grid", sheet, run, *same, {})
-    assert len(comparison.problems()) == found
-    assert comparison.decided
-    assert not replace(comparison, apart=dict.fromkeys(GRID, Fraction("0.51"))).decided
+    manifest = SimpleNamespace(bound=lambda *_: Fraction(bound))
+    files = SimpleNamespace(manifest=manifest, tables={"grid.csv": sheet})
+
+    def compared(apart):
+        tables = (Table(GRID, 2, [(4 + gap,) * 6, (-8,) * 6]) for gap in (int(4 * Fraction(apart)), 0))
+        return motion._compared(files, *(SimpleNamespace(grid=table, transits=None) for table in tables))
+
+    assert len(compared(apart)) == found
+    assert compared("0.75") is None
