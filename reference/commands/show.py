@@ -31,8 +31,7 @@ def command(
 ) -> None:
     """Show the inputs of a scene and the derived quantities."""
     scene = load_scene(scene_word, set_ or ())
-    meanings = flag_meanings()
-    flags = {flag: meanings.get(flag, "not a flag of the scenes that ship") for flag in scene.flags}
+    flags = flag_meanings(scene.flags)
     document: dict[str, Any] = {
         **scene.model_dump(exclude_none=True),
         "flag_meanings": flags,

@@ -129,6 +129,12 @@ class FileRecord(Part):
     bytes: Count
     sha256: Sha256
 
+    @classmethod
+    def of(cls, text: str) -> FileRecord:
+        """Return the record of a file with this text."""
+        data = text.encode()
+        return cls(bytes=len(data), sha256=hashlib.sha256(data).hexdigest())
+
 
 class Manifest(Part):
     """`manifest.json`; numbers that matter are strings.

@@ -95,12 +95,11 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
 
 def following(scene: Scene, formulation: str, number: str, grid: Sheet) -> dict[str, Any]:
     """Return the fields of a manifest that follow from its scene, its run's formulation and number, and its grid."""
-    meanings = flag_meanings()
     lines, left_out = lines_and_left_out(scene, formulation, number)
     initial, drift = invariant_drift(scene, grid)
     up = _UP[scene.site.gravity_is]
     return {
-        "notes": {flag: meanings.get(flag, "not a flag of the scenes that ship") for flag in scene.flags},
+        "notes": flag_meanings(scene.flags),
         "scene": scene_inputs(scene),
         "frame": f"topocentric, axes x east, y north, {up}, origin at the suspension, z < 0 below it",
         "units": UNIT_OF,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
-
 from ..numbers.columns import TRANSITS
 from ..numbers.table import Table
 from ..scenes.scene import Level
@@ -46,7 +44,7 @@ def render(solution: Solution, name: str | None = None) -> dict[str, str]:
         if "transits.csv" in texts:
             check_transits(texts["transits.csv"], proved.transits or (), record.bounds.transits)
     manifest = Manifest.model_validate(
-        {**dict(record), "files": {file: file_record(text) for file, text in texts.items()}}
+        {**dict(record), "files": {file: FileRecord.of(text) for file, text in texts.items()}}
     )
     return {MANIFEST: manifest.sealed().text(), **texts}
 
@@ -55,12 +53,6 @@ def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str
     """Return the files that follow from the manifest and the tables: the page for people, and the vectors."""
     page = {"certified.txt": certified_page(manifest, tables["grid.csv"], tables.get("transits.csv"))}
     return page | ({"vectors.json": vectors(manifest, tables).text()} if "grid.binary64.csv" in tables else {})
-
-
-def file_record(text: str) -> FileRecord:
-    """Return size and hash of a file."""
-    data = text.encode()
-    return FileRecord(bytes=len(data), sha256=hashlib.sha256(data).hexdigest())
 
 
 def certified_page(manifest: Manifest, grid: Sheet, transits: Sheet | None) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..system.documents import json_document
@@ -63,6 +64,7 @@ def keep_seal(name: str, seal: str, options: str) -> None:
         lock.unlink()
 
 
-def flag_meanings() -> dict[str, str]:
-    """Return why a scene with a flag is difficult: a sentence for each flag, from `data/flags.toml`."""
-    return {flag: str(text) for flag, text in tomllib.loads((data_root() / "flags.toml").read_text("utf-8")).items()}
+def flag_meanings(flags: Iterable[str]) -> dict[str, str]:
+    """Return why a scene with these flags is difficult: a sentence for each, from `data/flags.toml`."""
+    known = tomllib.loads((data_root() / "flags.toml").read_text("utf-8"))
+    return {flag: known.get(flag, "not a flag of the scenes that ship") for flag in flags}

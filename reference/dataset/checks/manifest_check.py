@@ -15,9 +15,9 @@ from ..manifest import MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
 from ..record import NO_CONFIRM, Making, bounds_of, command, completeness, following
 from ..render import derived_texts
+from .tables import SLACK
 
 PREC = 128  # bits; only exact zeros matter here
-SLACK = Fraction(11, 10)  # bounds are rounded up to two digits
 
 
 def problems(files: Files) -> Iterator[str]:
@@ -56,23 +56,20 @@ def problems(files: Files) -> Iterator[str]:
 
 def _is_its_id(files: Files) -> bool:
     """Return whether an id names the scene's changes: all against a shipped scene, else some that the scene has."""
-    name, scene = files.manifest.id, files.scene
-    if shipped_scene(scene) is not scene:
-        return name == dataset_id(scene)
-    bare = dataset_id(scene)  # of a user's own scene, whose fields before the changes are not known
-    return name == bare or (name.startswith(f"{bare}+") and all(_has(files, change) for change in changes_in(name)))
-
-
-def _has(files: Files, change: str) -> bool:
-    key, _, value = change.partition("=")
-    section, _, field = key.partition(".")
-    return files.manifest.scene.get(section, {}).get(field) == value
+    name, scene, full_id = files.manifest.id, files.scene, dataset_id(files.scene)
+    if name == full_id or shipped_scene(scene) is not scene:
+        return name == full_id
+    # of a user's own scene the fields before the changes are not known
+    fields = {
+        f"{section}.{key}={value}" for section, table in files.manifest.scene.items() for key, value in table.items()
+    }
+    return name.startswith(f"{full_id}+") and fields.issuperset(changes_in(name))
 
 
 def _possible(files: Files) -> Iterator[str]:
-    ends = [(Fraction(one.from_s), Fraction(one.to_s)) for one in files.manifest.possible]
     last = Fraction(0)
-    for low, high in ends:
+    for interval in files.manifest.possible:
+        low, high = Fraction(interval.from_s), Fraction(interval.to_s)
         if not last <= low <= high <= files.scene.exact.t_end:
             yield f"{MANIFEST}: possible transits must be intervals in order within (0, t_end]"
         last = high
@@ -88,21 +85,21 @@ def _bounds(manifest: Manifest) -> Iterator[str]:
 
 def _evidence(manifest: Manifest) -> Iterator[str]:
     """Check the level against what stands behind it: other runs, or a proof, as close as the bounds say."""
-    checks, bounds, run = manifest.cross_checks, manifest.bounds, manifest.run
+    checks, bounds, run, proof = manifest.cross_checks, manifest.bounds, manifest.run, manifest.enclosure
     if manifest.level == "confirmed" and all(check.formulation == run.formulation for check in checks):
         yield f"{MANIFEST}: level = confirmed, and no cross-check is in another formulation"
-    if manifest.level == "self_consistent" and all(_same_run(check, manifest) for check in checks):
+    same_run = [(check.formulation, check.number) == (run.formulation, run.number) for check in checks]
+    if manifest.level == "self_consistent" and all(same_run):
         yield f"{MANIFEST}: level = self_consistent, and no cross-check differs from the run"
     others = [check for check in checks if check.formulation != run.formulation]
-    to_confirm = manifest.enclosure is not None and NO_CONFIRM not in manifest.command.split()
+    to_confirm = proof is not None and NO_CONFIRM not in manifest.command.split()
     if to_confirm and all(any(_too_far(check, manifest)) for check in others):
         yield f"{MANIFEST}: no cross-check confirms the proof, and the command does not say {NO_CONFIRM}"
     for check in checks:
         if check.formulation not in FORMULATIONS:
             yield f"{MANIFEST}: cross_checks: {check.formulation} is no formulation"
-        if manifest.enclosure is None:  # a proof needs no close second run
+        if proof is None:  # a proof needs no close second run
             yield from _too_far(check, manifest)
-    proof = manifest.enclosure
     if proof is not None:
         radii = {
             "position_m": proof.position_radius_m,
@@ -120,11 +117,6 @@ def _too_far(check: CrossCheckRecord, manifest: Manifest) -> Iterator[str]:
         gap, bound = getattr(check, name), getattr(manifest.bounds, name)
         if gap is not None and bound and Fraction(gap) > Fraction(bound):
             yield f"{MANIFEST}: cross_checks: the runs are {gap} apart, more than bounds.{name} = {bound}"
-
-
-def _same_run(check: CrossCheckRecord, manifest: Manifest) -> bool:
-    run = manifest.run
-    return (check.formulation, check.number) == (run.formulation, run.number)
 
 
 def _derived(files: Files) -> Iterator[str]:

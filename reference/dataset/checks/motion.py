@@ -7,7 +7,6 @@ Where even the most bits that limbs have do not decide, as on a chaotic scene, t
 from __future__ import annotations
 
 import re
-import time
 from collections.abc import Callable, Mapping
 from fractions import Fraction
 
@@ -16,7 +15,7 @@ from ...engines.plan import Run
 from ...engines.registry import engines
 from ...errors import IntegrationError, UnreachableError
 from ...model.start import Start
-from ...numbers.columns import GRID, TRANSITS, VELOCITY
+from ...numbers.columns import GRID, TRANSITS
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
 from ..golden import Files
@@ -24,42 +23,10 @@ from ..manifest import Kind, Manifest
 from ..sheets import Sheet
 
 BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
-PATIENCE = 4  # times that, before a run that was expected to be short is given up
+PATIENCE = 4  # times that, for all attempts together, where the first does not decide
 FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
 
 Progress = Callable[[float, float], None]  # called with the simulated time reached and the whole span, in s
-
-
-class _TooLong(Exception):
-    """The runs have taken `PATIENCE` times what they may."""
-
-
-class _Watch:
-    """What the runs call from time to time: it counts the CPU seconds of their steps, and passes the time reached on.
-
-    Compiling, before the first call of a run, does not count.
-
-    Raises:
-        _TooLong: nothing is left of the seconds that all runs may take.
-    """
-
-    def __init__(self, allowed_s: float, t_end: float, report: Progress | None) -> None:
-        self._left, self._t_end, self._report = allowed_s, t_end, report
-        self._last: float | None = None
-
-    def begin(self) -> None:
-        """Begin a run."""
-        self._last = None
-
-    def __call__(self, t: float) -> None:
-        """Note that a run has come to this time."""
-        now = time.process_time()
-        self._left -= now - (now if self._last is None else self._last)
-        self._last = now
-        if self._left <= 0:
-            raise _TooLong
-        if self._report is not None:
-            self._report(t, self._t_end)
 
 
 def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
@@ -67,23 +34,19 @@ def problems(files: Files, report: Progress | None = None) -> tuple[list[str], l
     if not engines()["limbs"].installed:
         return [], _undecided("integrating it again needs numba (pip install 'foucault-reference[methods]')")
     manifest = files.manifest
-    allowed = BASE_S + ROW_S * manifest.counts.grid + TRANSIT_S * manifest.counts.transits
-    prec = _first_prec(manifest)
-    expected = 2 * engines()["limbs"].expected_s(_steps(files), prec)
-    if expected > allowed:
-        return [], _undecided(f"integrating it again would take about {expected:.0f} s")
+    allowed_s = BASE_S + ROW_S * manifest.counts.grid + TRANSIT_S * manifest.counts.transits
+    prec, steps, expected_s, most_s = _first_prec(manifest), _steps(files), 0.0, allowed_s
     seek = files.scene.run.transits and manifest.transits == "complete" and "transits.csv" in files.tables
-    watch = _Watch(PATIENCE * allowed, float(files.scene.exact.t_end), report)
     try:
         while prec <= MOST_PREC:
-            coarse = _run(files, prec - LIMB_BITS, seek, watch)
-            fine = _run(files, prec, seek, watch)
+            expected_s += 2 * engines()["limbs"].expected_s(steps, prec)
+            if expected_s > most_s:
+                return [], _undecided(f"integrating it again would take about {expected_s:.0f} s")
+            coarse, fine = (_run(files, bits, seek, report) for bits in (prec - LIMB_BITS, prec))
             differing = _compared(files, coarse, fine)
             if differing is not None:
                 return differing, []
-            prec += FINER_BITS
-    except _TooLong:
-        return [], _undecided(f"integrating it again takes more than {PATIENCE * allowed:.0f} s")
+            prec, most_s = prec + FINER_BITS, PATIENCE * allowed_s
     except (IntegrationError, UnreachableError) as error:
         return [], _undecided(str(error))
     return [], _undecided(f"two runs in up to {MOST_PREC} bits are further apart than the bounds")
@@ -104,16 +67,15 @@ def _first_prec(manifest: Manifest) -> int:
 def _steps(files: Files) -> int:
     """Return about how many steps a run takes: the fastest rate in the scene, over the whole span."""
     start = Start.of(files.scene.exact, GUARD_BITS)
-    speeds = (sum(abs(part) for part in row) for row in files.tables["grid.csv"].numbers(VELOCITY))
     rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)) + abs(start.k.rate) + start.k.drag)
-    rate += float(max(speeds) / files.scene.exact.length)
+    rate += float(files.fastest / files.scene.exact.length)
     return int(min(1e15, float(files.scene.exact.t_end) * rate))
 
 
-def _run(files: Files, prec: int, seek: bool, watch: _Watch) -> Run:
+def _run(files: Files, prec: int, seek: bool, report: Progress | None) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
-    watch.begin()
-    return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), watch)
+    end = float(inputs.t_end)
+    return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), report and (lambda t: report(t, end)))
 
 
 def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:

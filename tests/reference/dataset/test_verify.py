@@ -20,7 +20,6 @@ from reference.dataset.manifest import MANIFEST
 from reference.dataset.sheets import GRID_HEADER
 from reference.dataset.verify import problems_of, recompute, verify
 from reference.dataset.write import write
-from reference.engines.limbs import integration
 from reference.engines.limbs.size import MOST_PREC
 from reference.engines.registry import engines
 from reference.errors import DatasetError
@@ -370,10 +369,18 @@ def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(datase
     one_run = engines()["limbs"].expected_s(10**6, motion._first_prec(read_files(dataset).manifest))
     assert note.startswith("motion not decided without --recompute: ")
     assert note.endswith(f"would take about {2 * one_run:.0f} s")
-    monkeypatch.setattr(motion, "_steps", lambda _: 0)
-    monkeypatch.setattr(integration, "STEPS_PER_CALL", 8)
+
+
+def test_where_two_runs_do_not_decide_others_follow_in_four_times_what_two_may_take(dataset, monkeypatch):
+    precs = []
+    monkeypatch.setattr(motion, "_run", lambda _files, prec, *_: precs.append(prec))
+    monkeypatch.setattr(motion, "_compared", lambda *_: None)
+    manifest = read_files(dataset).manifest
+    allowed = motion.BASE_S + motion.ROW_S * manifest.counts.grid + motion.TRANSIT_S * manifest.counts.transits
+    monkeypatch.setattr(type(engines()["limbs"]), "expected_s", lambda *_: allowed / 2)
     (note,) = verify(dataset).notes
-    assert "takes more than 0 s" in note
+    assert len(precs) == 2 * motion.PATIENCE
+    assert note.endswith(f"would take about {(motion.PATIENCE + 1) * allowed:.0f} s")
 
 
 def test_where_the_most_bits_do_not_decide_the_motion_that_is_a_note_and_no_failure(dataset, foucault, monkeypatch):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from reference.scenes.scene import load_scene
-from reference.scenes.shipped import flag_meanings, scene_ids
+import tomllib
 
-MEANINGS = flag_meanings()
+from reference.scenes.scene import load_scene
+from reference.scenes.shipped import data_root, scene_ids
+
+MEANINGS = tomllib.loads((data_root() / "flags.toml").read_text("utf-8"))
 
 
 def test_every_flag_of_a_scene_is_explained_and_every_explanation_is_used():
