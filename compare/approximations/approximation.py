@@ -17,7 +17,7 @@ Against = Literal["amplitude", "rotation_rate", "length"]
 
 @dataclass(frozen=True)
 class Order:
-    """A statement of theory, error proportional to `against` ** `power`, which `studies.approximation_orders` tests.
+    """A statement of theory, error proportional to `against` ** `power`, which a test measures.
 
     Attributes:
         against: quantity that is varied: the displacement from the rest position in m, Ω in rad/s, or the length in m.

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from reference import InputError, scene_ids
-from reference.commands.terminal import emit
+from reference import InputError, Scene, scene_ids
+from reference.commands.terminal import emit, refuse
 
 
 def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
@@ -91,18 +91,16 @@ def check_limit(limit_s: float) -> None:
         raise InputError("--limit", f"{limit_s:g}", "a positive number of seconds")
 
 
-def check_installed(methods: Iterable[str]) -> None:
-    """Refuse methods of which none can run here; where some can, the report says what the others lack.
+def programs_of(run: Sequence[str] | None, names: Sequence[str] | None, scene: Scene) -> dict[str, str]:
+    """Return the commands of --run by the names that they have; refuse any that cannot be run with a scene's values."""
+    from ..candidates.external import arguments
+    from ..methods import SETTING, named_programs
 
-    Raises:
-        InputError: none is installed; it says how to install the first.
-    """
-    from ..methods import METHODS, available
-
-    wanted = list(dict.fromkeys(methods))
-    missing = [available(METHODS[name]) for name in wanted]
-    if wanted and all(missing):
-        raise InputError("--methods", ", ".join(wanted), "a method that can run here", f"{wanted[0]} is {missing[0]}.")
+    if not run:
+        refuse({"--name": names}, "without --run")
+    for command in run or ():
+        arguments(command.replace(SETTING, "0.1"), scene)
+    return named_programs(run or (), names or ())
 
 
 def inside(folder: Path | None, name: str) -> Path | None:

@@ -8,7 +8,7 @@ import typer
 
 from reference import load_scene
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson, refuse, stoppable
+from reference.commands.terminal import AsJson, stoppable
 
 from .options import (
     Commands,
@@ -16,11 +16,11 @@ from .options import (
     Methods,
     Names,
     Scenes,
-    check_installed,
     check_limit,
     finish,
     inside,
     listed,
+    programs_of,
     resumes,
 )
 
@@ -46,24 +46,15 @@ def command(
 
     For each: digits kept, or the way it failed; with the same --out a study resumes.
     """
-    from ..candidates.external import arguments
-    from ..methods import SETTING, named_programs
     from ..report.stability_page import REPORT, document_of
-    from ..studies.campaign import declared
     from ..studies.long_runs import long_runs
     from ..studies.stability import stability as measure
+    from ..studies.study_plan import declared
 
     check_limit(limit)
     REPORT.check(out)
     chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
-    if run:
-        programs = named_programs(run, name or ())
-        for word in programs.values():
-            arguments(word.replace(SETTING, "0.1"), load_scene(PARIS))  # refuses one that cannot be run before any work
-    else:
-        refuse({"--name": name}, "without --run")
-        programs = {}
-        check_installed(method for method, _, _ in declared(requested, "stability"))
+    programs = programs_of(run, name, load_scene(PARIS))
     items = declared(requested, "long_runs") if long else []
     with stoppable(resumes(out)), progress() as show:
         cells = measure(

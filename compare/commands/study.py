@@ -17,12 +17,12 @@ from .options import (
     Methods,
     Names,
     announce,
-    check_installed,
     check_limit,
     finish,
     inside,
     listed,
     numbers,
+    programs_of,
     resumes,
 )
 
@@ -113,15 +113,14 @@ def command(
         _study_approximations(scene, out, as_json)
         return
     if not run:
-        refuse({"--settings": settings, "--name": name}, "without --run")
+        refuse({"--settings": settings}, "without --run")
     if not candidates:
         refuse({"--cpu": cpu}, "without --candidates")
     check_limit(LIMIT_S if limit is None else limit)
-    from ..candidates.external import arguments
-    from ..methods import SETTING, named_programs
+    from ..methods import SETTING
     from ..report.study_page import REPORT
-    from ..studies.study import plan
     from ..studies.study import study as measure
+    from ..studies.study_plan import bits_of, plan, precision_items, precision_scene
     from ..studies.users_program import files_of
 
     REPORT.check(out)
@@ -130,16 +129,10 @@ def command(
     if precisions is None:
         items = plan(scene, requested, not no_formulations)
     else:
-        from ..studies.precisions import bits_of, precision_items, precision_scene
-
         bits = bits_of(precisions)
         items = precision_items(bits, requested)
         problem, digits = precision_scene(scene, bits, whole=t_end is not None)
-    if not (run or candidates):
-        check_installed(method for method, _, _ in items)
-    for program in run or ():
-        arguments(program.replace(SETTING, "0.1"), problem)  # refuses one that cannot be run before any work
-    programs = named_programs(run or (), name or ())
+    programs = programs_of(run, name, problem)
     if not any(SETTING in program for program in programs.values()):
         refuse({"--settings": settings}, f"with a --run that has no {SETTING}")
     files = files_of(candidates or (), cpu, programs)

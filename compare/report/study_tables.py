@@ -12,9 +12,9 @@ from reference.errors import shortened
 from reference.status import Status
 
 from ..methods import METHODS
-from ..studies.observed_order import Order, orders
 from ..studies.row import Row
 from ..studies.stability import Cell
+from ..studies.study import Order, orders
 from ..studies.users_program import FILE
 from . import explanations
 from .busy import busy

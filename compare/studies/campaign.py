@@ -24,7 +24,6 @@ from reference.system import cache
 from reference.system.documents import json_lines
 from reference.system.workers import Emit, Worker
 
-from ..methods import METHODS, available
 from .machine import load_per_core, machine, single_thread
 from .row import Record
 
@@ -34,39 +33,6 @@ STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a bus
 Item = TypeVar("Item", bound=tuple[Any, ...])
 Result = TypeVar("Result", bound=Record)
 Counted = Callable[[int, int, str], None]
-
-
-def declared(methods: Sequence[str] | None, field: str) -> list[tuple[str, Any, float]]:
-    """List the runs that methods declare for a study, as id, formulation and setting.
-
-    Args:
-        methods: ids; all if None.
-        field: of `Method` that holds the runs: "stability" or "long_runs".
-
-    Raises:
-        InputError: a method is unknown, or declares no such runs.
-    """
-    check_usable(methods)
-    runs = {name: getattr(METHODS[name], field) for name in methods or METHODS}
-    without = [name for name in methods or () if not runs[name]]
-    if without:
-        known = ", ".join(name for name in METHODS if getattr(METHODS[name], field))
-        raise InputError(
-            "methods", ", ".join(without), f"methods that declare runs in `{field}`", f"These do: {known}."
-        )
-    return [(name, *run) for name, declared in runs.items() for run in declared]
-
-
-def check_usable(methods: Sequence[str] | None) -> None:
-    """Refuse methods none of which can run here; None is all.
-
-    Raises:
-        InputError: a method is unknown, or a package is missing for each.
-    """
-    reasons = {name: available(METHODS[name]) for name in methods or METHODS}
-    if all(reasons.values()):
-        why = "; ".join(f"{name}: {reason}" for name, reason in reasons.items())
-        raise InputError("methods", ", ".join(reasons), "a method that can run here", f"{why}.")
 
 
 @dataclass(frozen=True)

@@ -25,13 +25,12 @@ from reference.status import Status
 from ..methods import METHODS
 from ..truth import golden_of
 from . import users_program
-from .campaign import Counted, Measurement, campaign, declared
-from .character import Character, character
-from .grid import on_doubles
+from .campaign import Counted, Measurement, campaign
+from .character import Character, character, reason_of
 from .measure import Bench
 from .method_errors import GridTruth
-from .reasons import reason_of
 from .row import Record, Row
+from .study_plan import declared, on_doubles
 
 LIMIT_S = 3.0  # CPU seconds of a cell
 PATIENCE = 5  # wall-clock limit of a cell, in multiples of the CPU limit

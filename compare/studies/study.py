@@ -7,7 +7,7 @@ Study(paris, 60 s: 7 of 7 rows measured)
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -17,23 +17,21 @@ from reference import Golden, Scene, load, load_scene, parse_scene
 from reference.status import Status
 
 from ..candidates.candidate import Candidate
-from ..methods import METHODS, external, suited
+from ..methods import METHODS, external
+from ..observed.power_law import LEAST_POINTS, PowerLaw, power_law
 from ..truth import Report, golden_of
-from .campaign import Counted, Measurement, campaign, check_usable
-from .grid import on_doubles
+from .campaign import Counted, Measurement, campaign
 from .machine import machine
 from .measure import Bench
 from .method_errors import GridTruth
-from .observed_order import orders
 from .row import Row
+from .study_plan import Item, on_doubles, plan
 from .users_program import file_row
 
 LIMIT_S = 8.0  # CPU seconds of one run; a longer one is extrapolated from a part of the span
 PATIENCE = 12  # wall-clock limit of one run, in multiples of the CPU limit
-FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
-FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared
-
-Item = tuple[str, str, float]  # method, formulation, setting
+TOLD_APART = 0.25  # standard error up to which an order is told from its neighbours: twice that is half an order
+ABOVE_LEAST = 10.0  # errors within this factor of a method's least are taken for rounding, or for the reference's bound
 Files = Mapping[str, tuple[Candidate, float | None]]  # by name: what a file holds, and the CPU seconds that are stated
 
 
@@ -84,30 +82,6 @@ class Study:
             "orders": [asdict(one) for one in orders(self.rows, float(self.golden.manifest.bounds.position_m))],
             "rows": [asdict(row) for row in self.rows],
         }
-
-
-def plan(scene: Scene, methods: Sequence[str] | None = None, formulations: bool = True) -> list[Item]:
-    """List the runs: each method over its settings in the formulation that suits it, and one method in all of them.
-
-    Args:
-        scene: steps are scaled to its swing, and a formulation must be able to describe its motion; read as doubles.
-        methods: ids; all if None.
-        formulations: whether to compare the formulations in one method as well.
-
-    Raises:
-        InputError: an unknown method, none that can run here, or a number that no double holds.
-    """
-    check_usable(methods)
-    scene = scene.with_values(["inputs=binary64"])
-    items: list[Item] = []
-    for name in methods or METHODS:
-        method = METHODS[name]
-        items += [(name, suited(scene, method.formulations), setting) for setting in method.settings(scene)]
-    if formulations and (methods is None or FORMULATIONS_OF in methods):
-        one = METHODS[FORMULATIONS_OF]
-        words = [word for word in FORMULATIONS if word in one.formulations]
-        items += [(FORMULATIONS_OF, word, setting) for word in words for setting in one.settings(scene)]
-    return list(dict.fromkeys(items))
 
 
 @dataclass(frozen=True)
@@ -194,3 +168,61 @@ def study(
     files = [file_row(name, *file, problem, golden) for name, file in (candidates or {}).items()]
     names = tuple(candidates or ())
     return Study(problem, float(problem.exact.t_end), limit_s, golden, [*rows, *files], machine(), commands, names)
+
+
+@dataclass(frozen=True)
+class Order:
+    """Declared and observed order of a method in a formulation.
+
+    Attributes:
+        method: its id.
+        formulation: of the equations of motion.
+        declared: by the method.
+        observed: exponent of the error against the steps, or the evaluations where steps are not told; None where the
+            runs do not tell it from its neighbours.
+        standard_error: of the fit.
+        settings: number of settings that were fitted.
+    """
+
+    method: str
+    formulation: str
+    declared: int
+    observed: float | None = None
+    standard_error: float | None = None
+    settings: int = 0
+
+
+def orders(rows: Sequence[Row], bound_m: float) -> list[Order]:
+    """Return the orders of all methods that declare one, each in each of its formulations.
+
+    Args:
+        rows: of a study.
+        bound_m: of the reference, in m.
+    """
+    groups: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        if row.method in METHODS and METHODS[row.method].order is not None:
+            groups.setdefault((row.method, row.formulation), []).append(row)
+    return [_order(*key, group, bound_m) for key, group in groups.items()]
+
+
+def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -> Order:
+    declared = METHODS[method].order or 0
+    laws = [law for law in _laws(rows, bound_m) if law.standard_error <= TOLD_APART]
+    if not laws:
+        return Order(method, formulation, declared)
+    law = max(laws, key=lambda one: (one.points, -one.standard_error))
+    return Order(method, formulation, declared, -law.exponent, law.standard_error, law.points)
+
+
+def _laws(rows: Sequence[Row], bound_m: float) -> Iterator[PowerLaw]:
+    """Yield the fit to each run of neighbouring settings over which the error falls and is no rounding."""
+    points = sorted((count, row.error_m) for row in rows if row.status is Status.OK and row.error_m
+                    if (count := row.steps or row.rhs_evaluations))  # fmt: skip
+    least = max(bound_m, min((error for _, error in points), default=0.0))
+    above = [point for point in points if point[1] > ABOVE_LEAST * least]
+    for first in range(len(above)):
+        for end in range(first + LEAST_POINTS, len(above) + 1):
+            counts, errors = zip(*above[first:end], strict=True)
+            if len(set(counts)) == len(counts) and list(errors) == sorted(errors, reverse=True):
+                yield power_law(counts, errors)

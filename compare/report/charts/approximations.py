@@ -10,8 +10,7 @@ import numpy as np
 from reference import InputError
 
 from ...studies.approximation_errors import TimeRow
-from ...studies.approximation_limits import SweepRow
-from ...studies.variation import UNITS
+from ...studies.approximation_limits import UNITS, SweepRow
 from .drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, line_style, logarithmic, sheet, svg_text
 
 _SAME = 0.15  # relative difference: lines that differ by less everywhere are drawn as one

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from compare.methods import METHODS
-from compare.studies.precisions import precision_items
+from compare.studies.study_plan import precision_items
 from reference import InputError
 
 STUDY, SCORE, GENERATE = ("study", "paris"), ("score", "paris", "-"), ("generate", "paris")

@@ -9,9 +9,8 @@ import pytest
 
 from compare.approximations import APPROXIMATIONS, motions, quantities
 from compare.studies.approximation_errors import TIMES, ReferenceMotion, error_table, quantity_table
-from compare.studies.approximation_limits import LIMITS, limits, sweep, sweep_values
+from compare.studies.approximation_limits import LIMITS, limits, sweep, sweep_values, varied
 from compare.studies.approximation_limits import _below as below
-from compare.studies.variation import varied
 from reference import InputError, load, load_scene, trajectory
 from reference.model.force import rest_position
 from reference.status import Status

@@ -11,7 +11,8 @@ import pytest
 from answering import Answer, Answers
 
 import compare.studies.campaign as module
-from compare.studies.campaign import Counted, campaign, declared
+from compare.studies.campaign import Counted, campaign
+from compare.studies.study_plan import declared
 from reference import InputError
 
 

@@ -6,8 +6,8 @@ from fractions import Fraction
 
 import pytest
 
-from compare.studies.grid import on_doubles
 from compare.studies.stability import cut
+from compare.studies.study_plan import on_doubles
 from reference import load_scene, scene_ids
 
 

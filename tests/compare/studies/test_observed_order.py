@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from compare.studies.observed_order import orders
 from compare.studies.row import Row
+from compare.studies.study import orders
 from reference.status import Status
 
 

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from compare.studies.character import Character
-from compare.studies.reasons import reason_of
+from compare.studies.character import Character, reason_of
 from compare.studies.row import Row
 from reference.status import Status
 

@@ -21,9 +21,9 @@ from compare.report.study_tables import transit_error
 from compare.studies import users_program
 from compare.studies.measure import Bench
 from compare.studies.method_errors import GridTruth
-from compare.studies.precisions import bits_of, precision_items, precision_scene
 from compare.studies.row import Row
 from compare.studies.study import plan, study
+from compare.studies.study_plan import bits_of, precision_items, precision_scene
 from compare.truth import golden_of
 from foucault import commands
 from reference import InputError, Scene, load_scene, trajectory

@@ -16,9 +16,9 @@ from compare.candidates.external import REPEATS, TIMEOUT_S
 from compare.commands import app as comparing
 from compare.commands import stability, study
 from compare.score.judge import TOLERANCE
-from compare.studies.precisions import SPAN_S
 from compare.studies.stability import LIMIT_S as STABILITY_LIMIT_S
 from compare.studies.study import LIMIT_S as STUDY_LIMIT_S
+from compare.studies.study_plan import SPAN_S
 from reference.commands import app as computing
 from reference.scenes.shipped import DATA_VERSION
 
