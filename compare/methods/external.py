@@ -13,9 +13,10 @@ import numpy as np
 
 from reference import InputError, Scene
 from reference.errors import shortened
+from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..rhs.problem import Array, Problem
+from ..rhs.problem import Problem
 from .method import Method, Outcome, Setting, Work, failed
 
 SETTING = "{setting}"  # stands for the step, tolerance or precision in a command

@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from reference.numbers.precision import context
+from reference.numbers.precision import Array, context
 
-from ..rhs.problem import Array, Problem
+from ..rhs.problem import Problem
+from ..rhs.straight_line import elements, generated, names, unpacked
 from .method import Family, Outcome, Work, fixed_step, outcome
 from .runge_kutta.fixed_step import steps_between
 from .runge_kutta.tableau import TableauError
@@ -141,13 +142,19 @@ def _cardinal(ctx: Any, nodes: list[Any], j: int) -> list[Any]:
 
 def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:
     """Compile the integration at a fixed step of `setting` seconds; the returned function runs it."""
-    from ..rhs.compiled import compiled, elements, fill, function_text, names, unpacked
-
     size, parameters = len(problem.start), len(problem.system.parameters)
-    texts = {name: elements(name, size) for name in ("y", "z", "f")}
-    texts |= {"stages": str(stages), "size": str(size), "most": str(MOST_ITERATIONS), "converged": repr(CONVERGED)}
-    texts |= {"c": names("c", parameters), "unpack_parameters": unpacked("c", "k", parameters)}
-    march = compiled(function_text(problem.system.program, "derivatives") + fill(_MARCH, **texts)).march
+    march = generated(
+        problem.system.program,
+        "derivatives",
+        _MARCH,
+        **{name: elements(name, size) for name in ("y", "z", "f")},
+        c=names("c", parameters),
+        unpack_parameters=unpacked("c", "k", parameters),
+        stages=stages,
+        size=size,
+        most=MOST_ITERATIONS,
+        converged=CONVERGED,
+    ).march
     method, counts = gauss(stages), steps_between(problem.times, setting)
 
     def work() -> Outcome:

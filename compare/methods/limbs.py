@@ -8,9 +8,10 @@ from fractions import Fraction
 import numpy as np
 
 from reference.numbers.columns import STATE
+from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..rhs.problem import Array, Problem
+from ..rhs.problem import Problem
 from .method import Family, Method, Outcome, Work, failed
 
 LADDER = (100, 150, 200)  # precisions in bits

@@ -13,11 +13,12 @@ from typing import Literal
 import numpy as np
 
 from reference import Scene
+from reference.numbers.precision import Array
 from reference.numbers.table import Table
 from reference.status import Status
 from reference.system.imports import missing, switched_off
 
-from ..rhs.problem import Array, Problem
+from ..rhs.problem import Problem
 from .native.library import Library
 from .runge_kutta.fixed_step import Step, steps_through
 

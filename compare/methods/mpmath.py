@@ -9,11 +9,11 @@ from typing import Any
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
 from reference.numbers.columns import STATE
-from reference.numbers.precision import GUARD_BITS, context, to_fraction, to_mpf
+from reference.numbers.precision import GUARD_BITS, Array, context, to_fraction, to_mpf
 from reference.numbers.table import Table
 from reference.status import Status
 
-from ..rhs.problem import Array, Problem
+from ..rhs.problem import Problem
 from .method import Family, Method, Outcome, Work
 
 SPARE_BITS = 64  # exact states are written with this many bits below the precision

@@ -16,6 +16,7 @@ import numpy as np
 from compare.methods.capture import captured
 
 from ..rhs.problem import Problem
+from ..rhs.straight_line import elements, generated
 from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
@@ -35,13 +36,10 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     )  # otherwise its messages appear when the process ends
     from numbalsoda import driver, driver_dop853
 
-    from ..rhs.compiled import compiled, elements, fill, function_text
-
     variables, parameters = len(problem.start), len(problem.parameters)
-    used = len(problem.system.parameters)
-    places = {"y": elements("y", variables), "dy": elements("dy", variables), "k": elements("k", used)}
-    wrapper = fill(_RATES, counter=str(parameters), **places)
-    address = compiled(function_text(problem.system.program, "derivatives") + wrapper).rates.address
+    places = {"y": elements("y", variables), "dy": elements("dy", variables)}
+    places["k"] = elements("k", len(problem.system.parameters))
+    address = generated(problem.system.program, "derivatives", _RATES, counter=parameters, **places).rates.address
     integrate = {"dop853": driver_dop853.dop853_wrapper, "lsoda": driver.lsoda_wrapper}[code]
     absolute = setting * float(problem.sizes.min())
 

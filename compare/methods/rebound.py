@@ -16,7 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from ..rhs.problem import Array, Problem
+from reference.numbers.precision import Array
+
+from ..rhs.problem import Problem
+from ..rhs.straight_line import elements, generated
 from .method import NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
 
 _POINTER = """
@@ -107,13 +110,10 @@ def prepare_ias15(problem: Problem, setting: float) -> Work:
 
 
 def _compiled(problem: Problem, template: str, y: str, dy: str = "", **offsets: int) -> Any:
-    from ..rhs.compiled import compiled, elements, fill, function_text
-
     size, parameters = len(problem.start), len(problem.parameters)
-    texts = {name: str(offset) for name, offset in offsets.items()}
-    texts |= {"y": elements(y, size), "dy": elements(dy, size), "k": elements("k", len(problem.system.parameters))}
-    body = function_text(problem.system.program, "derivatives") + _POINTER
-    return compiled(body + fill(template, parameters=str(parameters), **texts)).rates
+    places = {"y": elements(y, size), "dy": elements(dy, size), "k": elements("k", len(problem.system.parameters))}
+    code = _POINTER + template
+    return generated(problem.system.program, "derivatives", code, parameters=parameters, **places, **offsets).rates
 
 
 def _first_step(problem: Problem) -> float:

@@ -12,8 +12,9 @@ from functools import partial
 import numpy as np
 
 from compare.methods.capture import captured
+from reference.numbers.precision import Array
 
-from ..rhs.problem import Array, Problem
+from ..rhs.problem import Problem
 from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome
 
 MOST_STEPS = 100_000_000  # between two output times

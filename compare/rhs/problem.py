@@ -1,7 +1,11 @@
-"""The initial value problem as methods get it: start and constants in double, right-hand side, conversion to metres."""
+"""The initial value problem as methods get it: start and constants in double, right-hand side, conversion to metres.
+
+How far and how fast a bob can get, by its energy, gives the scales for tolerances, and which formulations hold.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -12,16 +16,16 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene
+from reference.errors import BeyondDoublesError
 from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start
-from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS
+from reference.numbers.precision import DOUBLE_BITS, GUARD_BITS, Array
 
-from .straight_line import Program
-from .swing import Swing
+from .straight_line import Program, elements, generated
 from .tracing import differentiated, record
 
-Array = npt.NDArray[np.float64]
+SMALLEST_SIZE = 1e-12  # least swing of a variable, so that tolerances for a bob at rest are not zero
 Rates = Callable[[Sequence[Any], Any, Mapping[str, Any]], Sequence[Any]]
 Derivatives = Callable[[Sequence[Any], Constants, Any], Sequence[Any]]
 
@@ -81,6 +85,61 @@ class FirstOrderSystem:
             )
 
         return record(flat, (*self.inputs, *more))
+
+
+@dataclass(frozen=True)
+class Swing:
+    """How far and how fast the bob can get, from its energy about the rest position.
+
+    Without the small gradient of the centrifugal force v²/2 - n·c is constant, so that the angle from the rest
+    position c/|c| never exceeds the one where v would vanish, nor the speed its value at the bottom.
+
+    Attributes:
+        cosine: of that largest angle; at most 1, -1 or less where the bob can go over the top.
+        fastest: speed over l, in 1/s.
+        aside: distance of the rest position from the vertical, as a part of l.
+        spread: largest energy that the centrifugal gradient may add, as a part of the pull.
+    """
+
+    cosine: float
+    fastest: float
+    aside: float
+    spread: float
+
+    @classmethod
+    def of(cls, start: Start) -> Swing:
+        """Return the swing that follows from the release.
+
+        Raises:
+            UnreachableError: a number of the scene is too large for binary64.
+        """
+        n, v, pull = (np.array(part, dtype=float) for part in (start.n, start.v, start.k.pull))
+        rate = float(start.k.rate)
+        if not (np.isfinite((n, v, pull)).all() and math.isfinite(rate * rate)):
+            raise BeyondDoublesError
+        strength = float(np.linalg.norm(pull))
+        if strength == 0:
+            return cls(-1.0, float(np.linalg.norm(v)), 1.0, 1.0)
+        energy = float(v @ v / 2 - n @ pull)
+        fastest = math.sqrt(max(2 * (energy + strength), 0.0))
+        return cls(
+            min(-energy / strength, 1.0),
+            fastest,
+            float(np.hypot(*pull[:2])) / strength,
+            rate * rate / strength,
+        )
+
+    @property
+    def below(self) -> bool:
+        """True if the bob stays below the horizontal, where the cord always pulls."""
+        return self.cosine > self.aside + self.spread
+
+    def sizes(self, variables: int) -> Array:
+        """Return bounds on positions (radians, or n) and rates (1/s), in the order of a state's variables."""
+        reach = math.sqrt(1 - self.cosine**2) if self.cosine > 0 else 1.0
+        half = variables // 2
+        sizes: Array = np.array([min(reach + self.aside, 1.0)] * half + [self.fastest] * half)
+        return np.maximum(sizes, SMALLEST_SIZE)
 
 
 @dataclass(frozen=True)
@@ -158,12 +217,10 @@ class Problem:
         return self._compiled(self.system.jacobian, _SLOPES)
 
     def _compiled(self, program: Program, template: str) -> ModuleType:
-        from .compiled import compiled, elements, fill, function_text
-
         size = len(self.start)
         places = {"y": elements("y", size), "k": elements("k", len(self.system.parameters)), "dy": elements("dy", size)}
         matrix = "".join(elements("j", size, str(row)) for row in range(size))
-        return compiled(function_text(program, "traced") + fill(template, j=matrix, **places))
+        return generated(program, "traced", template, j=matrix, **places)
 
     def cartesian(self, states: Array) -> Array:
         """Return x, y, z in m and vx, vy, vz in m/s, shape (rows, 6), of states of shape (rows, variables)."""
@@ -216,3 +273,14 @@ def _increasing(times: npt.ArrayLike) -> Array:
     if len(t) == 0 or t[0] != 0 or not np.isfinite(t).all() or not (np.diff(t) > 0).all():
         raise InputError("times", t.tolist() if len(t) < 9 else "an array", "finite times increasing from 0")
     return t
+
+
+def suited(scene: Scene, formulations: Sequence[str]) -> str:
+    """Return the first of some formulations that can describe the scene's whole motion.
+
+    `plane` holds below the horizontal only, and `space` leaves the sphere where a rod is pushed; for a bob whose energy
+    may take it there any other formulation is better, `space` is second best, and `plane` fails.
+    """
+    if Swing.of(Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)).below:
+        return formulations[0]
+    return min(formulations, key=lambda word: {"space": 1, "plane": 2}.get(word, 0))

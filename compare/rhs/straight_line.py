@@ -1,14 +1,33 @@
-"""Straight-line code: a list of elementary operations, which can be printed as a Python function."""
+"""Straight-line code: a list of elementary operations, printed as Python, compiled by numba and cached on disk.
+
+A generated module's file name is the hash of its text, so that equal sources share one compiled code, whichever scene
+or process needs it. Nothing in a source may depend on a scene's values: they are passed as arguments.
+"""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
+import hashlib
+import sys
+from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from string import Template
+from types import ModuleType
 from typing import Any
+
+from reference.system.cache import discard, entry, store
+from reference.system.workspace import replace_file
 
 FUNCTIONS = ("atan2", "cos", "sin", "sqrt")
 _SYMBOLS = {"add": "+", "sub": "-", "mul": "*", "div": "/"}
+HEADER = f"""import numba as nb
+import numpy as np
+from math import {", ".join(FUNCTIONS)}
+
+OPTIONS = dict(cache=CACHE, error_model="numpy", fastmath=False)
+
+"""
 
 
 @dataclass(frozen=True)
@@ -48,9 +67,55 @@ class Program:
         ending = ", ".join(self.outputs) + ("," if len(self.outputs) == 1 else "")
         return "\n    ".join([f"def {name}({', '.join(self.inputs)}):", *body, f"return {ending}"]) + "\n"
 
-    def function(self) -> Callable[..., tuple[float, ...]]:
-        """Return that function, not compiled: a Python function of floats."""
-        namespace: dict[str, Any] = {name: getattr(math, name) for name in FUNCTIONS}
-        exec(self.source("traced"), namespace)
-        function: Callable[..., tuple[float, ...]] = namespace["traced"]
-        return function
+
+def generated(program: Program, name: str, template: str, **texts: object) -> ModuleType:
+    """Return the compiled module of a program, as a function of that name, and of a template with texts filled in."""
+    return compiled(f"@nb.njit(**OPTIONS)\n{program.source(name)}\n\n{Template(template).substitute(texts)}")
+
+
+def names(letter: str, count: int) -> str:
+    """Return variables x0, x1, … as arguments or targets, with a trailing comma; nothing if there are none."""
+    return "".join(f"{letter}{i}, " for i in range(count))
+
+
+def elements(array: str, count: int, row: str = "") -> str:
+    """Return the elements of an array (of its row, if one is named) in the same way."""
+    return "".join(f"{array}[{row and row + ', '}{i}], " for i in range(count))
+
+
+def unpacked(letter: str, array: str, count: int) -> str:
+    """Return the statement that unpacks an array into variables."""
+    return f"{names(letter, count)}= {elements(array, count)}" if count else "pass"
+
+
+@cache
+def compiled(body: str) -> ModuleType:
+    """Return the module of a source whose functions numba compiles; decorators write `**OPTIONS`.
+
+    Machine code is read from the cache if it belongs to the very same text; if that cannot be used, it stays in memory.
+    """
+    on_disk = HEADER.replace("CACHE", "True") + body
+    name = f"f{hashlib.sha256(on_disk.encode()).hexdigest()[:32]}"
+    path = _stored(f"{name}.py", on_disk.encode())
+    if path is None:
+        return _executed(HEADER.replace("CACHE", "False") + body, name, f"<{name}>")
+    return _executed(on_disk, name, str(path))
+
+
+def _stored(name: str, text: bytes) -> Path | None:
+    """Return the cached file of a text, written if need be; None if the cache cannot be used."""
+    path = entry("generated", name)
+    if path is not None:
+        with suppress(OSError):
+            if path.read_bytes() == text:  # rewriting it would make numba compile again
+                return path
+        discard(path)
+    return store("generated", name, lambda path: replace_file(path, lambda stream: stream.write(text)))
+
+
+def _executed(text: str, name: str, file: str) -> ModuleType:
+    module = ModuleType(name)
+    sys.modules[name] = module  # numba's cache unpickles its functions by the module's name
+    namespace: dict[str, Any] = module.__dict__
+    exec(compile(text, file, "exec"), namespace)
+    return module

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 
@@ -10,7 +11,8 @@ from small_scenes import make_scene
 
 import reference
 from compare.methods import METHODS, Problem
-from compare.rhs.swing import suited
+from compare.rhs.problem import suited
+from compare.rhs.straight_line import FUNCTIONS
 from reference import Scene, Solution
 
 SECTIONS = {
@@ -45,3 +47,10 @@ class Case:
 def case(name):
     scene = make_scene(name, inputs="binary64", **SECTIONS[name])
     return Case(scene, reference.solve(scene, digits=40, level="computed", transits=False))
+
+
+def python_function(program):
+    """Return a program of straight-line code as a Python function of floats, not compiled."""
+    namespace = {name: getattr(math, name) for name in FUNCTIONS}
+    exec(program.source("traced"), namespace)
+    return namespace["traced"]

@@ -15,11 +15,12 @@ from pathlib import Path
 import numpy as np
 
 from reference import IntegrationError
+from reference.numbers.precision import Array
 from reference.system.cache import entry, store, temporary
 from reference.system.workspace import workspace
 
 from ...candidates.external import run_program
-from ...rhs.problem import Array, Problem
+from ...rhs.problem import Problem
 from ...rhs.straight_line import Program
 from .library import Library, compiler, library_folders
 

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from reference.model.algebra import plus, product
+from reference.numbers.precision import Array
 
-from ...rhs.problem import Array, Problem
-from ...rhs.straight_line import Program
+from ...rhs.problem import Problem
+from ...rhs.straight_line import Program, elements, generated, names, unpacked
 from .tableau import NystromTableau, Tableau
 
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
@@ -102,18 +103,17 @@ def steps_through(problem: Problem, length: float, step: Step) -> Callable[[], t
         A function that returns the states at the output times, up to the first that is not finite, shape
         (rows, variables), and the number of steps that led there.
     """
-    from ...rhs.compiled import compiled, elements, fill, function_text, names, unpacked
-
     variables, parameters = len(problem.start), len(problem.system.parameters)
-    loop = fill(
+    march = generated(
+        traced_step(problem, step),
+        "step",
         _MARCH,
         unpack_state=unpacked("x", "y", variables),
         unpack_parameters=unpacked("c", "k", parameters),
         x=names("x", variables),
         c=names("c", parameters),
         out=elements("states", variables, "row"),
-    )
-    march = compiled(function_text(traced_step(problem, step), "step") + loop).march
+    ).march
     counts = steps_between(problem.times, length)
 
     def run() -> tuple[Array, int]:

@@ -6,7 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from method_cases import case
+from method_cases import case, python_function
 from small_scenes import make_scene
 
 from compare.methods import METHODS, Problem, available
@@ -58,8 +58,8 @@ def test_the_equations_in_cpp_are_those_in_python(formulation, here, part):
     problem = Problem.of(lively, formulation, np.arange(9.0))
     answer = cpp_program.prepared(problem, 1e-9, here, [part])()
     parameters = list(problem.system.parameters.values())
-    rates = problem.system.program.function()(*problem.start, *parameters)
-    slopes = problem.system.jacobian.function()(*problem.start, *parameters)
+    rates = python_function(problem.system.program)(*problem.start, *parameters)
+    slopes = python_function(problem.system.jacobian)(*problem.start, *parameters)
     np.testing.assert_allclose(answer.states[0], rates, rtol=1e-13, atol=1e-15)
     np.testing.assert_allclose(answer.states[1:].ravel(), slopes, rtol=1e-13, atol=1e-15)
     assert (answer.steps, answer.calls, answer.reason) == (7, 1, "as asked")

@@ -14,6 +14,7 @@ import pytest
 
 from compare.methods import METHODS, Problem, available, rk4
 from compare.methods.runge_kutta.fixed_step import runge_kutta, traced_step
+from compare.rhs.straight_line import compiled
 from reference import load_scene
 
 pytestmark = pytest.mark.skipif(available(METHODS["rk4"]) is not None, reason="numba is not installed")
@@ -36,8 +37,6 @@ def arguments(problem):
 
 
 def test_generated_code_is_machine_code_that_calls_no_python():
-    from compare.rhs.compiled import compiled
-
     twice = compiled(SOURCE).twice
     assert len(twice.nopython_signatures) == len(twice.signatures) == 1
 
@@ -79,8 +78,6 @@ def twice(x):
 
 
 def test_generated_code_is_kept_whole_and_renewed_where_it_was_damaged(tmp_path, monkeypatch):
-    from compare.rhs.compiled import compiled
-
     monkeypatch.setenv("FOUCAULT_CACHE", str(tmp_path))
     compiled.cache_clear()
     assert compiled(SOURCE).twice(2.0) == 4.0
@@ -94,8 +91,6 @@ def test_generated_code_is_kept_whole_and_renewed_where_it_was_damaged(tmp_path,
 
 
 def test_where_nothing_can_be_kept_code_is_compiled_in_memory(tmp_path, monkeypatch):
-    from compare.rhs.compiled import compiled
-
     blocked = tmp_path / "file"
     blocked.write_text("a file where a folder should be")
     monkeypatch.setenv("FOUCAULT_CACHE", str(blocked))

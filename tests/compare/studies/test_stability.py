@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from compare.methods import METHODS, Problem, gauss_legendre, rk4, rkng56, rkng67
 from compare.methods.runge_kutta.tableau import TableauError
 from compare.report.stability_page import document_of, headlines, page_text, text_table
-from compare.rhs.swing import suited
+from compare.rhs.problem import suited
 from compare.studies.character import Character, character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.row import Row
