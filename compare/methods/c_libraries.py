@@ -1,23 +1,36 @@
 """Boost odeint, GSL, CVODE and ARKODE as their own users call them: a program in C++, of which no Python is a part.
 
-They stand beside the same codes behind a wrapper. The program is compiled for the scene's equations once and kept; it
-integrates, tells the CPU seconds of that by its own clock, and writes its states. A tolerance t means rtol = t and
-atol = t times each variable's swing; odeint takes one number for all, t times the smallest of them.
+They stand beside the same codes behind a wrapper. The program is the traced equations and the library's part; it is
+compiled for the scene's equations once, and kept by its text, the compiler and the processor; a scene's numbers are in
+the file that it reads. It integrates, tells the CPU seconds of that by its own clock, and writes its states. A
+tolerance t means rtol = t and atol = t times each variable's swing; odeint takes one number for all, t times the
+smallest of them.
 """
 
 from __future__ import annotations
 
+import hashlib
+import subprocess
+import tempfile
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
-from reference import InputError
+import numpy as np
 
+from reference import InputError, IntegrationError
+from reference.system.cache import entry, store, temporary
+from reference.system.workspace import workspace
+
+from ..candidates.external import run_program
 from ..rhs.problem import Problem
+from ..rhs.straight_line import Program
 from .method import HIGH_ORDER, SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
-from .native.cpp_program import prepared
-from .native.library import BOOST, GSL, SUNDIALS, Library
+from .native.library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
 
+FLAGS = ("-std=c++17", "-O3", "-march=native", "-w")
+HEAD = 4  # numbers before the states: CPU seconds, steps, calls of the right-hand side, rows
 DENSE = ("sundials_nvecserial", "sundials_sunmatrixdense", "sundials_sunlinsoldense")
 
 
@@ -29,22 +42,107 @@ def prepare(
     defines: Sequence[str] = (),
     link: Sequence[str] = (),
 ) -> Work:
-    """Compile the program; the returned function runs it."""
+    """Compile the program; the returned function runs it.
+
+    Args:
+        problem: to be solved.
+        setting: relative tolerance.
+        library: that the parts include.
+        parts: files of the folder `native`, the last of which defines `integrate`.
+        defines: macros of the parts.
+        link: the library's files to link with.
+
+    Raises:
+        IntegrationError: it cannot be compiled; the compiler's words.
+    """
     if len(problem.times) == 1:
         return lambda: outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
     if library is SUNDIALS and not f"{library.version}".startswith("6."):  # since 7
         link = (*link, "sundials_core")
-    run = prepared(problem, setting, library, parts, defines, link)
+    program = _compiled(source(problem, parts), library, defines, link)
+    start = [setting, float(len(problem.times)), *problem.sizes, *problem.start]
+    numbers = np.concatenate([start, problem.parameters, problem.times])
 
     def work() -> Outcome:
-        try:
-            found = run()
-        except InputError as error:  # it crashed, or was ended
-            return failed(problem, str(error))
-        result = outcome(problem, found.states, steps=found.steps, rhs_evaluations=found.calls, reason=found.reason)
-        return replace(result, cpu_s=found.cpu_s)
+        with tempfile.NamedTemporaryFile(prefix="foucault-") as file:
+            numbers.tofile(file)
+            file.flush()
+            try:
+                output, _, _ = run_program([str(program), file.name])
+            except InputError as error:  # it crashed, or was ended
+                return failed(problem, str(error))
+        with output:
+            answer = output.read()
+        cpu_s, steps, calls, rows = np.frombuffer(answer, count=HEAD).tolist()
+        size, offset = len(problem.start), HEAD * numbers.itemsize
+        states = np.frombuffer(answer, count=int(rows) * size, offset=offset).reshape(-1, size).copy()
+        reason = answer[offset + states.nbytes :].decode(errors="replace")
+        result = outcome(problem, states, steps=int(steps), rhs_evaluations=int(calls), reason=reason)
+        return replace(result, cpu_s=cpu_s)
 
     return work
+
+
+def source(problem: Problem, parts: Sequence[str]) -> str:
+    """Return the text of the program."""
+    folder = Path(__file__).parent / "native"
+    system = problem.system
+    counts = len(system.variables), len(system.parameters)
+    functions = [
+        _function("rates", system.program, *counts, "    calls++;\n"),
+        _function("slopes", system.jacobian, *counts),
+    ]
+    sizes = f"#define VARIABLES {len(system.variables)}\n#define PARAMETERS {len(problem.parameters)}\n"
+    texts = [(folder / name).read_text(encoding="utf-8") for name in parts]
+    return "\n".join([sizes + (folder / "host.hpp").read_text(encoding="utf-8"), *functions, *texts])
+
+
+def _function(name: str, program: Program, variables: int, parameters: int, before: str = "") -> str:
+    """Return straight-line code as a function of a state that fills an array."""
+    lines = [f"x{i} = x[{i}]" for i in range(variables)] + [f"k{i} = k[{i}]" for i in range(parameters)]
+    for line in program.lines:
+        lines.append(f"{line.name} = {replace(line, operands=tuple(map(_number, line.operands))).expression}")
+    body = before + "".join(f"    const double {line};\n" for line in lines)
+    body += "".join(f"    to[{i}] = {_number(word)};\n" for i, word in enumerate(program.outputs))
+    return f"static void {name}(const double *x, double *to) {{\n    using namespace std;\n{body}}}\n"
+
+
+def _number(operand: str) -> str:
+    """Return an operand in C++: a literal as a double, which a whole number would not be."""
+    try:
+        return repr(float(operand))
+    except ValueError:
+        return operand
+
+
+def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequence[str]) -> Path:
+    """Return the program of a text, compiled now if it was not before."""
+    call, include = compiler(), library.folder
+    if call is None or include is None:
+        raise IntegrationError(f"{library.missing}")
+    words = [*call, *FLAGS, *(f"-D{word}" for word in defines), "-I", str(include), "-x", "c++", "-"]
+    folders = (word for folder in library_folders() for word in (f"-L{folder}", f"-Wl,-rpath,{folder}"))
+    ends = [*folders, *(f"-l{name}" for name in link)]
+    explained = subprocess.run([*words, "-###", "-E"], input="", capture_output=True, text=True, check=False).stderr
+    recipe = "\n".join([text, *words, *ends, explained, str(library.version)])  # explained: version and processor
+    name = hashlib.sha256(recipe.encode()).hexdigest()[:32]
+
+    def put(path: Path) -> None:
+        with workspace(path.parent, path.name) as work:
+            made = work / "program"
+            command = [*words, "-o", str(made), *ends]
+            ran = subprocess.run(command, input=text, capture_output=True, text=True, check=False)
+            if ran.returncode:
+                first = next((line for line in ran.stderr.splitlines() if "error" in line), "no message")
+                raise IntegrationError(f"a program for {library.name} does not compile here: {first}")
+            made.replace(path)
+
+    path = entry("native", name) or store("native", name, put)
+    if path is None:
+        path = temporary() / name
+        if not path.exists():
+            put(path)
+    return path
 
 
 _native = partial(Method, setting="tolerance", family=Family.COMPILED)
@@ -55,7 +153,6 @@ _odeint = partial(
     extra="methods-native",
     licence="BSL-1.0",
     formulations=SPACE_FIRST,
-    dense=False,
 )
 _sundials = partial(
     _native,
@@ -89,7 +186,6 @@ METHODS = (
         native=GSL,
         prepare=partial(prepare, library=GSL, parts=("gsl.cpp",), link=("gsl", "gslcblas")),
         formulations=SPACE_FIRST,
-        dense=False,
         order=8,
     ),
     _cvode(
@@ -101,7 +197,6 @@ METHODS = (
         id="cvode_c_bdf",
         title="backward differentiation, orders 1 to 5, CVODE in C",
         prepare=partial(_multistep, defines=("MULTISTEP=CV_BDF",)),
-        stiff=True,
     ),
     _sundials(
         id="arkode_erk8",
@@ -114,7 +209,6 @@ METHODS = (
             link=("sundials_arkode", "sundials_nvecserial"),
         ),
         formulations=SPACE_FIRST,
-        dense=False,
         order=8,
     ),
 )

@@ -52,7 +52,6 @@ def external(
         licence="the user's",
         prepare=lambda problem, value: _prepare(problem, value, command),
         formulations=("momentum",),
-        dense=False,
     )
 
 

@@ -30,7 +30,6 @@ SPACE_FIRST = ("space", "momentum", "spin", "plane", "angles")  # the same, for 
 HIGH_ORDER = (1e-6, 1e-8, 1e-10, 1e-12, 1e-14)  # ladder of tolerances of an explicit method of order 8 or so
 NINE_DIGITS = ((None, 1e-9),)  # the run in `Method.stability` of a method that has a tolerance
 TWO_HUNDRED_STEPS = ((None, 1 / 200),)  # the same of one whose step is fixed: steps in a swing
-UNITS: dict[Setting, str] = {"step": "s", "tolerance": "relative", "precision": "bits"}
 
 
 class Family(StrEnum):
@@ -98,8 +97,6 @@ class Method:
         prepare: imports and compiles everything for a problem and a setting, and returns a function that only
             integrates, which may be called repeatedly.
         formulations: those that it may be used with; the first suits it best, or is the one it was written for.
-        stiff: whether it is meant for stiff problems.
-        dense: whether output at many times costs little; other methods shorten their steps to end on output times.
         requires: modules that must be installed.
         native: the library of C or C++ whose headers must be here.
         extra: the extra of `pip install 'foucault-reference[…]'` that installs them; None if nothing is needed.
@@ -122,8 +119,6 @@ class Method:
     licence: str
     prepare: Callable[[Problem, float], Work] = field(repr=False)
     formulations: tuple[str, ...] = TRACEABLE
-    stiff: bool = False
-    dense: bool = True
     requires: tuple[str, ...] = ()
     native: Library | None = None
     extra: str | None = None
@@ -151,11 +146,6 @@ class Method:
         power = math.floor(log_ratio)
         ratio = min((1.0, 2.0, 5.0, 10.0), key=lambda x: abs(math.log10(x) - (log_ratio - power))) * 10.0**power
         return tuple(float(f"{step * ratio:.6g}") for step in self.ladder)
-
-    @property
-    def unit(self) -> str:
-        """Unit of the setting."""
-        return UNITS[self.setting]
 
 
 def available(method: Method) -> str | None:
@@ -211,7 +201,6 @@ fixed_step = partial(
     Method,
     setting="step",
     licence="this project's",
-    dense=False,
     requires=("numba",),
     extra="methods",
     libraries=("numpy", "numba"),

@@ -95,6 +95,5 @@ METHODS = (
         source="L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136; liblsoda",
         licence="MIT",
         prepare=partial(prepare, code="lsoda"),
-        stiff=True,
     ),
 )

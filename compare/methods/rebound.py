@@ -151,7 +151,6 @@ _rebound = partial(
     Method,
     setting="tolerance",
     licence="GPL-3.0",
-    dense=False,
     requires=("rebound", "numba"),
     extra="methods-gpl",
     family=Family.REBOUND,

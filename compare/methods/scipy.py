@@ -81,7 +81,6 @@ METHODS = (
         ladder=(1e-6, 1e-7, 1e-8),
         source="E. Hairer, G. Wanner, Solving Ordinary Differential Equations II",
         prepare=partial(prepare, code="Radau"),
-        stiff=True,
         order=5,
     ),
     _scipy(
@@ -90,7 +89,6 @@ METHODS = (
         ladder=(1e-8, 1e-9, 1e-10),
         source="L. F. Shampine and M. W. Reichelt, SIAM J. Sci. Comput. 18 (1997) 1",
         prepare=partial(prepare, code="BDF"),
-        stiff=True,
     ),
     _scipy(
         id="scipy_lsoda",
@@ -99,6 +97,5 @@ METHODS = (
         source="L. R. Petzold, SIAM J. Sci. Stat. Comput. 4 (1983) 136",
         prepare=partial(prepare, code="LSODA"),
         formulations=TRACEABLE,  # in `space` it mistakes rounding for stiffness
-        stiff=True,
     ),
 )

@@ -69,6 +69,5 @@ METHODS = (
         id="cvode_bdf",
         title="backward differentiation, orders 1 to 5, CVODE",
         prepare=partial(prepare, code="BDF"),
-        stiff=True,
     ),
 )

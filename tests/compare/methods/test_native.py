@@ -9,8 +9,8 @@ import pytest
 from method_cases import case, python_function
 from small_scenes import make_scene
 
-from compare.methods import METHODS, Problem, available
-from compare.methods.native import cpp_program, library
+from compare.methods import METHODS, Problem, available, c_libraries
+from compare.methods.native import library
 from compare.methods.native.library import BOOST, GSL, Library
 from reference import IntegrationError
 
@@ -48,7 +48,7 @@ def part(tmp_path):
 
 @needs_compiler
 @pytest.mark.parametrize("formulation", ["momentum", "space", "spin", "plane", "angles"])
-def test_the_equations_in_cpp_are_those_in_python(formulation, here, part):
+def test_the_equations_in_cpp_are_those_in_python(formulation, here, part, monkeypatch):
     lively = make_scene(
         inputs="binary64",
         pendulum={"length": "1", "drag": "0.1"},
@@ -56,21 +56,23 @@ def test_the_equations_in_cpp_are_those_in_python(formulation, here, part):
         release={"angle": "50", "azimuth": "20", "angle_rate": "40", "azimuth_rate": "100"},
     )
     problem = Problem.of(lively, formulation, np.arange(9.0))
-    answer = cpp_program.prepared(problem, 1e-9, here, [part])()
+    monkeypatch.setattr(Problem, "cartesian", lambda _, states: states)
+    outcome = c_libraries.prepare(problem, 1e-9, here, [part])()
     parameters = list(problem.system.parameters.values())
     rates = python_function(problem.system.program)(*problem.start, *parameters)
     slopes = python_function(problem.system.jacobian)(*problem.start, *parameters)
-    np.testing.assert_allclose(answer.states[0], rates, rtol=1e-13, atol=1e-15)
-    np.testing.assert_allclose(answer.states[1:].ravel(), slopes, rtol=1e-13, atol=1e-15)
-    assert (answer.steps, answer.calls, answer.reason) == (7, 1, "as asked")
+    np.testing.assert_allclose(outcome.states[0], rates, rtol=1e-13, atol=1e-15)
+    np.testing.assert_allclose(outcome.states[1:].ravel(), slopes, rtol=1e-13, atol=1e-15)
+    assert (outcome.steps, outcome.rhs_evaluations, outcome.reason) == (7, 1, "as asked")
+    assert outcome.cpu_s is not None
 
 
 @needs_compiler
 def test_a_program_is_compiled_once_and_serves_scenes_with_the_same_terms(here, part, tmp_path, monkeypatch):
-    cpp_program.prepared(case("paris").problem("gsl_rk8pd"), 1e-9, here, [part])
+    c_libraries.prepare(case("paris").problem("gsl_rk8pd"), 1e-9, here, [part])
     (kept,) = (tmp_path / "cache" / "native").glob("[0-9a-f]*")
-    monkeypatch.setattr(cpp_program, "workspace", None)  # what compiles needs it
-    other = cpp_program.prepared(case("steep").problem("gsl_rk8pd", formulation="space"), 1e-6, here, [part])
+    monkeypatch.setattr(c_libraries, "workspace", None)  # what compiles needs it
+    other = c_libraries.prepare(case("steep").problem("gsl_rk8pd", formulation="space"), 1e-6, here, [part])
     assert other().reason == "as asked"
     assert kept.is_file()
 
@@ -80,16 +82,14 @@ def test_what_does_not_compile_is_said_in_the_compilers_words(here, tmp_path):
     wrong = tmp_path / "wrong.cpp"
     wrong.write_text("static void integrate(Run &) { no_such_thing(); }\n")
     with pytest.raises(IntegrationError, match=r"Own does not compile here.*no_such_thing"):
-        cpp_program.prepared(case("paris").problem("gsl_rk8pd"), 1e-9, here, [str(wrong)])
+        c_libraries.prepare(case("paris").problem("gsl_rk8pd"), 1e-9, here, [str(wrong)])
 
 
 @needs_compiler
-def test_a_program_that_crashes_is_an_outcome(here, tmp_path, monkeypatch):
+def test_a_program_that_crashes_is_an_outcome(here, tmp_path):
     crash = tmp_path / "crash.cpp"
     crash.write_text("#include <cstdlib>\nstatic void integrate(Run &) { std::abort(); }\n")
-    from compare.methods import c_libraries as native
-
-    outcome = native.prepare(case("paris").problem("gsl_rk8pd"), 1e-9, here, [str(crash)])()
+    outcome = c_libraries.prepare(case("paris").problem("gsl_rk8pd"), 1e-9, here, [str(crash)])()
     assert outcome.status == "gave_up"
     assert "exit status -6" in outcome.reason
 

@@ -8,8 +8,7 @@ from fractions import Fraction
 import pytest
 
 from compare.methods import rk4, rkng56, rkng67
-from compare.methods.runge_kutta.tableau import Tableau, TableauError, fractions, triangle
-from compare.methods.runge_kutta.trees import trees
+from compare.methods.runge_kutta.tableau import Tableau, TableauError, fractions, trees, triangle
 
 NYSTROM = {"rkng56": rkng56, "rkng67": rkng67}
 
