@@ -4,27 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from reference import Scene
-from reference.model.force import tension
-
 from .approximation import Order, Printed, Quantity
 from .case import Case, under_gravity
 
 
-def of_the_model(scene: Scene) -> Any:
-    """Return the tension of the cord per mass at the full model's rest position."""
-    case = Case.of_scene(scene)
-    return case.length * tension(case.rest, (0, 0, 0), case.k)
-
-
-def _triangle(scene: Scene) -> Any:
-    """(g² + Ω⁴ R² - 2 g Ω² R cos λ)^(1/2), R = R_p cos λ of the suspension."""
-    return Case.of_scene(scene).apparent_gravity
-
-
-def _as_printed(scene: Scene) -> Any:
-    """(g² + Ω² R_p cos λ - 2 g Ω² R_p cos² λ)^(1/2)."""
-    case = Case.of_scene(scene)
+def _as_printed(case: Case) -> Any:
+    """Return (g² + Ω² R_p cos λ - 2 g Ω² R_p cos² λ)^(1/2)."""
     return case.ctx.sqrt(case.gravity**2 + case.outward - 2 * case.gravity * case.outward * case.cos)
 
 
@@ -42,8 +27,8 @@ APPROXIMATIONS = (
             "g_a² = g² + Ω⁴ R_p² cos² λ - 2 g Ω² R_p cos² λ: the term a_e² lost its square in print",
             _as_printed,
         ),
-        formula=_triangle,
-        truth=of_the_model,
+        formula=lambda case: case.apparent_gravity,
+        truth=lambda scene: Case.of_scene(scene).pull_at_rest,
         unit="m/s²",
     ),
 )

@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from reference import InputError, Scene, UnreachableError
+from reference.numbers.precision import Array
 
-Array = npt.NDArray[np.float64]
+from .case import Case
+
 Against = Literal["amplitude", "rotation_rate", "length"]
 
 
@@ -92,11 +94,11 @@ class Motion(Approximation):
     """An approximation of the whole motion.
 
     Attributes:
-        path: `path(scene, times)`, the motion without checks of scene and times; see `trajectory`.
+        path: `path(case, times)`, the motion without checks of scene and times; see `trajectory`.
         rest: `rest(scene)`, the point (x, y, z) in m about which it swings; None: the full model's rest position.
     """
 
-    path: Callable[[Scene, Array], Array]
+    path: Callable[[Case, Array], Array]
     rest: Callable[[Scene], Any] | None = None
 
     def trajectory(self, scene: Scene, times: npt.ArrayLike) -> Array:
@@ -118,7 +120,8 @@ class Motion(Approximation):
         if grid.ndim != 1 or not len(grid) or grid[0] < 0 or not np.all(np.diff(grid) > 0):
             raise InputError("times", f"{grid.shape} numbers", "increasing times in s, the first not negative")
         try:
-            rows = self.path(scene, grid) if grid[0] == 0 else self.path(scene, np.insert(grid, 0, 0.0))[1:]
+            case = Case.of_scene(scene)
+            rows = self.path(case, grid) if grid[0] == 0 else self.path(case, np.insert(grid, 0, 0.0))[1:]
         except OverflowError:
             rows = np.array([np.inf])
         if not np.isfinite(rows).all():
@@ -131,13 +134,13 @@ class Quantity(Approximation):
     """An approximation of one number.
 
     Attributes:
-        formula: `formula(scene)`, an mpf, without checks of the scene; see `value`.
+        formula: `formula(case)`, an mpf, without checks of the scene; see `value`.
         truth: `truth(scene)`, the number in the full model, from the reference.
         unit: unit of both.
         relative: whether `orders` describe the relative error, or the error in `unit`.
     """
 
-    formula: Callable[[Scene], Any]
+    formula: Callable[[Case], Any]
     truth: Callable[[Scene], Any]
     unit: str
     relative: bool = True
@@ -149,4 +152,4 @@ class Quantity(Approximation):
             InputError: the scene is outside the domain.
         """
         self.check(scene)
-        return self.formula(scene)
+        return self.formula(Case.of_scene(scene))

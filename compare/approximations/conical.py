@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from reference import Scene
+from reference.numbers.precision import Array
 
-from .approximation import Array, Motion, Order
+from .approximation import Motion, Order
 from .case import Case, lowest_point, swinging
 
 _CONICAL_ENOUGH = 0.1  # part of the circle's speed by which the velocity of release may differ from it
@@ -28,8 +29,7 @@ def _circle(case: Case) -> tuple[Any, Any]:
     return ctx.hypot(x, y), ctx.sign(x * vy - y * vx) * ctx.sqrt(case.gravity / -z)
 
 
-def _path(scene: Scene, times: Array) -> Array:
-    case = Case.of_scene(scene)
+def _path(case: Case, times: Array) -> Array:
     x, y, z = (float(part) for part in case.position)
     _, omega = _circle(case)
     place = complex(x, y) * np.exp(1j * float(omega) * times)

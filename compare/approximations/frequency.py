@@ -1,23 +1,29 @@
-"""Frequency of the swing in Hz: the five approximations of Mathar, section VII."""
+"""Frequency of the swing in Hz, Mathar VII, and precession period T_f of its plane in s, Gastebois 4.1, 4.2, 6.3.
+
+T_p is 2π/Ω.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from reference import Scene
 
-from ..observed.apsides import frequency
+from ..observed.apsides import frequency, precession_period
 from .approximation import Order, Printed, Quantity
-from .case import Case, released_at_rest, swinging
-from .mathar_linear import slow_down
+from .case import Case, at_rest, released_at_rest, swinging
+from .gastebois import small_angles
+from .mathar import slow_down
 
 _STILL = ("site.rotation_rate=0",)
 _SQUARE_IN_AMPLITUDE = Order("amplitude", 2, (1.0, 2.0, 4.0, 8.0), _STILL)
 _EXACT = Order("amplitude", None, (1.0, 8.0, 40.0), _STILL)
 _SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_radius=0",), 1e-2)
 _CENTRIFUGAL = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4), (), 1e-2)
+_AT_POLE = ("site.latitude=90", "site.rotation_rate=2e-3")
+_SMALL = 1e-2
+_SQUARE_AT_POLE = Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE)
 
 
 def harmonic(case: Case) -> Any:
@@ -31,25 +37,57 @@ def planar(case: Case) -> Any:
     return case.ctx.sqrt(case.gravity / case.length) / (4 * quarter)
 
 
-def _turntable(scene: Scene, gravity: Callable[[Case], Any]) -> Any:
-    """sqrt(ĝ + (Ω sin φ)²)/2π."""
-    case = Case.of_scene(scene)
+def turntable(case: Case, gravity: Any) -> Any:
+    """Return sqrt(gravity/l + (Ω sin φ)²)/2π, the frequency of Mathar (51)-(52)."""
     turn = case.rate * case.sin
-    return case.ctx.sqrt(gravity(case) / case.length + turn**2) / (2 * case.ctx.pi)
+    return case.ctx.sqrt(gravity / case.length + turn**2) / (2 * case.ctx.pi)
 
 
-def _slowed(scene: Scene) -> Any:
-    """The frequency on a turntable with g', divided by 2K/π."""
-    return _turntable(scene, lambda case: case.apparent_gravity) / slow_down(Case.of_scene(scene))
+def anharmonic(case: Case) -> Any:
+    """Return the frequency on a turntable with g', divided by 2K/π."""
+    return turntable(case, case.apparent_gravity) / slow_down(case)
 
 
-def _slowed_as_printed(scene: Scene) -> Any:
-    """The frequency on a turntable with g', divided by 4K as printed."""
-    case = Case.of_scene(scene)
-    return _slowed(scene) / (2 * case.ctx.pi)
+def _anharmonic_as_printed(case: Case) -> Any:
+    """Return the same divided by 4K, as printed."""
+    return anharmonic(case) / (2 * case.ctx.pi)
+
+
+def _over_sine(case: Case) -> Any:
+    """Return T_p/sin λ."""
+    return abs(2 * case.ctx.pi / (case.rate * case.sin))
+
+
+def _over_tilted_sine(case: Case) -> Any:
+    """Return T_p/sin λ_a, λ_a = λ + α."""
+    return abs(2 * case.ctx.pi / (case.rate * case.ctx.sin(case.apparent_latitude)))
+
+
+def _spherical(case: Case) -> Any:
+    """Return T_p/sin λ_a (1 + 3/8 r0²/L0²), with r0 counted from the plumb line."""
+    x, y, _ = case.plumb.inward(case.position)
+    return _over_tilted_sine(case) * (1 + 3 * (x**2 + y**2) / (8 * case.length**2))
+
+
+def _swing_over_sine(case: Case) -> Any:
+    """Return T/sin λ_a with the period T of the swing, as 6.3 prints it."""
+    omega, _ = small_angles(case)
+    return abs(2 * case.ctx.pi / (omega * case.ctx.sin(case.apparent_latitude)))
+
+
+def _turning(scene: Scene) -> str | None:
+    still = not scene.exact.rotation_rate or not scene.exact.latitude
+    return "The plane does not turn: give a rotation rate and a latitude other than 0" if still else swinging(scene)
 
 
 _frequency = partial(Quantity, domain="small amplitudes, slow rotation", refuses=swinging, truth=frequency, unit="Hz")
+_precession = partial(
+    Quantity,
+    domain="small angles, away from the equator; the mean over a half turn",
+    refuses=_turning,
+    truth=precession_period,
+    unit="s",
+)
 
 APPROXIMATIONS = (
     _frequency(
@@ -58,7 +96,7 @@ APPROXIMATIONS = (
         where="Mathar section VII, frequency 1",
         drops="the amplitude, Ω, the centrifugal force",
         orders=(_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
-        formula=lambda scene: harmonic(Case.of_scene(scene)),
+        formula=harmonic,
     ),
     _frequency(
         id="frequency_planar",
@@ -67,7 +105,7 @@ APPROXIMATIONS = (
         drops="Ω and the centrifugal force",
         orders=(_EXACT, _CENTRIFUGAL),
         refuses=released_at_rest,
-        formula=lambda scene: planar(Case.of_scene(scene)),
+        formula=planar,
     ),
     _frequency(
         id="frequency_turntable",
@@ -75,7 +113,7 @@ APPROXIMATIONS = (
         where="Mathar section VII, frequency 3",
         drops="the amplitude, the centrifugal force",
         orders=(_SQUARE_IN_AMPLITUDE, _CENTRIFUGAL),
-        formula=partial(_turntable, gravity=lambda case: case.gravity),
+        formula=lambda case: turntable(case, case.gravity),
     ),
     _frequency(
         id="frequency_apparent",
@@ -83,7 +121,7 @@ APPROXIMATIONS = (
         where="Mathar section VII, frequency 4",
         drops="the amplitude, the centrifugal gradient",
         orders=(_SQUARE_IN_AMPLITUDE, _SQUARE_IN_RATE),
-        formula=partial(_turntable, gravity=lambda case: case.apparent_gravity),
+        formula=lambda case: turntable(case, case.apparent_gravity),
     ),
     _frequency(
         id="frequency_anharmonic",
@@ -93,8 +131,39 @@ APPROXIMATIONS = (
         orders=(_EXACT, _SQUARE_IN_RATE),
         refuses=released_at_rest,
         printed=Printed(
-            "slow-down with the factor 4K(sin(φ0/2))", "2K(sin(φ0/2))/π, which is 1 at amplitude 0", _slowed_as_printed
+            "slow-down with the factor 4K(sin(φ0/2))",
+            "2K(sin(φ0/2))/π, which is 1 at amplitude 0",
+            _anharmonic_as_printed,
         ),
-        formula=_slowed,
+        formula=anharmonic,
+    ),
+    _precession(
+        id="precession_sine",
+        title="precession period T_p/sin λ",
+        where="Gastebois 4.1",
+        drops="the centrifugal force, the amplitude",
+        orders=(Order("rotation_rate", 2, (1e-4, 2e-4, 4e-4), (), _SMALL), _SQUARE_AT_POLE),
+        formula=_over_sine,
+    ),
+    _precession(
+        id="precession_tilted",
+        title="precession period T_p/sin λ_a, with the tilt of the plumb line",
+        where="Gastebois 4.2, 6.3",
+        drops="the centrifugal gradient, the amplitude",
+        orders=(
+            Order("rotation_rate", 2, (2e-3, 4e-3, 8e-3), ("site.equatorial_radius=0",), _SMALL),
+            _SQUARE_AT_POLE,
+        ),
+        printed=Printed("T_f = 2π/Ωz = T/sin λ_a", "T_f = T_p/sin λ_a: T is the period of the swing", _swing_over_sine),
+        formula=_over_tilted_sine,
+    ),
+    _precession(
+        id="precession_spherical",
+        title="precession period with the drift of the spherical pendulum, T_p/sin λ_a (1 + 3/8 r0²/L0²)",
+        where="Gastebois 6.3",
+        drops="the fourth power of the amplitude; the centrifugal gradient, which changes the ellipse that drifts",
+        orders=(Order("amplitude", 4, (4.0, 8.0, 16.0), _AT_POLE),),
+        refuses=lambda scene: _turning(scene) or at_rest(scene),
+        formula=_spherical,
     ),
 )

@@ -15,24 +15,24 @@ import numpy as np
 
 from reference import Scene, UnreachableError
 from reference.model.algebra import product
-from reference.model.constants import Vector
 from reference.model.force import tension
+from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, Array, Motion, Order
+from .approximation import CUBE_IN_AMPLITUDE, Motion, Order
 from .case import Case, PlumbAxes, below, hung
 
 
-def plumb_line(case: Case) -> tuple[PlumbAxes, Vector]:
-    """Return the plumb line's axes and its direction n at the full model's rest position, Mathar (46)."""
+def plumb_line(case: Case) -> PlumbAxes:
+    """Return the axes of the plumb line along the full model's rest position, Mathar (46)."""
     _, y, z = case.rest
-    return PlumbAxes(case.ctx.mpf(y), -z), (0, y, z)
+    return PlumbAxes(case.ctx.mpf(y), -z)
 
 
 def stiffness(case: Case) -> tuple[Any, Any, Any]:
     """Return a and b in 1/s², and Ω_n in rad/s."""
-    plumb, rest = plumb_line(case)
+    plumb = plumb_line(case)
     xx, yy, yz, zz = case.k.centrifugal
-    pull = tension(rest, (0, 0, 0), case.k)
+    pull = tension(case.rest, (0, 0, 0), case.k)
     across = (
         product(yy, plumb.cos, plumb.cos) + product(2, yz, plumb.cos, plumb.sin) + product(zz, plumb.sin, plumb.sin)
     )
@@ -40,10 +40,9 @@ def stiffness(case: Case) -> tuple[Any, Any, Any]:
     return pull - xx, pull - across, turn
 
 
-def _path(scene: Scene, grid: Array) -> Array:
-    case = Case.of_scene(scene)
+def _path(case: Case, times: Array) -> Array:
     ctx = case.ctx
-    plumb, _ = plumb_line(case)
+    plumb = plumb_line(case)
     a, b, turn = stiffness(case)
     east, north = ctx.sqrt(a), ctx.sqrt(b)
     skew = ctx.matrix([[0, 0, east, 0], [0, 0, 0, north], [-east, 0, 0, 2 * turn], [0, -north, -2 * turn, 0]])
@@ -51,9 +50,9 @@ def _path(scene: Scene, grid: Array) -> Array:
     x, y, _ = plumb.inward(case.position)
     vx, vy, _ = plumb.inward(case.velocity)
     weights = modes.H * ctx.matrix([east * x, north * y, vx, vy])
-    states = np.zeros((4, len(grid)), dtype=complex)
+    states = np.zeros((4, len(times)), dtype=complex)
     for j in range(4):
-        phase = np.exp(-1j * float(frequencies[j]) * grid)
+        phase = np.exp(-1j * float(frequencies[j]) * times)
         states += np.outer([complex(modes[i, j] * weights[j]) for i in range(4)], phase)
     p = states.real
     return plumb.outward(hung(p[0] / float(east), p[1] / float(north), p[2], p[3], case.length))

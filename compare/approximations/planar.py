@@ -7,8 +7,9 @@ from typing import Any
 import numpy as np
 
 from reference import Scene
+from reference.numbers.precision import Array
 
-from .approximation import Array, Motion, Order
+from .approximation import Motion, Order
 from .case import Case, lowest_point, under_gravity, without_drag
 
 _SMALLEST = 1e-20  # terms of the series below this are lost in binary64 rounding
@@ -33,9 +34,8 @@ def sn_cn(u: Array, modulus: Any, ctx: Any) -> tuple[Array, Array]:
     return sn, cn
 
 
-def _path(scene: Scene, times: Array) -> Array:
-    """sin(φ/2) = k sn(K + ω0 t), φ' = 2 k ω0 cn(K + ω0 t), k = sin(φ0/2), ω0² = g/l."""
-    case = Case.of_scene(scene)
+def _path(case: Case, times: Array) -> Array:
+    """Return rows of sin(φ/2) = k sn(K + ω0 t), φ' = 2 k ω0 cn(K + ω0 t), k = sin(φ0/2), ω0² = g/l."""
     ctx, (x, y, z) = case.ctx, case.position
     aside = ctx.hypot(x, y)
     modulus = ctx.sin(ctx.atan2(aside, -z) / 2)
@@ -45,18 +45,9 @@ def _path(scene: Scene, times: Array) -> Array:
     rate = 2 * float(omega) * rate
     sine, cosine = 2 * half_sine * np.sqrt(1 - half_sine**2), 1 - 2 * half_sine**2
     length = float(case.length)
-    toward = (float(x / aside), float(y / aside)) if aside else (1.0, 0.0)
-    out, speed = length * sine, length * cosine * rate
-    return np.column_stack(
-        (
-            out * toward[0],
-            out * toward[1],
-            -length * cosine,
-            speed * toward[0],
-            speed * toward[1],
-            length * sine * rate,
-        )
-    )
+    toward = complex(x / aside, y / aside) if aside else 1
+    place, speed = length * sine * toward, length * cosine * rate * toward
+    return np.column_stack((place.real, place.imag, -length * cosine, speed.real, speed.imag, length * sine * rate))
 
 
 def _refused(scene: Scene) -> str | None:

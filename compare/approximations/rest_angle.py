@@ -15,34 +15,25 @@ from .approximation import Order, Printed, Quantity
 from .case import Case, under_gravity
 
 
-def of_the_model(scene: Scene) -> Any:
-    """Return the angle at which the tangential force vanishes in the model of `reference`."""
-    case = Case.of_scene(scene)
-    _, y, z = case.rest
-    return case.ctx.atan2(-y, -z)
+def line_of_46(case: Case, angle: Any, sign: int = -1) -> Any:
+    """Return ±R̂Ω² sin(ϕ∓φ) ∓ Ω² cos(ϕ∓φ) sin(ϕ∓φ) + (g/l) sin φ, (46), at an angle φ from the vertical, in 1/s².
 
-
-def _equation(scene: Scene) -> Any:
-    """Solve (46) for its angle ϕ south of the vertical: R̂Ω² sin(φ + ϕ) - Ω² cos(φ + ϕ) sin(φ + ϕ) = (g/l) sin ϕ."""
-    case = Case.of_scene(scene)
+    The upper sign, 1, is that of a cord that leans to the north.
+    """
     ctx, square = case.ctx, case.rate**2
-    latitude, distance, fall = ctx.atan2(case.sin, case.cos), case.axis_distance / case.length, case.k.gravity
+    tilted = case.latitude - sign * angle
+    far = sign * case.axis_distance / case.length * square * ctx.sin(tilted)
+    return far - sign * square * ctx.cos(tilted) * ctx.sin(tilted) + case.k.gravity * ctx.sin(angle)
 
-    def balance(angle: Any) -> Any:
-        apparent = latitude + angle
-        return (
-            distance * square * ctx.sin(apparent)
-            - square * ctx.cos(apparent) * ctx.sin(apparent)
-            - fall * ctx.sin(angle)
-        )
 
-    return ctx.findroot(balance, case.tilt)
+def _equation(case: Case) -> Any:
+    """Solve (46) for its angle south of the vertical."""
+    return case.ctx.findroot(partial(line_of_46, case), case.tilt)
 
 
 def series(case: Case) -> Vector:
     """Return the coefficients of Ω², Ω⁴ and Ω⁶ in (47), for the lower sign: positive to the south."""
-    ctx, cord, g = case.ctx, case.length, case.gravity
-    latitude = ctx.atan2(case.sin, case.cos)
+    ctx, cord, g, latitude = case.ctx, case.length, case.gravity, case.latitude
     n = case.axis_distance / case.cos  # N + h
     two, four = ctx.cos(2 * latitude), ctx.cos(4 * latitude)
     bracket = n**2 * (four + 3 * two + 2)
@@ -52,15 +43,13 @@ def series(case: Case) -> Vector:
     return tuple(ctx.sin(2 * latitude) * (n - cord) * term for term in terms)
 
 
-def _series(scene: Scene, terms: int) -> Any:
+def _series(case: Case, terms: int) -> Any:
     """Return the series (47) up to Ω^(2 terms)."""
-    case = Case.of_scene(scene)
     return sum(c * case.rate ** (2 * i + 2) for i, c in enumerate(series(case)[:terms]))
 
 
-def _triangle(scene: Scene) -> Any:
-    """(50): the sine rule in the triangle of g, RΩ² and g'."""
-    case = Case.of_scene(scene)
+def triangle(case: Case) -> Any:
+    """Return the angle of (50): the sine rule in the triangle of g, RΩ² and g'."""
     return case.ctx.asin(case.outward * case.sin / case.apparent_gravity)
 
 
@@ -71,19 +60,16 @@ def _pulled(scene: Scene) -> str | None:
 
 
 def _not_at_a_pole(scene: Scene) -> str | None:
-    pole = abs(scene.exact.latitude) == 90
-    return (
-        "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude"
-        if pole
-        else under_gravity(scene)
-    )
+    if abs(scene.exact.latitude) == 90:
+        return "(47) is computed with a division by cos φ, which is 0 at a pole: give another latitude"
+    return under_gravity(scene)
 
 
 _rest_angle = partial(
     Quantity,
     domain="any length and latitude on a body that gravity holds together",
     refuses=under_gravity,
-    truth=of_the_model,
+    truth=lambda scene: Case.of_scene(scene).rest_angle,
     unit="rad",
     relative=False,
 )
@@ -123,6 +109,6 @@ APPROXIMATIONS = (
         drops="the cord: N + h stands for N + h - l, the distance of the bob",
         orders=(Order("rotation_rate", 2, _RATES), Order("length", 1, (10, 20, 40, 80))),
         refuses=_pulled,
-        formula=_triangle,
+        formula=triangle,
     ),
 )

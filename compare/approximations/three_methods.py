@@ -10,25 +10,24 @@ from typing import Any
 
 import numpy as np
 
-from reference import Scene
+from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Array, Motion, Printed
+from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion, Printed
 from .case import Case, hung, lowest_point, swinging
 
 
-def _numbers(scene: Scene) -> tuple[Case, float, float]:
-    """Return the case, ω̃ = (g/L + ω_p²)^(1/2) and ω sin α."""
-    case = Case.of_scene(scene)
+def _rates(case: Case) -> tuple[float, float]:
+    """Return ω̃ = (g/L + ω_p²)^(1/2) and ω sin α."""
     turn = case.rate * case.sin
-    return case, float(case.ctx.sqrt(case.gravity / case.length + turn**2)), float(turn)
+    return float(case.ctx.sqrt(case.gravity / case.length + turn**2)), float(turn)
 
 
-def _rotating_frame(scene: Scene, times: Array) -> Array:
+def _rotating_frame(case: Case, times: Array) -> Array:
     """Method 1: x' = x cos ω_p t - y sin ω_p t, y' = x sin ω_p t + y cos ω_p t; x, y oscillate, ω_p = -ω sin α.
 
     The primed coordinates are those of the ground: the paper substitutes into their equations of motion.
     """
-    case, w, turn = _numbers(scene)
+    w, turn = _rates(case)
     (x0, y0, _), (vx0, vy0, _) = (tuple(map(float, v)) for v in (case.position, case.velocity))
     p = -turn
     cos, sin, c, s = np.cos(w * times), np.sin(w * times), np.cos(p * times), np.sin(p * times)
@@ -38,10 +37,14 @@ def _rotating_frame(scene: Scene, times: Array) -> Array:
     return hung(x * c - y * s, x * s + y * c, across * c - along * s, across * s + along * c, case.length)
 
 
-def _coriolis_theorem(scene: Scene, times: Array, squared: Any = None) -> Array:
-    """Method 2: the vector x in a frame turning at ω_p = -ω sin α k, where ẋ = ẋ' + ω_p × x'."""
-    case, w, turn = _numbers(scene)
-    w = w if squared is None else float(np.sqrt(squared(case)))
+def _coriolis_theorem(case: Case, times: Array, one_error: bool = False) -> Array:
+    """Method 2: the vector x in a frame turning at ω_p = -ω sin α k, where ẋ = ẋ' + ω_p × x'.
+
+    With the double cross product corrected, and F_eff left as printed, `one_error`, ω̃² = g/L - ω_p².
+    """
+    w, turn = _rates(case)
+    if one_error:
+        w = float(np.sqrt(case.gravity / case.length - (case.rate * case.sin) ** 2))
     rotate = np.array([[0.0, turn], [-turn, 0.0]])  # ω_p ×
     start = np.array([float(part) for part in case.position[:2]])
     speed = np.array([float(part) for part in case.velocity[:2]]) - rotate @ start
@@ -56,14 +59,9 @@ def _coriolis_theorem(scene: Scene, times: Array, squared: Any = None) -> Array:
     return hung(x, y, vx, vy, case.length)
 
 
-def _one_error_corrected(scene: Scene, times: Array) -> Array:
-    """Method 2 with the double cross product corrected and F_eff left as printed: ω̃² = g/L - ω_p²."""
-    return _coriolis_theorem(scene, times, lambda case: case.gravity / case.length - (case.rate * case.sin) ** 2)
-
-
-def _complex_variable(scene: Scene, times: Array) -> Array:
+def _complex_variable(case: Case, times: Array) -> Array:
     """Method 3: z = w exp(-i ω_P t), w = A sin ω̃t + B cos ω̃t, ω_P = ω sin α."""
-    case, w, p = _numbers(scene)
+    w, p = _rates(case)
     b = complex(case.position[0], case.position[1])
     a = (complex(case.velocity[0], case.velocity[1]) + 1j * p * b) / w
     wave, rate = a * np.sin(w * times) + b * np.cos(w * times), w * (a * np.cos(w * times) - b * np.sin(w * times))
@@ -95,7 +93,7 @@ APPROXIMATIONS = (
         printed=Printed(
             "-m ω_p × (ω_p × x') = -m ω_p² x', and F_eff with ẋ' for ẋ: two errors that cancel",
             "+m ω_p² x', and ẋ = ẋ' + ω_p × x' in F_eff; with one error alone ω̃² is off by 2 ω_p²",
-            _one_error_corrected,
+            partial(_coriolis_theorem, one_error=True),
         ),
         path=_coriolis_theorem,
     ),

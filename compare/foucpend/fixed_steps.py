@@ -12,7 +12,7 @@ import numpy as np
 from reference import InputError, IntegrationError
 from reference.numbers.precision import Array
 
-from ..approximations.mathar_items import VARIABLES, derivatives, truncated
+from ..approximations.mathar import VARIABLES, derivatives, truncated
 from ..methods import METHODS, FirstOrderSystem, Problem, available
 from .options import Options
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from reference.model.force import tension
 
-from ...approximations.gastebois_small import constants_of
+from ...approximations.gastebois import constants_of
 from ..checks import Approximate, Check, Finding, Identity, Statement, component, section
 from ..digits import MP, Vector, add, cos, dot, j, mpf, scale, shown, sin
 from ..first_principles import (

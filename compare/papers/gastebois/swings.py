@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ...approximations import gastebois_small
+from ...approximations import gastebois
 from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement, section
 from ..digits import MP, Vector, cos, mpf, pi, radians, scale, shown, sin, sqrt, vector_derivative
 from ..first_principles import motion, motion_at_rest, rate_up, start_at_rest, swing_rate
@@ -28,7 +28,7 @@ OWN_LAMBDA = mpf("48.97")
 
 def simple(p: Point, t: Any) -> Vector:
     """Return x, y, v_x, v_y by 6.2; r0 is the point's x."""
-    return scale(p.x, gastebois_small.in_turning_axes(MP.zero, swing_rate(p), rate_up(p), t, MP))
+    return scale(p.x, gastebois.in_turning_axes(MP.zero, swing_rate(p), rate_up(p), t, MP))
 
 
 def in_turning_axes(p: Point, xy: Vector, t: Any) -> Vector:
@@ -75,7 +75,7 @@ def _expanded_period(p: Point) -> Any:
 def at_rest(p: Point, t: Any) -> Vector:
     """Return x, y of a release at rest by 6.3."""
     w, up = swing_rate(p), rate_up(p)
-    return scale(p.x, gastebois_small.in_turning_axes(up / w, w, up, t, MP)[:2])
+    return scale(p.x, gastebois.in_turning_axes(up / w, w, up, t, MP)[:2])
 
 
 def _sense(motion_in_axes: Motion, p: Point, t: Any) -> Any:

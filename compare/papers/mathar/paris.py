@@ -11,8 +11,8 @@ from reference import load_scene
 
 from ...approximations import APPROXIMATIONS, Motion
 from ...approximations.frequency import harmonic, planar
-from ...approximations.gastebois_small import turntable_frequency
-from ...approximations.mathar_linear import slow_down
+from ...approximations.gastebois import turntable_frequency
+from ...approximations.mathar import slow_down
 from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, Vector, acos, add, asin, degrees, dot, mpf, norm, pi, shown, sin, sqrt
 from ..first_principles import rest

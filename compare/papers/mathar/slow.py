@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ...approximations.mathar_items import derivatives, truncated
+from ...approximations.mathar import derivatives, truncated
 from ..checks import Approximate, Check, Identity, PrintedNumber, section
 from ..digits import MP, Vector, cos, scale, shown, sin, sqrt
 from ..first_principles import coupled_at, in_rate, linearised, pull_at_rest, uniform_acceleration

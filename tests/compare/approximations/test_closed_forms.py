@@ -13,9 +13,9 @@ import pytest
 
 from compare.approximations import APPROXIMATIONS, motions
 from compare.approximations.case import Case
-from compare.approximations.gastebois_small import small_angles
+from compare.approximations.gastebois import small_angles
 from compare.approximations.linear_3d import plumb_line, stiffness
-from compare.approximations.mathar_items import derivatives, truncated
+from compare.approximations.mathar import derivatives, truncated
 from compare.approximations.planar import sn_cn
 from reference import integrate, load_scene, parse_scene, trajectory
 from reference.model.constants import constants
@@ -98,7 +98,7 @@ def test_the_three_methods_are_one_motion(word):
 
 def test_the_solution_6_1_solves_the_system_of_section_5():
     case = Case.of_scene(MOVING)
-    plumb, omega, turn = small_angles(case)
+    (omega, turn), plumb = small_angles(case), case.plumb
     square, turning = float(omega**2 - turn**2), float(turn)
     place, speed = plumb.inward(case.position), plumb.inward(case.velocity)
 
@@ -139,7 +139,7 @@ def test_his_general_system_is_that_of_the_angles_of_7_2():
         ["release.x=20", "release.y=-9", "release.vx=2", "release.vy=6", "site.rotation_rate=0.002"]
     )
     case = Case.of_scene(scene)
-    plumb, _, _ = small_angles(case)
+    plumb = case.plumb
     (x, y, z), (vx, vy, vz) = plumb.inward(case.position), plumb.inward(case.velocity)
     aside = case.ctx.hypot(x, y)
     start = (case.ctx.atan2(aside, -z), case.ctx.atan2(y, x), vz / aside, (x * vy - y * vx) / aside**2)
@@ -196,7 +196,7 @@ def test_the_linear_solution_is_the_exponential_of_its_matrix():
     scene = MOVING.with_values(["site.equatorial_radius=500", "site.rotation_rate=0.05", "release.x=0.1"])
     case = Case.of_scene(scene)
     a, b, turn = stiffness(case)
-    plumb, _ = plumb_line(case)
+    plumb = plumb_line(case)
     start = [*plumb.inward(case.position)[:2], *plumb.inward(case.velocity)[:2]]
     ctx = case.ctx
     matrix = ctx.matrix([[0, 0, 1, 0], [0, 0, 0, 1], [-a, 0, 0, 2 * turn], [0, -b, -2 * turn, 0]])
@@ -213,7 +213,7 @@ def test_the_linear_system_is_the_derivative_of_the_model_at_its_point_of_rest()
     case = Case.of_scene(MOVING.with_values(["site.rotation_rate=0.02", "site.equatorial_radius=3000"]))
     ctx = case.ctx
     a, b, turn = stiffness(case)
-    plumb, rest = plumb_line(case)
+    plumb, rest = plumb_line(case), case.rest
     axes = ((1, 0, 0), (0, plumb.cos, plumb.sin))
     tiny = ctx.mpf(10) ** -25
 

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from places import ROOT
 
-from compare.approximations.mathar_linear import slow_down
+from compare.approximations.mathar import slow_down
 from compare.papers.digits import MP, degrees, mpf, norm, pi, shown, sin, sqrt
 from compare.papers.first_principles import pull_at_rest, rest, rest_angle
 from compare.papers.mathar.paris import (

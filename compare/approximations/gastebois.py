@@ -1,23 +1,50 @@
-"""Small angles about the tilted plumb line: Gastebois 5, with his closed solutions 6.1, 6.2 and 6.3.
+"""Gastebois' pendulum about the tilted plumb line: any amplitude, 7.2, and small angles, 5, solved in 6.1 to 6.3.
 
-Z = x + i y, Z'' = -ω0² Z - 2 i Ω_z Z' has the solution Z = C1 exp(-i (ω + Ω_z) t) + C2 exp(i (ω - Ω_z) t) of 6.1, with
-ω² = ω0² + Ω_z²; `mathar_linear` uses it too.
+7.2: his angles θ (from the plumb line) and φ (from east to north) are singular on the plumb line. Along the scene's
+axes his system is the model without the centrifugal gradient: the apparent gravity is everywhere that at the
+suspension, `pull`.
+
+5: Z = x + i y, Z'' = -ω0² Z - 2 i Ω_z Z' has the solution Z = C1 exp(-i (ω + Ω_z) t) + C2 exp(i (ω - Ω_z) t) of 6.1,
+with ω² = ω0² + Ω_z²; `mathar` uses it too.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from reference import Scene, UnreachableError
+from reference.model.constants import Constants
+from reference.model.formulations import FORMULATIONS
+from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, Array, Motion, Order, Printed
-from .case import Case, PlumbAxes, hung, released_at_rest, swinging
-from .gastebois_general import hanging
+from .approximation import CUBE_IN_AMPLITUDE, Motion, Order, Printed
+from .case import Case, hung, integrated, released_at_rest, swinging
 
 Pair = Sequence[Any]
+
+
+def uniform(k: Constants) -> Constants:
+    """Return the model's constants with the apparent gravity at the suspension everywhere."""
+    return replace(k, centrifugal=(0, 0, 0, 0))
+
+
+def hanging(scene: Scene) -> Any:
+    """Return his rest position in m, along the apparent gravity of 4.2: (0, -l sin α, -l cos α)."""
+    case = Case.of_scene(scene)
+    return (0, case.length * case.plumb.sin, -case.length * case.plumb.cos)
+
+
+def _any_amplitude(case: Case, times: Array) -> Array:
+    """Return rows of 7.2."""
+    model, case = FORMULATIONS["spin"], replace(case, k=uniform(case.k))
+    states = integrated(model.variables, model.derivatives, case.state(model), case.k, times)
+    place, speed = model.cartesian(tuple(states.T), case.k, np)
+    return np.column_stack((*place, *speed)) * float(case.length)
 
 
 def turntable_frequency(case: Case, gravity: Any, turn: Any) -> Any:
@@ -50,40 +77,32 @@ def oscillation(place: Pair, speed: Pair, omega: Any, turn: Any, times: Array) -
         times: in s.
     """
     c1, c1_prime, c2, c2_prime = constants_of(place, speed, omega, turn)
-    first, second = complex(c1, c1_prime), complex(c2, c2_prime)
     fast, slow = float(omega + turn), float(omega - turn)
-    one, two = first * np.exp(-1j * fast * times), second * np.exp(1j * slow * times)
-    return one + two, 1j * (slow * two - fast * one)
+    first = complex(c1, c1_prime) * np.exp(-1j * fast * times)
+    second = complex(c2, c2_prime) * np.exp(1j * slow * times)
+    return first + second, 1j * (slow * second - fast * first)
 
 
-def small_angles(case: Case) -> tuple[PlumbAxes, Any, Any]:
-    """Return the plumb line's axes, ω = (ω0² + Ω_z²)^(1/2) with ω0² = g_a/L0, and Ω_z = Ω sin λ_a."""
+def small_angles(case: Case) -> tuple[Any, Any]:
+    """Return ω = (ω0² + Ω_z²)^(1/2) with ω0² = g_a/L0, and Ω_z = Ω sin λ_a, in rad/s."""
     turn = case.rate * case.ctx.sin(case.apparent_latitude)
-    omega = turntable_frequency(case, case.apparent_gravity, turn)
-    return PlumbAxes.tilted(-case.tilt, case.ctx), omega, turn
+    return turntable_frequency(case, case.apparent_gravity, turn), turn
 
 
-def _rows(case: Case, plumb: PlumbAxes, z: Any, rate: Any) -> Array:
+def _rows(case: Case, z: Any, rate: Any) -> Array:
     """Return rows along the scene's axes from Z = x + i y and Z' along the plumb line's."""
-    return plumb.outward(hung(z.real, z.imag, rate.real, rate.imag, case.length))
+    return case.plumb.outward(hung(z.real, z.imag, rate.real, rate.imag, case.length))
 
 
-def _general(scene: Scene, times: Array) -> Array:
-    """Return rows of 6.1, for any release."""
-    case = Case.of_scene(scene)
-    plumb, omega, turn = small_angles(case)
-    place, speed = plumb.inward(case.position), plumb.inward(case.velocity)
-    return _rows(case, plumb, *oscillation(place[:2], speed[:2], omega, turn, times))
-
-
-def _general_as_printed(scene: Scene, times: Array) -> Array:
-    """Return rows of 6.1 with the sine that is printed at the end of v_x."""
-    case = Case.of_scene(scene)
-    plumb, omega, turn = small_angles(case)
-    place, speed = plumb.inward(case.position)[:2], plumb.inward(case.velocity)[:2]
+def _any_release(case: Case, times: Array, as_printed: bool = False) -> Array:
+    """Return rows of 6.1, on demand with the sine that is printed at the end of v_x."""
+    omega, turn = small_angles(case)
+    place, speed = case.plumb.inward(case.position)[:2], case.plumb.inward(case.velocity)[:2]
     z, rate = oscillation(place, speed, omega, turn, times)
-    second, slow = float(constants_of(place, speed, omega, turn)[3]), float(omega - turn)
-    return _rows(case, plumb, z, rate + second * slow * (np.cos(slow * times) - np.sin(slow * times)))
+    if as_printed:
+        second, slow = float(constants_of(place, speed, omega, turn)[3]), float(omega - turn)
+        rate = rate + second * slow * (np.cos(slow * times) - np.sin(slow * times))
+    return _rows(case, z, rate)
 
 
 def in_turning_axes(minor: Any, omega: Any, turn: Any, t: Any, functions: Any) -> tuple[Any, Any, Any, Any]:
@@ -98,43 +117,39 @@ def in_turning_axes(minor: Any, omega: Any, turn: Any, t: Any, functions: Any) -
         t: time or times in s.
         functions: mpmath or NumPy, with `cos` and `sin`.
     """
-    cw, sw, cu, su = (
-        functions.cos(omega * t),
-        functions.sin(omega * t),
-        functions.cos(turn * t),
-        functions.sin(turn * t),
-    )
+    cw, sw = functions.cos(omega * t), functions.sin(omega * t)
+    cu, su = functions.cos(turn * t), functions.sin(turn * t)
     x, y = cu * cw + minor * su * sw, -su * cw + minor * cu * sw
     along, across = -omega * sw, minor * omega * cw
     return x, y, cu * along + su * across + turn * y, -su * along + cu * across - turn * x
 
 
-def _ellipse(scene: Scene, times: Array, across: Callable[[Any, Any], Any]) -> Array:
-    """Return rows of that motion, X along the release, with `minor` = `across`(ω, Ω_z)."""
-    case = Case.of_scene(scene)
-    plumb, omega, turn = small_angles(case)
-    east, north, _ = plumb.inward(case.position)
-    x, y, vx, vy = in_turning_axes(float(across(omega, turn)), float(omega), float(turn), times, np)
+def _ellipse(case: Case, times: Array, sense: int) -> Array:
+    """Return rows of that motion, X along the release: `sense` 0 is 6.2, 1 is 6.3, and -1 is 6.3 as printed."""
+    omega, turn = small_angles(case)
+    east, north, _ = case.plumb.inward(case.position)
+    x, y, vx, vy = in_turning_axes(float(sense * turn / omega), float(omega), float(turn), times, np)
     release = complex(east, north)
-    return _rows(case, plumb, release * (x + 1j * y), release * (vx + 1j * vy))
-
-
-def _launched_in_the_plane(scene: Scene, times: Array) -> Array:
-    return _ellipse(scene, times, lambda omega, turn: 0)
-
-
-def _released(scene: Scene, times: Array) -> Array:
-    return _ellipse(scene, times, lambda omega, turn: turn / omega)
-
-
-def _released_clockwise(scene: Scene, times: Array) -> Array:
-    return _ellipse(scene, times, lambda omega, turn: -turn / omega)
+    return _rows(case, release * (x + 1j * y), release * (vx + 1j * vy))
 
 
 _SQUARE_IN_RATE = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4, 4e-4), (), 1e-3)
 _DROPS = "the centrifugal gradient, powers of the angle beyond the first (so the slow-down and the spherical drift)"
 
 APPROXIMATIONS = (
+    Motion(
+        id="gastebois_general",
+        title="any amplitude in uniform apparent gravity",
+        where="Gastebois 7.2, with g_a and λ_a of 4.2",
+        domain="any amplitude; a day",
+        drops="the centrifugal gradient: Ω² times distances of the order of l",
+        orders=(
+            Order("amplitude", None, (0.5, 8.0, 66.0), ("site.rotation_rate=0",)),
+            Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4, 4e-4), (), 0.5),
+        ),
+        path=_any_amplitude,
+        rest=hanging,
+    ),
     Motion(
         id="gastebois_6_1",
         title="small angles about the tilted plumb line, any release",
@@ -146,9 +161,9 @@ APPROXIMATIONS = (
         printed=Printed(
             "v_x ends with - c'2 (ω - Ωz) sin (ω - Ωz)t; x and y are the integer part (partie entière)",
             "- c'2 (ω - Ωz) cos (ω - Ωz)t; real part",
-            _general_as_printed,
+            partial(_any_release, as_printed=True),
         ),
-        path=_general,
+        path=_any_release,
         rest=hanging,
     ),
     Motion(
@@ -159,7 +174,7 @@ APPROXIMATIONS = (
         drops=_DROPS + "; the scene's own velocity of release (for a release at rest an error of the order Ω)",
         orders=(Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4), ("site.equatorial_radius=0",)), CUBE_IN_AMPLITUDE),
         refuses=swinging,
-        path=_launched_in_the_plane,
+        path=partial(_ellipse, sense=0),
         rest=hanging,
     ),
     Motion(
@@ -173,9 +188,9 @@ APPROXIMATIONS = (
         printed=Printed(
             "the ellipse is run through clockwise, transverse speed -r0 Ωz",
             "counter-clockwise in the north, +r0 Ωz, as his own X and Y say",
-            _released_clockwise,
+            partial(_ellipse, sense=-1),
         ),
-        path=_released,
+        path=partial(_ellipse, sense=1),
         rest=hanging,
     ),
 )

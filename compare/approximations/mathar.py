@@ -1,10 +1,14 @@
-"""Truncated equations of Mathar, section VI: (43) without one kind of term (an item) at a time, integrated numerically.
+"""Mathar's way from (43) to the harmonic pendulum on a turntable: without one kind of term at a time, then (51)-(52).
 
-Items 1 and 4 and the variant only change constants of the model; items 2, 3 and 5 change (43) itself. Lengths are
-over the cord length, `depth` is |z|, and g and the terms in R are folded into k.pull as everywhere in the project.
+Section VI: (43) without an item, integrated numerically. Items 1 and 4 and the variant only change constants of the
+model; items 2, 3 and 5 change (43) itself. Lengths are over the cord length, `depth` is |z|, and g and the terms in R
+are folded into k.pull as everywhere in the project. All five items together do not yet give (51)-(52): the diagonal of
+(43) keeps y² + l² and x² + l². To drop these squares too is one more step, of the same order, which the paper takes
+without saying so.
 
-All five items together do not yet give (51)-(52): the diagonal of (43) keeps y² + l² and x² + l². To drop these
-squares too is one more step, of the same order, which the paper takes without saying so.
+(51)-(52), and section VII's improvements (g', centre, slow-down), are Gastebois' closed solution 6.1 with other
+constants: gravity g or g', the centre of the swing, and the frequency. In print (51)-(52) lost hats and dots;
+dimensions and the limit of (43) leave no doubt about the right form.
 """
 
 from __future__ import annotations
@@ -14,12 +18,13 @@ from functools import partial
 from typing import Any
 
 from reference import IntegrationError, Scene
-from reference.model.algebra import Functions, State, minus, plus, product
+from reference.model.algebra import Functions, State, dot, minus, plus, product
 from reference.model.constants import Constants
+from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Array, Motion, Order
-from .case import Case, hung, lowest_point
-from .truncated import integrated
+from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion, Order, Printed
+from .case import Case, hung, integrated, lowest_point, released_at_rest, swinging
+from .gastebois import oscillation, turntable_frequency
 
 VARIABLES = ("x", "y", "vx", "vy")
 VARIANT = "variant of item 1"
@@ -81,12 +86,11 @@ def truncated(k: Constants, items: frozenset[Item]) -> Constants:
     return k
 
 
-def path(scene: Scene, grid: Array, items: frozenset[Item]) -> Array:
+def _path(case: Case, times: Array, items: frozenset[Item]) -> Array:
     """Integrate (43) without the terms of `items`; return rows x, y, z, vx, vy, vz."""
-    case = Case.of_scene(scene)
     start, k = (*case.n[:2], *case.v[:2]), truncated(case.k, items)
     try:
-        states = integrated(VARIABLES, partial(derivatives, items=items), start, k, grid)
+        states = integrated(VARIABLES, partial(derivatives, items=items), start, k, times)
     except IntegrationError as error:
         raise IntegrationError(f"{error} (43) holds only until the bob comes to the horizontal.") from None
     x, y, vx, vy = (states * float(case.length)).T
@@ -105,7 +109,7 @@ def _without(*items: Item, **fields: Any) -> Motion:
     return Motion(
         where=f"Mathar (43), section VI, {'item ' if isinstance(items[0], int) else ''}{names}",
         refuses=_above,
-        path=partial(path, items=frozenset(items)),
+        path=partial(_path, items=frozenset(items)),
         rest=lowest_point if 1 in items or VARIANT in items else None,
         **fields,
     )
@@ -115,6 +119,34 @@ _CORIOLIS = (
     Order("amplitude", 2, (0.5, 1.0, 2.0, 4.0), (*_ON_AXIS, "site.rotation_rate=1e-3")),
     Order("rotation_rate", 1, (1e-4, 2e-4, 4e-4, 8e-4), _ON_AXIS),
 )
+
+
+def slow_down(case: Case) -> Any:
+    """Return 2K/π, the period over the harmonic one; K has the modulus sin(φ0/2), φ0 counted from the rest position."""
+    cosine = dot(case.position, case.rest) / case.length
+    return 2 * case.ctx.ellipk((1 - cosine) / 2) / case.ctx.pi
+
+
+def _harmonic(case: Case, times: Array, apparent: bool = True, about_rest: bool = True, slowed: bool = False) -> Array:
+    """Return rows of (51)-(52): ω² = ω0² + (Ω sin φ)², with ω0² = g/l about the vertical as printed.
+
+    Args:
+        case: the scene's numbers.
+        times: in s.
+        apparent: take g' of (48) for g.
+        about_rest: swing about the rest position.
+        slowed: divide ω by `slow_down`.
+    """
+    turn = case.rate * case.sin
+    omega = turntable_frequency(case, case.apparent_gravity if apparent else case.gravity, turn)
+    omega = omega / slow_down(case) if slowed else omega
+    centre = case.ctx.mpf(case.rest[1]) * case.length if about_rest else case.ctx.zero
+    place = (case.position[0], case.position[1] - centre)
+    z, rate = oscillation(place, case.velocity[:2], omega, turn, times)
+    return hung(z.real, z.imag + float(centre), rate.real, rate.imag, case.length)
+
+
+_ABOUT_REST = Order("rotation_rate", 2, (1e-3, 2e-3, 4e-3), ("site.equatorial_radius=0",), 1e-3)
 
 APPROXIMATIONS = (
     _without(
@@ -180,5 +212,48 @@ APPROXIMATIONS = (
         drops="everything that section VI names; the diagonal of (43) still holds x² + l² and y² + l²",
         domain="small amplitudes, slow rotation",
         orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
+    ),
+    Motion(
+        id="linear_g",
+        title="harmonic pendulum on a turntable",
+        where="Mathar (51)-(52)",
+        domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
+        drops="Ω² (so the tilt and strength of the apparent gravity), all powers of x/l and y/l beyond the first",
+        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
+        printed=Printed("ẍ = -x̂ ĝ + 2 Ω sin φ ŷ", "x̂'' = -x̂ ĝ + 2 Ω sin φ ŷ', each with a hat and ŷ with its dot"),
+        refuses=swinging,
+        path=partial(_harmonic, apparent=False, about_rest=False),
+        rest=lowest_point,
+    ),
+    Motion(
+        id="linear_apparent",
+        title="harmonic pendulum on a turntable, apparent gravity",
+        where="Mathar (51)-(52) with g' of (48), section VII",
+        domain="small amplitudes; the frequency holds for hours, the centre does not",
+        drops="the tilt of the plumb line, the centrifugal gradient, all powers of x/l and y/l beyond the first",
+        orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
+        refuses=swinging,
+        path=partial(_harmonic, about_rest=False),
+        rest=lowest_point,
+    ),
+    Motion(
+        id="linear_recentred",
+        title="harmonic pendulum on a turntable, about the rest position",
+        where="Mathar (51)-(52) with g' of (48), about the point of section V",
+        domain="small amplitudes; an hour",
+        drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the anharmonic slow-down",
+        orders=(_ABOUT_REST, CUBE_IN_AMPLITUDE),
+        refuses=swinging,
+        path=_harmonic,
+    ),
+    Motion(
+        id="linear_anharmonic",
+        title="harmonic pendulum on a turntable, about the rest position, with the slow-down of the plane pendulum",
+        where="Mathar section VII, fifth frequency: 2K(sin(φ0/2))/π, where 4K is printed",
+        domain="amplitudes of some degrees, released at rest; a day",
+        drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the overtones of the swing",
+        orders=(_ABOUT_REST, CUBE_IN_AMPLITUDE),
+        refuses=released_at_rest,
+        path=partial(_harmonic, slowed=True),
     ),
 )  # fmt: skip
