@@ -20,9 +20,8 @@ from ..candidates.candidate import COLUMNS, Candidate, candidate_of
 from ..candidates.external import arguments, timed
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
-from ..report.suite import suite_page
-from ..report.suite.files import Entry, entries
-from ..report.suite.outcome import Outcome, outcome
+from ..report.suite import outcome_forms
+from ..report.suite.outcome import Outcome, SuiteFiles, outcome, suite_files
 from .options import announce
 
 
@@ -94,16 +93,17 @@ class Judging:
     def suite(self, folder: Path, out: Path | None) -> list[Outcome]:
         """Judge the files of a folder by the scenes that they are named after, and write the page."""
         if out is not None:
-            suite_page.check(out)
-
-        outcomes = [outcome(one.name, Path(one.scene).stem, partial(self._entry, one)) for one in entries(folder)]
+            outcome_forms.check(out)
+        outcomes = [
+            outcome(entry.name, Path(entry.scene).stem, partial(self._entry, entry)) for entry in suite_files(folder)
+        ]
         if out is not None:
-            suite_page.write(outcomes, out)
+            outcome_forms.write(outcomes, out)
         return outcomes
 
-    def _entry(self, one: Entry) -> Score:
-        scene, times = load_scene(one.scene), None if one.transits is None else self._times(str(one.transits))
-        return self._score(None if one.candidate is None else self._read(one.candidate), scene, times, None)
+    def _entry(self, entry: SuiteFiles) -> Score:
+        scene, times = load_scene(entry.scene), None if entry.transits is None else self._times(str(entry.transits))
+        return self._score(None if entry.candidate is None else self._read(entry.candidate), scene, times, None)
 
     def _file(self, name: str, scene: Scene, times: Array | None, t_end: float | None) -> Score:
         return self._score(self._read(name), scene, times, t_end)

@@ -50,8 +50,9 @@ def command(
 
     A scene without a dataset is solved first. A file alone gives path and swing plane.
     """
+    from ..report.charts.drawing import check_target
     from ..report.charts.motion_pictures import motion_picture, panels
-    from ..report.charts.score import check_target, write_picture
+    from ..report.folder import write_file
 
     wanted = listed(what, "--what")
     for word in wanted or ():
@@ -64,7 +65,7 @@ def command(
     missing = next((word for word in wanted or () if word not in there), None)
     if missing is not None:
         raise InputError("--what", missing, f"what there is of {source}: {in_words(there)}")
-    write_picture(target, motion_picture(motion, wanted or there, target), "--out")
+    write_file(target, motion_picture(motion, wanted or there, target), "--out")
     typer.echo(f"{target}: the picture")
 
 

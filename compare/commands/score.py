@@ -209,7 +209,7 @@ def command(
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:
-        from ..report.charts.score import check_target
+        from ..report.charts.drawing import check_target
 
         check_target(plot)
     from ..candidates.layout import Naming
@@ -243,26 +243,24 @@ def command(
 
 def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
     """Print and write outcomes in the forms that were asked for."""
-    from ..report.suite.outcome import text_lines
-    from ..report.suite.suite_page import suite_document
+    from ..report.suite.outcome_forms import annotation, append_summary, junit_text, suite_document, summary
 
     scores = [one.score for one in outcomes if one.score is not None]
     if plot is not None and scores:
-        from ..report.charts.score import error_picture
+        from ..report.charts.score_chart import error_picture
 
         error_picture(scores, plot)
     if junit is not None:
-        from ..report.suite.ci_servers import write_junit
+        from ..report.folder import write_file
 
-        write_junit(outcomes, junit)
+        write_file(junit, junit_text(outcomes), "--junit")
     if as_json:
         emit(outcomes[0].document() if len(outcomes) == 1 else suite_document(outcomes))
         return
-    for line in text_lines(outcomes):
-        typer.echo(line)
+    for one in outcomes:
+        for line in one.lines:
+            typer.echo(line)
     if github:
-        from ..report.suite.ci_servers import annotation, append_summary, summary
-
         for one in outcomes:
             typer.echo(annotation(one))
         append_summary(summary(outcomes))

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, fields
 
 from ..report.folder import PAGE, json_text
-from ..report.page import Html, choices, faint, page, paragraph, plate, section, strong
-from ..report.table import Table
+from ..report.page import Html, Table, choices, faint, page, paragraph, plate, section, strong
 from .checks import VERDICTS, JudgedRow
 from .figures import FIGURES
 

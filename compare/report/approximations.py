@@ -16,8 +16,7 @@ from ..studies.approximation_errors import error_table, quantity_table
 from ..studies.approximation_limits import LIMITS, SWEEP_S, limits, sweep
 from .charts.approximations import plot
 from .folder import Report
-from .page import Html, figure, page, paragraph, section
-from .table import Table
+from .page import Html, Table, figure, page, paragraph, section
 
 OVERS = ("time", "amplitude", "latitude", "length")
 CURVE_TIMES = 80  # points of a curve over time

@@ -13,8 +13,7 @@ from reference import InputError
 from reference.errors import plain_json
 from reference.system.workspace import replace_file
 
-from .page import MARK
-from .table import Table
+from .page import MARK, Table
 
 CSV, PAGE = "rows.csv", "index.html"
 _HEAD = 1024  # bytes at the start of a page that hold its mark
@@ -99,12 +98,24 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
     with _writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
         for name in sorted(texts, key=lambda name: name != PAGE):  # a folder with a page of ours may be written again
-            _write(folder / name, texts[name])
+            _replace(folder / name, texts[name])
 
 
-def _write(path: Path, text: str) -> None:
+def write_file(path: Path, content: str | bytes, field: str) -> None:
+    """Write a file that an option names, whole or not at all.
+
+    Raises:
+        InputError: it cannot be written; `field` is the option.
+    """
+    try:
+        _replace(path, content)
+    except OSError as error:
+        raise InputError(field, str(path), "a file that can be written", f"{error.strerror}.") from None
+
+
+def _replace(path: Path, content: str | bytes) -> None:
     # a name on the command line may hold bytes that are not UTF-8; JSON too reads the escapes
-    data = text.encode(errors="backslashreplace")
+    data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
     replace_file(path, lambda stream: stream.write(data))
 
 

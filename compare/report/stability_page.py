@@ -22,9 +22,8 @@ from .busy import busy
 from .charts import ErrorHistory, Field, error_growth, heat_map
 from .charts.heat_map import LETTERS
 from .folder import Report
-from .page import Html, facts, figure, findings, page, paragraph, section
+from .page import Html, Table, facts, figure, findings, page, paragraph, section
 from .study_tables import LONGEST_COMMAND, advice, cpu, setting, tidy, words
-from .table import Table
 
 COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)

@@ -18,9 +18,8 @@ from ..studies.study import Order, orders
 from ..studies.users_program import FILE
 from . import explanations
 from .busy import busy
-from .page import Html, strong
+from .page import Html, Table, strong
 from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
-from .table import Table
 
 FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats

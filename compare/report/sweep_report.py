@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from reference.status import Status
 
-from .table import Table
+from .page import Table
 
 if TYPE_CHECKING:
     from reference import Swept

@@ -9,8 +9,7 @@ from reference.dataset.render import MEANING
 from reference.numbers.columns import STATE
 from reference.status import Status
 
-from ..page import Html, facts, text
-from ..table import Table
+from ..page import Html, Table, facts, text
 from .entry import Entry
 from .studied import MethodResult, StudyResults
 

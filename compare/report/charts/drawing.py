@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from reference import InputError
@@ -24,6 +25,7 @@ GUIDE: dict[str, Any] = {"color": FAINT, "linewidth": 0.8, "linestyle": (0, (1, 
 _DASHES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (7, 1.5, 1.2, 1.5)), (0, (3, 3)))
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h")
 
+SUFFIXES = (".svg", ".png", ".pdf")  # of picture files
 _ROOM = 0.06  # free part of a logarithmic axis at each end
 PIXELS = 4 / 3  # CSS pixels in a typographic point
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -69,6 +71,23 @@ def check_matplotlib(field: str) -> None:
     except ImportError:
         advice = "pip install 'foucault-reference[plot]'."
         raise InputError(field, "no matplotlib", "the extra plot", advice) from None
+
+
+def check_target(path: Path, field: str = "--plot") -> None:
+    """Check, before anything is computed, that the picture can be written.
+
+    Args:
+        path: of the picture.
+        field: the option that names it, for the message.
+
+    Raises:
+        InputError: matplotlib is missing, the suffix is no picture's, or there is no such folder.
+    """
+    check_matplotlib(field)
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(field, str(path), f"a path that ends in {', '.join(SUFFIXES)}")
+    if path.is_dir() or not path.absolute().parent.is_dir():
+        raise InputError(field, str(path), "a file in a folder that exists")
 
 
 @contextmanager

@@ -11,8 +11,8 @@ import numpy as np
 from reference import InputError
 from reference.numbers.precision import Array
 
-from .drawing import BLUE, RULE, picture, sheet
-from .score import check_target, write_picture
+from ..folder import write_file
+from .drawing import BLUE, RULE, check_target, picture, sheet
 
 if TYPE_CHECKING:
     from reference import Swept
@@ -98,7 +98,7 @@ def sweep_picture(title: str, axes: Sequence[tuple[str, Array]], quantities: Map
         panels[-1].set_xlabel(_label(axes[-1][0]))
         panels[0].set_title(title)
         content = picture(figure, path.suffix[1:].lower())
-    write_picture(path, content)
+    write_file(path, content, "--plot")
 
 
 def _label(key: str) -> str:

@@ -1,12 +1,13 @@
-"""The outcome of judging a candidate: its score, or why it could not be judged; one does not stop the others."""
+"""The candidates of a suite, found by the names of their files, and the outcome of judging each."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
-from reference import FoucaultError
+from reference import FoucaultError, InputError
 from reference.errors import Stopped
 from reference.status import Status
 
@@ -14,8 +15,59 @@ from ...score.document import document
 from ...score.scored import Score
 from ...score.verdict import lines
 
+SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")
+TRANSITS = ".transits"
 REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged
 ORDER = ("agrees", "disagrees", REFUSED)  # from best to worst
+
+
+@dataclass(frozen=True)
+class SuiteFiles:
+    """The files of a suite for one scene, such as paris.csv, with paris.transits.csv beside it.
+
+    Attributes:
+        scene: id of a scene that ships, or the path of a TOML file of the same name beside the candidate.
+        candidate: its file; None if there are transits alone.
+        transits: the file of its transits, or None.
+    """
+
+    scene: str
+    candidate: Path | None
+    transits: Path | None
+
+    @property
+    def name(self) -> str:
+        """The candidate's file, or that of its transits."""
+        return str(self.candidate or self.transits)
+
+
+def suite_files(folder: Path) -> list[SuiteFiles]:
+    """List the candidates of a folder by their scenes, sorted.
+
+    Raises:
+        InputError: it is no folder, holds no candidates, or two for one scene.
+    """
+    if not folder.is_dir():
+        raise InputError(
+            "--suite", str(folder), "a folder", "Its files are named by their scenes: paris.csv, hard.npz."
+        )
+    by_scene: dict[str, dict[bool, Path]] = {}
+    for path in sorted(folder.iterdir()):
+        if path.suffix.lower() not in SUFFIXES or not path.is_file():
+            continue
+        of_transits = path.stem.endswith(TRANSITS)
+        others = by_scene.setdefault(path.stem.removesuffix(TRANSITS), {})
+        if of_transits in others:
+            raise InputError("--suite", f"{others[of_transits].name} and {path.name}", "one file for a scene")
+        others[of_transits] = path
+    if not by_scene:
+        expected = f"files named by their scenes, with one of {', '.join(SUFFIXES)}"
+        raise InputError("--suite", str(folder), expected, "For paris: paris.csv, and paris.transits.csv if you like.")
+    suite = []
+    for scene, paths in sorted(by_scene.items()):
+        described = folder / f"{scene}.toml"
+        suite.append(SuiteFiles(str(described) if described.is_file() else scene, paths.get(False), paths.get(True)))
+    return suite
 
 
 @dataclass(frozen=True)
@@ -48,10 +100,16 @@ class Outcome:
 
     @property
     def lines(self) -> list[str]:
-        """The lines for people, the verdict first."""
+        """The lines for people, the verdict first; details are indented."""
         if self.score is not None:
             return list(lines(self.score))
         return [f"{self.name} was not judged by {self.scene}: {self.error}"]
+
+    @property
+    def main_lines(self) -> list[str]:
+        """The lines for people without details."""
+        first, *others = self.lines
+        return [first, *(line for line in others if not line.startswith("  "))]
 
     def document(self) -> dict[str, Any]:
         """Return it as a row of the JSON document."""
@@ -61,7 +119,7 @@ class Outcome:
 
 
 def outcome(name: str, scene: str, judged: Callable[[], Score]) -> Outcome:
-    """Judge a candidate; an error in it becomes the outcome, an interruption ends all."""
+    """Judge a candidate; an error in it becomes the outcome and does not stop others, an interruption ends all."""
     try:
         score = judged()
     except Stopped:
@@ -69,14 +127,3 @@ def outcome(name: str, scene: str, judged: Callable[[], Score]) -> Outcome:
     except FoucaultError as error:
         return Outcome(name, scene, error=error)
     return Outcome(score.candidate.name, score.scene.id, score)
-
-
-def worst_verdict(outcomes: Sequence[Outcome]) -> str:
-    """Return the verdict on all together: the worst."""
-    return max((one.verdict for one in outcomes), key=ORDER.index, default="agrees")
-
-
-def text_lines(outcomes: Sequence[Outcome]) -> Iterator[str]:
-    """Yield the lines of each outcome."""
-    for one in outcomes:
-        yield from one.lines

@@ -12,8 +12,7 @@ from pathlib import Path
 import pytest
 
 from compare.report.folder import check_folder, json_text, write_files
-from compare.report.page import page
-from compare.report.table import Table
+from compare.report.page import Table, page
 from reference import InputError
 
 FILES = {"rows.csv": "new", "rows.json": "new", "index.html": page("new", [])}

@@ -17,9 +17,8 @@ from places import ROOT
 
 from compare.report import page as parts
 from compare.report import study_page
-from compare.report.page import Html
+from compare.report.page import Html, Table
 from compare.report.study_tables import cpu, setting, tidy
-from compare.report.table import Table
 from compare.studies.row import Row
 from reference import InputError
 from reference.status import Status

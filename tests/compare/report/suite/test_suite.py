@@ -13,7 +13,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from compare.report.suite.files import entries
+from compare.report.suite.outcome import suite_files
 from reference import load, load_scene, trajectory
 from reference.scenes.shipped import DATA_VERSION
 
@@ -51,7 +51,7 @@ def folder(tmp_path_factory):
 
 
 def test_the_files_of_a_suite_are_named_by_their_scenes(folder):
-    found = entries(folder)
+    found = suite_files(folder)
     assert [one.candidate.name for one in found] == ["bad.csv", "paris.npz", "wrong.csv"]
     assert [one.scene for one in found] == [str(folder / "bad.toml"), "paris", str(folder / "wrong.toml")]
     assert [one.transits and one.transits.name for one in found] == [None, "paris.transits.csv", None]

@@ -8,34 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from reference import InputError
 from reference.errors import shortened
 from reference.numbers.precision import Array
-from reference.system.workspace import replace_file
 
 from ...score.scored import Score
-from .drawing import COLOURS, GUIDE, Line, check_matplotlib, draw, legend, line_style, logarithmic, picture, sheet
+from ..folder import write_file
+from .drawing import COLOURS, GUIDE, Line, draw, legend, line_style, logarithmic, picture, sheet
 from .ladders import band
 
 LONGEST_NAME = 32  # characters of a file's name beside its line
-SUFFIXES = (".svg", ".png", ".pdf")
-
-
-def check_target(path: Path, field: str = "--plot") -> None:
-    """Check, before anything is computed, that the picture can be written.
-
-    Args:
-        path: of the picture.
-        field: the option that names it, for the message.
-
-    Raises:
-        InputError: matplotlib is missing, the suffix is no picture's, or there is no such folder.
-    """
-    check_matplotlib(field)
-    if path.suffix.lower() not in SUFFIXES:
-        raise InputError(field, str(path), f"a path that ends in {', '.join(SUFFIXES)}")
-    if path.is_dir() or not path.absolute().parent.is_dir():
-        raise InputError(field, str(path), "a file in a folder that exists")
 
 
 def error_picture(scores: Sequence[Score], path: Path) -> None:
@@ -43,19 +24,7 @@ def error_picture(scores: Sequence[Score], path: Path) -> None:
     with sheet((8, 4.5)) as figure:
         _draw(figure.subplots(), scores)
         content = picture(figure, path.suffix[1:].lower())
-    write_picture(path, content)
-
-
-def write_picture(path: Path, content: bytes, field: str = "--plot") -> None:
-    """Write a picture file, whole or not at all.
-
-    Raises:
-        InputError: it cannot be written.
-    """
-    try:
-        replace_file(path, lambda stream: stream.write(content))
-    except OSError as error:
-        raise InputError(field, str(path), "a file that can be written", f"{error.strerror}.") from None
+    write_file(path, content, "--plot")
 
 
 def _draw(axes: Any, scores: Sequence[Score]) -> None:

@@ -1,0 +1,203 @@
+"""The forms of a suite's outcomes: JSON, a page and a badge, tests in JUnit XML, annotations and a summary for GitHub.
+
+For GitHub Actions as it documents them: workflow commands on stdout, and Markdown appended to the file that
+GITHUB_STEP_SUMMARY names.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from reference import InputError
+from reference.errors import plain_lines
+from reference.scenes.shipped import DATA_VERSION
+
+from ...score.verdict import percent
+from ..folder import CSV, PAGE, check_folder, json_text, write_files
+from ..page import Html, Table, findings, page, paragraph, section, text
+from .outcome import ORDER, REFUSED, Outcome
+
+JSON, BADGE = "suite.json", "badge.svg"
+KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "tolerance_m", "error")  # of rows.csv
+SUMMARY = "GITHUB_STEP_SUMMARY"
+SIGNS = {"agrees": "✅", "disagrees": "❌", REFUSED: "⚠️"}
+LABEL = "Foucault pendulum"
+GOOD, BAD = "#2f7d32", "#b3261e"  # white text on them has a contrast above 5 to 1
+_WIDTH = 6.2  # px of a letter of 11 px, about; textLength makes it exact
+_MARGIN = 8
+
+
+def suite_document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
+    """Return the JSON document of several candidates, each of a scene of its own or all of one."""
+    scenes = list(dict.fromkeys(one.scene for one in outcomes))
+    return {
+        "scene": scenes[0] if len(scenes) == 1 else None,
+        "scenes": scenes,
+        "agree": _agreeing(outcomes),
+        "digits": _fewest_digits(outcomes),
+        "data": DATA_VERSION,
+        "verdict": max((one.verdict for one in outcomes), key=ORDER.index),
+        "rows": [one.document() for one in outcomes],
+    }
+
+
+def _agreeing(outcomes: Sequence[Outcome]) -> int:
+    return sum(one.verdict == "agrees" for one in outcomes)
+
+
+def _fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
+    """Return the least digits of the scenes that agree, rounded down to a tenth; None if none does."""
+    digits = [one.score.errors.digits for one in outcomes if one.score is not None and one.score.agrees]
+    return math.floor(10 * min(digits)) / 10 if digits else None
+
+
+def check(out: Path) -> None:
+    """Refuse a folder with somebody else's files before the work."""
+    check_folder(out, (JSON, CSV, PAGE, BADGE))
+
+
+def write(outcomes: Sequence[Outcome], out: Path) -> None:
+    """Write page, badge, JSON and CSV into a folder."""
+    document = suite_document(outcomes)
+    rows = Table.of_records(KEYS, document["rows"]).csv()
+    write_files(out, {CSV: rows, JSON: json_text(document), BADGE: badge(outcomes), PAGE: page_text(outcomes)})
+
+
+def message(outcomes: Sequence[Outcome]) -> str:
+    """Return what the badge says."""
+    scenes = f"{_agreeing(outcomes)} of {len(outcomes)} {'scene' if len(outcomes) == 1 else 'scenes'}"
+    digits = _fewest_digits(outcomes)
+    middle = "" if digits is None else f" · {digits:.1f} digits"
+    return f"{scenes}{middle} · data {DATA_VERSION}"
+
+
+def badge(outcomes: Sequence[Outcome]) -> str:
+    """Return the badge as SVG; the same outcomes give the same bytes."""
+    right = message(outcomes)
+    title = escape(f"{LABEL}: {right}")
+    colour = GOOD if _agreeing(outcomes) == len(outcomes) else BAD
+    widths = [round(len(words) * _WIDTH) for words in (LABEL, right)]
+    first, whole = widths[0] + 2 * _MARGIN, sum(widths) + 4 * _MARGIN
+    texts = "".join(
+        f'<text x="{x}" y="14" textLength="{width}">{escape(words)}</text>'
+        for x, width, words in ((_MARGIN, widths[0], LABEL), (first + _MARGIN, widths[1], right))
+    )
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{whole}" height="20" role="img" '
+        f'aria-label="{title}">\n<title>{title}</title>\n'
+        f'<clipPath id="r"><rect width="{whole}" height="20" rx="3"/></clipPath>\n<g clip-path="url(#r)">'
+        f'<rect width="{first}" height="20" fill="#444"/><rect x="{first}" width="{whole - first}" height="20" '
+        f'fill="{colour}"/></g>\n<g fill="#fff" font-family="Verdana,DejaVu Sans,sans-serif" font-size="11">{texts}</g>'
+        "\n</svg>\n"
+    )
+
+
+def page_text(outcomes: Sequence[Outcome]) -> str:
+    """Return the page as HTML."""
+    numbers = ("covered", "largest error", "tolerance", "digits")
+    columns = {"scene": "", "verdict": "", **dict.fromkeys(numbers, "number"), "transits": "", "candidate": "prose"}
+    kinds = ["" if one.verdict == "agrees" else "failed" for one in outcomes]
+    table = Table(columns, list(map(_cells, outcomes)), kinds)
+    parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table.html())]
+    reasons = [
+        Html(f"<h3>{text(one.scene)}</h3>\n{findings(one.main_lines)}") for one in outcomes if one.verdict != "agrees"
+    ]
+    if reasons:
+        parts.append(section("What was found", *reasons))
+    lead = paragraph(
+        f"{message(outcomes)}: candidates held against the reference solutions of their scenes. Digits are those of "
+        "the largest error, relative to the amplitude."
+    )
+    return page("Foucault pendulum: a suite of scenes", parts, lead=lead)
+
+
+def _cells(outcome: Outcome) -> tuple[str, ...]:
+    score = outcome.score
+    if score is None:
+        return outcome.scene, outcome.verdict, "", "", "", "", "", outcome.name
+    errors, transits = score.errors, score.transits
+    matched = (
+        ""
+        if transits is None
+        else f"{transits.matched} matched, {len(transits.missed)} missed, {len(transits.extra)} extra"
+    )
+    numbers = percent(score.covered), f"{errors.max_m:.2g} m", f"{score.tolerance_m:.2g} m", f"{errors.digits:.1f}"
+    return outcome.scene, outcome.verdict, *numbers, matched, outcome.name
+
+
+def annotation(outcome: Outcome) -> str:
+    """Return the workflow command that shows an outcome, with the verdict and what is known of its reason."""
+    agrees = outcome.verdict == "agrees"
+    told = outcome.main_lines[:1] if agrees else outcome.main_lines
+    place = f"file={_property(outcome.name)},title={_property(f'foucault {outcome.scene}')}"
+    return f"::{'notice' if agrees else 'error'} {place}::{_data(chr(10).join(told))}"
+
+
+def _data(text: str) -> str:
+    return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
+
+
+def _property(text: str) -> str:
+    return _data(text).replace(":", "%3A").replace(",", "%2C")
+
+
+def summary(outcomes: Sequence[Outcome]) -> str:
+    """Return the table of the outcomes as Markdown, and the reasons of those that do not agree."""
+    rows = ["| | scene | candidate | verdict | largest error | digits |", "|---|---|---|---|---|---|"]
+    details = []
+    for one in outcomes:
+        errors = None if one.score is None else one.score.errors
+        numbers = ("", "") if errors is None else (f"{errors.max_m:.3g} m", f"{errors.digits:.1f}")
+        cells = [SIGNS[one.verdict], one.scene, f"`{one.name}`", one.verdict, *numbers]
+        rows.append("| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |")
+        if one.verdict != "agrees":
+            fence = "\n".join(line.replace("```", "'''") for line in one.lines)
+            details.append(f"\n<details><summary>{one.scene}</summary>\n\n```\n{fence}\n```\n</details>")
+    return "\n".join(["### Foucault pendulum", "", *rows, *details, ""])
+
+
+def append_summary(text: str) -> None:
+    """Append a text to the summary of the job, if this runs in one.
+
+    Raises:
+        InputError: the summary cannot be written.
+    """
+    path = os.environ.get(SUMMARY)
+    if not path:
+        return
+    try:
+        with Path(path).open("a", encoding="utf-8", errors="backslashreplace") as stream:
+            stream.write(text)
+    except OSError as error:
+        raise InputError(SUMMARY, path, "a file that can be written to", f"{error.strerror}.") from None
+
+
+def junit_text(outcomes: Sequence[Outcome]) -> str:
+    """Return a test for each candidate: a disagreement is a failure, a candidate that cannot be judged an error."""
+    verdicts = [one.verdict for one in outcomes]
+    counts = {
+        "tests": str(len(outcomes)),
+        "failures": str(verdicts.count("disagrees")),
+        "errors": str(verdicts.count(REFUSED)),
+    }
+    root = ElementTree.Element("testsuites", counts)
+    suite = ElementTree.SubElement(root, "testsuite", {"name": "foucault", **counts})
+    for one in outcomes:
+        timing = None if one.score is None else one.score.timing
+        fields = {"classname": f"foucault.{one.scene}", "name": plain_lines(one.name)}
+        case = ElementTree.SubElement(suite, "testcase", fields | ({"time": f"{timing.wall_s:.3f}"} if timing else {}))
+        lines = [plain_lines(line) for line in one.lines]
+        if one.verdict == "agrees":
+            result = ElementTree.SubElement(case, "system-out")
+        else:
+            word = "error" if one.verdict == REFUSED else "failure"
+            result = ElementTree.SubElement(case, word, {"message": lines.pop(0)})
+        result.text = "\n".join(lines)
+    ElementTree.indent(root)
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'
