@@ -197,7 +197,7 @@ def junit_text(outcomes: Sequence[Outcome]) -> str:
             result = ElementTree.SubElement(case, "system-out")
         else:
             word = "error" if one.verdict == REFUSED else "failure"
-            result = ElementTree.SubElement(case, word, {"message": lines.pop(0)})
+            result = ElementTree.SubElement(case, word, {"message": lines[0]})
         result.text = "\n".join(lines)
     ElementTree.indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'
