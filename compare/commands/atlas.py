@@ -38,8 +38,8 @@ def command(
 
     Pictures, bounds and files of each; the page of a scene judges a program's output that is dropped on it.
     """
+    from ..report.atlas.entry import studies_folder
     from ..report.atlas.pages import build, scenes_of
-    from ..report.atlas.studied import studies_folder
     from ..report.folder import PAGE
 
     with stoppable("nothing half was written"), progress() as show:

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 from reference.scenes.scene import LEVELS
 
@@ -16,25 +15,22 @@ from ..charts.motion_pictures import motion_svgs
 from ..folder import PAGE, check_folder, write_files
 from ..motion import Motion
 from ..page import Html, facts, page, paragraph, section, text
-from . import blocks
-from .embedded import embedded, vocabulary
+from . import parts
 from .entry import Entry, entries
-from .studied import StudyResults, kept_studies
 
 SHOWN = ("level", "behind it", "bounds", "transits")  # on the page over all scenes
 
 
-def index_page(scenes: Sequence[Entry], svgs: Sequence[Sequence[str]], kept: dict[str, StudyResults], base: str) -> str:
+def index_page(scenes: Sequence[Entry], svgs: Sequence[Sequence[str]], base: str) -> str:
     """Return the page over all scenes.
 
     Args:
         scenes: sorted by id.
         svgs: the pictures of each.
-        kept: how methods fared, by scene.
         base: where the datasets' folders stand, as a URL or a path; empty for no links to files.
     """
-    cards = [_card(one, own, kept.get(one.id, StudyResults()), base) for one, own in zip(scenes, svgs, strict=True)]
-    datasets = sum(len(one.datasets) for one in scenes)
+    cards = [_card(entry, pictures, base) for entry, pictures in zip(scenes, svgs, strict=True)]
+    datasets = sum(len(entry.datasets) for entry in scenes)
     return page(
         "Atlas of the Foucault pendulum",
         [section("Scenes", _jumps(scenes), _filters(scenes), Html("\n".join(cards)))],
@@ -48,27 +44,26 @@ def index_page(scenes: Sequence[Entry], svgs: Sequence[Sequence[str]], kept: dic
     )
 
 
-def scene_page(entry: Entry, svgs: Sequence[str], kept: StudyResults, base: str) -> str:
+def scene_page(entry: Entry, svgs: Sequence[str], base: str) -> str:
     """Return the page of a scene, which holds its golden rows and judges a file by them."""
     first, *others = entry.datasets
-    fared = blocks.methods(kept)
-    readings = [Html(f"<h3>{text(one.manifest.id)}</h3>\n{blocks.dataset(one, base)}") for one in others]
+    fared = parts.methods(entry.studied)
+    readings = [Html(f"<h3>{text(one.manifest.id)}</h3>\n{parts.dataset(one, base)}") for one in others]
     return page(
         entry.id,
         [
-            section("The motion", blocks.pictures(svgs)),
+            section("The motion", parts.pictures(svgs)),
             section("Judge your program", _drop(entry)),
-            section("The state at the end", blocks.state(entry.golden)),
-            section("The dataset", blocks.dataset(first, base), *readings),
+            section("The state at the end", parts.state(entry.golden)),
+            section("The dataset", parts.dataset(first, base), *readings),
             *([section("How methods fare", *fared)] if fared else []),
-            section("Inputs", paragraph("SI units, angles in degrees."), blocks.inputs(entry.golden)),
+            section("Inputs", paragraph("SI units, angles in degrees."), parts.inputs(entry.golden)),
         ],
         lead=Html(
-            f"{paragraph(_sentence(entry))}\n{blocks.flags(entry)}\n"
+            f"{paragraph(_sentence(entry))}\n{parts.flags(entry)}\n"
             f'<p><a href="index.html">All scenes</a> · {text(entry.golden.manifest.source)}</p>'
         ),
-        script=_data("truth", embedded(entry.judged) | {"words": vocabulary()})
-        + _script("reading.js", "judging.js", "drawing.js", "dropping.js"),
+        script=_truth(entry) + _script("reading.js", "judging.js", "drawing.js", "dropping.js"),
         styles=_text("atlas.css"),
     )
 
@@ -82,23 +77,23 @@ def _sentence(entry: Entry) -> str:
     return f"{entry.golden.manifest.title.rstrip('.')}."
 
 
-def _card(entry: Entry, svgs: Sequence[str], kept: StudyResults, base: str) -> Html:
-    manifest, told = entry.golden.manifest, blocks.trust(entry.golden)
+def _card(entry: Entry, svgs: Sequence[str], base: str) -> Html:
+    manifest, told = entry.golden.manifest, parts.trust(entry.golden)
     shown = {name: told[name] for name in SHOWN}
-    of_files = [" ".join(blocks.linked(one, name, base) for name in one.manifest.files) for one in entry.datasets]
+    of_files = [" ".join(parts.linked(one, name, base) for name in one.manifest.files) for one in entry.datasets]
     shown |= {f"files of {one.manifest.id}": Html(names) for one, names in zip(entry.datasets, of_files, strict=True)}
     shown["to score"] = Html(
         f"<code>{text(entry.score_command())}</code>, or drop a file on {_link(entry, 'its page')}"
     )
-    if kept.sentence():
-        shown["methods"] = kept.sentence()
+    if entry.studied.sentence():
+        shown["methods"] = entry.studied.sentence()
     levels = " ".join(one.manifest.level for one in entry.datasets)
     return Html(
         f'<article class="card" id="{text(entry.id)}" data-flags="{text(" ".join(entry.flags))}" '
         f'data-levels="{levels}">\n<div class="head">\n'
         f'<h3>{_link(entry, entry.id)} <span class="level">{manifest.level}</span></h3>\n'
-        f"{paragraph(_sentence(entry))}\n{blocks.flags(entry)}\n{blocks.pictures(svgs)}\n</div>\n"
-        f'<div class="told">\n{blocks.state(entry.golden)}\n{facts(shown)}\n</div>\n</article>'
+        f"{paragraph(_sentence(entry))}\n{parts.flags(entry)}\n{parts.pictures(svgs)}\n</div>\n"
+        f'<div class="told">\n{parts.state(entry.golden)}\n{facts(shown)}\n</div>\n</article>'
     )
 
 
@@ -146,9 +141,10 @@ def _drop(entry: Entry) -> Html:
     )
 
 
-def _data(name: str, document: dict[str, Any]) -> Html:
+def _truth(entry: Entry) -> Html:
+    document = parts.embedded(entry.judged)
     content = json.dumps(document, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
-    return Html(f'<script type="application/json" id="{name}">{content}</script>\n')
+    return Html(f'<script type="application/json" id="truth">{content}</script>\n')
 
 
 def _script(*names: str) -> Html:
@@ -181,15 +177,14 @@ def build(
     """
     check_matplotlib("foucault atlas")
     check_folder(out, [PAGE])
-    scenes, kept = entries(data), kept_studies(studies)
-    check_folder(out, [f"{one.id}.html" for one in scenes])
+    scenes = entries(data, studies)
+    check_folder(out, [f"{entry.id}.html" for entry in scenes])
     pages, svgs = {}, []
-    for count, one in enumerate(scenes):
-        report(count, len(scenes), one.id)
-        own = motion_svgs(Motion.of_golden(one.golden))
-        svgs.append(own)
-        pages[f"{one.id}.html"] = scene_page(one, own, kept.get(one.id, StudyResults()), base)
-    pages[PAGE] = index_page(scenes, svgs, kept, base)
+    for count, entry in enumerate(scenes):
+        report(count, len(scenes), entry.id)
+        svgs.append(motion_svgs(Motion.of_golden(entry.golden)))
+        pages[f"{entry.id}.html"] = scene_page(entry, svgs[-1], base)
+    pages[PAGE] = index_page(scenes, svgs, base)
     write_files(out, pages)
     report(len(scenes), len(scenes), PAGE)
     return {name: len(content.encode()) for name, content in pages.items()}

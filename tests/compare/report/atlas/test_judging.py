@@ -14,7 +14,7 @@ import reference
 from compare import judge
 from compare.candidates.names import meaning
 from compare.candidates.read import read, read_transits
-from compare.report.atlas.embedded import embedded, vocabulary
+from compare.report.atlas.parts import embedded
 from reference import InputError
 
 pytestmark = pytest.mark.skipif(shutil.which("node") is None, reason="Node.js is not installed")
@@ -43,7 +43,8 @@ def run(golden, cases=(), headers=()):
     folder = files("compare.report.atlas")
     script = "".join(folder.joinpath(name).read_text("utf-8") for name in ("reading.js", "judging.js")) + RUN
     asked = [{"text": text, "times": times, "tolerance": tolerance} for text, times, tolerance in cases]
-    document = {"truth": embedded(golden), "words": vocabulary(), "cases": asked, "headers": list(headers)}
+    truth = embedded(golden)
+    document = {"truth": truth, "words": truth["words"], "cases": asked, "headers": list(headers)}
     done = subprocess.run(
         ["node", "-e", script], input=json.dumps(document), capture_output=True, text=True, check=True
     )

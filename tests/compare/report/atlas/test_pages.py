@@ -13,9 +13,8 @@ from forgery import forge
 
 import reference
 from compare import judge
-from compare.report.atlas.entry import Entry, entries
+from compare.report.atlas.entry import Entry, StudyResults, entries, kept_studies, studies_folder
 from compare.report.atlas.pages import scene_page
-from compare.report.atlas.studied import StudyResults, kept_studies, studies_folder
 from reference.scenes.shipped import golden_root
 
 CHROMIUM = next(
@@ -95,9 +94,9 @@ def test_a_study_is_a_regular_file(tmp_path):
 
 
 def test_without_a_study_the_page_says_nothing_of_methods(atlas, readings):
-    (paris,) = entries(readings)
+    (paris,) = entries(readings, None)
     assert "How methods fare" in (atlas / "paris.html").read_text()
-    assert "How methods fare" not in scene_page(paris, [], StudyResults(), "")
+    assert "How methods fare" not in scene_page(paris, [], "")
 
 
 def test_a_dataset_of_hostile_words_has_a_page(foucault, tmp_path):
@@ -116,9 +115,9 @@ def test_a_dataset_of_hostile_words_has_a_page(foucault, tmp_path):
 
 
 def test_the_command_to_score_says_what_differs_from_the_scene(readings):
-    (two,) = entries(readings)
+    (two,) = entries(readings, None)
     assert two.score_command() == "foucault score paris mine.csv" and len(two.datasets) == 2
-    alone = Entry(two.golden, two.golden)
+    alone = Entry(two.golden, two.golden, StudyResults())
     assert alone.score_command() == "foucault score paris mine.csv --inputs decimal"
 
 
