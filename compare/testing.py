@@ -26,7 +26,7 @@ from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .candidates.external import placeholders
 from .score.judge import judge
 from .score.scored import Score
-from .score.verdict import explanation_lines, percent
+from .score.verdict import percent
 
 
 def assert_agrees(
@@ -140,4 +140,6 @@ def message(result: Score) -> str:
         lines.append(
             f"  largest error {transits.max_error_s:.3e} s, weighted by |ax| {transits.max_conditioned_m:.3e} m"
         )
-    return "\n".join([*lines, *(f"  {line}" for line in explanation_lines(result))])
+    if result.explanation is not None:
+        lines += [f"  {line}" for line in result.explanation.lines()]
+    return "\n".join(lines)

@@ -7,7 +7,7 @@ import numpy as np
 from reference import InputError, Scene
 from reference.model.start import Start
 
-from .candidate import Candidate, Convention
+from .candidate import Candidate, Deviation
 from .external import PLACEHOLDER_BITS
 from .units import LENGTHS, TIMES
 
@@ -37,7 +37,7 @@ def check_times(candidate: Candidate, scene: Scene) -> None:
     raise InputError(f"{candidate.name}: t", f"{last:.10g} at the end", expected, longer)
 
 
-def beyond_the_cord(candidate: Candidate, scene: Scene) -> Convention | None:
+def beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
     """Return what positions that no cord lets the bob reach may be: another unit of length, or pixels; or None."""
     reach = float(np.hypot(candidate.columns["x"], candidate.columns["y"]).max())
     length = float(scene.exact.length)
@@ -46,14 +46,14 @@ def beyond_the_cord(candidate: Candidate, scene: Scene) -> Convention | None:
     found = f"x and y reach {reach:.4g} and the cord is {scene.pendulum.length} m long"
     scale = _scale(candidate, scene)
     if scale is None:
-        return Convention("beyond_the_cord", f"{found}: pixels, or another unit? Metres are wanted")
+        return Deviation("beyond_the_cord", f"{found}: pixels, or another unit? Metres are wanted")
     unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
     times = f"the first row is {scale:.6g} times the release"
     if unit is None:
-        return Convention(
+        return Deviation(
             "scale", f"{found}: {times}; are {scale:.6g} pixels, or of another unit, a metre? Divide by it"
         )
-    return Convention("scale", f"{found}: {times}, so they are {WORDS[unit]}; --units {unit} reads them so")
+    return Deviation("scale", f"{found}: {times}, so they are {WORDS[unit]}; --units {unit} reads them so")
 
 
 def _scale(candidate: Candidate, scene: Scene) -> float | None:

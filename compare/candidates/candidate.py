@@ -21,18 +21,26 @@ class NotFiniteError(InputError):
 
 
 @dataclass(frozen=True)
-class Convention:
-    """A way in which a candidate was read, or seems to be meant, that is not the usual one.
+class Deviation:
+    """What is found out about a candidate: a way in which its file is written, or a thing that its program does.
 
     Attributes:
         id: a stable word.
-        text: what to tell.
-        size_m: the largest distance in m by which it moves a row; 0 if it moves none or that is not known.
+        text: of a reading, what is told; else the end of the sentence "Your file …" or "Your program …".
+        size_m: the distance in m by which it moves the bob, on top of what stands before it; 0 if none is known.
+        stage: of a program's: gravity, model, input, release, frame, clock or integrator.
+        value: a fitted number, in its unit.
+        shift: by how much it differs from the scene's.
+        uncertainty: of it, from what is left.
     """
 
     id: str
     text: str
     size_m: float = 0.0
+    stage: str = ""
+    value: float | None = None
+    shift: float | None = None
+    uncertainty: float | None = None
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,7 +63,7 @@ class Candidate:
     low: dict[str, Array] = field(default_factory=dict, repr=False)
     transits: Array | None = field(default=None, repr=False)
     notes: tuple[str, ...] = ()
-    conventions: tuple[Convention, ...] = ()
+    conventions: tuple[Deviation, ...] = ()
 
     def __repr__(self) -> str:
         return f"Candidate({Path(self.name).name}: {len(self.t)} rows of t, {', '.join(self.columns)})"

@@ -12,7 +12,7 @@ from fractions import Fraction
 from reference import InputError
 from reference.numbers.precision import Array
 
-from .candidate import COLUMNS, Convention
+from .candidate import COLUMNS, Deviation
 from .names import Meaning, meaning, unquoted
 from .spelling import Spelling, words
 from .units import defaults, multiplied
@@ -53,7 +53,7 @@ class Layout:
 
     places: dict[str, int]
     factors: dict[str, Fraction] = field(default_factory=dict)
-    conventions: tuple[Convention, ...] = ()
+    conventions: tuple[Deviation, ...] = ()
 
     def converted(self, columns: dict[str, Array], low: dict[str, Array]) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return columns and their low parts in SI units."""
@@ -113,10 +113,10 @@ def unnamed(count: int, needed: Sequence[str]) -> tuple[str, ...] | None:
     return None if names is None or len(needed) == 1 else (*names, *[""] * (count - len(names)))
 
 
-def guessed(names: Sequence[str]) -> Convention:
+def guessed(names: Sequence[str]) -> Deviation:
     """Return what is said where names were taken from the number of columns."""
     read = ", ".join(name for name in names if name)
-    return Convention("no_header", f"no header: the columns are taken as {read} (--columns names others)")
+    return Deviation("no_header", f"no header: the columns are taken as {read} (--columns names others)")
 
 
 def advice(needed: Sequence[str], optional: Sequence[str]) -> str:
@@ -125,7 +125,7 @@ def advice(needed: Sequence[str], optional: Sequence[str]) -> str:
     return f"The first line names the columns: {', '.join(needed)}{more}; or --columns does."
 
 
-def _conventions(words: Sequence[str], places: dict[str, int], chosen: dict[str, Meaning]) -> list[Convention]:
+def _conventions(words: Sequence[str], places: dict[str, int], chosen: dict[str, Meaning]) -> list[Deviation]:
     said = []
     renamed = [
         f"{unquoted(words[i])} as {_signed(chosen[name])}" for name, i in places.items() if chosen[name].rank == 2
@@ -134,10 +134,10 @@ def _conventions(words: Sequence[str], places: dict[str, int], chosen: dict[str,
         others = [unquoted(word) for i, word in enumerate(words) if i not in places.values()]
         others = [word for word in others if word not in SKIPPED]
         left = f"; not read: {', '.join(others)}" if others else ""
-        said.append(Convention("columns", f"{', '.join(renamed)}{left}"))
+        said.append(Deviation("columns", f"{', '.join(renamed)}{left}"))
     units = [f"{name} from {one.unit}" for name, one in chosen.items() if abs(one.factor or 1) != 1]
     if units:
-        said.append(Convention("units", f"{', '.join(units)}, converted to SI units"))
+        said.append(Deviation("units", f"{', '.join(units)}, converted to SI units"))
     return said
 
 

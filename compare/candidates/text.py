@@ -20,7 +20,7 @@ import numpy as np
 from reference import InputError
 from reference.numbers.precision import Array
 
-from .candidate import COLUMNS, Candidate, Convention, checked_transits
+from .candidate import COLUMNS, Candidate, Deviation, checked_transits
 from .layout import Header, Layout, Naming
 from .spelling import MARKS, Spelling, chunks, comment, is_number, spelling
 
@@ -59,7 +59,7 @@ def _difference(text: str, near: float) -> tuple[Decimal, Decimal]:
 
 MAX_ROWS = 2_000_000
 SAMPLE = 50  # rows of a chunk that are searched for numbers with more digits than a double's
-DECIMAL_COMMA = Convention("decimal_comma", "numbers have a comma for the decimal point")
+DECIMAL_COMMA = Deviation("decimal_comma", "numbers have a comma for the decimal point")
 
 
 def read_text(stream: BinaryIO, head: bytes, name: str, naming: Naming) -> Candidate:
@@ -141,7 +141,7 @@ class ColumnReader:
         return self.layout.converted(self._joined(self.blocks), self._joined(self.low_blocks) if finer else {})
 
     @property
-    def conventions(self) -> tuple[Convention, ...]:
+    def conventions(self) -> tuple[Deviation, ...]:
         """Return what is to be said of the way in which it was read."""
         said = () if self.layout is None else self.layout.conventions
         return (*said, DECIMAL_COMMA) if self.spelled.decimal_comma else said

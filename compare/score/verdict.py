@@ -1,15 +1,16 @@
-"""Print a score as lines of text for people."""
+"""Say what a score is: in lines of text for people, and as the JSON document of `foucault score --json`."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
 from itertools import islice
+from typing import Any
 
+from ..candidates.candidate import Deviation
+from .explanation.findings import Explanation
 from .scored import Score
 
-# nothing to put right
-HARMLESS_CONVENTIONS = ("decimals", "digits", "single_precision", "z_constant", "off_the_sphere")
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
 
 
@@ -45,9 +46,10 @@ def lines(score: Score) -> Iterator[str]:
         yield from _row("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
     yield from _row("inputs read as", score.scene.inputs, score.why_inputs)
     yield from _row("reference", f"{score.golden.manifest.level}", f"within {errors.bound_m:.2g} m at these times")
-    yield from explanation_lines(score)
-    for one in score.candidate.conventions:
-        yield f"Reading: {one.text}."
+    if score.explanation is not None:
+        yield from score.explanation.lines()
+    for convention in score.candidate.conventions:
+        yield f"Reading: {convention.text}."
     for note in score.notes:
         yield f"Note: {note}."
 
@@ -57,31 +59,6 @@ def _verdict(score: Score) -> str:
         return f"{score.verdict} with {score.scene.id}"
     assert score.explanation is not None and score.explanation.model is not None
     return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}"
-
-
-def explanation_lines(score: Score) -> Iterator[str]:
-    """Yield what is known of the reasons for the error, if they were looked for."""
-    found = score.explanation
-    if found is None:
-        return
-    for convention in found.conventions:
-        yield f"Your file {convention.text}."
-    if found.model is not None:
-        yield (
-            f"As that model it is exact to {found.model.exact_to_m:.2g} m; "
-            f"against the full Lagrangian it is {found.model.costs_m:.3g} m off:"
-        )
-    elif len(found.causes) > 1:
-        yield "It seems that your program, most fundamental first,"
-    begin = "- " if found.model is not None or len(found.causes) > 1 else "It seems that your program "
-    for cause in found.causes:
-        yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
-    if found.slip:
-        yield found.slip
-    if found.causes or any(one.id not in HARMLESS_CONVENTIONS for one in found.conventions):
-        yield f"With {'this' if len(found.causes) == 1 else 'all this'} put right, {found.corrected_m:.2g} m are left."
-    elif not found.slip:
-        yield "No mistake known to foucault explains the error."
 
 
 def _row(name: str, value: str, remark: str = "") -> Iterator[str]:
@@ -151,3 +128,86 @@ def _listed(texts: Iterable[str]) -> str:
     """Join the first few, with … if there are more."""
     first = list(islice(texts, NAMED + 1))
     return ", ".join(first[:NAMED]) + (" …" if len(first) > NAMED else "")
+
+
+def document(score: Score) -> dict[str, Any]:
+    """Return a score as a JSON document; its keys are part of the command line's contract."""
+    errors, transits = score.errors, score.transits
+    turn = score.swing.largest_turn
+    fields: dict[str, Any] = {
+        "scene": score.scene.id,
+        "candidate": score.candidate.name,
+        "verdict": score.verdict,
+        "inputs": score.scene.inputs,
+        "why_inputs": score.why_inputs,
+        "rows": len(errors.t),
+        "covered": score.covered,
+        "covered_s": [float(errors.t[0]), float(errors.t[-1])],
+        "max_error_m": errors.max_m,
+        "rms_error_m": errors.rms_m,
+        "end_error_m": errors.end_m,
+        "at_or_below_bound": score.at_bound,
+        "digits": errors.digits,
+        "scd": errors.scd,
+        "mescd": errors.mescd,
+        "scale_m": errors.amplitude_m,
+        "tolerance_m": score.tolerance_m,
+        "input_floor_m": score.input_floor_m,
+        "error_over_floor": errors.max_m / score.input_floor_m if score.input_floor_m else None,
+        "growth_exponent": errors.growth_exponent,
+        "swing_plane_error_deg": None if turn is None else math.degrees(turn),
+        "phase_error_s": score.swing.largest_delay,
+        "h_drift_m2_s2": score.drifts.get("h_m2_s2"),
+        "length_drift_m": score.drifts.get("length_m"),
+        "worst": score.worst._asdict(),
+        "worst_of_each": {name: worst._asdict() for name, worst in score.worst_of_each.items()},
+        "transits": None,
+        "reference": {"level": score.golden.manifest.level, "bound_m": errors.bound_m},
+        "grade": score.grade,
+        "conventions": [{"id": convention.id, "text": convention.text} for convention in score.candidate.conventions],
+        "model": None,
+        "causes": [],
+        "corrected": None,
+        "slip": None,
+        "diagnosis": None,
+        "notes": list(score.notes),
+    }
+    if transits is not None:
+        fields["transits"] = {
+            "matched": transits.matched,
+            "missed": len(transits.missed),
+            "extra": len(transits.extra),
+            "shifted": len(transits.shifted(score.allowed_m)),
+            "max_error_s": transits.max_error_s,
+            "max_conditioned_error_m": transits.max_conditioned_m,
+            "missed_at": transits.missed,
+            "extra_at": transits.extra,
+            "undecided_at": transits.undecided,
+        }
+    if score.timing is not None:
+        fields["timing"] = vars(score.timing)
+    if score.explanation is not None:
+        fields |= _explained(score.explanation, fields["conventions"])
+    return fields
+
+
+def _explained(explanation: Explanation, readings: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the keys that an explanation fills."""
+    diagnosis, corrected = explanation.diagnosis, explanation.corrected_m
+    return {
+        "conventions": [*readings, *(_said("your file", convention) for convention in explanation.conventions)],
+        "model": None if explanation.model is None else vars(explanation.model),
+        "causes": [_said("your program", cause) | _fitted(cause) for cause in explanation.causes],
+        "corrected": {"max_error_m": corrected} if math.isfinite(corrected) else None,
+        "slip": explanation.slip or None,
+        "diagnosis": None if diagnosis is None else vars(diagnosis),
+    }
+
+
+def _said(subject: str, deviation: Deviation) -> dict[str, Any]:
+    return {"id": deviation.id, "text": f"{subject} {deviation.text}", "size_m": deviation.size_m}
+
+
+def _fitted(cause: Deviation) -> dict[str, float | None]:
+    numbers = {"value": cause.value, "shift": cause.shift, "uncertainty": cause.uncertainty}
+    return {name: number for name, number in numbers.items() if math.isfinite(number or 0.0)}

@@ -11,9 +11,8 @@ from reference import FoucaultError, InputError
 from reference.errors import Stopped
 from reference.status import Status
 
-from ...score.document import document
 from ...score.scored import Score
-from ...score.verdict import lines
+from ...score.verdict import document, lines
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")
 TRANSITS = ".transits"

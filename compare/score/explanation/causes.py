@@ -1,4 +1,4 @@
-"""The causes that a program's deviation may have, each a change of one thing in a right `Program`.
+"""The causes that a program's error may have, each a change of one thing in a right `Program`.
 
 Causes that exclude each other stand in one group. The words of `id` are stable; `text` ends the sentence "Your
 program …". A cause with numbers in it (`free`) is fitted; all others are named and fixed.
@@ -10,8 +10,9 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
-from .integrators import METHODS
+from .phasors import METHODS
 from .programs import Program
+from .unexplained import Case
 
 NAMED = 0.3  # decades by which a named cause has to lower what is left, to be believed
 RARE = 0.5  # one that is met less often
@@ -22,6 +23,10 @@ SIDEREAL_DAYS = (86164.0, 86160.0, 86164.1, 86164.0905, 86164.09)
 MEAN_RADIUS = 6371000.0
 COMMON_GRAVITY = (9.8, 9.81, 9.80665, 9.82, 9.83, 10.0)
 ROUNDED_RATES = (7.29e-5, 7.3e-5, 7.27e-5, 7.2722e-5, 7.292e-5, 7.2921e-5, 7.29212e-5, 7.2921159e-5, 7.26e-5, 7e-5)
+UNITS = {
+    "g": " m/s²", "length": " m", "latitude": " degrees", "drag": " 1/s", "x": " m", "y": " m", "altitude": " m",
+    "vx": " m/s", "vy": " m/s",
+}  # fmt: skip
 FACTORS = (2.0, 10.0, 50.0, 60.0, 100.0, 200.0, 300.0, 500.0, 1000.0, 2000.0, 3600.0, 5000.0, 10000.0)
 
 
@@ -47,40 +52,53 @@ class Cause:
     free: str = ""
     stage: str = "input"
 
+    def sentence(self, value: float, right: Program) -> str:
+        """Return the text with a fitted number, beside what a right program has in its place."""
+        if self.free == "rate":
+            number = f"{value / right.rate:.8g}"
+        elif self.free == "step":
+            number = f"{value:.3g} s"
+        else:
+            number = f"{value:.10g} and not {getattr(right, self.free):.10g}{UNITS.get(self.free, '')}"
+        return self.text.format(value=number)
 
-def causes(right: Program, kind: str, cord: float | None = None, released: bool = False) -> Iterator[Cause]:
-    """Yield every cause that could make a difference to a scene.
 
-    Args:
-        right: what a right program computes with.
-        kind: the family that was fitted: sphere, linear or angle.
-        cord: mean distance in m from the suspension, where rows do not keep it.
-        released: whether row 0 is the release to its last digit, so that neither its place nor its time is off.
-    """
+def causes_of(case: Case, kind: str) -> Iterator[Cause]:
+    """Yield every cause that the program of a case may have as a member of a family: sphere, linear or angle."""
+    right, released, cord = case.right, case.released, case.rows.cord
     yield from _gravity(right)
     if right.rate:
         yield from _rotation(right, kind)
-        yield from _release(right)
+        yield from _release()
     yield from _latitude(right)
     yield from _inputs(right, released)
     if cord is not None:
         text = f"has a cord of {cord:.10g} m on average: a spring for a cord, or an integrator that leaves the sphere"
         yield Cause("stretched_cord", "pendulum.length", text, _set(length=cord), NAMED)
     if not released:
-        yield Cause("late", "clock", "writes its rows {value} late", lambda p: p, FITTED, "late", "clock")
-    yield from _integrators()
+        yield _fitted("late", "clock", "writes its rows {value} late", "late", stage="clock")
+    for method in METHODS:
+        text = f"integrates with {method.title} at a step of about {{value}}"
+        word = f"integrator_{method.id}"
+        yield Cause(word, "integrator", text, _set(method=method), FITTED, "step", "integrator")
 
 
 def _set(**fields: object) -> Callable[[Program], Program]:
     return lambda program: replace(program, **fields)  # type: ignore[arg-type]
 
 
+def _fitted(word: str, group: str, text: str, free: str, cost: float = FITTED, stage: str = "input") -> Cause:
+    """Return the cause that a number of a program is another one."""
+    return Cause(word, group, text, lambda program: program, cost, free, stage)
+
+
 def _gravity(right: Program) -> Iterator[Cause]:
     def reading(name: str, word: str, text: str, cost: float = NAMED) -> Cause:
         return Cause(word, "gravity", text, _set(gravity_reading=name), cost, stage="gravity")
 
+    ellipsoid = right.gravity_reading == "ellipsoid"
     if right.rate:
-        if right.gravity_reading == "ellipsoid" and right.radius:
+        if ellipsoid and right.radius:
             text = (
                 "takes g as the effective gravity, measured along the plumb line: no separate centrifugal force "
                 "(--set site.gravity_is=effective)"
@@ -109,14 +127,14 @@ def _gravity(right: Program) -> Iterator[Cause]:
             return replace(program, g=program.g * (1 + 3 * program.length / program.radius))
 
         yield Cause("point_mass", "point_mass", text, both, stage="gravity")
-    if right.flattening and right.rate and right.gravity_reading == "ellipsoid":
+    if right.flattening and right.rate and ellipsoid:
         text = "treats the Earth as a sphere of the equatorial radius"
         yield Cause("sphere", "earth", text, _set(flattening=0.0), stage="gravity")
         text = f"treats the Earth as a sphere of radius {MEAN_RADIUS:.0f} m"
         yield Cause("mean_sphere", "earth", text, _set(flattening=0.0, radius=MEAN_RADIUS), stage="gravity")
-    if right.radius and right.rate and right.gravity_reading == "ellipsoid":
+    if right.radius and right.rate and ellipsoid:
         text = "takes site.altitude to be {value}"
-        yield Cause("site.altitude", "earth", text, lambda p: p, RARE + FITTED, "altitude", "gravity")
+        yield _fitted("site.altitude", "earth", text, "altitude", RARE + FITTED, "gravity")
     for g in COMMON_GRAVITY:
         if abs(g - right.g) > 1e-9:
             yield Cause(f"gravity_{g:g}", "g", f"computes with g = {g:g} m/s²", _set(g=g))
@@ -155,27 +173,23 @@ def _rotation(right: Program, kind: str) -> Iterator[Cause]:
             yield rate("rate_factor", f"{text}, in a solar day", sign * factor * solar, 0.4)
     yield rate("no_rotation", "leaves out the rotation of the Earth", 0.0, 0.45)
     text = "turns {value} times as fast as the scene's Earth"
-    yield Cause("site.rotation_rate", "rate", text, lambda p: p, FITTED, "rate")
-    text = "gives the Coriolis force the wrong sign: its plane turns the wrong way"
-    factors = [("coriolis_sign", text, (1.0, 1.0, -1.0), NAMED)]
-    factors += [
-        ("coriolis_half", "omits the factor 2 in the Coriolis force", (1.0, 1.0, 0.5), NAMED),
-        ("coriolis_double", "doubles the Coriolis force", (1.0, 1.0, 2.0), NAMED),
-        ("no_coriolis", "leaves out the Coriolis force", (1.0, 1.0, 0.0), NAMED),
+    yield _fitted("site.rotation_rate", "rate", text, "rate")
+    factors = [
+        ("coriolis_sign", "gives the Coriolis force the wrong sign: its plane turns the wrong way", (1.0, 1.0, -1.0)),
+        ("coriolis_half", "omits the factor 2 in the Coriolis force", (1.0, 1.0, 0.5)),
+        ("coriolis_double", "doubles the Coriolis force", (1.0, 1.0, 2.0)),
+        ("no_coriolis", "leaves out the Coriolis force", (1.0, 1.0, 0.0)),
+        ("vertical_only", "uses only the vertical part of Ω in the Coriolis force", (0.0, 1.0, 1.0)),
+        ("horizontal_sign", "gives the horizontal part of Ω the wrong sign", (-1.0, 1.0, 1.0)),
+        ("vertical_sign", "gives the vertical part of Ω the wrong sign", (1.0, -1.0, 1.0)),
     ]
-    if kind == "sphere":
-        text = "uses only the vertical part of Ω in the Coriolis force"
-        factors.append(("vertical_only", text, (0.0, 1.0, 1.0), NAMED))
-        factors.append(("horizontal_sign", "gives the horizontal part of Ω the wrong sign", (-1.0, 1.0, 1.0), RARE))
-        factors.append(("vertical_sign", "gives the vertical part of Ω the wrong sign", (1.0, -1.0, 1.0), RARE))
-    for word, text, changed, cost in factors:
+    for word, text, changed in factors if kind == "sphere" else factors[:4]:
+        cost = RARE if word in ("horizontal_sign", "vertical_sign") else NAMED
         yield Cause(word, "coriolis", text, _set(coriolis=changed), cost)
     text = "is a pendulum that feels no rotation, whose plane is turned by hand"
     yield Cause("turned_plane", "coriolis", text, _set(turned_plane=True), RARE, stage="model")
-    text = "is a pendulum that feels no rotation, whose plane is turned by hand the wrong way round"
-    yield Cause(
-        "turned_plane_sign", "coriolis", text, _set(turned_plane=True, coriolis=(1.0, 1.0, -1.0)), RARE, stage="model"
-    )
+    backwards = _set(turned_plane=True, coriolis=(1.0, 1.0, -1.0))
+    yield Cause("turned_plane_sign", "coriolis", f"{text} the wrong way round", backwards, RARE, stage="model")
     if kind == "sphere":
         frames = (
             ("frame_x_south", "x points south and y east", (0.0, -1.0, 1.0, 0.0)),
@@ -210,7 +224,7 @@ def _latitude(right: Program) -> Iterator[Cause]:
             yield Cause("geocentric", "latitude", text, _set(latitude=geocentric))
             text = "uses the geocentric latitude in the Coriolis force"
             yield Cause("geocentric", "latitude", text, _set(coriolis_latitude=geocentric), 0.4)
-        yield Cause("site.latitude", "latitude", "takes site.latitude to be {value}", lambda p: p, FITTED, "latitude")
+        yield _fitted("site.latitude", "latitude", "takes site.latitude to be {value}", "latitude")
 
 
 def _everywhere(program: Program, degrees: float) -> Program:
@@ -220,15 +234,15 @@ def _everywhere(program: Program, degrees: float) -> Program:
     )
 
 
-def _release(right: Program) -> Iterator[Cause]:
-    text = "releases the bob at rest relative to the stars, not to the ground"
-    yield Cause("inertial_rest", "release", text, _set(released=1.0), stage="release")
-    text = "releases the bob with the velocity of rest relative to the stars, but of the wrong sign"
-    yield Cause("inertial_rest_sign", "release", text, _set(released=-1.0), 0.4, stage="release")
-    text = "releases the bob with twice the velocity of rest relative to the stars"
-    yield Cause("release_at_twice", "release", text, _set(released=2.0), 0.4, stage="release")
-    text = "releases the bob with twice the velocity of rest relative to the stars, of the wrong sign"
-    yield Cause("release_at_twice", "release", text, _set(released=-2.0), 0.4, stage="release")
+def _release() -> Iterator[Cause]:
+    speeds = (
+        ("inertial_rest", "at rest relative to the stars, not to the ground", 1.0, NAMED),
+        ("inertial_rest_sign", "with the velocity of rest relative to the stars, but of the wrong sign", -1.0, 0.4),
+        ("release_at_twice", "with twice the velocity of rest relative to the stars", 2.0, 0.4),
+        ("release_at_twice", "with twice the velocity of rest relative to the stars, of the wrong sign", -2.0, 0.4),
+    )
+    for word, how, factor, cost in speeds:
+        yield Cause(word, "release", f"releases the bob {how}", _set(released=factor), cost, stage="release")
 
 
 def _inputs(right: Program, released: bool) -> Iterator[Cause]:
@@ -242,17 +256,10 @@ def _inputs(right: Program, released: bool) -> Iterator[Cause]:
         yield Cause("drag_half", "drag", "takes half the drag", _set(drag=right.drag / 2), 0.4)
         yield Cause("drag_double", "drag", "takes twice the drag", _set(drag=2 * right.drag), 0.4)
     for name, word in (("g", "site.gravity"), ("length", "pendulum.length"), ("drag", "pendulum.drag")):
-        yield Cause(word, word, f"takes {word} to be {{value}}", lambda p: p, FITTED, name)
+        yield _fitted(word, word, f"takes {word} to be {{value}}", name)
     for name in ("vx", "vy") if released else ("x", "y", "vx", "vy"):
         word = f"release.{name}"
         group = "start" if name in ("x", "y") else "release"
         # a push that the scene does not have is rarer than half a step of an integrator, which looks like one
         cost = FITTED if name in ("x", "y") or right.vx or right.vy else FITTED + PUSHED
-        yield Cause(word, f"{group}.{name}", f"takes {word} to be {{value}}", lambda p: p, cost, name, "release")
-
-
-def _integrators() -> Iterator[Cause]:
-    for method in METHODS:
-        text = f"integrates with {method.title} at a step of about {{value}}"
-        word = "integrator_" + method.id
-        yield Cause(word, "integrator", text, _set(method=method), FITTED, "step", "integrator")
+        yield _fitted(word, f"{group}.{name}", f"takes {word} to be {{value}}", name, cost, "release")

@@ -8,198 +8,30 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator
 from dataclasses import replace
+from fractions import Fraction
 
 import numpy as np
 
 from reference.numbers.precision import Array
 
-from ...candidates.candidate import Convention
-from .clock import clock, shifted, unit_of_time
-from .rows import NEAR, Rows, is_release, largest
+from ...candidates.candidate import Deviation
+from .phasors import as_angles, fit_phasors, sinc
+from .unexplained import NEAR, Rows, is_release, largest
 
+FLAT = "gives z a constant: its bob does not rise as it swings"
+SPRING = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
+OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is said
+SLIGHT = 1e-9  # and by more than this, heights are left out
+ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
 ROUGHLY = 0.03  # of the distance from the vertical: a release in another unit may be off by this
 LENGTHS = (
     (100.0, "centimetres"), (1000.0, "millimetres"), (1e-3, "kilometres"), (1 / 0.3048, "feet"),
     (1 / 0.0254, "inches"),
 )  # fmt: skip
-
-
-def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
-    """Find the unit of length and the names of the horizontal axes that make row 0 the release."""
-    row = rows.positions[0]
-    if is_release(row, release, rows.noise):
-        return rows
-    if not rows.starts or np.hypot(*row[:2]) == 0:
-        return rows
-    scales = [(1.0, "")] + [(scale, f"is in {unit}") for scale, unit in LENGTHS]
-    scales += [(1 / length, "is in cord lengths (x/l)")]
-    for scale, text in scales:
-        for order, signs in itertools.product(((0, 1), (1, 0)), ((1, 1), (-1, 1), (1, -1), (-1, -1))):
-            if not rename and (order, signs) != ((0, 1), (1, 1)):
-                continue
-            plane = rows.positions[:, order] / scale * np.array(signs)
-            if not is_release(plane[0], release, rows.noise / scale):
-                continue
-            found = (
-                [Convention("unit_of_length", text, largest(rows.positions / scale - rows.positions))] if text else []
-            )
-            if order != (0, 1) or signs != (1, 1):
-                word, sentence = _renamed(order, signs)
-                found.append(Convention(word, sentence, largest(plane - rows.positions[:, :2] / scale)))
-            right = np.column_stack([plane, rows.positions[:, 2:] / scale])
-            if scale != 1 and right.shape[1] == 3:
-                right = _scaled_height(right, length)
-            changed = (*rows.conventions, *found)
-            return replace(rows, positions=right, noise=rows.noise / scale, conventions=changed)
-    for scale, text in scales[1:]:
-        near = np.abs(row[:2] / scale - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2]))
-        if near:  # another unit, and a release that is a little off
-            size = largest(rows.positions / scale - rows.positions)
-            right = rows.positions / scale
-            right = _scaled_height(right, length) if right.shape[1] == 3 else right
-            changed = (*rows.conventions, Convention("unit_of_length", text, size))
-            return replace(rows, positions=right, noise=rows.noise / scale, conventions=changed)
-    angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
-    tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
-    for unit, size in (("degrees", 180 / math.pi), ("radians", 1.0)):
-        polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt
-        for expected in (angles, polar):
-            if np.abs(row[:2] / size - expected).max() <= NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size:
-                theta = rows.positions[:, :2] / size
-                if expected is polar:
-                    radius = np.hypot(theta[:, 0], theta[:, 1])
-                    safe = np.where(radius > 0, radius, 1.0)
-                    plane = length * theta * np.where(radius > 0, np.sin(radius) / safe, 1.0)[:, None]
-                else:
-                    plane = length * np.sin(theta)
-                found = [
-                    Convention("angles", f"gives x and y as angles of the cord in {unit}", float(np.abs(row).max()))
-                ]
-                noise = rows.noise / size * length
-                return replace(rows, positions=plane, noise=noise, conventions=(*rows.conventions, *found))
-    return replace(rows, starts=False)
-
-
-def _renamed(order: tuple[int, int], signs: tuple[int, int]) -> tuple[str, str]:
-    if order == (1, 0) and signs == (1, 1):
-        return "xy_swapped", "writes north as x and east as y"
-    if order == (0, 1):
-        return {
-            (-1, 1): ("x_west", "has x pointing west instead of east"),
-            (1, -1): ("y_south", "has y pointing south instead of north"),
-            (-1, -1): ("xy_reversed", "has x pointing west and y pointing south"),
-        }[signs]
-    words = {1: ("north", "east"), -1: ("south", "west")}
-    # x of the scene is signs[0] times the file's y
-    return "axes_turned", f"writes {words[signs[1]][0]} as x and {words[signs[0]][1]} as y"
-
-
-def _scaled_height(positions: Array, length: float) -> Array:
-    below = -np.sqrt(np.maximum(length**2 - positions[:, 0] ** 2 - positions[:, 1] ** 2, 0))
-    near = np.abs(positions[:, 2] - below).max() < 1e-3 * length
-    return positions if near else np.ascontiguousarray(positions[:, :2])
-
-
-OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is said
-SLIGHT = 1e-9  # and by more than this, heights are left out
-ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
-
-
-def heights(rows: Rows, length: float) -> Rows:
-    """Find the vertical: another column, upside down, from the lowest point; or no height of a sphere at all."""
-    p = rows.positions
-    if p.shape[1] < 3:
-        return rows
-    for scale, order, signs, shift in _vertical(length):
-        column = (p[:, order[2]] / scale * signs[2]) - shift
-        plane = p[:, order[:2]] / scale
-        square = plane[:, 0] ** 2 + plane[:, 1] ** 2
-        if (square >= length * length).any():
-            continue
-        on_sphere = -np.sqrt(length * length - square)
-        if np.abs(column - on_sphere).max() > ALIKE * length:
-            continue
-        flat = float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere))
-        reach = np.sqrt(square + column * column)
-        drift = float(np.ptp(reach))
-        if scale == 1 and order == (0, 1, 2) and signs[2] == 1 and shift == 0:
-            if flat or drift > max(20 * rows.noise, OFF * length):
-                return _without_height(rows, flat, reach)
-            if drift > max(20 * rows.noise, SLIGHT * length):  # no matter of its own, but no height to fit either
-                return replace(rows, positions=np.ascontiguousarray(p[:, :2]))
-            return rows
-        text = {
-            (1, 0.0): "", (-1, 0.0): "counts z downwards", (1, length): "counts z from the lowest point",
-            (-1, -length): "counts z from the lowest point, downwards", (-1, length): "counts z downwards",
-        }.get((signs[2], shift), "")  # fmt: skip
-        word = "z_down" if signs[2] < 0 else "z_from_lowest"
-        found = []
-        if text:
-            found.append(Convention(word, text, float(np.abs(column - p[:, order[2]] / scale).max())))
-        if order != (0, 1, 2):
-            vertical = "xyz"[order[2]]
-            found.append(Convention("vertical_is_not_z", f"calls the vertical {vertical}", length))
-        if flat or drift > max(20 * rows.noise, OFF * length):
-            return _without_height(replace(rows, conventions=(*rows.conventions, *found)), flat, reach)
-        if scale != 1:
-            continue
-        right = np.column_stack([plane, column])
-        return replace(rows, positions=right, conventions=(*rows.conventions, *found))
-    return _without_height(rows, False)
-
-
-def _vertical(length: float) -> Iterator[tuple[float, tuple[int, int, int], tuple[int, int, int], float]]:
-    for order in ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0)):
-        for sign, shift in ((1, 0.0), (-1, 0.0), (1, length), (-1, length)):
-            yield 1.0, order, (1, 1, sign), shift
-
-
-def _without_height(rows: Rows, flat: bool, reach: Array | None = None) -> Rows:
-    """Leave the heights out of the explanation: they are not those of a bob on its cord."""
-    found, cord = rows.conventions, None
-    if flat:
-        found = (*found, Convention("z_constant", "gives z a constant: its bob does not rise as it swings"))
-    elif reach is not None:
-        drift, cord = float(np.ptp(reach)), float(reach.mean())
-        text = "does not keep |r| = l: a spring for a cord, or an integrator that leaves the sphere"
-        found = (*found, Convention("off_the_sphere", text, drift))
-    return replace(rows, positions=np.ascontiguousarray(rows.positions[:, :2]), conventions=found, cord=cord)
-
-
-def digits(positions: Array) -> tuple[float, list[Convention]]:
-    """Return half a unit of the last digit printed, in the file's unit, and what is to be said of it."""
-    values = positions[np.abs(positions) > 0]
-    if not len(values):
-        return 0.0, []
-    size = float(np.abs(values).max())
-    exact = 4 * np.finfo(float).eps * size
-    if len(values) < 20:
-        return exact, []
-    for decimals in range(13):
-        if (np.abs(np.round(values, decimals) - values) <= 1e-15 * np.abs(values)).all():
-            noise = 0.5 * 10.0**-decimals
-            if noise < 1e-12 * size:
-                break
-            text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
-            return noise, [Convention("decimals", text, noise)]
-    single = values.astype(np.float32).astype(float)
-    if (single == values).all():
-        noise = size * float(np.finfo(np.float32).eps)
-        text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
-        return noise, [Convention("single_precision", text, noise)]
-    for digits in range(3, 13):
-        rounded = _significant(values, digits)
-        if (np.abs(rounded - values) <= 1e-15 * np.abs(values)).all():
-            noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - digits)
-            text = f"prints {digits} digits: no more than {noise:.1g} of its unit can be judged"
-            return noise, [Convention("digits", text, noise)]
-    return exact, []
-
-
-def _significant(values: Array, digits: int) -> Array:
-    return np.array([float(f"{value:.{digits - 1}e}") for value in values])
+TIMES = ((60.0, "minutes"), (3600.0, "hours"), (1e-3, "milliseconds"), (86400.0, "days"))
+SHIFTS = 3  # rows by which a clock may be off
+PARTS = 4  # of a row: programs that write every second or fourth step are off by that
 
 
 def made_right(
@@ -215,12 +47,226 @@ def made_right(
         frequency: of the scene's swing in rad/s.
         rename: whether the horizontal axes may have each other's names, or point the other way.
     """
-    names = [name for name in "xyz" if name in columns]
-    positions = np.column_stack([columns[name] for name in names])
-    noise, found = digits(positions)
-    rows = Rows(times, positions, noise, tuple(found))
-    rows = heights(rows, length)
+    positions = np.column_stack([columns[name] for name in "xyz" if name in columns])
+    rows = heights(digits(Rows(times, positions, 0.0)), length)
     rows = axes(rows, release, length, rename)
     rows = clock(rows, release)
     rows = unit_of_time(rows, frequency)
     return rows if rows.starts else shifted(rows, release, frequency, length)
+
+
+def digits(rows: Rows) -> Rows:
+    """Find the rounding of the rows: half a unit of the last digit printed, in the file's unit."""
+    values = rows.positions[np.abs(rows.positions) > 0]
+    if not len(values):
+        return rows
+    size = float(np.abs(values).max())
+    exact = Rows(rows.times, rows.positions, 4 * np.finfo(float).eps * size)
+    if len(values) < 20:
+        return exact
+
+    def same(rounded: Array) -> bool:
+        return bool((np.abs(rounded - values) <= 1e-15 * np.abs(values)).all())
+
+    for decimals in range(13):
+        if same(np.round(values, decimals)):
+            noise = 0.5 * 10.0**-decimals
+            if noise < 1e-12 * size:
+                break
+            text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
+            return rows.changed(Deviation("decimals", text, noise), noise=noise)
+    if (values.astype(np.float32).astype(float) == values).all():
+        noise = size * float(np.finfo(np.float32).eps)
+        text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
+        return rows.changed(Deviation("single_precision", text, noise), noise=noise)
+    for count in range(3, 13):
+        if same(np.array([float(f"{value:.{count - 1}e}") for value in values])):
+            noise = 0.5 * 10.0 ** (math.floor(math.log10(size)) + 1 - count)
+            text = f"prints {count} digits: no more than {noise:.1g} of its unit can be judged"
+            return rows.changed(Deviation("digits", text, noise), noise=noise)
+    return exact
+
+
+def heights(rows: Rows, length: float) -> Rows:
+    """Find the vertical: another column, upside down, from the lowest point; or no height of a sphere at all."""
+    if rows.positions.shape[1] < 3:
+        return rows
+    orders = ((0, 1, 2), (0, 2, 1), (2, 0, 1), (1, 2, 0))
+    down = "counts z downwards"
+    ways = ((1, 0.0, ""), (-1, 0.0, down), (1, length, "counts z from the lowest point"), (-1, length, down))
+    for order, (sign, shift, text) in itertools.product(orders, ways):
+        plane, printed = rows.positions[:, order[:2]], rows.positions[:, order[2]]
+        column = printed * sign - shift
+        square = plane[:, 0] ** 2 + plane[:, 1] ** 2
+        if (square >= length * length).any():
+            continue
+        on_sphere = -np.sqrt(length * length - square)
+        if np.abs(column - on_sphere).max() > ALIKE * length:
+            continue
+        right = rows
+        if text:
+            word = "z_down" if sign < 0 else "z_from_lowest"
+            right = right.changed(Deviation(word, text, float(np.abs(column - printed).max())))
+        if order != (0, 1, 2):
+            right = right.changed(Deviation("vertical_is_not_z", f"calls the vertical {'xyz'[order[2]]}", length))
+        reach = np.sqrt(square + column * column)
+        drift = float(np.ptp(reach))
+        if float(np.ptp(column)) < 1e-3 * float(np.ptp(on_sphere)):
+            return _flat(right.changed(Deviation("z_constant", FLAT)))
+        if drift > max(20 * rows.noise, OFF * length):
+            return _flat(right.changed(Deviation("off_the_sphere", SPRING, drift), cord=float(reach.mean())))
+        if right is not rows:
+            return replace(right, positions=np.column_stack([plane, column]))
+        # a slight drift is no matter of its own, but no height to fit either
+        return _flat(rows) if drift > max(20 * rows.noise, SLIGHT * length) else rows
+    return _flat(rows)
+
+
+def _flat(rows: Rows) -> Rows:
+    """Leave the heights out of the explanation."""
+    return replace(rows, positions=np.ascontiguousarray(rows.plane))
+
+
+def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
+    """Find the unit of length and the names of the horizontal axes that make row 0 the release."""
+    row = rows.positions[0]
+    if is_release(row, release, rows.noise) or not rows.starts or np.hypot(*row[:2]) == 0:
+        return rows
+    units = [
+        (1.0, ""),
+        *((scale, f"is in {unit}") for scale, unit in LENGTHS),
+        (1 / length, "is in cord lengths (x/l)"),
+    ]
+    ways = [*itertools.product(((0, 1), (1, 0)), ((1, 1), (-1, 1), (1, -1), (-1, -1)))]
+    for (scale, text), (order, signs) in itertools.product(units, ways if rename else ways[:1]):
+        if is_release(row[[*order]] / scale * np.array(signs), release, rows.noise / scale):
+            return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
+    for scale, text in units[1:]:
+        near = np.abs(row[:2] / scale - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2]))
+        if near:  # another unit, and a release that is a little off
+            return _scaled_height(_in_metres(rows, scale, text), scale, length)
+    angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
+    tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
+    polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt
+    for (unit, size), expected in itertools.product((("degrees", 180 / math.pi), ("radians", 1.0)), (angles, polar)):
+        if np.abs(row[:2] / size - expected).max() <= NEAR * float(np.abs(expected).max()) + 2 * rows.noise / size:
+            theta = rows.plane / size
+            plane = length * np.sin(theta)
+            if expected is polar:
+                plane = length * theta * sinc(np.hypot(theta[:, 0], theta[:, 1]))[:, None]
+            text = f"gives x and y as angles of the cord in {unit}"
+            convention = Deviation("angles", text, float(np.abs(row).max()))
+            return rows.changed(convention, positions=plane, noise=rows.noise / size * length)
+    return replace(rows, starts=False)
+
+
+def _in_metres(rows: Rows, scale: float, text: str) -> Rows:
+    """Return the rows over a scale, with what is said of it; as they are where nothing is."""
+    if not text:
+        return rows
+    positions = rows.positions / scale
+    convention = Deviation("unit_of_length", text, largest(positions - rows.positions))
+    return rows.changed(convention, positions=positions, noise=rows.noise / scale)
+
+
+def _renamed(rows: Rows, order: tuple[int, int], signs: tuple[int, int]) -> Rows:
+    """Return the rows with the horizontal axes in another order and with other signs, and what is said of that."""
+    if (order, signs) == ((0, 1), (1, 1)):
+        return rows
+    words = {1: ("north", "east"), -1: ("south", "west")}
+    # x of the scene is signs[0] times the file's y
+    turned = ("axes_turned", f"writes {words[signs[1]][0]} as x and {words[signs[0]][1]} as y")
+    word, text = {
+        ((0, 1), (-1, 1)): ("x_west", "has x pointing west instead of east"),
+        ((0, 1), (1, -1)): ("y_south", "has y pointing south instead of north"),
+        ((0, 1), (-1, -1)): ("xy_reversed", "has x pointing west and y pointing south"),
+        ((1, 0), (1, 1)): ("xy_swapped", "writes north as x and east as y"),
+    }.get((order, signs), turned)
+    plane = rows.positions[:, order] * np.array(signs)
+    convention = Deviation(word, text, largest(plane - rows.plane))
+    return rows.changed(convention, positions=np.column_stack([plane, rows.positions[:, 2:]]))
+
+
+def _scaled_height(rows: Rows, scale: float, length: float) -> Rows:
+    """Return rows in another unit with their heights, which are left out where they are not those of the cord then."""
+    p = rows.positions
+    if scale == 1 or p.shape[1] < 3:
+        return rows
+    below = -np.sqrt(np.maximum(length**2 - p[:, 0] ** 2 - p[:, 1] ** 2, 0))
+    return rows if np.abs(p[:, 2] - below).max() < 1e-3 * length else _flat(rows)
+
+
+def clock(rows: Rows, release: Array) -> Rows:
+    """Find rows in reverse order, and a clock that does not start at 0."""
+    first, last = (is_release(rows.positions[i], release, rows.noise) for i in (0, -1))
+    if last and not first and len(rows.times) > 2:
+        return replace(_reversed(rows), starts=True)
+    if first and rows.times[0] > 0:
+        text = f"starts its clock at {rows.times[0]:.10g} s and not at 0"
+        convention = Deviation("clock_offset", text, float(np.hypot(*release[:2])))
+        return rows.changed(convention, times=rows.times - rows.times[0], starts=True)
+    return rows
+
+
+def _reversed(rows: Rows) -> Rows:
+    """Return the rows in reverse order, their clock turned round as well, and what is said of that."""
+    positions = rows.positions[::-1].copy()
+    text = "has its rows in reverse order: the release stands last"
+    convention = Deviation("rows_reversed", text, largest(positions - rows.positions))
+    return rows.changed(convention, times=rows.times[-1] - rows.times[::-1], positions=positions)
+
+
+def unit_of_time(rows: Rows, frequency: float) -> Rows:
+    """Find the unit of time by the frequency of the swing."""
+    if not frequency or len(rows.times) < 12:
+        return rows
+    plane = rows.positions[:, 0] + 1j * rows.positions[:, 1]
+    some = slice(0, min(len(plane), 400))
+    size = float(np.abs(plane).max())
+
+    def ratio(scale: float) -> float | None:
+        """Return the frequency of the rows over the scene's, their times multiplied by a scale."""
+        fitted = fit_phasors(rows.times[some] * scale, plane[some], frequency)
+        return None if fitted is None or fitted[1] > 0.05 * size else abs(fitted[0].square) ** 0.5 / frequency
+
+    as_printed = ratio(1.0)
+    if as_printed is not None and 0.5 < as_printed < 2:
+        return rows
+    for scale, unit in TIMES:
+        scaled = ratio(scale)
+        if scaled is not None and abs(scaled - 1) < 0.1:
+            convention = Deviation("unit_of_time", f"counts time in {unit}", size)
+            return rows.changed(convention, times=rows.times * scale)
+    return rows
+
+
+def shifted(rows: Rows, release: Array, frequency: float, length: float) -> Rows:
+    """Find a clock that is off, the rows in order or reversed: the fitted motion passes the release some rows away."""
+    if not frequency or len(rows.times) < 12:
+        return rows
+    goal = as_angles(np.array([complex(release[0], release[1])]), length)[0]
+    moving = complex(release[3], release[4])
+    spacing = float(np.median(np.diff(rows.times)))
+    passed: list[tuple[float, int, Rows]] = []
+    for ordered in (rows, _reversed(rows)):
+        plane = as_angles(ordered.plane @ np.array([1, 1j]), length)
+        fitted = fit_phasors(ordered.times, plane, frequency)
+        if fitted is None or fitted[1] > 1e-2 * abs(goal):
+            continue
+        for parts in range(-SHIFTS * PARTS, SHIFTS * PARTS + 1):
+            at = fitted[0].later(parts * spacing / PARTS)
+            off = abs(at.start - goal) + abs(at.speed - moving) / frequency
+            passed.append((float(off), parts, ordered))
+    passed.sort(key=lambda passage: passage[0] + 1e-9 * abs(goal) * abs(passage[1]))
+    if not passed or passed[0][0] > 2e-2 * abs(goal):
+        return rows
+    _, parts, right = passed[0]
+    shift = parts * spacing / PARTS
+    if parts:
+        count = "one row" if abs(parts) == PARTS else f"{Fraction(abs(parts), PARTS)} rows"
+        text = f"has its clock {'ahead of' if parts > 0 else 'behind'} its rows by {count} ({abs(shift):.6g} s)"
+        size = abs(goal) * min(2.0, frequency * abs(shift))
+        right = right.changed(Deviation(f"rows_{'late' if parts < 0 else 'early'}", text, float(size)))
+    times = right.times - shift
+    kept = times >= 0
+    return replace(right, times=times[kept], positions=right.positions[kept], starts=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,70 +12,22 @@ from reference.engines.trajectory import Variants
 from reference.numbers.precision import Array
 
 from ...approximations import APPROXIMATIONS, Motion
+from ...candidates.candidate import Deviation
 from .causes import NAMED
 from .conventions import made_right
-from .findings import Explanation, Model, SizedCause
-from .fitted import HARMLESS, Case, best_of, explanation_of
-from .formulas import slip_in_formula
-from .naming import sized
-from .pendulum import Pendulum
-from .programs import Program
-from .rows import Rows, largest, rms
+from .findings import HARMLESS, Explanation, Model
+from .fitted import MODELS, of_causes
+from .formulas import of_formula
+from .programs import Pendulum, Program
 from .slips import slip
 from .stepped import of_steps
-
-LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
-SHARE = 0.01  # of the error that may be left
-
-
-@dataclass(frozen=True)
-class Approximated:
-    """An approximation that the rows follow.
-
-    Attributes:
-        cause: it, with the distance by which it moves the bob.
-        model: it, as a model that the rows are exact within.
-        left: what it leaves of each row in m, shape (rows, 2 or 3).
-    """
-
-    cause: SizedCause
-    model: Model
-    left: Array
-
-
-def approximated(scene: Scene, rows: Rows, truth: Array) -> Approximated | None:
-    """Return the approximation that leaves least, if that is next to nothing; of equal ones the first.
-
-    Args:
-        scene: the scene.
-        rows: those of the file, conventions put right.
-        truth: the positions of the full model at their times in m, shape (rows, 2 or 3).
-    """
-    count = rows.positions.shape[1]
-    if count == 3 and not float(truth[:, 2].max()) < -LOW * float(scene.exact.length):
-        return None
-    error = float(np.linalg.norm(rows.positions - truth))
-    best: Approximated | None = None
-    least = max(SHARE * error, rows.noise * len(rows.times) ** 0.5)
-    for word, motion in APPROXIMATIONS.items():
-        if not isinstance(motion, Motion) or motion.refuses(scene) is not None:
-            continue
-        positions = motion.trajectory(scene, rows.times)[:, :count]
-        left = rows.positions - positions
-        rest = float(np.linalg.norm(left))
-        if not rest < (least if best is None else least / 2):
-            continue
-        least = rest
-        exact, costs = (float(np.linalg.norm(part, axis=1).max()) for part in (left, positions - truth))
-        text = f"solves {motion.title} ({motion.where}) instead of the full equations"
-        cause = SizedCause(word, text, costs, "model")
-        best = Approximated(cause, Model(word, motion.title, exact, costs), left)
-    return best
-
+from .unexplained import Case, Rows, largest, rms
 
 RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
-_FAST = 20.0  # times faster than the scene: nothing is run
+FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
+LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
+SHARE = 0.01  # of the error that an approximation may leave
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
 
 
@@ -97,78 +49,80 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
 
 def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
     model = Variants()
-    inputs = scene.exact
-    start = model.states(inputs, np.zeros(1))[0]
-    right = Program.of(inputs, start)
+    start = model.states(scene.exact, np.zeros(1))[0]
+    right = Program.of(scene.exact, start)
     frequency = math.sqrt(abs(right.theta()[5]))
-    read = made_right(times, columns, start, right.length, frequency)
-    found = _of_rows(read, model, right, frequency, scene, allowed_m)
-    if any(one.id in RENAMED for one in read.conventions):
+    pendulum = Pendulum(model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate)))
+
+    def of_rows(rows: Rows) -> Explanation:
+        chosen = _sample(len(rows.times))
+        rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
+        since_release = rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times])
+        truth = model.states(scene.exact, since_release)[-len(rows.times) :, : rows.positions.shape[1]]
+        return _of_case(Case(rows, truth, right, pendulum, frequency, allowed_m), scene)
+
+    rows = made_right(times, columns, start, right.length, frequency)
+    found = of_rows(rows)
+    if any(convention.id in RENAMED for convention in rows.conventions):
         # the release may be at fault, and not the names of the columns
-        as_named = made_right(times, columns, start, right.length, frequency, rename=False)
-        other = _of_rows(as_named, model, right, frequency, scene, allowed_m)
-        if other.score < found.score:
-            found = other
-    vague = any(one.id == "integrator_loose" for one in found.causes)
-    if found.slip:
-        return found
-    if vague or (not found.causes and found.corrected_m > max(allowed_m, 1.5 * read.noise)):
-        wrong_term = slip(read.times, read.positions, scene)
+        other = of_rows(made_right(times, columns, start, right.length, frequency, rename=False))
+        found = min(found, other, key=lambda explanation: explanation.score)
+    unknown = not found.causes and found.corrected_m > max(allowed_m, 1.5 * rows.noise)
+    if not found.slip and (unknown or any(cause.id == "integrator_loose" for cause in found.causes)):
+        wrong_term = slip(rows.times, rows.positions, scene)
         if wrong_term:  # one term of a formula, as no integrator changes it
             return Explanation(found.conventions, slip=wrong_term)
     return found
 
 
-def _of_rows(
-    rows: Rows, model: Variants, right: Program, frequency: float, scene: Scene, allowed_m: float
-) -> Explanation:
-    chosen = _sample(len(rows.times))
-    rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
-    truth = model.states(scene.exact, rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times]))
-    truth = truth[-len(rows.times) :, : rows.positions.shape[1]]
-    pendulum = Pendulum(model, right.radius, right.gradient_square, _FAST * (frequency + abs(right.rate)))
-    case = Case(rows, truth, right, pendulum, frequency, allowed_m)
-    whole = largest(rows.positions - truth)
-    plain = Explanation(rows.conventions, corrected_m=whole, score=case.score_of(whole))
+def _of_case(case: Case, scene: Scene) -> Explanation:
+    """Return the first explanation that is good enough, in the order in which one would believe them."""
     if case.error <= case.floor:
-        return plain
-    best = best_of(case)
-    named = None if best is None else explanation_of(case, best)
+        return _plain(case)
+    named = of_causes(case)
     if named is not None and named.corrected_m <= case.enough:
         return named
-    vague = named is None or any(cause.stage == "integrator" for cause in named.causes)
-    spherical = best is None or best.family.kind == "sphere" or rows.cord is not None
-    stepping = of_steps(case) if vague and spherical else None
-    certain = stepping or (_of_formula(case) if vague else None)
-    return certain or _of_approximation(case, scene, named) or named or plain
+    found = None
+    if named is None or any(cause.stage == "integrator" for cause in named.causes):
+        linear = named is not None and any(cause.id in dict(MODELS.values()) for cause in named.causes)
+        found = None if linear and case.rows.cord is None else of_steps(case)
+        found = found or of_formula(case)
+    return found or _of_approximation(case, scene, named) or named or _plain(case)
 
 
-def _of_formula(case: Case) -> Explanation | None:
-    """Return what is known of rows that follow a closed formula with a slip; None if they do not."""
-    rows, right = case.rows, case.right
-    slipped = slip_in_formula(rows, right, case.floor, case.causes("linear"))
-    if slipped is None:
-        return None
-    named = tuple(sized(slipped.reading, slipped.reader, right, case.pendulum, rows, case.truth))
-    left = slipped.formula.rest
-    return Explanation(
-        rows.conventions, named, None, left, slip=slipped.text, explained=1 - left / case.error,
-        score=case.score_of(left) + slipped.price,
-    )  # fmt: skip
+def _plain(case: Case) -> Explanation:
+    """Return the explanation that has no cause."""
+    left = largest(case.rows.positions - case.truth)
+    return Explanation(case.rows.conventions, corrected_m=left, score=case.score_of(left))
 
 
 def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Explanation | None:
-    """Return the approximation of the source papers that the rows follow; None if causes explain them as well."""
-    rows = case.rows
-    found = approximated(scene, rows, case.truth)
-    if found is None or (named is not None and found.model.exact_to_m > PLAINLY * named.corrected_m):
+    """Return the approximation of the source papers that leaves next to nothing, of equal ones the first.
+
+    None if there is none, or causes explain the rows as well.
+    """
+    rows, truth = case.rows, case.truth
+    count = rows.positions.shape[1]
+    if count == 3 and not float(truth[:, 2].max()) < -LOW * float(scene.exact.length):
         return None
-    corrected = found.model.exact_to_m
-    exact = corrected <= case.enough and all(one.id in HARMLESS for one in rows.conventions)
-    return Explanation(
-        rows.conventions, (found.cause,), found.model if exact else None, corrected,
-        explained=1 - rms(found.left) / case.error, score=case.score_of(corrected) + NAMED,
-    )  # fmt: skip
+    best: tuple[Deviation, Model, Array] | None = None
+    least = max(SHARE * float(np.linalg.norm(rows.positions - truth)), rows.noise * len(rows.times) ** 0.5)
+    for word, motion in APPROXIMATIONS.items():
+        if not isinstance(motion, Motion) or motion.refuses(scene) is not None:
+            continue
+        positions = motion.trajectory(scene, rows.times)[:, :count]
+        left = rows.positions - positions
+        rest = float(np.linalg.norm(left))
+        if rest < (least if best is None else least / 2):
+            least, costs = rest, largest(positions - truth)
+            text = f"solves {motion.title} ({motion.where}) instead of the full equations"
+            best = Deviation(word, text, costs, "model"), Model(word, motion.title, largest(left), costs), left
+    if best is None or (named is not None and best[1].exact_to_m > PLAINLY * named.corrected_m):
+        return None
+    cause, model, left = best
+    corrected = model.exact_to_m
+    exact = corrected <= case.enough and all(convention.id in HARMLESS for convention in rows.conventions)
+    return case.explanation((cause,), corrected, rms(left), NAMED, model if exact else None)
 
 
 def _sample(count: int) -> Array:

@@ -1,55 +1,76 @@
-"""The families of models that are fitted to rows: linear, linear in the angle of the cord, and the sphere."""
+"""The families of models that are fitted to rows: linear, linear in the angle of the cord, and the sphere.
+
+None needs the truth. The best values of `theta`, and how sharply the file determines each of them (`slopes`), are read
+by `readings`.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from reference.numbers.precision import Array
 
-from .pendulum import NAMES, Fit, Pendulum, fit_pendulum
+from ...observed.least_squares import best_change
 from .phasors import Phasors, as_angles, fit_phasors
-from .programs import Program
-from .rows import Rows, rms
+from .programs import NAMES, Pendulum, Program, phasors_of, theta_of
+from .unexplained import Case, rms
 
-FITTED = {"linear": ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")}
+LINEAR = ("turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy")  # numbers that two phasors tell
+STEPS = 16  # Gauss-Newton steps in one window at most
+DAMPING = (0.0, 1e-7, 1e-5, 1e-3)  # of steps, after each that fails
+SEEN = 1e-6  # of the amplitude: how far a nudge moves the rows, for differences that are linear and not noise
+WIDTHS = np.array([1e4] * 3 + [1.0] * 3 + [1.0] + [1.0] * 5 + [3.0] * 2)  # in scales: how far a number may be off
+HOPELESS = 0.05  # of the amplitude: what leaves more in a window is not followed to the next
+WINDOWS = 8.0  # ratio of the lengths of one window and the one before
 
 
 @dataclass(frozen=True)
-class Family:
-    """A family of models with its fit."""
+class Fit:
+    """The best theta of a family, what is left, and how the rows answer to each number.
+
+    Attributes:
+        kind: of the family: sphere; linear; or angle, linear in the angle.
+        theta: the best values, as `NAMES`.
+        rest: root mean square of what is left, in m.
+        free: indices of the numbers that were fitted.
+        slopes: d rows / d theta for these, over sqrt(rows), so that |slopes @ change| is a root mean square in m.
+    """
 
     kind: str
-    fit: Fit
+    theta: Array
+    rest: float
+    free: tuple[int, ...]
+    slopes: Array
 
 
-def families_of(rows: Rows, right: Program, pendulum: Pendulum, frequency: float, floor: float) -> Iterator[Family]:
-    """Yield the families that were fitted: linear, linear in the angle, and the sphere."""
+def fits_of(case: Case) -> Iterator[Fit]:
+    """Yield the fits of the families: linear, linear in the angle, and the sphere."""
+    rows, right = case.rows, case.right
     plane = rows.positions[:, 0] + 1j * rows.positions[:, 1]
     best, phasors_of_best = math.inf, None
     for kind in ("linear", "angle"):
         seen = plane if kind == "linear" else as_angles(plane, right.length)
-        fitted = fit_phasors(rows.times, seen, frequency)
+        fitted = fit_phasors(rows.times, seen, case.frequency)
         if fitted is None:
             continue
         phasors, rest = fitted
         if rest < best:
             best, phasors_of_best = rest, phasors
-        yield Family(kind, _fit_of(phasors, rest, rows.times, right))
-    sphere = _sphere(rows, right, pendulum, phasors_of_best, best, floor)
+        yield _fit_of(kind, phasors, rest, rows.times, right)
+    sphere = _sphere(case, phasors_of_best, best)
     if sphere is not None:
-        yield Family("sphere", sphere)
+        yield sphere
 
 
-def _sphere(
-    rows: Rows, right: Program, pendulum: Pendulum, phasors: Phasors | None, rest: float, floor: float
-) -> Fit | None:
+def _sphere(case: Case, phasors: Phasors | None, rest: float) -> Fit | None:
     """Return the best spherical pendulum; None if nothing fits, or the phasors fit and it is plainly another motion."""
+    rows, right, floor = case.rows, case.right, case.floor
     nominal = right.theta()
-    plane = rows.positions[:, :2] @ np.array([1, 1j])
+    plane = rows.plane @ np.array([1, 1j])
     g = right.g / right.length or abs(nominal[5])
     scales = np.array(
         [*[max(abs(right.rate), 1e-6)] * 3, g, g, g, math.sqrt(g), *[right.length] * 2,
@@ -70,21 +91,17 @@ def _sphere(
             linear = guess.copy()
             linear[5] = -phasors.square.real
             linear[9:11] = phasors.speed.real, phasors.speed.imag
-            apart = pendulum.rows(linear, rows.times, 2) - rows.positions[:, :2]
+            apart = case.pendulum.rows(linear, rows.times, 2) - rows.plane
             if not rms(apart) < 30 * floor:
                 return None
-    return fit_pendulum(pendulum, rows.times, rows.positions, guesses, scales, max(rows.noise, floor / 100))
+    return fit_pendulum(case.pendulum, rows.times, rows.positions, guesses, scales, max(rows.noise, floor / 100))
 
 
-def _fit_of(phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
+def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
     """Return two phasors as a fit of theta, with the slopes by central differences."""
-    theta = np.zeros(len(NAMES))
-    pull = phasors.centre * phasors.square.real
-    theta[2], theta[5], theta[6] = phasors.beta, -phasors.square.real, phasors.drag
-    theta[3:5] = pull.real, pull.imag
-    theta[7:11] = phasors.start.real, phasors.start.imag, phasors.speed.real, phasors.speed.imag
+    theta = theta_of(phasors, np.zeros(len(NAMES)))
     theta[11] = right.length
-    free = tuple(NAMES.index(name) for name in FITTED["linear"])
+    free = tuple(NAMES.index(name) for name in LINEAR)
     omega = abs(phasors.square) ** 0.5
     size = max(abs(phasors.start), abs(phasors.speed) / omega if omega else 0.0) or 1.0
     sizes = {2: omega, 3: omega**2 * size, 4: omega**2 * size, 5: omega**2, 6: omega}
@@ -95,7 +112,7 @@ def _fit_of(phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
         for side in (1, -1):
             other = theta.copy()
             other[i] += side * nudge
-            moved.append(_phasors_of(other).at(times))
+            moved.append(phasors_of(other).at(times))
         slope = (moved[0] - moved[1]) / (2 * nudge)
         columns.append(np.column_stack([slope.real, slope.imag]).ravel())
     slopes = np.column_stack(columns) / math.sqrt(len(times))
@@ -105,34 +122,88 @@ def _fit_of(phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
     slopes = np.column_stack([slopes, np.zeros(len(slopes))])
     apart = np.zeros((1, slopes.shape[1]))
     apart[0, -1] = answer * max(abs(xx - yy), abs(xx)) / 2
-    return Fit(theta, rest, (*free, 12), np.vstack([slopes, apart]))
+    return Fit(kind, theta, rest, (*free, 12), np.vstack([slopes, apart]))
 
 
-def _phasors_of(theta: Array) -> Phasors:
-    square = -theta[5]
-    centre = complex(theta[3], theta[4]) / square if square else 0j
-    return Phasors.of(theta[2], square, theta[6], centre, complex(theta[7], theta[8]), complex(theta[9], theta[10]))
+def windows(times: Array, ratio: float, least: int, short: int) -> list[int]:
+    """Return numbers of rows from the first on, each span `ratio` times the one before it, the last that of all rows.
+
+    Args:
+        times: of the rows in s, from 0 on.
+        ratio: of two spans.
+        least: rows of a span at least.
+        short: rows of a span that is not divided any more.
+    """
+    ends, span = [len(times)], float(times[-1])
+    while span > 0 and ends[-1] > short:
+        span /= ratio
+        ends.append(max(least, int(np.searchsorted(times, span)) + 1))
+    return sorted(set(ends))
 
 
-def pendulum_of(program: Program, pendulum: Pendulum) -> tuple[Pendulum, Array]:
-    """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""
-    theta = program.theta()
-    theta[NAMES.index("gradient")] = program.gradient
-    return replace(pendulum, square=program.gradient_square), theta
+def fit_pendulum(
+    pendulum: Pendulum, times: Array, rows: Array, guesses: Sequence[Array], scales: Array, noise: float
+) -> Fit | None:
+    """Fit theta by Gauss-Newton from the best of some guesses, the span growing; None if nothing fits all rows.
+
+    A number that the rows do not determine stays near its guess: it is held there as loosely as `WIDTHS` says.
+    """
+    first, *longer = windows(times, WINDOWS, 16, 24)
+    small = np.full(len(NAMES), 1e-6)
+    fits = [_in_window(pendulum, times[:first], rows[:first], guess, guess, scales, noise, small) for guess in guesses]
+    found, guess = min(zip(fits, guesses, strict=True), key=lambda pair: pair[0].rest)
+    size = float(np.abs(rows[:, :2]).max())
+    for count in longer:
+        if not found.rest <= HOPELESS * float(np.abs(rows[:count, :2]).max()):
+            return None
+        answers = np.linalg.norm(found.slopes * scales, axis=0) * WINDOWS
+        nudges = np.clip(SEEN * size / np.maximum(answers, 1e-300), 1e-13, 1e-2)
+        found = _in_window(pendulum, times[:count], rows[:count], found.theta, guess, scales, noise, nudges)
+    return found if found.rest <= HOPELESS * float(np.abs(rows[:, :2]).max()) else None
 
 
-def positions_of(program: Program, pendulum: Pendulum, rows: Rows) -> Array:
-    """Return what a program writes, in the rows' columns."""
-    if program.kind == "sphere":
-        own, theta = pendulum_of(program, pendulum)
-        return own.rows(theta, rows.times, rows.positions.shape[1])
-    plane = program.phasors().at(rows.times)
-    if program.kind == "angle":
-        angle = np.abs(plane) / program.length
-        safe = np.where(angle > 0, angle, 1.0)
-        plane = plane * np.where(angle > 0, np.sin(safe) / safe, 1.0)
-    found = np.column_stack([plane.real, plane.imag])
-    if rows.positions.shape[1] == 3:
-        below = np.maximum(program.length**2 - np.abs(plane) ** 2, 0)
-        found = np.column_stack([found, -np.sqrt(below)])
-    return found
+def _in_window(
+    pendulum: Pendulum,
+    times: Array,
+    rows: Array,
+    theta: Array,
+    guess: Array,
+    scales: Array,
+    noise: float,
+    nudges: Array,
+) -> Fit:
+    """Return the best fit of a window: slopes are kept while they serve, a step that fails is tried again, damped."""
+    columns, root = rows.shape[1], math.sqrt(len(times))
+    slopes, fresh, damping = None, False, list(DAMPING)
+    best, least = theta, math.inf
+    kept = np.zeros(rows.size)
+    for _ in range(STEPS):
+        left = (rows - pendulum.rows(theta, times, columns)).ravel()
+        size = float(np.linalg.norm(left)) / root
+        stuck = not size < 0.5 * least
+        if size < least:
+            best, least, kept = theta, size, left
+        if least < noise:
+            break
+        if slopes is None or (stuck and not fresh):
+            slopes, fresh = pendulum.slopes(best, times, columns, scales, nudges), True
+        elif not stuck:
+            fresh = False
+        elif len(damping) == 1:
+            break
+        else:
+            damping.pop(0)
+        if not np.isfinite(slopes).all():
+            least = math.inf
+            break
+        hold = max(noise, 1e-3 * least) * root
+        theta = best + scales * _step(slopes, kept, (best - guess) / scales, hold, damping[0])
+    if slopes is None:
+        slopes = pendulum.slopes(best, times, columns, scales, nudges)
+    return Fit("sphere", best, least, tuple(range(len(NAMES))), slopes / scales / root)
+
+
+def _step(slopes: Array, left: Array, off: Array, noise: float, damping: float) -> Array:
+    """Return the change of theta in scales that least squares ask for, each number held near its guess."""
+    holds = noise / WIDTHS
+    return best_change(np.vstack([slopes, np.diag(holds)]), np.concatenate([left, -holds * off]), damping)

@@ -1,11 +1,16 @@
-"""The findings of an explanation: conventions, sized causes, the model that a file is exact within, what is left."""
+"""Explanations: the causes of an error, the model that a file is exact within, and the lines that say so."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ...candidates.candidate import Convention
+from ...candidates.candidate import Deviation
+
+HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
+UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
+BEGIN = "It seems that your program"
 
 
 @dataclass(frozen=True)
@@ -25,29 +30,6 @@ class Diagnosis:
     text: str
     shift: float | None = None
     also: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class SizedCause:
-    """A cause with its size.
-
-    Attributes:
-        id: a stable word.
-        text: the end of the sentence "Your program …".
-        size_m: the distance in m by which it moves the bob, on top of those before it.
-        stage: gravity, model, input, release, frame, clock or integrator.
-        value: a fitted number, in its unit.
-        shift: by how much it differs from the scene's.
-        uncertainty: of it, from what is left.
-    """
-
-    id: str
-    text: str
-    size_m: float
-    stage: str
-    value: float | None = None
-    shift: float | None = None
-    uncertainty: float | None = None
 
 
 @dataclass(frozen=True)
@@ -81,8 +63,8 @@ class Explanation:
         score: decades, as in `readings`: of two explanations the lower one is the better.
     """
 
-    conventions: tuple[Convention, ...] = ()
-    causes: tuple[SizedCause, ...] = ()
+    conventions: tuple[Deviation, ...] = ()
+    causes: tuple[Deviation, ...] = ()
     model: Model | None = None
     corrected_m: float = math.nan
     slip: str = ""
@@ -98,4 +80,28 @@ class Explanation:
         first = (models or sorted(self.causes, key=lambda cause: -cause.size_m))[0]
         texts = "; it ".join(cause.text for cause in self.causes)
         others = tuple(cause.id for cause in self.causes if cause is not first)
-        return Diagnosis(first.id, self.explained, f"It seems that your program {texts}.", first.shift, others)
+        return Diagnosis(first.id, self.explained, f"{BEGIN} {texts}.", first.shift, others)
+
+    def lines(self) -> Iterator[str]:
+        """Yield what is known, line by line, for people."""
+        for convention in self.conventions:
+            yield f"Your file {convention.text}."
+        begin = f"{BEGIN} "
+        if self.model is not None:
+            begin = "- "
+            yield (
+                f"As that model it is exact to {self.model.exact_to_m:.2g} m; "
+                f"against the full Lagrangian it is {self.model.costs_m:.3g} m off:"
+            )
+        elif len(self.causes) > 1:
+            begin = "- "
+            yield f"{BEGIN}, most fundamental first,"
+        for cause in self.causes:
+            yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
+        if self.slip:
+            yield self.slip
+        if self.causes or any(convention.id not in UNCORRECTED for convention in self.conventions):
+            these = "this" if len(self.causes) == 1 else "all this"
+            yield f"With {these} put right, {self.corrected_m:.2g} m are left."
+        elif not self.slip:
+            yield "No mistake known to foucault explains the error."

@@ -1,92 +1,55 @@
-"""Find the best reading of a file among the families that fit it, and the explanation that follows from it."""
+"""Find the best reading of a file among the families that fit it, and name its causes with their sizes."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from reference.numbers.precision import Array
 
+from ...candidates.candidate import Deviation
 from ...observed.least_squares import by_differences, gauss_newton
-from .causes import Cause, causes
-from .families import Family, families_of, positions_of
-from .findings import Explanation, SizedCause
-from .naming import CLEAN, LOOSE, WIDE, in_whole_steps, model_of, sized, told_as_loose, trifling
-from .pendulum import Pendulum
-from .programs import Program
-from .readings import Reader, Reading
-from .rows import Rows, largest, rms
+from .causes import causes_of
+from .families import fits_of
+from .findings import HARMLESS, Explanation, Model
+from .readings import SAME, Reader, Reading
+from .unexplained import Case, largest, rms
 
-HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
 TRIED = 6  # readings of a family that are run
 POLISHED = 3  # steps by which fitted numbers are moved
 BETTER = 0.9  # of what was left, for a step that is taken
-EXACT = 1e-14  # of the cord: two numbers that differ by less are one
 EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}  # decades by which a simpler family has to be better
-CONVENTION = 0.3  # decades that a convention has to explain
 NAMED_SHARE = 0.03  # of the error that may be left if causes are to be named
 FITTED_SHARE = 0.01  # and if one of them is a fitted number
+ORDER = ("gravity", "model", "input", "release", "frame", "clock", "integrator")
+LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
+STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
+CLEAN = 1e-3  # of what an integrator does: a named one leaves less
+WIDE = 2.0  # times the square of the swing: what the leading error of a step leaves of the whole one
+APART = 0.02  # of a step: how far a whole number of them may be from the spacing of the rows
+MODELS = {
+    "linear": ("linear_g", "is the linear two-dimensional model: its period does not grow with the amplitude"),
+    "angle": ("linear_in_angle", "is linear in the angle of the cord: its period does not grow with the amplitude"),
+}
+TITLES = {
+    "linear_g": "the linear two-dimensional model", "linear_in_angle": "the model linear in the angle",
+    "no_centrifugal": "no centrifugal force (g effective)", "effective_gravity": "g effective",
+    "uniform_gravity": "a centrifugal force constant along the swing", "no_tilt": "no horizontal centrifugal force",
+    "point_mass": "gravity of a point mass", "sphere": "a spherical Earth", "mean_sphere": "a spherical Earth",
+    "turned_plane": "a plane turned by hand", "turned_plane_sign": "a plane turned by hand, the wrong way",
+}  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Case:
-    """A file that is to be explained.
-
-    Attributes:
-        rows: of the file, conventions put right.
-        truth: the positions of the full model at their times in m, shape (rows, 2 or 3).
-        right: what a right program computes with.
-        pendulum: runs a program.
-        frequency: of the scene's swing in rad/s.
-        allowed_m: distance in m that counts as agreement.
-    """
-
-    rows: Rows
-    truth: Array
-    right: Program
-    pendulum: Pendulum
-    frequency: float
-    allowed_m: float
-
-    @property
-    def error(self) -> float:
-        """Root mean square error of the rows in m."""
-        return rms(self.rows.positions - self.truth)
-
-    @property
-    def floor(self) -> float:
-        """Root mean square in m below which nothing is asked."""
-        return max(self.rows.noise, self.allowed_m / 3)
-
-    @property
-    def enough(self) -> float:
-        """Largest error in m that may be left."""
-        return max(self.allowed_m, 1.5 * self.rows.noise)
-
-    def score_of(self, left: float) -> float:
-        """Return decades by which what is left exceeds the tolerance, plus what the conventions cost."""
-        return math.log10(max(left / self.allowed_m, 1e-2)) + CONVENTION * len(self.rows.conventions)
-
-    def causes(self, kind: str) -> list[Cause]:
-        """Return the causes that its program may have as a member of a family."""
-        rows, right = self.rows, self.right
-        off = np.abs(rows.positions[0, :2] - (right.x, right.y)).max()
-        released = rows.times[0] == 0 and off <= 2 * rows.noise + EXACT * right.length
-        return list(causes(right, kind, rows.cord, bool(released)))
+def of_causes(case: Case) -> Explanation | None:
+    """Return the explanation by the fewest causes; None if they leave too much for anything to be named."""
+    best = best_of(case)
+    return None if best is None else explanation_of(case, best)
 
 
-@dataclass(frozen=True)
-class Best:
-    """The best reading of a case: its family, and what holds readings against that family's fit."""
-
-    family: Family
-    reader: Reader
-    reading: Reading
-
-
-def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Best | None:
+def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Reading | None:
     """Return the best reading of all families; None if it leaves too much for anything to be named.
 
     Args:
@@ -94,95 +57,198 @@ def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Best | N
         integrators: whether an integrator may be among the causes.
         sure: whether it has to leave little enough for its causes to be named.
     """
-    rows, right, pendulum = case.rows, case.right, case.pendulum
-    families = list(families_of(rows, right, pendulum, case.frequency, case.floor))
-    least = min((family.fit.rest for family in families), default=math.inf)
-    if sure and least > max(NAMED_SHARE * case.error, 1.5 * rows.noise):
+    fits = list(fits_of(case))
+    noise = 1.5 * case.rows.noise
+    least = min((fit.rest for fit in fits), default=math.inf)
+    if sure and least > max(NAMED_SHARE * case.error, noise):
         return None
     floor = max(case.floor, 1.2 * least)
-    best: Best | None = None
+    best: Reading | None = None
     lowest = math.inf
-    for family in families:
-        if family.fit.rest > 3 * max(least, floor / 1.2):
+    for fit in fits:
+        if fit.rest > 3 * max(least, floor / 1.2):
             continue
-        reader = Reader(replace(right, kind=family.kind), family.fit, floor)
-        known = [cause for cause in case.causes(family.kind) if integrators or cause.stage != "integrator"]
+        reader = Reader(replace(case.right, kind=fit.kind), fit, floor)
+        known = [cause for cause in causes_of(case, fit.kind) if integrators or cause.stage != "integrator"]
         likely = reader.readings(known)[:TRIED]
-        likely += [reader.without(one, cause) for one in likely[:2] for cause in one.causes]
-        for one in likely:  # the distance from the fit is linear in theta: what counts is the program itself
-            leaves = rms(rows.positions - positions_of(one.program, pendulum, rows))
+        likely += [reader.without(reading, cause) for reading in likely[:2] for cause in reading.causes]
+        for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
+            leaves = rms(case.left(reading.program))
             if math.isfinite(leaves):
-                run = reader.scored(one.causes, one.program, leaves)
-                if run.score + EXTRA[family.kind] < lowest:
-                    best, lowest = Best(family, reader, run), run.score + EXTRA[family.kind]
+                run = reader.scored(reading.causes, reading.program, leaves)
+                if run.score + EXTRA[fit.kind] < lowest:
+                    best, lowest = run, run.score + EXTRA[fit.kind]
     if best is not None:
-        best = replace(best, reading=_polished(case, best))
+        best = _polished(case, best)
     if best is None or not sure:
         return best
-    share = FITTED_SHARE if any(cause.free for cause in best.reading.causes) else NAMED_SHARE
-    return best if best.reading.rest <= max(share * case.error, 1.5 * rows.noise) else None
+    share = FITTED_SHARE if any(cause.free for cause in best.causes) else NAMED_SHARE
+    return best if best.rest <= max(share * case.error, noise) else None
 
 
-def _polished(case: Case, best: Best) -> Reading:
+def _polished(case: Case, reading: Reading) -> Reading:
     """Return the best reading with its fitted numbers moved to where its program, run, leaves least.
 
     The numbers of a reading are linear in those of the fit, which a number that is far off is not.
     """
-    reading, positions = best.reading, case.rows.positions
+    positions = case.rows.positions
     names = [cause.free for cause in reading.causes if cause.free]
     if not names:
         return reading
 
     def rows_of(values: Array) -> Array:
         program = reading.program.with_inputs(names, values)
-        found = positions_of(program, case.pendulum, case.rows) if program.sensible else np.full_like(positions, np.nan)
-        return found.ravel()
+        return (case.positions(program) if program.sensible else np.full_like(positions, np.nan)).ravel()
 
     start = np.array([float(getattr(reading.program, name)) for name in names])
-    nudges = np.array([best.reader.nudge(reading.program, name) for name in names])
+    nudges = np.array([reading.reader.nudge(reading.program, name) for name in names])
     model = by_differences(rows_of, positions.ravel(), nudges)
     values, size = gauss_newton(model, start, steps=POLISHED, gain=BETTER)
     if (values == start).all():
         return reading
     program = reading.program.with_inputs(names, values)
-    return best.reader.scored(reading.causes, program, size / math.sqrt(len(positions)))
+    return reading.reader.scored(reading.causes, program, size / math.sqrt(len(positions)))
 
 
-def explanation_of(case: Case, best: Best) -> Explanation:
+def explanation_of(case: Case, reading: Reading) -> Explanation:
     """Return the explanation that the best reading of a case makes up."""
-    rows, right = case.rows, case.right
-    reading = _without_needless_step(case, best.reading)
-    named = list(sized(reading, best.reader, right, case.pendulum, rows, case.truth))
-    left = rows.positions - positions_of(reading.program, case.pendulum, rows)
+    rows, reader = case.rows, reading.reader
+    kind, reading = reader.right.kind, _without_needless_step(case, reading)
+    causes = list(sized(case, reading))
+    left = case.left(reading.program)
     corrected = largest(left)
-    kind = best.family.kind
-    width = float(np.hypot(*rows.positions[:, :2].T).max()) / right.length if kind == "sphere" else 0.0
+    width = float(np.hypot(*rows.plane.T).max()) / case.right.length if kind == "sphere" else 0.0
     clean = max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
-    named = list(in_whole_steps(named, float(rows.times[1] - rows.times[0]), clean))
-    named = [
+    causes = list(in_whole_steps(causes, float(rows.times[1] - rows.times[0]), clean))
+    causes = [
         cause
-        for cause in told_as_loose(named, max(corrected - 5 * rows.noise, 0.0), case.frequency, clean)
-        if len(named) == 1 or not trifling(cause, case.allowed_m)
+        for cause in as_loose(causes, max(corrected - 5 * rows.noise, 0.0), case.frequency, clean)
+        if len(causes) == 1 or not trifling(cause, case.allowed_m)
     ]
-    more = corrected > case.allowed_m and reading.rest > 2 * max(rows.noise, best.family.fit.rest)
-    if more and best.reader.like_a_step(reading, case.causes(kind)):
-        named.append(SizedCause("integrator_loose", LOOSE, corrected, "integrator"))
-    result = None
-    simple = {cause.stage for cause in named} <= {"gravity", "model"}
-    if simple and corrected <= case.allowed_m and all(one.id in HARMLESS for one in rows.conventions):
-        result = model_of(kind, named, corrected, largest(rows.positions - case.truth))
-    explained = 1 - rms(left) / case.error
-    score = case.score_of(corrected) + sum(cause.cost for cause in reading.causes)
-    return Explanation(rows.conventions, tuple(named), result, corrected, explained=explained, score=score)
+    more = corrected > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
+    if more and reader.like_a_step(reading, causes_of(case, kind)):
+        causes.append(_loose(corrected))
+    model = None
+    simple = {cause.stage for cause in causes} <= {"gravity", "model"}
+    if simple and corrected <= case.allowed_m and all(convention.id in HARMLESS for convention in rows.conventions):
+        model = _model_of(kind, causes, corrected, largest(rows.positions - case.truth))
+    price = sum(cause.cost for cause in reading.causes)
+    return case.explanation(tuple(causes), corrected, rms(left), price, model)
 
 
 def _without_needless_step(case: Case, reading: Reading) -> Reading:
     """Return a reading without its integrator where what is left without it is within the tolerance."""
-    bare = replace(reading.program, method=None, step=0.0)
     if reading.program.method is None:
         return reading
-    left = case.rows.positions - positions_of(bare, case.pendulum, case.rows)
+    bare = replace(reading.program, method=None, step=0.0)
+    left = case.left(bare)
     if not largest(left) <= case.allowed_m:
         return reading
     others = tuple(cause for cause in reading.causes if cause.stage != "integrator")
     return replace(reading, causes=others, program=bare, rest=rms(left))
+
+
+def sized(case: Case, reading: Reading) -> Iterator[Deviation]:
+    """Yield the causes in their order, each with the distance by which it moves the bob."""
+    kind = reading.reader.right.kind
+    changes = [(cause.stage, cause) for cause in reading.causes] + [("model", None)] * (kind != "sphere")
+    program, before = case.right, case.truth
+    for stage, cause in sorted(changes, key=lambda change: ORDER.index(change[0])):
+        value = shift = uncertainty = None
+        if cause is None:
+            (word, text), program = MODELS[kind], replace(program, kind=kind)
+        else:
+            word, text, program = cause.id, cause.text, cause.change(program)
+            if cause.free:
+                value = reading.value(cause)
+                program = program.with_input(cause.free, value)
+                shift = value - float(getattr(case.right, cause.free))
+                uncertainty = reading.reader.uncertainty(reading, cause)
+                text = cause.sentence(value, case.right)
+        after = case.positions(program)
+        yield Deviation(word, text, largest(after - before), stage, value, shift, uncertainty)
+        before = after
+
+
+def in_whole_steps(causes: Sequence[Deviation], spacing: float, share: float) -> Iterator[Deviation]:
+    """Yield the causes, a step that the rows' spacing holds a whole number of times put in place of the fitted one.
+
+    Args:
+        causes: those that were named.
+        spacing: of the rows in s.
+        share: of the step, within which it is known.
+    """
+    for cause in causes:
+        if cause.stage != "integrator" or not cause.value or cause.uncertainty is None:
+            yield cause
+            continue
+        many = round(spacing / cause.value)
+        known = share * many
+        if many and known < 0.5 and abs(spacing / cause.value - many) <= max(known, APART):
+            step = spacing / many
+            text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
+            yield replace(cause, value=step, shift=step, text=text)
+        else:
+            yield replace(cause, uncertainty=max(cause.uncertainty, share * cause.value))
+
+
+def as_loose(causes: Sequence[Deviation], left: float, frequency: float, clean: float) -> Iterator[Deviation]:
+    """Call an integrator by its name only where that leaves next to nothing; else say that its error is like it.
+
+    An integrator with a variable step moves the frequency and the amplitude as no fixed step does: numbers that were
+    fitted beside it and do less than it are part of the same error.
+
+    Args:
+        causes: those that were named.
+        left: the largest distance in m that they leave.
+        frequency: of the swing in rad/s.
+        clean: share of what an integrator does that it may leave.
+    """
+    fitted = {cause.id: cause for cause in causes if cause.shift is not None}
+    drag = fitted.get("pendulum.drag")
+    for word in ("site.gravity", "pendulum.length"):
+        other = fitted.get(word)
+        if drag is None or drag.shift is None or other is None:
+            continue
+        if _like_a_step(other) and abs(drag.shift) < 0.1 * STEP_LIKE * frequency:
+            # frequency and amplitude off together and by this little: no input does that, a step does
+            yield from (cause for cause in causes if cause not in (drag, other))
+            yield _loose(drag.size_m + other.size_m)
+            return
+    size = max((cause.size_m for cause in causes if cause.stage == "integrator"), default=0.0)
+    loose = size > 0 and left > clean * size
+    for cause in causes:
+        if cause.id in ("site.gravity", "pendulum.length") and _like_a_step(cause) and left > CLEAN * cause.size_m:
+            if not size:
+                yield _loose(cause.size_m, cause.stage)
+        elif loose and cause.stage == "integrator":
+            yield _loose(cause.size_m)
+        elif not (loose and cause.value is not None and cause.size_m < size):
+            yield cause
+
+
+def _loose(size_m: float, stage: str = "integrator") -> Deviation:
+    return Deviation("integrator_loose", LOOSE, size_m, stage)
+
+
+def _like_a_step(cause: Deviation) -> bool:
+    return cause.value is not None and cause.shift is not None and abs(cause.shift) < STEP_LIKE * abs(cause.value)
+
+
+def trifling(cause: Deviation, allowed_m: float) -> bool:
+    """Return whether a cause moves nothing that counts: a small step, or the scene's own number but for such a step."""
+    if cause.stage == "integrator":
+        return cause.size_m <= allowed_m
+    if cause.value is None or cause.shift is None:
+        return False
+    return abs(cause.shift) < SAME * abs(cause.value) and cause.size_m < 10 * allowed_m
+
+
+def _model_of(kind: str, causes: Sequence[Deviation], exact: float, costs: float) -> Model | None:
+    """Return the model that causes make up; None if one of them is no simplification with a name."""
+    words = [cause.id for cause in causes]
+    if kind != "sphere":
+        words = [MODELS[kind][0], *(word for word in words if word != MODELS[kind][0])]
+    if not words or any(word not in TITLES for word in words):
+        return None
+    return Model("+".join(words), ", ".join(TITLES[word] for word in words), exact, costs)

@@ -10,7 +10,7 @@ A program that solves no equation but prints a formula keeps its rates whatever 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -19,11 +19,13 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...observed.least_squares import gauss_newton
-from .causes import NAMED, Cause
-from .pendulum import NAMES, Fit
-from .programs import Program
+from .causes import NAMED, causes_of
+from .families import Fit, windows
+from .findings import Explanation
+from .fitted import sized
+from .programs import NAMES, Program
 from .readings import Reader, Reading
-from .rows import Rows
+from .unexplained import Case, Rows
 
 PRODUCTS = ("cos ωt cos βt", "cos ωt sin βt", "sin ωt cos βt", "sin ωt sin βt", "the constant term")
 LEAST = 24  # rows, twice the numbers that are fitted
@@ -66,110 +68,71 @@ class Formula:
         pulled = -by_omega / (2 * self.omega)
         turned = by_beta + by_omega * self.beta / self.omega
         slopes = np.column_stack([turned.ravel(), pulled.ravel()]) / math.sqrt(len(times))
-        return Fit(theta, self.rest, (turn, pull), slopes)
+        return Fit("linear", theta, self.rest, (turn, pull), slopes)
+
+    def slips(self, program: Program, same: float) -> list[str]:
+        """Return what is said of each coefficient that differs by more than `same` from that of a linear model.
+
+        Its own are those of e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt).
+        """
+        theta = program.theta()
+        start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
+        push = (speed + 1j * self.beta * start) / self.omega
+        parts = [start, -1j * start, push, -1j * push, 0j]
+        size = float(np.abs(self.coefficients).max())
+
+        def number(value: float) -> str:
+            return f"{value:.6g}" if abs(value) > SAME * size else "0"
+
+        told = []
+        for i, name in enumerate("xy"):
+            for product, value, part in zip(PRODUCTS, self.coefficients[:, i], parts, strict=True):
+                right = (part.real, part.imag)[i]
+                if abs(value - right) > same:
+                    where = f"in the formula of {name}, {product} has {number(value)} m"
+                    told.append(f"{where} where the model has {number(right)} m")
+        return told
 
 
-@dataclass(frozen=True)
-class Slipped:
-    """A closed formula with a slip.
-
-    Attributes:
-        reading: the causes that its rates and its release tell.
-        reader: holds them against its rates.
-        formula: the one that the rows follow.
-        slips: equation, product, its coefficient in m and the model's.
-    """
-
-    reading: Reading
-    reader: Reader
-    formula: Formula
-    slips: tuple[tuple[str, str, float, float], ...]
-
-    @property
-    def price(self) -> float:
-        """Return the cost of the slips and causes in decades: of two readings the cheaper one is meant."""
-        return NAMED * len(self.slips) + sum(cause.cost for cause in self.reading.causes)
-
-    @property
-    def text(self) -> str:
-        """The slips in a sentence."""
-        told = (
-            f"in the formula of {name}, {product} has {self._number(value)} m where the model has {self._number(own)} m"
-            for name, product, value, own in self.slips
-        )
-        return f"It follows a closed formula with a slip: {'; '.join(told)}."
-
-    def _number(self, value: float) -> str:
-        size = float(np.abs(self.formula.coefficients).max())
-        return f"{value:.6g}" if abs(value) > SAME * size else "0"
+def of_formula(case: Case) -> Explanation | None:
+    """Return what is known of rows that follow a closed formula with a slip; None if they do not, or with too many."""
+    formula = fit_formula(case.rows, case.right)
+    if formula is None or formula.rest > case.floor:
+        return None
+    # rates that have to be fitted are those of equations with a slip, not of a formula
+    named = [cause for cause in causes_of(case, "linear") if cause.group != "drag" and not cause.free]
+    rates = [cause for cause in named if cause.stage in ("gravity", "model", "input")]
+    releases = [cause for cause in named if cause.stage == "release"]
+    same = max(SAME * float(np.hypot(case.right.x, case.right.y)), 10 * case.rows.noise)
+    best: tuple[float, Reading, str] | None = None
+    for turned in (formula, formula.mirrored):
+        reader = Reader(replace(case.right, kind="linear"), turned.fit(case.rows.times, case.right), case.floor)
+        reading = reader.readings(rates)[0]
+        if reading.rest > 2 * case.floor:
+            continue
+        released = [
+            replace(reading, causes=(*reading.causes, cause), program=cause.change(reading.program))
+            for cause in releases
+        ]
+        for likely in (reading, *released):
+            slips = turned.slips(likely.program, same)
+            price = NAMED * len(slips) + sum(cause.cost for cause in likely.causes)
+            if slips and len(slips) <= MOST and (best is None or price < best[0]):
+                best = price, likely, f"It follows a closed formula with a slip: {'; '.join(slips)}."
+    if best is None:
+        return None
+    price, reading, text = best
+    return case.explanation(tuple(sized(case, reading)), formula.rest, formula.rest, price, slip=text)
 
 
 def fit_formula(rows: Rows, right: Program) -> Formula | None:
     """Return the formula that leaves least, from the rates of the scene's own swing; None if the rows are too few."""
-    times, plane = rows.times, rows.positions[:, :2]
-    if len(times) < LEAST or not right.g or not right.length:
+    if len(rows.times) < LEAST or not right.g or not right.length:
         return None
-    best: Formula | None = None
     beta = right.rate * math.sin(math.radians(right.latitude))
     guesses = {(math.sqrt(right.g / right.length), sign * beta) for sign in (1, -1) if beta}
-    for guess in sorted(guesses):
-        found = _refined(times, plane, guess)
-        if found is not None and (best is None or found.rest < best.rest):
-            best = found
-    return best
-
-
-def slip_in_formula(rows: Rows, right: Program, floor: float, causes: Sequence[Cause]) -> Slipped | None:
-    """Return the slip in a closed formula that the rows show; None if they follow none, or one of too many slips.
-
-    Args:
-        rows: those of the file, conventions put right.
-        right: what a right program computes with.
-        floor: root mean square in m below which nothing more is asked.
-        causes: those that a linear model may have.
-    """
-    formula = fit_formula(rows, right)
-    if formula is None or formula.rest > floor:
-        return None
-    releases = [cause for cause in causes if cause.stage == "release" and not cause.free]
-    # rates that have to be fitted are those of equations with a slip, not of a formula
-    rates = [
-        one for one in causes if one.stage in ("gravity", "model", "input") and one.group != "drag" and not one.free
-    ]
-    best: Slipped | None = None
-    for turned in (formula, formula.mirrored):
-        reader = Reader(replace(right, kind="linear"), turned.fit(rows.times, right), floor)
-        reading = reader.readings(rates)[0]
-        if reading.rest > 2 * floor:
-            continue
-        for cause in (None, *releases):
-            program = cause.change(reading.program) if cause else reading.program
-            slips = _slips(turned, program, max(SAME * float(np.hypot(right.x, right.y)), 10 * rows.noise))
-            together = (*reading.causes, cause) if cause else reading.causes
-            found = Slipped(replace(reading, causes=together, program=program), reader, turned, slips)
-            if slips and len(slips) <= MOST and (best is None or found.price < best.price):
-                best = found
-    return best
-
-
-def _slips(formula: Formula, program: Program, same: float) -> tuple[tuple[str, str, float, float], ...]:
-    """Return equation, product, its coefficient and the model's, for each coefficient that is not the model's."""
-    own = _own(formula, program)
-    return tuple(
-        ("xy"[i], PRODUCTS[j], float(formula.coefficients[j, i]), float(own[j, i]))
-        for i in range(2)
-        for j in range(len(PRODUCTS))
-        if abs(formula.coefficients[j, i] - own[j, i]) > same
-    )
-
-
-def _own(formula: Formula, program: Program) -> Array:
-    """Return the coefficients of e^{-iβt} (z0 cos ωt + (v0 + iβ z0)/ω sin ωt)."""
-    theta = program.theta()
-    start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
-    push = (speed + 1j * formula.beta * start) / formula.omega
-    parts = [start, -1j * start, push, -1j * push, 0j]
-    return np.array([[part.real, part.imag] for part in parts])
+    fits = [_refined(rows.times, rows.plane, guess) for guess in sorted(guesses)]
+    return min((fit for fit in fits if fit is not None), key=lambda fit: fit.rest, default=None)
 
 
 def _basis(times: Array, omega: float, beta: float) -> Array:
@@ -190,12 +153,8 @@ def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula 
     """Fit by Gauss-Newton, the span growing so that no turn of the phase is lost."""
     rates = np.array(guess)
     hold = HELD * float(np.abs(plane).max())
-    ends, span = [len(times)], float(times[-1])
-    while ends[-1] > LEAST and span > 0:
-        span /= WINDOW
-        ends.append(max(LEAST, int(np.searchsorted(times, span)) + 1))
     left = math.inf
-    for count in sorted(set(ends)):
+    for count in windows(times, WINDOW, LEAST, LEAST):
         model = partial(_left, times[:count], plane[:count], hold * math.sqrt(count))
         rates, left = gauss_newton(model, rates, steps=STEPS, gain=GAIN)
         if not math.isfinite(left):

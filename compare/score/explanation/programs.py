@@ -1,7 +1,8 @@
-"""Programs: the numbers of a scene as a program may read them, its choices, and the `theta` that follows.
+"""Programs: the numbers of a scene as a program may read them, its choices, the `theta` that follows, its motion.
 
 A `Program` is the scene's numbers and a handful of choices; each mistake changes one of them. `theta` is what the
-motion depends on (`pendulum.NAMES`), so that many programs are held against one fit without running any.
+motion depends on (`NAMES`), so that many programs are held against one fit without running any. A `Pendulum` runs one:
+it swings on the sphere by a free vector Ω and a free pull, whatever a program calls them.
 """
 
 from __future__ import annotations
@@ -12,12 +13,18 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from reference import FoucaultError
+from reference.engines.trajectory import Variants
+from reference.model.constants import Constants
 from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
 
-from .integrators import Method
-from .phasors import Phasors
+from .phasors import Method, Phasors
 
+NAMES = (
+    "turn_x", "turn_y", "turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy", "length", "gradient",
+    "point_mass",
+)  # fmt: skip
 HIGHEST = 12000.0  # m, above and below the ellipsoid: nobody hangs a pendulum farther out
 
 
@@ -143,26 +150,24 @@ class Program:
 
     def _as_computed(self, theta: Array) -> Array:
         """Return theta as the integrator, the clock and a linear model make of it."""
-        phasors = self._computed(theta)
-        theta = theta.copy()
-        if self.kind != "sphere" or self.late or self.method is not None:
-            theta[7:11] = phasors.start.real, phasors.start.imag, phasors.speed.real, phasors.speed.imag
-        pull = phasors.centre * phasors.square.real
-        theta[2], theta[6], theta[5] = phasors.beta, phasors.drag, -phasors.square.real
-        theta[3:5] = pull.real, pull.imag
-        return theta
+        computed = theta_of(self._computed(theta), theta)
+        if self.kind == "sphere" and not self.late and self.method is None:
+            computed[7:11] = theta[7:11]
+        return computed
 
     def _computed(self, theta: Array) -> Phasors:
-        square = -theta[5] - (theta[2] ** 2 if self.turned_plane else 0.0)
+        theta = theta.copy()
+        if self.turned_plane:
+            theta[5] += theta[2] ** 2
         if self.kind != "sphere" and theta[12]:  # the mean of x and y: what it does to each is no matter of phasors
             xx, yy, *_ = self.gradient_square
-            square -= (xx + yy) / 2
-        start, speed = complex(theta[7], theta[8]), complex(theta[9], theta[10])
+            theta[5] += (xx + yy) / 2
+        start = complex(theta[7], theta[8])
         if self.kind == "angle" and start:
             out = abs(start) / self.length
             start = start * math.asin(min(out, 1.0)) / out
-        centre = complex(theta[3], theta[4]) / square if square else 0j
-        phasors = Phasors.of(theta[2], square, theta[6], centre, start, speed)
+            theta[7:9] = start.real, start.imag
+        phasors = phasors_of(theta)
         if self.method is not None and self.step > 0:
             phasors = self.method.computed(phasors, self.step)
         return phasors.later(self.late) if self.late else phasors
@@ -172,7 +177,7 @@ class Program:
         return self._computed(self._exact())
 
     def theta(self) -> Array:
-        """Return the numbers that the motion depends on, in the order of `pendulum.NAMES`."""
+        """Return the numbers that the motion depends on, in the order of `NAMES`."""
         theta = self._exact()
         if self.method is not None or self.late or self.turned_plane or self.kind != "sphere":
             theta = self._as_computed(theta)
@@ -185,3 +190,80 @@ class Program:
     def with_input(self, name: str, value: float) -> Program:
         """Return the program with one number replaced."""
         return replace(self, **{name: value})  # type: ignore[arg-type]
+
+
+def phasors_of(theta: Array) -> Phasors:
+    """Return the two phasors of a linear model with the numbers of theta."""
+    square = -theta[5]
+    centre = complex(theta[3], theta[4]) / square if square else 0j
+    return Phasors.of(theta[2], square, theta[6], centre, complex(theta[7], theta[8]), complex(theta[9], theta[10]))
+
+
+def theta_of(phasors: Phasors, theta: Array) -> Array:
+    """Return theta with the numbers that two phasors tell in place of its own."""
+    changed, pull = theta.copy(), phasors.centre * phasors.square.real
+    changed[2], changed[6], changed[5] = phasors.beta, phasors.drag, -phasors.square.real
+    changed[3:5] = pull.real, pull.imag
+    changed[7:11] = phasors.start.real, phasors.start.imag, phasors.speed.real, phasors.speed.imag
+    return changed
+
+
+@dataclass(frozen=True)
+class Pendulum:
+    """The spherical pendulum of a `theta`, in the units of the file.
+
+    Attributes:
+        model: runs it.
+        radius: distance to the centre of a point mass, for its gradient, in m.
+        square: xx, yy, yz, zz of the centrifugal force's gradient with gradient = 1, in 1/s².
+        fastest: sum of rates in 1/s beyond which nothing is run.
+    """
+
+    model: Variants
+    radius: float
+    square: tuple[float, float, float, float]
+    fastest: float = math.inf
+
+    def rows(self, theta: Array, times: Array, columns: int) -> Array:
+        """Return x, y (and z) in m, shape (times, columns); NaN where no such motion exists."""
+        rate = float(np.abs(theta[0:3]).max()) + abs(theta[6]) + math.sqrt(float(np.abs(theta[3:6]).max()))
+        reached = theta[11] ** 2 > theta[7] ** 2 + theta[8] ** 2
+        if not reached or not np.isfinite(theta).all() or rate > self.fastest:
+            return np.full((len(times), columns), np.nan)
+        lead = times[0] != 0
+        try:
+            span = np.concatenate([[0.0], times]) if lead else times
+            states = self.model.run(self.start(theta).tolist(), span, self.constants(theta))
+        except (FoucaultError, ValueError, ArithmeticError):
+            return np.full((len(times), columns), np.nan)
+        found: Array = states[int(lead) :, :columns]
+        return found
+
+    def constants(self, theta: Array) -> Constants:
+        """Return the constants of the force."""
+        length, gradient, point = theta[11:14]
+        pointing = point * abs(theta[5]) * length / self.radius if self.radius else 0.0
+        own = [gradient * part for part in self.square]
+        return Constants(
+            length=float(length),
+            turn=(float(theta[0]), float(theta[1]), float(theta[2])),
+            pull=(float(theta[3]), float(theta[4]), float(theta[5])),
+            centrifugal=(own[0] - pointing, own[1] - pointing, own[2], own[3] + 2 * pointing),
+            drag=float(theta[6]),
+        )
+
+    def start(self, theta: Array) -> Array:
+        """Return position and velocity of the release over the length, below the suspension and along the sphere."""
+        x, y, vx, vy = theta[7:11]
+        z = -math.sqrt(theta[11] ** 2 - x * x - y * y)
+        return np.asarray(np.array([x, y, z, vx, vy, -(x * vx + y * vy) / z]) / theta[11])
+
+    def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:
+        """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * columns, 14)."""
+        base = self.rows(theta, times, columns)
+        found = []
+        for i in range(len(NAMES)):
+            ahead = theta.copy()
+            ahead[i] += nudges[i] * scales[i]
+            found.append(((self.rows(ahead, times, columns) - base) / nudges[i]).ravel())
+        return np.column_stack(found)

@@ -9,7 +9,7 @@ one that contains the other loses.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -19,7 +19,7 @@ from reference.numbers.precision import Array
 
 from ...observed.least_squares import best_change, by_differences, gauss_newton
 from .causes import Cause
-from .pendulum import Fit
+from .families import Fit
 from .programs import Program
 
 ENOUGH = 5000  # combinations that are tried
@@ -32,16 +32,26 @@ HALVED = 0.5  # of what is left: a cause that leaves more does not count
 BELOW = 0.3  # what a decade counts below the floor: of two explanations the closer one
 NEWTON = 6  # steps that fit the free numbers of a combination
 GAIN = 0.99  # of what was left: a step that leaves more is not taken
+SMALLEST = {"g": 1.0, "length": 1.0, "latitude": 10.0, "rate": 7e-5, "drag": 1e-5, "late": 1.0, "altitude": 100.0}
 
 
 @dataclass(frozen=True)
 class Reading:
-    """A combination of causes: the program with them, what it would leave in m, and its score (less is better)."""
+    """A combination of causes.
+
+    Attributes:
+        causes: of different groups.
+        program: the right one with them, fitted numbers in place.
+        rest: root mean square in m that it would leave.
+        score: less is better.
+        reader: what the combination was held against.
+    """
 
     causes: tuple[Cause, ...]
     program: Program
     rest: float
     score: float
+    reader: Reader
 
     def value(self, cause: Cause) -> float:
         """Return the fitted number of a cause."""
@@ -55,7 +65,6 @@ class Reader:
     Attributes:
         right: what a right program computes with, with the family's kind.
         fit: the free fit of that family.
-        scales: size of each number of theta that matters, for the fits of numbers.
         floor: root mean square in m below which nothing more is asked.
     """
 
@@ -87,13 +96,13 @@ class Reader:
                     if found is not None:
                         longer.append(found)
                         least = min(least, found.score)
-            longer.sort(key=lambda one: one.score)
+            longer.sort(key=lambda reading: reading.score)
             best += longer[:BEAM]
             # of two mistakes as large as each other, neither lowers what is left by much: those that lower it at all
-            beam = [*longer[:BEAM], *sorted(longer[BEAM:], key=lambda one: one.rest)[:ASIDE]]
+            beam = [*longer[:BEAM], *sorted(longer[BEAM:], key=lambda reading: reading.rest)[:ASIDE]]
             if not beam:
                 break
-        best.sort(key=lambda one: one.score)
+        best.sort(key=lambda reading: reading.score)
         return [self._exactly_named(best[0], known), *best[1:]]
 
     def _exactly_named(self, reading: Reading, known: Sequence[Cause]) -> Reading:
@@ -108,7 +117,7 @@ class Reader:
                 program = other.change(reading.program)
                 exact = float(getattr(program, cause.free))
                 if exact != value and abs(exact - value) <= SAME * abs(value):
-                    together = tuple(other if one is cause else one for one in reading.causes)
+                    together = tuple(other if part is cause else part for part in reading.causes)
                     return self._judged(together, program)
         return reading
 
@@ -117,7 +126,7 @@ class Reader:
         if not program.sensible:
             return None
         together = (*reading.causes, cause)
-        free = [one.free for one in together if one.free]
+        free = [part.free for part in together if part.free]
         if not free:
             return self._judged(together, program)
         if len(free) > 3:
@@ -128,7 +137,7 @@ class Reader:
             square, drag = self._shown(reading.program)
             guesses = (program.method.first_step(-own[5], square, own[6], drag), *(q / omega for q in PHASES))
             tried = [self._judged(together, program.with_input("step", step)) for step in guesses if step > 0]
-            program = min(tried, key=lambda one: one.rest).program
+            program = min(tried, key=lambda reading: reading.rest).program
         return self._fitted(together, program, free)
 
     def _shown(self, program: Program) -> tuple[float, float]:
@@ -143,8 +152,8 @@ class Reader:
         """Fit the free numbers by Gauss-Newton."""
 
         def off_of(values: Array) -> Array:
-            one = program.with_inputs(free, values)
-            return self._off(one) if one.sensible else np.full(len(self._triangle), np.nan)
+            moved = program.with_inputs(free, values)
+            return self._off(moved) if moved.sensible else np.full(len(self._triangle), np.nan)
 
         start = np.array([float(getattr(program, name)) for name in free])
         nudges = np.array([self.nudge(program, name) for name in free])
@@ -152,7 +161,7 @@ class Reader:
         values, _ = gauss_newton(model, start, steps=NEWTON, gain=GAIN)
         return self._judged(together, program.with_inputs(free, values))
 
-    def like_a_step(self, reading: Reading, known: Sequence[Cause]) -> bool:
+    def like_a_step(self, reading: Reading, known: Iterable[Cause]) -> bool:
         """Return whether what a reading leaves is an integrator's, too little for its method to be named.
 
         A drag or a step halves it then, and no input does as well.
@@ -179,7 +188,7 @@ class Reader:
     @staticmethod
     def nudge(program: Program, name: str) -> float:
         """Return a change of a number that is small for it."""
-        return 1e-6 * max(abs(float(getattr(program, name))), _SCALES.get(name, 1e-3))
+        return 1e-6 * max(abs(float(getattr(program, name))), SMALLEST.get(name, 1e-3))
 
     def _judged(self, together: tuple[Cause, ...], program: Program) -> Reading:
         off = float(np.linalg.norm(self._off(program)))
@@ -188,11 +197,11 @@ class Reader:
     def without(self, reading: Reading, cause: Cause) -> Reading:
         """Return a reading without one of its causes, the other fitted numbers as they were."""
         program = self.right
-        together = tuple(one for one in reading.causes if one is not cause)
-        for one in together:
-            program = one.change(program)
-            if one.free:
-                program = program.with_input(one.free, reading.value(one))
+        together = tuple(part for part in reading.causes if part is not cause)
+        for part in together:
+            program = part.change(program)
+            if part.free:
+                program = program.with_input(part.free, reading.value(part))
         return self._judged(together, program)
 
     def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> Reading:
@@ -201,7 +210,7 @@ class Reader:
         score = math.inf
         if math.isfinite(rest):
             score = math.log10(max(rest, self.floor) / self.floor) + BELOW * math.log10(max(rest, low) / low)
-        return Reading(together, program, rest, score + sum(cause.cost for cause in together))
+        return Reading(together, program, rest, score + sum(cause.cost for cause in together), self)
 
     def _off(self, program: Program) -> Array:
         """Return the vector whose length is the root mean square, in m, between a program and the fit."""
@@ -216,23 +225,10 @@ class Reader:
         return np.asarray(np.linalg.qr(slopes, mode="r")) if np.isfinite(slopes).all() else slopes
 
 
-_SCALES = {
-    "g": 1.0,
-    "length": 1.0,
-    "latitude": 10.0,
-    "rate": 7e-5,
-    "drag": 1e-5,
-    "vx": 1e-3,
-    "vy": 1e-3,
-    "late": 1.0,
-    "altitude": 100.0,
-}
-
-
 def _clash(together: tuple[Cause, ...], cause: Cause) -> bool:
     """Return whether a cause would undo another: no rotation leaves nothing to be said of the Coriolis force."""
-    words = {one.id for one in together} | {cause.id}
-    groups = {one.group for one in (*together, cause)}
+    words = {part.id for part in (*together, cause)}
+    groups = {part.group for part in (*together, cause)}
     if "no_rotation" in words:
         return bool(groups & {"latitude", "frame", "coriolis"})
     return "no_coriolis" in words and "frame" in groups

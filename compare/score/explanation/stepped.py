@@ -13,23 +13,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from reference.model.constants import Constants
 from reference.model.force import acceleration
 from reference.numbers.precision import Array
 
+from ...candidates.candidate import Deviation
 from .causes import FITTED, NAMED
-from .families import pendulum_of, positions_of
-from .findings import Explanation, SizedCause
-from .fitted import Case, best_of, explanation_of
-from .pendulum import Pendulum
+from .findings import Explanation
+from .fitted import best_of, explanation_of
+from .phasors import METHODS
 from .programs import Program
-from .rows import Rows, largest, rms
+from .unexplained import Case, largest, rms
 
-TITLES = {
-    "semi_implicit_euler": "semi-implicit (symplectic) Euler",
-    "semi_implicit_euler_drift": "semi-implicit (symplectic) Euler, position first",
-    "explicit_euler": "explicit Euler",
-}
+TITLES = {method.id: method.title for method in METHODS if "euler" in method.id}
 IntArray = npt.NDArray[np.int64]
 LONGEST = 15_000  # steps that are run
 FINEST = 0.004  # ωh: the shortest step that is tried
@@ -54,45 +49,40 @@ def of_steps(case: Case) -> Explanation | None:
 
     The step's effect is that on a right program at first, then that on the program which the rest is read as.
     """
-    rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.positions[:, :2]), cord=None)
-    for steps in likely_steps(rows, case.right, case.pendulum, case.frequency):
+    rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
+    flat = replace(case, rows=rows, truth=case.truth[:, :2])
+    for steps in likely_steps(flat):
         program, best, seen, before = steps.program, None, case, math.inf
         for _ in range(PASSES):
-            moved = stepped(program, case.pendulum, steps, rows)
-            effect = moved - positions_of(program, case.pendulum, rows)
+            moved = stepped(flat, program, steps)
+            effect = moved - flat.positions(program)
             left = rms(rows.positions - moved)
             enough = left <= max(case.floor, STEP_LEFT * rms(effect))
             if not left < before or (enough and (best is not None or program == case.right)):
                 break
             before = left
-            seen = replace(case, rows=replace(rows, positions=rows.positions - effect), truth=case.truth[:, :2])
+            seen = replace(flat, rows=replace(rows, positions=rows.positions - effect))
             best = best_of(seen, integrators=False, sure=False)
-            if best is None or best.family.kind != "sphere":
+            if best is None or best.reader.right.kind != "sphere":
                 break
-            program = best.reading.program
+            program = best.program
         if not enough or program.kind != "sphere":
             continue
-        found = Explanation(rows.conventions) if best is None else explanation_of(seen, best)
+        causes = () if best is None else explanation_of(seen, best).causes
         step = float(rows.times[1]) / steps.every
         text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
-        cause = SizedCause(f"integrator_{steps.method}", text, largest(effect), "integrator", step, step, 0.0)
-        corrected = largest(rows.positions - moved)
-        return replace(
-            found, causes=(*found.causes, cause), model=None, corrected_m=corrected, explained=1 - left / case.error,
-            score=case.score_of(corrected) + sum(NAMED for _ in found.causes) + FITTED,
-        )  # fmt: skip
+        cause = Deviation(f"integrator_{steps.method}", text, largest(effect), "integrator", step, step, 0.0)
+        corrected, price = largest(rows.positions - moved), NAMED * len(causes) + FITTED
+        return case.explanation((*causes, cause), corrected, left, price)
     return None
 
 
-def likely_steps(rows: Rows, right: Program, pendulum: Pendulum, frequency: float) -> list[Steps]:
+def likely_steps(case: Case) -> list[Steps]:
     """Return methods and steps that the first swing looks like, the likeliest first; none for rows not evenly spaced.
 
-    Args:
-        rows: of the file, conventions put right; the first of them evenly spaced from the release on.
-        right: what a right program computes with.
-        pendulum: of its scene.
-        frequency: of the swing in rad/s.
+    The rows have x and y alone, the first of them evenly spaced from the release on.
     """
+    rows, frequency = case.rows, case.frequency
     if len(rows.times) < 8 or rows.times[0] != 0 or not frequency:
         return []
     spacing = float(rows.times[1])
@@ -104,37 +94,37 @@ def likely_steps(rows: Rows, right: Program, pendulum: Pendulum, frequency: floa
         return []
     found: list[tuple[float, Steps]] = []
     plain: list[float] = []
-    first = replace(rows, times=rows.times[: count + 1], positions=rows.positions[: count + 1, :2])
+    first = replace(rows, times=rows.times[: count + 1], positions=rows.positions[: count + 1])
+    swing = replace(case, rows=first)
     every = np.arange(1, most + 1, dtype=np.int64)
-    for gravity in dict.fromkeys((right.gravity_reading, "none")):
-        program = replace(right, gravity_reading=gravity)
-        exact = positions_of(program, pendulum, first)
-        plain.append(float(np.linalg.norm(exact - first.positions)))
+    for gravity in dict.fromkeys((case.right.gravity_reading, "none")):
+        program = replace(case.right, gravity_reading=gravity)
+        plain.append(float(np.linalg.norm(swing.left(program))))
         for method in TITLES:
-            moved = _rows(program, pendulum, method, spacing, every, count)
+            moved = _rows(case, program, method, spacing, every, count)
             apart = np.linalg.norm(moved - first.positions[:, :, None], axis=(0, 1))
             best = int(np.argmin(np.where(np.isfinite(apart), apart, np.inf)))
             near = every[max(best - 1, 0) : best + 2]
             found += [(float(apart[i - 1]), Steps(method, int(i), program)) for i in near if np.isfinite(apart[i - 1])]
-    found.sort(key=lambda one: one[0])
+    found.sort(key=lambda pair: pair[0])
     return [steps for apart, steps in found[:LIKELY] if apart < PLAIN * min(plain)]
 
 
-def stepped(program: Program, pendulum: Pendulum, steps: Steps, rows: Rows) -> Array:
-    """Return x and y in m at the times of some rows, as steps of a program have them, shape (rows, 2)."""
-    spacing = float(rows.times[1])
-    at = np.round(rows.times / spacing).astype(int)
+def stepped(case: Case, program: Program, steps: Steps) -> Array:
+    """Return x and y in m at the times of the rows, as steps of a program have them, shape (rows, 2)."""
+    spacing = float(case.rows.times[1])
+    at = np.round(case.rows.times / spacing).astype(int)
     every = np.array([steps.every], dtype=np.int64)
-    whole = _rows(program, pendulum, steps.method, spacing, every, int(at[-1]))
+    whole = _rows(case, program, steps.method, spacing, every, int(at[-1]))
     found: Array = whole[at, :, 0]
     return found
 
 
-def _rows(program: Program, pendulum: Pendulum, method: str, spacing: float, every: IntArray, count: int) -> Array:
+def _rows(case: Case, program: Program, method: str, spacing: float, every: IntArray, count: int) -> Array:
     """Return x and y of row 0, 1, … in m for several numbers of steps a row, shape (rows, 2, numbers)."""
-    own, theta = pendulum_of(program, pendulum)
-    k: Constants = own.constants(theta)
-    length, start = float(theta[11]), own.start(theta)
+    pendulum, theta = case.pendulum_of(program)
+    k = pendulum.constants(theta)
+    length, start = float(theta[11]), pendulum.start(theta)
     h = spacing / every if len(every) > 1 else float(spacing / every[0])  # a single one is faster without an array
     place, speed = ([value + 0 * h for value in part] for part in (start[:3], start[3:]))
     found = np.full((count + 1, 2, len(every)), np.nan)

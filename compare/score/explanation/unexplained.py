@@ -1,0 +1,158 @@
+"""A file that is to be explained: its rows as the stages change them, the truth, and what a right program has."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from reference.numbers.precision import Array
+
+from ...candidates.candidate import Deviation
+from .findings import Explanation, Model
+from .phasors import sinc
+from .programs import NAMES, Pendulum, Program
+
+NEAR = 2e-5  # of the distance from the vertical: a row 0 nearer than this to the release is the release
+EXACT = 1e-14  # of the cord: two numbers that differ by less are one
+CONVENTION = 0.3  # decades that a convention has to explain
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The rows of a file, made right: times in s, positions in m (x, y and perhaps z), half a unit of its last digit.
+
+    Attributes:
+        times: increasing, in s, shape (rows,).
+        positions: x, y and perhaps z in m, shape (rows, 2 or 3).
+        noise: rounding of the numbers, in m.
+        conventions: what was changed.
+        starts: whether row 0 is the release.
+        cord: mean distance from the suspension in m, where the rows do not keep it; else None.
+    """
+
+    times: Array
+    positions: Array
+    noise: float
+    conventions: tuple[Deviation, ...] = ()
+    starts: bool = True
+    cord: float | None = None
+
+    @property
+    def plane(self) -> Array:
+        """x and y in m, shape (rows, 2)."""
+        return self.positions[:, :2]
+
+    def changed(self, convention: Deviation, **fields: object) -> Rows:
+        """Return the rows with some fields replaced, and what is to be said of that."""
+        return replace(self, conventions=(*self.conventions, convention), **fields)  # type: ignore[arg-type]
+
+
+def is_release(row: Array, release: Array, noise: float) -> bool:
+    """Return whether a row is the release but for its rounding."""
+    size = max(float(np.hypot(release[0], release[1])), 1e-6 * float(np.abs(release).max()))
+    return bool(np.abs(row[:2] - release[:2]).max() <= NEAR * size + 2 * noise)
+
+
+def largest(difference: Array) -> float:
+    """Return the largest distance in m that differences of rows make."""
+    return float(np.linalg.norm(difference, axis=1).max())
+
+
+def rms(difference: Array) -> float:
+    """Return the root mean square distance in m that they make."""
+    return float(np.linalg.norm(difference)) / math.sqrt(len(difference))
+
+
+@dataclass(frozen=True)
+class Case:
+    """A file that is to be explained.
+
+    Attributes:
+        rows: of the file, conventions put right.
+        truth: the positions of the full model at their times in m, shape (rows, 2 or 3).
+        right: what a right program computes with.
+        pendulum: runs a program.
+        frequency: of the scene's swing in rad/s.
+        allowed_m: distance in m that counts as agreement.
+    """
+
+    rows: Rows
+    truth: Array
+    right: Program
+    pendulum: Pendulum
+    frequency: float
+    allowed_m: float
+
+    @property
+    def error(self) -> float:
+        """Root mean square error of the rows in m."""
+        return rms(self.rows.positions - self.truth)
+
+    @property
+    def floor(self) -> float:
+        """Root mean square in m below which nothing is asked."""
+        return max(self.rows.noise, self.allowed_m / 3)
+
+    @property
+    def enough(self) -> float:
+        """Largest error in m that may be left."""
+        return max(self.allowed_m, 1.5 * self.rows.noise)
+
+    @property
+    def released(self) -> bool:
+        """True if row 0 is the release to its last digit, so that neither its place nor its time is off."""
+        off = np.abs(self.rows.positions[0, :2] - (self.right.x, self.right.y)).max()
+        return bool(self.rows.times[0] == 0 and off <= 2 * self.rows.noise + EXACT * self.right.length)
+
+    def score_of(self, left: float) -> float:
+        """Return decades by which what is left exceeds the tolerance, plus what the conventions cost."""
+        return math.log10(max(left / self.allowed_m, 1e-2)) + CONVENTION * len(self.rows.conventions)
+
+    def explanation(
+        self,
+        causes: tuple[Deviation, ...],
+        corrected_m: float,
+        rest: float,
+        price: float,
+        model: Model | None = None,
+        slip: str = "",
+    ) -> Explanation:
+        """Return the explanation that some causes make up.
+
+        Args:
+            causes: as in `Explanation`.
+            corrected_m: the largest error in m that they leave.
+            rest: the root mean square in m that they leave.
+            price: decades that they have to explain.
+            model: as in `Explanation`.
+            slip: as in `Explanation`.
+        """
+        explained, score = 1 - rest / self.error, self.score_of(corrected_m) + price
+        return Explanation(self.rows.conventions, causes, model, corrected_m, slip, explained, score)
+
+    def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:
+        """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""
+        theta = program.theta()
+        theta[NAMES.index("gradient")] = program.gradient
+        return replace(self.pendulum, square=program.gradient_square), theta
+
+    def positions(self, program: Program) -> Array:
+        """Return what a program writes, in the rows' columns, shape (rows, 2 or 3)."""
+        times, columns = self.rows.times, self.rows.positions.shape[1]
+        if program.kind == "sphere":
+            pendulum, theta = self.pendulum_of(program)
+            return pendulum.rows(theta, times, columns)
+        plane = program.phasors().at(times)
+        if program.kind == "angle":
+            plane = plane * sinc(np.abs(plane) / program.length)
+        positions = np.column_stack([plane.real, plane.imag])
+        if columns == 3:
+            below = np.maximum(program.length**2 - np.abs(plane) ** 2, 0)
+            positions = np.column_stack([positions, -np.sqrt(below)])
+        return positions
+
+    def left(self, program: Program) -> Array:
+        """Return what a program leaves of the rows in m, shape (rows, 2 or 3)."""
+        return self.rows.positions - self.positions(program)
