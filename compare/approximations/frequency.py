@@ -10,7 +10,7 @@ from typing import Any
 
 from reference import Scene
 
-from ..observed.apsides import frequency, precession_period
+from ..observed.swing_plane import frequency, precession_period
 from .approximation import Order, Printed, Quantity
 from .case import Case, at_rest, released_at_rest, swinging
 from .gastebois import small_angles

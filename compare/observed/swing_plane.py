@@ -1,4 +1,4 @@
-"""The rest position, the linear oscillator about it, and the swing plane of a motion, instant by instant.
+"""The swing of a motion about its rest position: its plane, its apsides, frequency and precession, turn and delay.
 
 A linear oscillator on a turntable, seen in axes that do not turn, moves on an ellipse about its rest position. Let
 Z = X + iY be the displacement in the plane at right angles to the plumb line (X east, Y north), Z' its rate on the
@@ -8,24 +8,42 @@ velocity over ω are Z and S = (Z' + i Ω_n Z)/ω, and the major axis of the ell
 For Z = C1 exp(-iωt) + C2 exp(iωt) this is arg(4 C1 C2)/2 at every t. The axes on the ground and those that do not turn
 coincide at the moment in question, so ψ is the azimuth (from east to north) on the ground. It is counted modulo 180°,
 and it has no meaning on a circle (C1 or C2 zero).
+
+Where two motions are compared, a candidate and the truth, positions alone will do. A candidate whose ellipse is turned
+by a small angle δθ and that is late by a small delay δτ differs from the truth u = (x, y) - rest by
+
+    δu = δθ (-u_y, u_x) - δτ (ẋ, ẏ),
+
+two unknowns that least squares finds from the rows of about one swing; the candidate's velocities are not needed.
+For wide swings the same fit gives the turn about the vertical and the delay that explain most of the error.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from reference import Scene, UnreachableError
+from reference import Scene, UnreachableError, trajectory
 from reference.model.constants import Vector
 from reference.model.force import tension
 from reference.model.start import Start, scaled
 from reference.numbers.precision import Array
 
+from .least_squares import gauss_newton
+
 PREC = 200  # bits in which a rest position is computed before it becomes doubles
 _ROUND = 1e-6  # an ellipse with |Z² + S²| below this part of |Z|² + |S|² is nearly a circle and has no direction
+PER_SWING = 64  # samples in a period: the interpolation of an apsis between them is accurate to 1e-12
+_NODES = 12  # samples that the interpolation of an apsis uses
+BLOCKS = 48  # parts of the run at most, in each of which turn and delay are fitted
+FEWEST = 3  # rows of a run at least: one row has as many equations as unknowns, so that nothing checks the fit
+ROWS = 12  # rows of a part at least
+MOST_ROWS = 240  # rows of a part that are used at most: more add nothing new
+TURNS = 4  # Gauss-Newton steps: the turn found so far is applied exactly and the fit repeated, for large turns
 
 
 @dataclass(frozen=True)
@@ -90,3 +108,129 @@ def rest_in_metres(scene: Scene) -> Array:
     """
     start = Start.of(scene.exact, PREC)
     return np.array([float(part * start.k.length) for part in start.rest])
+
+
+def apsides(gauge: Gauge, times: Array, rows: Array) -> tuple[Array, Array]:
+    """Return times in s and azimuths in rad (unwrapped modulo π) of the largest distances from the rest position.
+
+    Args:
+        gauge: of the rest position.
+        times: evenly spaced in s, about PER_SWING in a period.
+        rows: states x, y, z, vx, vy, vz at the times.
+    """
+    place, rate = gauge.displacement(rows)
+    height = rows[:, :3] @ np.array(gauge.rest)  # along the plumb line
+    radial = (place.conj() * rate).real if np.min(height) > 0 else -rows[:, 3:] @ np.array(gauge.rest)
+    before = np.flatnonzero((radial[:-1] > 0) & (radial[1:] <= 0))
+    half = _NODES // 2
+    before = before[(before >= half - 1) & (before + half < len(times))]
+    nodes = np.arange(1 - half, half + 1)
+    inverse = np.linalg.inv(np.vander(nodes, _NODES, increasing=True))  # the nodes are small: condition 1e7
+    at = before[:, None] + nodes
+    distance = inverse @ radial[at].T
+    east, north = inverse @ place.real[at].T, inverse @ place.imag[at].T
+    step = radial[before] / (radial[before] - radial[before + 1])
+    powers, slopes = np.arange(_NODES)[:, None], np.arange(1, _NODES)[:, None]
+    for _ in range(4):  # Newton, from a secant: the function is nearly linear between two samples
+        value = np.sum(distance * step**powers, axis=0)
+        step = step - value / np.sum(slopes * distance[1:] * step ** (slopes - 1), axis=0)
+    z = np.sum(east * step**powers, axis=0) + 1j * np.sum(north * step**powers, axis=0)
+    azimuth = np.unwrap(2 * np.angle(z)) / 2
+    return times[before] + step * (times[1] - times[0]), azimuth
+
+
+def _apsides_of(scene: Scene, gauge: Gauge, duration: float) -> tuple[Array, Array]:
+    """Return the apsides of the full model's motion within a duration in s."""
+    step = gauge.period / PER_SWING
+    times: Array = np.arange(int(duration / step) + _NODES + 1) * np.float64(step)
+    return apsides(gauge, times, trajectory(scene, times))
+
+
+def frequency(scene: Scene, swings: int = 50) -> float:
+    """Return the frequency in Hz of the full model over about `swings` periods, from its apsides.
+
+    Raises:
+        UnreachableError: the bob does not swing.
+    """
+    gauge = Gauge.of(scene)
+    times, _ = _apsides_of(scene, gauge, (swings + 1) * gauge.period)
+    if len(times) < 3:
+        raise UnreachableError("the bob does not swing: it has no largest distances from its rest position.")
+    return float((len(times) - 1) / (2 * (times[-1] - times[0])))
+
+
+def precession_period(scene: Scene, longest: float = 1e6) -> float:
+    """Return the time in s in which the swing plane of the full model turns by 360°: twice that of its first half turn.
+
+    Raises:
+        UnreachableError: it does not turn by 180° within `longest` seconds.
+    """
+    gauge = Gauge.of(scene)
+    guess = np.pi / abs(gauge.turn) if gauge.turn else np.inf
+    for stretch in (1.1, 2.0, 4.0):
+        if not guess * stretch < longest:
+            break
+        times, azimuths = _apsides_of(scene, gauge, guess * stretch + 2 * gauge.period)
+        turned = np.abs(azimuths - azimuths[0])
+        if turned[-1] >= np.pi:
+            last = int(np.argmax(turned >= np.pi))
+            share = (np.pi - turned[last - 1]) / (turned[last] - turned[last - 1])
+            return float(2 * (times[last - 1] + share * (times[last] - times[last - 1]) - times[0]))
+    raise UnreachableError(f"the swing plane does not turn by 180° within {longest:g} s.")
+
+
+@dataclass(frozen=True, repr=False)
+class SwingErrors:
+    """Turn of the swing plane in radians (positive from east to north) and delay in s, for each part of the run."""
+
+    t: Array
+    turn: Array
+    delay: Array
+
+    def __repr__(self) -> str:
+        return f"SwingErrors(largest_turn={self.largest_turn}, largest_delay={self.largest_delay})"
+
+    @property
+    def largest_turn(self) -> float | None:
+        """Largest turn in radians; None if there were too few rows to fit."""
+        return float(np.abs(self.turn).max()) if len(self.turn) else None
+
+    @property
+    def largest_delay(self) -> float | None:
+        """Largest delay in s; None if there were too few rows to fit."""
+        return float(np.abs(self.delay).max()) if len(self.delay) else None
+
+
+def swing_errors(t: Array, truth: Array, error: Array, rest: tuple[float, float]) -> SwingErrors:
+    """Fit turn and delay of a candidate, part by part.
+
+    Args:
+        t: times in s, shape (rows,).
+        truth: x, y, z, vx, vy, vz in m and m/s, shape (rows, 6).
+        error: candidate minus truth in x and y, shape (rows, 2), in m.
+        rest: x and y of the rest position in m.
+    """
+    if len(t) < FEWEST:
+        return SwingErrors(np.empty(0), np.empty(0), np.empty(0))
+    parts = np.array_split(np.arange(len(t)), max(1, min(BLOCKS, len(t) // ROWS)))
+    samples = [part[:: -(-len(part) // MOST_ROWS)] for part in parts]
+    fits = [_fit(truth[part], error[part], rest) for part in samples]
+    middle = np.array([float(np.mean(t[part])) for part in parts])
+    return SwingErrors(middle, np.array([turn for turn, _ in fits]), np.array([delay for _, delay in fits]))
+
+
+def _fit(truth: Array, error: Array, rest: tuple[float, float]) -> tuple[float, float]:
+    """Return turn and delay of one part."""
+    u = truth[:, :2] - np.array(rest)
+    rate = truth[:, 3:5]
+
+    def left(numbers: Array) -> tuple[Array, Callable[[], Array]]:
+        turn, delay = numbers.tolist()
+        sin, cos_minus_1 = np.sin(turn), -2 * np.sin(turn / 2) ** 2  # written so that nothing cancels
+        change = np.column_stack([cos_minus_1 * u[:, 0] - sin * u[:, 1], sin * u[:, 0] + cos_minus_1 * u[:, 1]])
+        turned = u + change
+        slopes = np.stack([np.column_stack([-turned[:, 1], turned[:, 0]]).ravel(), -rate.ravel()], axis=1)
+        return (error - change + delay * rate).ravel(), lambda: slopes
+
+    (turn, delay), _ = gauss_newton(left, np.zeros(2), steps=TURNS, gain=1.0)
+    return float(turn), float(delay)

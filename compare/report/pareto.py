@@ -14,7 +14,7 @@ from typing import Any
 from reference import InputError
 from reference.status import Status
 
-from ..observed.power_law import LEAST_POINTS, PowerLaw, power_law
+from ..observed.position_error import LEAST_POINTS, PowerLaw, power_law
 from ..studies.row import Row
 
 TARGETS_M = (1e-3, 1e-6, 1e-9, 1e-12)  # errors for which costs are tabulated and the cheapest method is named

@@ -19,9 +19,8 @@ from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
 
 from ..candidates.candidate import COLUMNS, Candidate
-from ..observed.position_error import difference, distance
-from ..observed.power_law import power_of_time
-from ..observed.turn_and_delay import SwingErrors, swing_errors
+from ..observed.position_error import difference, distance, power_of_time
+from ..observed.swing_plane import SwingErrors, swing_errors
 
 ENVELOPES = 40  # parts of the run; the largest error up to the end of each is a point of the fitted power of time
 

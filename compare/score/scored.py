@@ -17,7 +17,7 @@ from reference.system.cache import arrays
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
-from ..observed.turn_and_delay import SwingErrors
+from ..observed.swing_plane import SwingErrors
 from .errors import TrajectoryErrors
 from .explanation.findings import Explanation
 from .transit_matching import TransitErrors

@@ -18,7 +18,7 @@ from reference import Scene, load, load_scene, parse_scene
 from reference.status import Status
 
 from ..methods import METHODS, Problem, available
-from ..observed.power_law import power_of_time
+from ..observed.position_error import power_of_time
 from ..truth import golden_of
 from .campaign import Counted, Measurement, campaign
 from .measure import timed

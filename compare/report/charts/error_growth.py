@@ -11,7 +11,7 @@ import numpy as np
 from reference import InputError
 from reference.numbers.precision import Array
 
-from ...observed.power_law import largest_so_far
+from ...observed.position_error import largest_so_far
 from .drawing import COLOURS, GUIDE, Line, draw, legend, line_style, logarithmic, name_ends, sheet, svg_text
 from .ladders import band
 

@@ -10,7 +10,7 @@ import pytest
 from compare.approximations import APPROXIMATIONS, Motion
 from compare.approximations.case import Case
 from compare.approximations.gastebois import small_angles
-from compare.observed.apsides import frequency, precession_period
+from compare.observed.swing_plane import frequency, precession_period
 from reference import load_scene, parse_scene
 
 PARIS = load_scene("paris")

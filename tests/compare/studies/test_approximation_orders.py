@@ -7,8 +7,7 @@ import pytest
 
 from compare.approximations import APPROXIMATIONS, Motion
 from compare.approximations.case import Case
-from compare.observed.position_error import difference, distance
-from compare.observed.power_law import power_law
+from compare.observed.position_error import difference, distance, power_law
 from compare.studies.approximation_limits import varied
 from reference import parse_scene, trajectory
 
