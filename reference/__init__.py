@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from .engines.trajectory import integrate, trajectory
     from .solver.solution import Solution
     from .solver.solve import solve
-    from .sweeps.sweep import load_sweep, sweep
-    from .sweeps.swept import Swept
+    from .sweeps.sweep import Swept, load_sweep, sweep
 
 __all__ = [
     "DatasetError",
@@ -54,7 +53,7 @@ __getattr__, __dir__ = lazy(
     {
         "Golden": "dataset.golden",
         "Solution": "solver.solution",
-        "Swept": "sweeps.swept",
+        "Swept": "sweeps.sweep",
         "integrate": "engines.trajectory",
         "load": "dataset.golden",
         "load_sweep": "sweeps.sweep",

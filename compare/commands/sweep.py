@@ -158,13 +158,14 @@ def command(
 
 def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) -> Request:
     """Return the sweep that the options describe, or the one that is in the folder."""
-    from reference.sweeps.sweep import asked_for, opened
+    from reference.sweeps.store import Store
+    from reference.sweeps.sweep import asked_for
 
     if scene_word is None:
         refuse(options, "without SCENE, when a sweep is gone on with")
         if out is None:
             raise InputError("SCENE", "nothing", "a scene, or --out DIR with a sweep to go on with")
-        return opened(out).request
+        return Store.opened(out).request
     scene = load_scene(
         scene_word, replacements(options["--set"], {"--t-end": ("run.t_end", options["--t-end"])}, _NO_GRID)
     )

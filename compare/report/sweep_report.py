@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -51,7 +52,7 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
         "rows_total": len(swept),
         "rows_done": sum(tally.counts.values()),
         "counts": counts,
-        "audit": swept.audit.document if swept.audit else None,
+        "audit": asdict(swept.audit) if swept.audit else None,
         "cpu_s": tally.cpu_s + tally.store_s,
         "compile_s": swept.compile_s,
         "fold_s": tally.fold_s,

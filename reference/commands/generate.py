@@ -213,9 +213,9 @@ def _made(undone: list[Job], workers: int | None, cluster: str | None) -> Genera
         return
     with ExitStack() as stack:
         if cluster is not None:
-            from ..sweeps.cluster import Scheduler
+            from ..sweeps.cluster import scheduler_at
 
-            scheduler = stack.enter_context(Scheduler(cluster))
+            scheduler = stack.enter_context(scheduler_at(cluster))
             begin, check = partial(scheduler.submit, isolated), scheduler.check
         else:
             pool = stack.enter_context(Pool(min(workers or usable_cores(), len(undone))))

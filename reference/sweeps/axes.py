@@ -3,51 +3,150 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Iterator
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from decimal import Decimal
+from decimal import MAX_EMAX, MAX_PREC, MIN_EMIN, Context, Decimal
 from fractions import Fraction
-from heapq import nsmallest
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ..errors import InputError
+from ..errors import InputError, unknown
+from ..numbers.double_double import DoubleDouble
 from ..numbers.precision import with_decimal_point
-from ..scenes.scene import Reading, checked_value
-from ..system.imports import missing
-from .values import Table, check_key
+from ..scenes.scene import Reading, checked_value, field_names
+from .parquet import need_pyarrow, read_columns
 
+TEXTS = ("inputs", "site.gravity_is")  # the fields that can be varied and are not numbers
+_FIXED = ("id", "title", "source", "flags", "run.grid_step", "run.digits", "run.level", "run.transits")
 MOST_ROWS = 10**8
 MOST_VALUES = 10**7  # of a field: they are held as text
 FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
 PARQUET = (".parquet", ".pq")
+_EXACT = Context(prec=MAX_PREC, Emax=MAX_EMAX, Emin=MIN_EMIN)
 
 
 @dataclass(frozen=True)
-class Grid(Table):
-    """All combinations of the values of fields, the last one fastest; `typed` is what stood after their names."""
+class Table:
+    """Rows of exact values: all combinations of the values of fields, the last one fastest, or a list.
 
-    typed: dict[str, str]
+    Attributes:
+        values: of each field that is varied its values as text; in a list one a row.
+        typed: what stood after the fields' names in `--over` words; None for a list.
+    """
+
+    values: dict[str, tuple[str, ...]]
+    typed: dict[str, str] | None = None
+
+    @classmethod
+    def of(cls, typed: dict[str, str] | None, stored: Mapping[str, Sequence[str]], reading: Reading) -> Table:
+        """Return the rows of which `typed` and `stored` are written down."""
+        values = {key: tuple(texts) for key, texts in stored.items()}
+        if typed is None:
+            return cls(values)
+        return cls({key: values.get(key) or axis(f"{key}={word}", reading)[-1] for key, word in typed.items()}, typed)
 
     @property
+    def stored(self) -> dict[str, tuple[str, ...]]:
+        """The values that do not follow from what was typed: those that come from a file."""
+        return {
+            key: texts for key, texts in self.values.items() if self.typed is None or self.typed[key].startswith("@")
+        }
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The fields that are varied."""
+        return tuple(self.values)
+
+    @cached_property
     def shape(self) -> tuple[int, ...]:
-        """The numbers of values of the fields."""
-        return tuple(map(len, self.values.values()))
-
-    def places(self, rows: Any) -> tuple[Any, ...]:
-        """Return, for each field, where among its values those of rows stand."""
-        return np.unravel_index(np.asarray(rows, np.int64), self.shape)
+        """The shape of a column as an array: the numbers of values of the fields, or the length of a list."""
+        sizes = tuple(map(len, self.values.values()))
+        return sizes[:1] if self.typed is None else sizes
 
     @property
-    def listed(self) -> dict[str, tuple[str, ...]]:
-        """The values of the fields that come from a file."""
-        return {key: self.values[key] for key, word in self.typed.items() if word.startswith("@")}
+    def count(self) -> int:
+        """The number of rows."""
+        return math.prod(self.shape)
+
+    def texts(self, row: int) -> dict[str, str]:
+        """Return the values of a row by field."""
+        return {key: texts[place] for key, texts, (place,) in self._placed([row])}
+
+    def numbers(self, rows: Any, reading: Reading) -> dict[str, DoubleDouble]:
+        """Return the numbers of rows by field; only where nothing is wrong with them."""
+        columns = {}
+        for key, texts, places in self._placed(rows):
+            if key not in TEXTS:
+                different, back = np.unique(places, return_inverse=True)
+                numbers = _numbers([texts[place] for place in different], reading)
+                columns[key] = DoubleDouble(numbers.high[back], numbers.low[back])
+        return columns
+
+    def words(self, rows: Any) -> dict[str, list[str]]:
+        """Return the values of rows by field, those that are words."""
+        return {key: [texts[place] for place in places] for key, texts, places in self._placed(rows) if key in TEXTS}
+
+    def wrong(self, rows: Iterable[int], reading: Reading) -> dict[int, str]:
+        """Return what is wrong with rows of a list, where one of the values is wrong by itself.
+
+        Those of `--over` words were checked when they were read.
+        """
+        reasons: dict[int, str] = {}
+        for key, texts in self.values.items() if self.typed is None else ():
+            refusals = {text: _refusal(key, text, reading) for text in {texts[row] for row in rows}}
+            for row in rows:
+                if refusals[texts[row]]:
+                    reasons.setdefault(row, refusals[texts[row]])
+        return reasons
+
+    def _placed(self, rows: Any) -> Iterator[tuple[str, tuple[str, ...], Any]]:
+        """Yield each field, its values, and where among them those of rows stand."""
+        numbers = np.asarray(rows, np.int64)
+        listed = self.typed is None
+        places = [numbers] * len(self.values) if listed else np.unravel_index(numbers, self.shape)
+        return zip(self.values, self.values.values(), places, strict=True)
 
 
-def grid(words: Iterable[str], reading: Reading) -> Grid:
+def _numbers(texts: Sequence[str], reading: Reading) -> DoubleDouble:
+    """Return decimal numbers, shape (texts,), as a scene with this reading takes them."""
+    high = [float(text) for text in texts]
+    if reading == "binary64":
+        low = [0.0] * len(high)
+    else:
+        both = zip(texts, high, strict=True)
+        low = [float(_EXACT.subtract(Decimal(text), Decimal(h))) if math.isfinite(h) else 0.0 for text, h in both]
+    return DoubleDouble(np.array(high), np.array(low))
+
+
+def _refusal(key: str, text: str, reading: Reading) -> str:
+    try:
+        checked_value(key, text, reading)
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def varied_names() -> list[str]:
+    """Return the names of the fields that a sweep can vary."""
+    return [name for name in field_names() if name not in _FIXED]
+
+
+def _check_key(option: str, key: str) -> None:
+    """Refuse what is no field of a scene, or none that a sweep can vary.
+
+    Raises:
+        InputError: it is not.
+    """
+    if key not in varied_names():
+        raise unknown(option, key, "a field that a sweep can vary", varied_names(), "`foucault show SCENE` lists them.")
+
+
+def grid(words: Iterable[str], reading: Reading) -> Table:
     """Read `--over` words, and check their values.
 
     Raises:
@@ -56,14 +155,14 @@ def grid(words: Iterable[str], reading: Reading) -> Grid:
     values: dict[str, tuple[str, ...]] = {}
     typed: dict[str, str] = {}
     for word in words:
-        key, typed_word, texts = axis(word, reading)
+        key, typed_values, texts = axis(word, reading)
         if key in values:
             raise InputError("--over", key, "each field once")
-        values[key], typed[key] = texts, typed_word
-    made = Grid(values, typed)
-    if made.count > MOST_ROWS:
-        raise InputError("--over", f"{made.count} rows", f"at most {MOST_ROWS:,} rows")
-    return made
+        values[key], typed[key] = texts, typed_values
+    table = Table(values, typed)
+    if table.count > MOST_ROWS:
+        raise InputError("--over", f"{table.count} rows", f"at most {MOST_ROWS:,} rows")
+    return table
 
 
 def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
@@ -75,13 +174,13 @@ def axis(word: str, reading: Reading) -> tuple[str, str, tuple[str, ...]]:
     key, sign, typed = (part.strip() for part in word.partition("="))
     if not sign or not typed:
         raise InputError("--over", word, f"KEY={FORMS}")
-    check_key("--over", key)
+    _check_key("--over", key)
     if ":" in typed and not typed.startswith("@"):
         texts = _range(key, typed)
-        for text in (texts[0], texts[-1], *nsmallest(2, texts, key=lambda text: abs(float(text)))):
+        for text in (texts[0], texts[-1]):
             checked_value(key, text, reading)  # between these lie the others
         return key, typed, texts
-    listed = column_of_csv(Path(typed[1:]), key) if typed.startswith("@") else typed.split(",")
+    listed = _column_of_csv(Path(typed[1:]), key) if typed.startswith("@") else typed.split(",")
     texts = tuple(text.strip() for text in listed)
     seen = set()
     for text in texts:
@@ -98,16 +197,16 @@ def _range(key: str, word: str) -> tuple[str, ...]:
     Raises:
         InputError: no three numbers, no step, no value, or too many.
     """
-    parts = word.split(":")
+    parts = [part.strip() for part in word.split(":")]
     if len(parts) != 3:
         raise InputError("--over", f"{key}={word}", f"{key}={FORMS}")
-    start, stop, step = (_exactly(key, part.strip()) for part in parts)
+    start, stop, step = (_exactly(key, part) for part in parts)
     if step == 0 or (stop - start) / step < 0:
         raise InputError("--over", f"{key}={word}", "a STEP that leads from START to STOP")
     count = (stop - start) // step + 1
     if count > MOST_VALUES:
         raise InputError("--over", f"{key}={word}", f"at most {MOST_VALUES:,} values")
-    decimals = max(_decimals(value) for value in (start, stop, step))
+    decimals = max(0, *(-int(Decimal(part).as_tuple().exponent) for part in parts))
     first, by = int(start * 10**decimals), int(step * 10**decimals)
     texts = (with_decimal_point(first + i * by, decimals) for i in range(count))
     return tuple(text.rstrip("0").rstrip(".") if decimals else text for text in texts)
@@ -122,56 +221,43 @@ def _exactly(key: str, text: str) -> Fraction:
     return Fraction(text)
 
 
-def _decimals(value: Fraction) -> int:
-    """Return how many digits a decimal fraction has after the point."""
-    decimals = 0
-    while (value * 10**decimals).denominator != 1:
-        decimals += 1
-    return decimals
-
-
-@dataclass(frozen=True)
-class Listed(Table):
-    """Rows of a file: of each field its values, one a row."""
-
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """The number of rows."""
-        return (len(next(iter(self.values.values()))),)
-
-    def places(self, rows: Any) -> list[Any]:
-        """Return, for each field, where among its values those of rows stand."""
-        return [np.asarray(rows, np.int64)] * len(self.values)
-
-    def wrong(self, rows: Any, reading: Reading) -> dict[int, str]:
-        """Return what is wrong with the values of rows, each by itself, of those where something is."""
-        found: dict[int, str] = {}
-        for key, column in self.values.items():
-            known: dict[str, str] = {}
-            for row in rows:
-                text = column[row]
-                if text not in known:
-                    known[text] = _refusal(key, text, reading)
-                if known[text]:
-                    found.setdefault(row, known[text])
-        return found
-
-
-def listed(path: Path) -> Listed:
+def listed(path: Path) -> Table:
     """Read a file of rows.
 
     Raises:
         InputError: it cannot be read, has no rows, or a column is no field that can be varied.
     """
-    values = _parquet(path) if path.suffix.lower() in PARQUET else _csv(path)
+    values = _columns_of_parquet(path) if path.suffix.lower() in PARQUET else _columns_of_csv(path)
     for key in values:
-        check_key("--rows", key)
+        _check_key("--rows", key)
     if not values or not len(next(iter(values.values()))):
         raise InputError("--rows", str(path), "a line of names of fields, and rows below it")
-    return Listed(values)
+    return Table(values)
 
 
-def column_of_csv(path: Path, key: str) -> list[str]:
+def _columns_of_parquet(path: Path) -> dict[str, tuple[str, ...]]:
+    """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
+    need_pyarrow("--rows", str(path), "the package pyarrow")
+    with _readable("--rows", path):
+        columns = read_columns(path)
+    return {key: tuple(map(_text, column)) for key, column in columns.items()}
+
+
+def _text(value: Any) -> str:
+    return format(Decimal(value), "f") if isinstance(value, float | int) else str(value)
+
+
+def _columns_of_csv(path: Path) -> dict[str, tuple[str, ...]]:
+    names, *lines = _lines("--rows", path)
+    keys = [name.strip() for name in names]
+    for key in keys:
+        if keys.count(key) > 1:
+            raise InputError("--rows", key, "each field once")
+    columns = zip(*lines, strict=True)
+    return {key: tuple(text.strip() for text in column) for key, column in zip(keys, columns, strict=False)}
+
+
+def _column_of_csv(path: Path, key: str) -> list[str]:
     """Return the values of one field from a CSV file: its column of that name, or the only one.
 
     Raises:
@@ -188,24 +274,6 @@ def column_of_csv(path: Path, key: str) -> list[str]:
     return [line[at] for line in table]
 
 
-def _refusal(key: str, text: str, reading: Reading) -> str:
-    try:
-        checked_value(key, text, reading)
-    except InputError as error:
-        return str(error)
-    return ""
-
-
-@contextmanager
-def _readable(option: str, path: Path) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise InputError(option, str(path), "a readable file", f"{error.strerror}.") from None
-    except (UnicodeDecodeError, csv.Error) as error:
-        raise InputError(option, str(path), "a CSV file in UTF-8", f"{error}.") from None
-
-
 def _lines(option: str, path: Path) -> list[list[str]]:
     """Return the lines of a CSV file, all of one length."""
     with _readable(option, path), path.open(newline="", encoding="utf-8-sig") as stream:
@@ -220,28 +288,11 @@ def _lines(option: str, path: Path) -> list[list[str]]:
     return lines
 
 
-def _csv(path: Path) -> dict[str, tuple[str, ...]]:
-    names, *lines = _lines("--rows", path)
-    keys = [name.strip() for name in names]
-    for key in keys:
-        if keys.count(key) > 1:
-            raise InputError("--rows", key, "each field once")
-    columns = zip(*lines, strict=True)
-    return {key: tuple(text.strip() for text in column) for key, column in zip(keys, columns, strict=False)}
-
-
-def _parquet(path: Path) -> dict[str, tuple[str, ...]]:
-    """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
-    if missing(["pyarrow"]):
-        raise InputError(
-            "--rows", str(path), "the package pyarrow", "Install it with pip install 'foucault-reference[sweep]'."
-        )
-    from .parquet import read_columns
-
-    with _readable("--rows", path):
-        columns: dict[str, list[Any]] = read_columns(path)
-    return {key: tuple(map(_text, column)) for key, column in columns.items()}
-
-
-def _text(value: Any) -> str:
-    return format(Decimal(value), "f") if isinstance(value, float | int) else str(value)
+@contextmanager
+def _readable(option: str, path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise InputError(option, str(path), "a readable file", f"{error.strerror}.") from None
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(option, str(path), "a CSV file in UTF-8", f"{error}.") from None

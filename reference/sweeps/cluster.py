@@ -6,24 +6,23 @@ dask sends a part again when its worker is lost. A part that was lost as often a
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from secrets import token_hex
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 import dask
 import distributed
 from distributed.scheduler import KilledWorker
 
 from ..errors import FoucaultError, InputError
-from ..system.workers import WorkerDied
-from .driver import work
-from .local import Isolated, prepared, request_of, text_of
-from .request import Request
+from ..system.workers import Pool, WorkerDied
+from .driver import Executor, isolated, prepared, work
+from .part import Part
+from .request import Request, request_of
 
 LOCAL = "local:"
 SCHEMES = ("tcp://", "tls://", "ucx://", "inproc://")
@@ -41,34 +40,20 @@ class ClusterError(FoucaultError):
 
 
 class Scheduler:
-    """A scheduler and its workers, all with the versions that are here.
+    """A scheduler and its workers.
 
     Args:
-        address: tcp://HOST:PORT of a scheduler, or local:N for N processes of one thread on this machine.
-
-    Raises:
-        InputError: no scheduler answers there, it has no workers, or their versions differ from those here.
+        client: of dask.
+        workers: threads that the workers have together.
     """
 
-    def __init__(self, address: str) -> None:
-        logging.getLogger("distributed").setLevel(logging.CRITICAL)  # a lost scheduler is told in one line
-        with ExitStack() as stack:
-            self._client = _connected(address, stack)
-            self.workers = self._threads(address)
-            self._check_versions()
-            self._stack = stack.pop_all()
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, *_: type[BaseException] | TracebackType | BaseException | None) -> None:
-        """Leave the scheduler; end one that was started here."""
-        self._stack.close()
+    def __init__(self, client: Any, workers: int) -> None:
+        self.client, self.workers = client, workers
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Begin a call on some worker; its future may raise `WorkerDied` or `ClusterError`."""
         future: Future[Any] = Future()
-        there = self._client.submit(function, *arguments, pure=False, retries=RETRIES)
+        there = self.client.submit(function, *arguments, pure=False, retries=RETRIES)
         there.add_done_callback(partial(_settle, future))
         return future
 
@@ -78,74 +63,31 @@ class Scheduler:
         Raises:
             ClusterError: it is.
         """
-        if self._client.status != "running":
+        if self.client.status != "running":
             raise ClusterError(LOST)
 
-    def _threads(self, address: str) -> int:
-        """Return how many threads the workers have together."""
+
+@contextmanager
+def scheduler_at(address: str) -> Iterator[Scheduler]:
+    """Provide a scheduler whose workers all have the versions that are here; leave it, or end one that is started here.
+
+    Args:
+        address: tcp://HOST:PORT of a scheduler, or local:N for N processes of one thread on this machine.
+
+    Raises:
+        InputError: no scheduler answers there, it has no workers, or their versions differ from those here.
+    """
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # a lost scheduler is told in one line
+    with ExitStack() as stack:
+        client = _connected(address, stack)
         try:
-            self._client.wait_for_workers(1, timeout=WAIT_S)
+            client.wait_for_workers(1, timeout=WAIT_S)
         except TimeoutError:
             advice = "Start them: `dask worker ADDRESS`."
             raise InputError("--cluster", address, "a scheduler with workers", advice) from None
-        return sum(self._client.nthreads().values())
-
-    def _check_versions(self) -> None:
-        versions = self._client.get_versions(packages=PACKAGES)
-        here = versions["client"]["packages"]
-        for worker, there in versions["workers"].items():
-            for name in PACKAGES:
-                if (got := there["packages"][name]) != here[name]:
-                    advice = "Install the same versions everywhere."
-                    raise InputError("--cluster", f"{name} {got} on {worker}", f"{name} {here[name]}, as here", advice)
-
-
-class ClusterExecutor(Scheduler):
-    """The workers of a scheduler that compute the rows of a sweep.
-
-    Args:
-        request: the sweep.
-        folder: where parts are saved: by the workers if they see it, else here.
-        address: as of `Scheduler`, whose errors are raised.
-    """
-
-    def __init__(self, request: Request, folder: Path | None, address: str) -> None:
-        super().__init__(address)
-        self._document = text_of(request)
-        try:
-            self.compile_s = max(self._client.run(_prepare, self._document).values())
-            self._folder = self._shared(folder)
-        except BaseException:
-            self._stack.close()
-            raise
-
-    def begin(self, rows: range) -> Future[Any]:
-        """Begin a part, or some of its rows, on some worker."""
-        return self.submit(compute, self._document, rows, self._folder)
-
-    def _shared(self, folder: Path | None) -> Path | None:
-        """Return the folder if every worker sees it; a file of a random name tells."""
-        if folder is None:
-            return None
-        folder = folder.resolve()
-        nonce = folder / f".seen-by-workers-{token_hex(8)}"
-        nonce.touch()
-        try:
-            return folder if all(self._client.run(nonce.exists).values()) else None
-        finally:
-            nonce.unlink()
-
-
-def _settle(future: Future[Any], there: Any) -> None:
-    """Give a future the outcome of dask's; what was lost with its worker meanwhile is waited for."""
-    try:
-        future.set_result(there.result())
-    except KilledWorker:
-        future.set_exception(WorkerDied("its workers died"))
-    except distributed.client.FutureCancelledError:
-        future.set_exception(ClusterError(LOST))
-    except BaseException as error:
-        future.set_exception(error)
+        workers = sum(client.nthreads().values())
+        _check_versions(client)
+        yield Scheduler(client, workers)
 
 
 def _connected(address: str, stack: ExitStack) -> Any:
@@ -169,14 +111,66 @@ def _connected(address: str, stack: ExitStack) -> Any:
         raise InputError("--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice) from None
 
 
-_promote = Isolated()
+def _check_versions(client: Any) -> None:
+    versions = client.get_versions(packages=PACKAGES)
+    here = versions["client"]["packages"]
+    for worker, there in versions["workers"].items():
+        for name in PACKAGES:
+            if (got := there["packages"][name]) != here[name]:
+                advice = "Install the same versions everywhere."
+                raise InputError("--cluster", f"{name} {got} on {worker}", f"{name} {here[name]}, as here", advice)
 
 
-def _prepare(document: str) -> float:
+def _settle(future: Future[Any], there: Any) -> None:
+    """Give a future the outcome of dask's; what was lost with its worker meanwhile is waited for."""
+    try:
+        future.set_result(there.result())
+    except KilledWorker:
+        future.set_exception(WorkerDied("its workers died"))
+    except distributed.client.FutureCancelledError:
+        future.set_exception(ClusterError(LOST))
+    except BaseException as error:
+        future.set_exception(error)
+
+
+@contextmanager
+def on_cluster(request: Request, folder: Path | None, address: str) -> Iterator[Executor]:
+    """Provide the workers of a scheduler for the rows of a sweep.
+
+    Args:
+        request: the sweep.
+        folder: where parts are saved: by the workers if they see it, else here.
+        address: as of `scheduler_at`, whose errors are raised.
+    """
+    with scheduler_at(address) as scheduler:
+        compile_s = max(scheduler.client.run(_prepare, request.text).values())
+        shared = folder.resolve() if folder is not None and _is_seen(folder.resolve(), scheduler) else None
+        yield Executor(
+            scheduler.workers,
+            lambda rows: scheduler.submit(compute, request.text, rows, shared),
+            scheduler.check,
+            compile_s,
+        )
+
+
+def _is_seen(folder: Path, scheduler: Scheduler) -> bool:
+    """Return whether every worker sees a folder; a file of a random name tells."""
+    nonce = folder / f".seen-by-workers-{token_hex(8)}"
+    nonce.touch()
+    try:
+        return all(scheduler.client.run(nonce.exists).values())
+    finally:
+        nonce.unlink()
+
+
+_alone = Pool(1)  # of a worker, for rows that the solver solves by themselves
+
+
+def _prepare(text: str) -> float:
     """Compile on a worker, once."""
-    return prepared(request_of(document))
+    return prepared(request_of(text))
 
 
-def compute(document: str, rows: range, folder: Path | None) -> Any:
+def compute(text: str, rows: range, folder: Path | None) -> Part:
     """Compute rows on a worker."""
-    return work(request_of(document), rows, folder, _promote)
+    return work(request_of(text), rows, folder, partial(isolated, _alone))

@@ -1,23 +1,31 @@
-"""Run the parts of a sweep on workers that may die: a part that kills its worker is run again row by row."""
+"""Run the parts of a sweep on workers that may die: a part that kills its worker is run again row by row.
+
+Workers on this machine are threads for rows side by side, and processes for rows that the solver solves.
+"""
 
 from __future__ import annotations
 
+import os
 import threading
 import time
-from collections import Counter
-from collections.abc import Callable, Iterable
-from concurrent.futures import Future
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
+from ..engines.registry import batches
 from ..status import Status
-from ..system.workers import WorkerDied, as_done
-from .part import Part, Promote, solve_part, unsolved
-from .promote import promoted
-from .request import Request
+from ..system.workers import Pool, WorkerDied, as_done
+from .estimate import MOVED
+from .part import Part, Promote, Tally, solve_part
+from .promote import Promoted, promoted
+from .request import Request, request_of
+from .store import Store
 
 BLOCKS = 16  # of a whole part, solved one after the other: Ctrl-C waits for one
 LEAST_BLOCK = 256  # rows
@@ -26,72 +34,24 @@ DIED_REASON = "Its process died each time, alone as well"
 
 
 @dataclass
-class Tally:
-    """Counts of rows by status, and costs."""
+class Executor:
+    """Workers.
 
-    counts: Counter[str] = field(default_factory=Counter)
-    cpu_s: float = 0.0
-    fold_s: float = 0.0
-    store_s: float = 0.0
-
-    @classmethod
-    def of(cls, part: Part) -> Tally:
-        """Count the rows of a part."""
-        return cls(Counter(part.columns["status"].tolist()), part.cpu_s, part.fold_s)
-
-    def add(self, other: Tally) -> None:
-        """Add another's."""
-        self.counts += other.counts
-        self.cpu_s += other.cpu_s
-        self.fold_s += other.fold_s
-        self.store_s += other.store_s
-
-
-class Executor(Protocol):
-    """Computes rows."""
+    Attributes:
+        workers: how many.
+        begin: begins a part, or some of its rows: the result is that of `work`, or `WorkerDied` is raised.
+        check: raises if nothing will come any more; None where that cannot be.
+        compile_s: CPU seconds of compiling.
+    """
 
     workers: int
-    compile_s: float  # CPU seconds
-
-    def begin(self, rows: range) -> Future[Any]:
-        """Begin a part, or some of its rows: the result is that of `work`, or `WorkerDied` is raised."""
-
-    def check(self) -> None:
-        """Raise if nothing will come any more."""
+    begin: Callable[[range], Future[Any]]
+    check: Callable[[], None] | None = None
+    compile_s: float = 0.0
 
 
 class Interrupted(Exception):
     """A part was given up because the sweep ends."""
-
-
-def work(
-    request: Request,
-    rows: range,
-    folder: Path | None,
-    promote: Promote = promoted,
-    stop: threading.Event | None = None,
-) -> tuple[Tally, Part | None]:
-    """Solve rows, and save them where they are a whole part and there is a folder; else return them as well.
-
-    Raises:
-        Interrupted: the event `stop` was set meanwhile.
-        OSError: it cannot be saved.
-    """
-    blocks, size = [], max(request.rows_per_part // BLOCKS, LEAST_BLOCK)
-    for first in range(rows.start, rows.stop, size):
-        if stop is not None and stop.is_set():
-            raise Interrupted
-        blocks.append(solve_part(request, range(first, min(first + size, rows.stop)), promote))
-    solved = joined(blocks)
-    tally, part = Tally.of(solved), request.part_of(rows)
-    if folder is None or rows != request.rows_of(part):
-        return tally, solved
-    from .store import Store
-
-    started = time.thread_time()
-    Store(folder, request).save(part, solved)
-    tally.store_s = time.thread_time() - started
-    return tally, None
 
 
 def drive(
@@ -116,47 +76,127 @@ def drive(
     at_once = PER_WORKER * executor.workers
     for rows, future in as_done(executor.begin, map(request.rows_of, parts), at_once, executor.check):
         try:
-            tally, solved = future.result()
+            solved = future.result()
         except WorkerDied:
             died.append(rows)
             continue
-        total.add(tally)
-        if solved is not None:
-            keep(request.part_of(rows), solved)
+        total += solved.tally
+        if solved.columns:
+            keep(request.part_of(rows.start), solved)
         report(len(rows))
     for rows in died:
         alone = []
         for row, future in as_done(executor.begin, (range(number, number + 1) for number in rows), 1, executor.check):
             try:
-                tally, solved = future.result()
+                alone.append(future.result())
             except WorkerDied as death:
-                solved = crashed(request, row, f"{DIED_REASON}: {death}.")
-                tally = Tally.of(solved)
-            total.add(tally)
-            if solved is not None:  # the row is no whole part, which `work` has saved
-                alone.append(solved)
+                alone.append(_crashed(request, row, f"{DIED_REASON}: {death}."))
             report(1)
-        if alone:
-            keep(request.part_of(rows), joined(alone))
+        solved = Part.joined(alone)
+        total += solved.tally
+        if solved.columns:  # else the row is a whole part, which `work` has saved
+            keep(request.part_of(rows.start), solved)
     return total
 
 
-def crashed(request: Request, rows: range, reason: str) -> Part:
+def _crashed(request: Request, rows: range, reason: str) -> Part:
     """Return rows that no process survived."""
-    part = unsolved(request, rows)
+    part = Part.unsolved(request, rows)
     part.columns["status"][:] = Status.CRASHED.value
     part.columns["reason"][:] = reason
     for key, numbers in request.table.numbers(np.array(rows), request.scene.inputs).items():
         part.columns[key][:] = numbers.high
+    part.tally.counts[Status.CRASHED.value] = len(rows)
     return part
 
 
-def joined(pieces: list[Part]) -> Part:
-    """Return the rows of several pieces, in order."""
-    first = pieces[0]
-    return Part(
-        {name: np.concatenate([piece.columns[name] for piece in pieces]) for name in first.columns},
-        {name: np.concatenate([piece.transits[name] for piece in pieces]) for name in first.transits},
-        sum(piece.cpu_s for piece in pieces),
-        sum(piece.fold_s for piece in pieces),
-    )
+def work(
+    request: Request,
+    rows: range,
+    folder: Path | None,
+    promote: Promote = promoted,
+    stop: threading.Event | None = None,
+) -> Part:
+    """Return rows solved; where they are a whole part and there is a folder, save them and return their tally alone.
+
+    Raises:
+        Interrupted: the event `stop` was set meanwhile.
+        OSError: it cannot be saved.
+    """
+    blocks, size = [], max(request.rows_per_part // BLOCKS, LEAST_BLOCK)
+    for first in range(rows.start, rows.stop, size):
+        if stop is not None and stop.is_set():
+            raise Interrupted
+        blocks.append(solve_part(request, range(first, min(first + size, rows.stop)), promote))
+    solved, part = Part.joined(blocks), request.part_of(rows.start)
+    if folder is None or rows != request.rows_of(part):
+        return solved
+    started = time.thread_time()
+    Store(folder, request).save(part, solved)
+    solved.tally.store_s = time.thread_time() - started
+    return Part(tally=solved.tally)
+
+
+@contextmanager
+def on_this_machine(request: Request, folder: Path | None, workers: int) -> Iterator[Executor]:
+    """Provide workers on this machine.
+
+    In the end what is running is waited for; of threads, where the sweep was interrupted, a few rows.
+
+    Args:
+        request: the sweep.
+        folder: where parts are saved, if anywhere.
+        workers: how many.
+    """
+    if request.promotes:
+        with Pool(workers) as pool:
+            yield Executor(workers, lambda rows: pool.submit(compute, request.text, rows, folder))
+        return
+
+    def begin(rows: range) -> Future[Any]:
+        return threads.submit(work, request, rows, folder, promote, stop)
+
+    def prepare() -> None:
+        executor.compile_s += prepared(request)
+
+    executor, stop = Executor(workers, begin), threading.Event()
+    threads = ThreadPoolExecutor(workers, thread_name_prefix="sweep", initializer=prepare)
+    with Pool(1) as pool:
+        promote = partial(isolated, pool)
+        try:
+            yield executor
+        except BaseException:
+            stop.set()
+            raise
+        finally:
+            threads.shutdown(cancel_futures=stop.is_set())
+
+
+def prepared(request: Request) -> float:
+    """Compile in this thread what the rows need; return the CPU seconds that it took."""
+    started = time.thread_time()
+    engine = batches()[request.engine]
+    for wanted in (request.wanted, MOVED):
+        engine.prepare(wanted, drag=False)
+    return time.thread_time() - started
+
+
+def compute(text: str, rows: range, folder: Path | None) -> Part:
+    """Compute rows in a process of their own."""
+    return work(request_of(text), rows, folder)
+
+
+def isolated(pool: Pool, request: Request, row: int, *, doubtful: bool) -> Promoted:
+    """Return what `promoted` does, from a process of its own: the solver is not made for several threads."""
+    try:
+        result: Promoted = pool.submit(compute_alone, request.text, row, doubtful).result()
+    except WorkerDied as death:
+        return Promoted({}, ([], []), str(death))
+    return result
+
+
+def compute_alone(text: str, row: int, doubtful: bool) -> Promoted:
+    """Have the solver solve a row in this process; note what it cost, with the processes that it started."""
+    before = sum(os.times()[:4])
+    result = promoted(request_of(text), row, doubtful=doubtful)
+    return replace(result, cpu_s=sum(os.times()[:4]) - before)

@@ -1,35 +1,112 @@
-"""Columns as Parquet and back; the only door to pyarrow."""
+"""The columns of a sweep, once for schema, files and docs, and Parquet files of them; the only door to pyarrow."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa
-import pyarrow.parquet as pq
+import numpy as np
 
-from .row import Column
+from ..errors import InputError
+from ..numbers.columns import POSITION, VELOCITY
+from ..system.imports import missing
 
-PYARROW: str = pa.__version__
-KEY = b"foucault.plan"  # of the plan's hash in a file's metadata
-_WORDS = pa.dictionary(pa.int32(), pa.string())
+FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = "frequency", "precession", "transits", "state", "amplitude"
+TIMES = "transit-times"
+WANTS = (FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE)  # what `all` means; the times of the transits are more
+WORDS = "dictionary"  # the kind of a column of words that repeat
+
+_KEY = b"foucault.plan"  # of the plan's hash in a file's metadata
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: its kind is that of Arrow (float64, int32, …, or `WORDS`)."""
+
+    name: str
+    kind: str
+    meaning: str
+    wants: tuple[str, ...] = ()  # present where one of these is wanted; always if empty
+
+    def empty(self, count: int) -> Any:
+        """Return the column of some rows with nothing known: NaN, 0, or None."""
+        if self.kind == WORDS:
+            return np.full(count, None, dtype=object)
+        if self.kind == "float64":
+            return np.full(count, np.nan)
+        return np.zeros(count, self.kind)
+
+
+STATE_COLUMNS = tuple([f"{name}_m" for name in POSITION] + [f"{name}_m_s" for name in VELOCITY])
+
+COLUMNS = (
+    Column("row", "int64", "number of the row, from 0, the last axis fastest"),
+    Column("status", "dictionary", "ok, or what went wrong: a word of `reference.status.Status`"),
+    Column("reason", "dictionary", "a sentence where the status is not ok"),
+    Column("level", "dictionary", "level of trust: computed, or that of the solver where the row was promoted"),
+    Column("engine", "dictionary", "the engine that computed the row"),
+    Column("digits", "int16", "significant digits of the largest number; 0 where the level is computed"),
+    Column("steps", "int32", "steps taken"),
+    Column("transits", "int32", "zeros of xdot in 0 < t <= t_end", (TRANSITS, FREQUENCY)),
+    Column("close_pairs", "int32", "pairs of transits nearer than a quarter of a swing", (TRANSITS, FREQUENCY)),
+    Column("t_first_s", "float64", "time of the first transit", (TRANSITS, FREQUENCY)),
+    Column("t_last_s", "float64", "time of the last transit", (TRANSITS, FREQUENCY)),
+    Column("transit_error_s", "float64", "error of the worst transit's time", (TRANSITS, FREQUENCY)),
+    Column("frequency_hz", "float64", "(n - 1)/(2 (t_n - t_1)) over the transits", (FREQUENCY,)),
+    Column("frequency_error_hz", "float64", "its error", (FREQUENCY,)),
+    Column("swing_hz", "float64", "(m - 1)/(2 (τ_m - τ_1)) over the highest points", (FREQUENCY, PRECESSION)),
+    Column("swing_error_hz", "float64", "its error", (FREQUENCY, PRECESSION)),
+    Column("precession_deg_per_h", "float64", "turn of the highest points' azimuth, east to north", (PRECESSION,)),
+    Column("precession_error_deg_per_h", "float64", "its error", (PRECESSION,)),
+    Column("precession_ratio", "float64", "precession over -Ω sin(latitude)", (PRECESSION,)),
+    *(Column(name, "float64", f"{name.split('_')[0]} at t_end", (STATE,)) for name in STATE_COLUMNS),
+    Column("position_error_m", "float64", "error of the position at t_end"),
+    Column("velocity_error_m_s", "float64", "error of the velocity at t_end", (STATE,)),
+    Column("max_angle_deg", "float64", "largest angle from the plumb line, at the release or a turn", (AMPLITUDE,)),
+    Column("max_angle_error_deg", "float64", "its error", (AMPLITUDE,)),
+)  # fmt: skip
+TRANSIT_COLUMNS = (
+    Column("row", "int64", "number of the row"),
+    Column("t_s", "float64", "time of the transit"),
+    Column("direction", "int8", "+1 where xdot goes from - to +"),
+)
+
+
+def need_pyarrow(option: str, got: str, expected: str) -> None:
+    """Refuse what needs pyarrow where it is not installed.
+
+    Raises:
+        InputError: it is not.
+    """
+    if missing(["pyarrow"]):
+        raise InputError(option, got, expected, "Install it with pip install 'foucault-reference[sweep]'.")
+
+
+def pyarrow_version() -> str:
+    """Return the version of pyarrow, which decides the bytes of a file."""
+    import pyarrow as pa
+
+    return str(pa.__version__)
 
 
 def parquet(columns: Iterable[Column], values: dict[str, Any], plan: str) -> bytes:
     """Return columns as a Parquet file: zstd, numbers with their bytes split, words by dictionary."""
-    kinds = {"dictionary": _WORDS, "float64": pa.float64()}
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     fields, arrays = [], []
     for column in columns:
-        kind = kinds.get(column.kind) or getattr(pa, column.kind)()
+        kind = pa.dictionary(pa.int32(), pa.string()) if column.kind == WORDS else getattr(pa, column.kind)()
         fields.append(pa.field(column.name, kind, metadata={"meaning": column.meaning}))
-        if column.kind == "dictionary":
-            arrays.append(pa.array(values[column.name], pa.string()).dictionary_encode().cast(_WORDS))
+        if column.kind == WORDS:
+            arrays.append(pa.array(values[column.name], pa.string()).dictionary_encode().cast(kind))
         else:
             arrays.append(pa.array(values[column.name], kind))
-    table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={KEY: plan.encode()}))
-    words = [field.name for field in fields if field.type == _WORDS]
+    table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={_KEY: plan.encode()}))
+    words = [field.name for field in fields if pa.types.is_dictionary(field.type)]
     split = [field.name for field in fields if field.type == pa.float64()]
     stream = io.BytesIO()
     pq.write_table(
@@ -44,6 +121,9 @@ def read_columns(path: Path) -> dict[str, list[Any]]:
     Raises:
         OSError: it cannot be read, or is none.
     """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     try:
         return dict(pq.read_table(path).to_pydict())
     except pa.ArrowException as error:
@@ -52,15 +132,24 @@ def read_columns(path: Path) -> dict[str, list[Any]]:
 
 def footer(path: Path) -> tuple[int, str]:
     """Return the number of rows of a file, and the hash of its plan; 0 and nothing if it is none, or cut short."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     try:
-        found = pq.read_metadata(path)
+        read = pq.read_metadata(path)
     except (OSError, pa.ArrowException):
         return 0, ""
-    return found.num_rows, (found.metadata or {}).get(KEY, b"").decode()
+    return read.num_rows, (read.metadata or {}).get(_KEY, b"").decode()
 
 
 def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, Any]:
     """Return columns of several files, one below the other; words as objects, None where there is none."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
     table = pa.concat_tables([pq.read_table(path, columns=names) for path in paths])
-    plain = {name: table[name].cast(pa.string()) for name in table.column_names if table[name].type == _WORDS}
-    return {name: plain.get(name, table[name]).to_numpy(zero_copy_only=False) for name in table.column_names}
+    columns = {}
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        words = pa.types.is_dictionary(column.type)
+        columns[name] = (column.cast(pa.string()) if words else column).to_numpy(zero_copy_only=False)
+    return columns

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,54 +15,101 @@ from ..engines.batch_interface import OK, STOPPED, Batch, Outcomes, Rows
 from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
-from .axes import Listed
+from .axes import TEXTS
 from .estimate import DEGREES_PER_HOUR, Errors, judged
-from .promote import DOUBTFUL_REASON, Promoted, fill, promoted
+from .parquet import COLUMNS, STATE_COLUMNS, TRANSIT_COLUMNS
+from .promote import Promoted, promoted
 from .request import Request
-from .row import STATE_COLUMNS, TIMES, empty
+from .row_constants import engine_rows
 
 Promote = Callable[..., Promoted]
 
+DOUBTFUL_REASON = "The number of transits, or the error, is not decided in double."
 STOPPED_REASON = "The engine stopped: the step became too short, or a number not finite."
+_KNOWN = ("row", "status", "reason", "level")  # columns that a row has which failed
+
+
+@dataclass
+class Tally:
+    """Counts of rows by status, and their costs.
+
+    Attributes:
+        counts: of rows.
+        cpu_s: CPU seconds of the rows, in this thread and in the process that solves some of them by themselves.
+        fold_s: of these, those of constants and releases.
+        store_s: CPU seconds of writing them.
+    """
+
+    counts: Counter[str] = field(default_factory=Counter)
+    cpu_s: float = 0.0
+    fold_s: float = 0.0
+    store_s: float = 0.0
+
+    def __add__(self, other: Tally) -> Tally:
+        return Tally(
+            self.counts + other.counts,
+            self.cpu_s + other.cpu_s,
+            self.fold_s + other.fold_s,
+            self.store_s + other.store_s,
+        )
 
 
 @dataclass
 class Part:
-    """Rows with all columns, and what they cost.
+    """Rows with all columns.
 
     Attributes:
         columns: arrays of shape (rows,) by name; words are objects, None where there is none.
         transits: columns row, t_s and direction of every transit, if wanted.
-        cpu_s: CPU seconds of the rows, in this thread and in the process that solves some of them by themselves.
-        fold_s: of these, those of constants and releases.
+        tally: counts and costs.
     """
 
-    columns: dict[str, Any]
+    columns: dict[str, Any] = field(default_factory=dict)
     transits: dict[str, Any] = field(default_factory=dict)
-    cpu_s: float = 0.0
-    fold_s: float = 0.0
+    tally: Tally = field(default_factory=Tally)
 
-    def list_transits(self, row: int, times: Any, directions: Any) -> None:
-        """List the transits of a row in the place of those that are listed."""
-        before = self.transits["row"] < row
-        after = self.transits["row"] > row
-        new = {"row": np.full(len(times), row), "t_s": times, "direction": directions}
-        self.transits = {
-            name: np.concatenate([old[before], np.asarray(new[name], old.dtype), old[after]])
-            for name, old in self.transits.items()
+    @classmethod
+    def unsolved(cls, request: Request, numbers: range) -> Part:
+        """Return rows of which nothing is known but their numbers and the words among their values."""
+        part = cls({column.name: column.empty(len(numbers)) for column in request.columns})
+        part.columns["row"][:] = numbers
+        part.columns["level"][:] = "computed"
+        for key, words in request.table.words(numbers).items():
+            part.columns[key][:] = words
+        if request.wanted.times:
+            part.transits = {column.name: column.empty(0) for column in TRANSIT_COLUMNS}
+        return part
+
+    @classmethod
+    def joined(cls, pieces: Sequence[Part]) -> Part:
+        """Return the rows of several pieces, in order."""
+        return cls(
+            {name: np.concatenate([piece.columns[name] for piece in pieces]) for name in pieces[0].columns},
+            {name: np.concatenate([piece.transits[name] for piece in pieces]) for name in pieces[0].transits},
+            sum((piece.tally for piece in pieces), Tally()),
+        )
+
+    def fill(self, places: Any, values: dict[str, Any]) -> None:
+        """Put values into those columns that there are, at one place or several."""
+        for name, value in values.items():
+            if name in self.columns:
+                self.columns[name][places] = value
+
+    def fail(self, place: int, status: Status, reason: str) -> None:
+        """Say why a row failed, and take its numbers away."""
+        self.fill(place, {column.name: column.empty(1)[0] for column in COLUMNS if column.name not in _KNOWN})
+        self.fill(place, {"status": status.value, "reason": reason})
+
+    def list_transits(self, replaced: Iterable[int], rows: Any, times: Any, directions: Any) -> None:
+        """List transits in the order of their rows, in place of those that are listed for some rows."""
+        kept = ~np.isin(self.transits["row"], list(replaced))
+        added = dict(zip(self.transits, (rows, times, directions), strict=True))
+        both = {
+            name: np.concatenate([listed[kept], np.asarray(added[name], listed.dtype)])
+            for name, listed in self.transits.items()
         }
-
-
-def unsolved(request: Request, numbers: range) -> Part:
-    """Return rows of which nothing is known but their numbers and the words among their values."""
-    part = Part({column.name: empty(column, len(numbers)) for column in request.columns})
-    part.columns["row"][:] = numbers
-    part.columns["level"][:] = "computed"
-    for key, words in request.table.words(numbers).items():
-        part.columns[key][:] = words
-    if request.wanted.times:
-        part.transits = {"row": np.zeros(0, np.int64), "t_s": np.zeros(0), "direction": np.zeros(0, np.int8)}
-    return part
+        order = np.argsort(both["row"], kind="stable")
+        self.transits = {name: values[order] for name, values in both.items()}
 
 
 def solve_part(request: Request, numbers: range, promote: Promote = promoted) -> Part:
@@ -72,148 +121,128 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
         promote: solves a row by itself, as `promoted` does, which is not made for several threads.
     """
     started = time.thread_time()
-    table, part = request.table, unsolved(request, numbers)
-    columns = part.columns
-    wrong = table.wrong(numbers, request.scene.inputs) if isinstance(table, Listed) else {}
+    part, inputs = Part.unsolved(request, numbers), request.scene.inputs
+    wrong = request.table.wrong(numbers, inputs)
     for row, reason in wrong.items():
-        _fail(columns, row - numbers.start, Status.INVALID, reason)
-        for key in table.keys:
-            _show(columns, key, row - numbers.start, table.texts(row)[key])
+        part.fail(row - numbers.start, Status.INVALID, reason)
+        for key, text in request.table.texts(row).items():
+            if key not in TEXTS:
+                with suppress(ValueError):
+                    part.columns[key][row - numbers.start] = float(text)
     good = np.array([row for row in numbers if row not in wrong], np.int64)
-    before = time.thread_time()
-    for key, values in table.numbers(good, request.scene.inputs).items():
-        columns[key][good - numbers.start] = values.high
-    rows = request.constants(good) if len(good) else None
-    part.fold_s = time.thread_time() - before
-    if rows is not None:
-        _solve(request, part, good, rows, promote)
-    part.cpu_s += time.thread_time() - started
+    if len(good):
+        before = time.thread_time()
+        for key, values in request.table.numbers(good, inputs).items():
+            part.columns[key][good - numbers.start] = values.high
+        rows = engine_rows(request.scene, request.table, good)
+        part.tally.fold_s = time.thread_time() - before
+        _solve(request, part, good - numbers.start, rows, promote)
+    part.tally.counts.update(part.columns["status"].tolist())
+    part.tally.cpu_s += time.thread_time() - started
     return part
 
 
-def _solve(request: Request, part: Part, numbers: Any, rows: Rows, promote: Promote) -> None:
+def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promote) -> None:
     """Solve rows whose values are right one by one."""
-    columns, sound = part.columns, _finite(rows)
-    places = numbers - int(columns["row"][0])
+    numbers, sound = part.columns["row"], _finite(rows)
     more: dict[int, str] = {}  # places of rows that the solver has to solve, and why
-    for at in np.flatnonzero(~sound):
+    for place in places[~sound].tolist():
         try:
-            request.scene_of(int(numbers[at]))
-            more[int(places[at])] = "A number of the scene is beyond the range of binary64."
+            request.scene_of(int(numbers[place]))
+            more[place] = "A number of the scene is beyond the range of binary64."
         except InputError as error:
-            _fail(columns, int(places[at]), Status.INVALID, str(error))
+            part.fail(place, Status.INVALID, str(error))
         except FoucaultError as error:
-            _fail(columns, int(places[at]), Status.UNREACHABLE, str(error))
-    kept, places = rows[np.flatnonzero(sound)], places[sound]
+            part.fail(place, Status.UNREACHABLE, str(error))
+    rows, places = rows[sound], places[sound]
     if request.promotes:
-        more |= dict.fromkeys(map(int, places), "")
+        more |= dict.fromkeys(places.tolist(), "")
     if len(places) and (request.wanted.apsides or not request.promotes):
-        more |= _side_by_side(request, part, places, kept)
+        more |= _side_by_side(request, part, places, rows)
     for place, reason in sorted(more.items()):
         if reason == STOPPED_REASON and not request.promotes:
-            _fail(columns, place, Status.GAVE_UP, reason)
-            continue
-        result = promote(request, int(columns["row"][place]), doubtful=bool(reason))
-        part.cpu_s += result.cpu_s
-        fill(columns, place, result, reason)
-        if TIMES in request.want:
-            part.list_transits(int(columns["row"][place]), *result.times)
+            part.fail(place, Status.GAVE_UP, reason)
+        else:
+            _promote(request, part, place, reason, promote)
+
+
+def _promote(request: Request, part: Part, place: int, reason: str, promote: Promote) -> None:
+    """Have the solver solve a row; what it does not give stays as computed.
+
+    The reason for it, empty if by request, stays the row's reason where the solver failed.
+    """
+    row = int(part.columns["row"][place])
+    result = promote(request, row, doubtful=bool(reason))
+    part.tally.cpu_s += result.cpu_s
+    if result.failure:
+        status = Status.DOUBTFUL if reason == DOUBTFUL_REASON else Status.UNREACHABLE
+        part.fail(place, status, f"{reason} {result.failure}".strip())
+    else:
+        part.fill(place, {**result.values, "status": Status.OK.value, "reason": None})
+    if request.wanted.times:
+        times, directions = result.times
+        part.list_transits([row], np.full(len(times), row), times, directions)
 
 
 def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict[int, str]:
     """Solve rows side by side; return those that are in doubt, or not good enough, and why."""
-    columns, wanted = part.columns, request.wanted
+    wanted = request.wanted
     more: dict[int, str] = {}
-    damped = rows.drag[:, 0] != 0
-    for engine, own in _shared(request.engine, damped):
-        chosen = rows[own]
-        run = engine.solve(chosen, wanted)
-        found, lost = judged(engine, chosen, run)
-        at = places[own]
-        write(columns, at, chosen, run, found, engine.name)
+    for engine, chosen in _shared(request.engine, rows):
+        own, at = rows[chosen], places[chosen]
+        run = engine.solve(own, wanted)
+        errors, lost = judged(engine, own, run)
+        part.fill(at, _results(own, run, errors))
+        part.columns["engine"][at] = engine.name
         if wanted.times:
-            _list_transits(part, at, run)
+            listed = part.columns["row"][at][run.transit_row]
+            part.list_transits([], listed, run.transit_t, run.transit_direction)
         stopped = (run.fate == STOPPED) | lost
-        unsure = (run.fate != OK) | (found.undecided if wanted.transits else False)
+        unsure = (run.fate != OK) | (errors.undecided if wanted.transits else False)
         if request.tolerance is not None:
-            unsure = unsure | ~(found.position <= request.tolerance)
-        more |= dict.fromkeys(map(int, at[unsure]), DOUBTFUL_REASON)
-        more |= dict.fromkeys(map(int, at[stopped]), STOPPED_REASON)
+            unsure = unsure | ~(errors.position <= request.tolerance)
+        more |= dict.fromkeys(at[unsure].tolist(), DOUBTFUL_REASON)
+        more |= dict.fromkeys(at[stopped].tolist(), STOPPED_REASON)
     return more
 
 
-def _shared(name: str, damped: Any) -> list[tuple[Batch, Any]]:
+def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
     """Return engines with the rows that each solves: heyoka those with drag where the other has none."""
-    engine, other = batches()[name], batches()["heyoka"]
-    if engine.drag or not damped.any():
-        return [(engine, np.arange(len(damped)))]
-    both = [(engine, np.flatnonzero(~damped)), (other, np.flatnonzero(damped))]
-    return [(one, own) for one, own in both if len(own)]
+    engine = batches()[name]
+    chosen = np.full(len(rows), engine.drag) | (rows.drag[:, 0] == 0)
+    return [(solver, own) for solver, own in ((engine, chosen), (batches()["heyoka"], ~chosen)) if own.any()]
 
 
-def write(columns: dict[str, Any], at: Any, rows: Rows, run: Outcomes, found: Errors, engine: str) -> None:
-    """Write results into the columns that there are, at some places."""
+def _results(rows: Rows, run: Outcomes, errors: Errors) -> dict[str, Any]:
+    """Return the columns of rows that were solved side by side."""
     span, swings = run.t_last - run.t_first, run.apsis_last - run.apsis_first
     with np.errstate(divide="ignore", invalid="ignore"):
         precession = np.where(run.apsides > 1, run.turn / swings * DEGREES_PER_HOUR, np.nan)
         vertical = -rows.turn[:, 2, 0] * DEGREES_PER_HOUR
-        values = {
-            "status": np.full(len(rows), Status.OK.value, object),
-            "engine": np.full(len(rows), engine, object),
+        return {
+            "status": Status.OK.value,
             "steps": run.steps,
             "transits": run.transits,
             "close_pairs": run.close_pairs,
             "t_first_s": run.t_first,
             "t_last_s": run.t_last,
-            "transit_error_s": found.transit,
+            "transit_error_s": errors.transit,
             "frequency_hz": np.where(run.transits > 1, (run.transits - 1) / (2 * span), np.nan),
-            "frequency_error_hz": found.frequency,
+            "frequency_error_hz": errors.frequency,
             "swing_hz": np.where(run.apsides > 1, (run.apsides - 1) / (2 * swings), np.nan),
-            "swing_error_hz": found.swing,
+            "swing_error_hz": errors.swing,
             "precession_deg_per_h": precession,
-            "precession_error_deg_per_h": found.precession,
+            "precession_error_deg_per_h": errors.precession,
             "precession_ratio": np.where(vertical != 0, precession / vertical, np.nan),
             **dict(zip(STATE_COLUMNS, run.state.T, strict=True)),
-            "position_error_m": found.position,
-            "velocity_error_m_s": found.velocity,
+            "position_error_m": errors.position,
+            "velocity_error_m_s": errors.velocity,
             "max_angle_deg": np.degrees(run.largest_angle),
-            "max_angle_error_deg": found.angle,
+            "max_angle_error_deg": errors.angle,
         }
-    for name, value in values.items():
-        if name in columns:
-            columns[name][at] = value
-
-
-def _list_transits(part: Part, at: Any, run: Outcomes) -> None:
-    """Add the transits of rows to those that are listed, in the order of the rows."""
-    new = {
-        "row": part.columns["row"][at][run.transit_row],
-        "t_s": run.transit_t,
-        "direction": run.transit_direction,
-    }
-    both = {name: np.concatenate([part.transits[name], new[name]]) for name in new}
-    order = np.argsort(both["row"], kind="stable")
-    part.transits = {name: values[order] for name, values in both.items()}
 
 
 def _finite(rows: Rows) -> Any:
     numbers = (getattr(rows, name).reshape(len(rows), -1) for name in ("length", "drag", "turn", "pull", "n", "V"))
     sound = np.isfinite(np.concatenate(list(numbers), axis=1)).all(axis=1)
     return sound & (rows.n[:, :, 0] != 0).any(axis=1)
-
-
-def _fail(columns: dict[str, Any], place: int, status: Status, reason: str) -> None:
-    """Say why a row failed, and take its numbers away."""
-    for name, values in columns.items():
-        if name in ("row", "status", "reason", "level") or "." in name:
-            continue
-        values[place] = np.nan if values.dtype.kind == "f" else None if values.dtype == object else 0
-    columns["status"][place], columns["reason"][place] = status.value, reason
-
-
-def _show(columns: dict[str, Any], key: str, place: int, text: str) -> None:
-    """Show a wrong value, where it is a number or a word."""
-    try:
-        columns[key][place] = text if columns[key].dtype == object else float(text)
-    except ValueError:
-        columns[key][place] = np.nan

@@ -9,6 +9,7 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,15 +18,14 @@ from ..errors import FoucaultError
 from ..numbers.columns import POSITION, STATE, VELOCITY
 from ..scenes.scene import LEVELS, Level
 from ..status import Status
+from .parquet import STATE_COLUMNS
 from .request import Request
-from .row import STATE_COLUMNS
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
 
 LEAST_LEVEL: Level = "self_consistent"  # that settles a doubt
 DIGITS = 17  # that show a double
-DOUBTFUL_REASON = "The number of transits, or the error, is not decided in double."
 AUDIT_DIGITS = 28  # at about 110 bits
 
 
@@ -68,28 +68,6 @@ def promoted(
     return Promoted(_values(solution), _times(solution))
 
 
-def fill(columns: dict[str, Any], place: int, result: Promoted, reason: str) -> None:
-    """Put a solved row into its place; what the solver does not give stays as computed.
-
-    Args:
-        columns: of a part.
-        place: of the row in it.
-        result: of the row.
-        reason: why the row was promoted, which stays its reason where the solver failed; empty if by request.
-    """
-    if result.failure:
-        status = Status.DOUBTFUL if reason == DOUBTFUL_REASON else Status.UNREACHABLE
-        for name, values in columns.items():
-            if values.dtype.kind == "f" and "." not in name:
-                values[place] = np.nan
-        columns["status"][place] = status.value
-        columns["reason"][place] = f"{reason} {result.failure}".strip()
-        return
-    for name, value in {**result.values, "status": Status.OK.value, "reason": None}.items():
-        if name in columns:
-            columns[name][place] = value
-
-
 def _values(solution: Solution) -> dict[str, Any]:
     """Return the columns that a solution gives."""
     grid, transits = solution.grid, solution.transits
@@ -104,8 +82,8 @@ def _values(solution: Solution) -> dict[str, Any]:
         "velocity_error_m_s": _norm([bounds[name] for name in VELOCITY]),
         "transits": len(solution.directions),
     }
-    missing = ("t_first_s", "t_last_s", "frequency_hz", "frequency_error_hz", "transit_error_s")
-    values |= dict.fromkeys(missing, np.nan)
+    names = ("t_first_s", "t_last_s", "frequency_hz", "frequency_error_hz", "transit_error_s")
+    values |= dict.fromkeys(names, np.nan)
     if transits is not None and solution.directions:
         times, bound = transits.exact("t"), max(transits.bound("t"))
         values |= {"t_first_s": float(times[0]), "t_last_s": float(times[-1]), "transit_error_s": float(bound)}
@@ -128,33 +106,28 @@ def _times(solution: Solution) -> tuple[list[float], list[int]]:
 
 @dataclass(frozen=True)
 class Audit:
-    """Findings of an audit: rows solved again, those that were wrong, the largest error over its estimate."""
+    """Findings of an audit: rows solved again, those that were wrong, the largest error over its estimate, where."""
 
     rows: int
     wrong: tuple[int, ...]
     worst_ratio: float
     worst_row: int | None
 
-    @property
-    def document(self) -> dict[str, Any]:
-        """The audit as JSON."""
-        return {
-            "rows": self.rows, "wrong": list(self.wrong), "worst_ratio": self.worst_ratio, "worst_row": self.worst_row
-        }  # fmt: skip
 
-
-def resolved(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit:
+def audited(request: Request, read: Callable[[int], Mapping[str, Any]]) -> Audit:
     """Solve a sample of the rows again: the request says how many, its hash which.
 
     Args:
         request: the sweep.
-        read: returns the columns of a row.
+        read: returns the columns of a part.
     """
     ratios = {}
-    for number in sample(request):
-        row = read(number)
-        if row["status"] == Status.OK.value and row["level"] == "computed":
-            ratios[number] = worst_ratio(request, number, row)
+    for part, numbers in groupby(sample(request), request.part_of):
+        columns = read(part)
+        for number in numbers:
+            row = {name: values[number - part * request.rows_per_part] for name, values in columns.items()}
+            if row["status"] == Status.OK.value and row["level"] == "computed":
+                ratios[number] = worst_ratio(request, number, row)
     wrong = tuple(number for number, ratio in ratios.items() if not ratio <= 1)
     worst = max(ratios, key=lambda number: ratios[number], default=None)
     return Audit(len(ratios), wrong, ratios[worst] if worst is not None else 0.0, worst)

@@ -1,13 +1,12 @@
-"""The constants and releases of many rows in double-double arrays, by the model's own formulas: `Rows` for an engine.
+"""From the values of rows to their constants and releases, by the model's own formulas: `Rows` for an engine.
 
-Within an ulp of the exact constants, at about two microseconds a row; in mpmath a row would cost more than its
-integration.
+They are computed in double-double arrays, within an ulp of the exact constants, at about two microseconds a row; in
+mpmath a row would cost more than its integration.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,8 @@ from ..model.start import at_angles
 from ..numbers.double_double import DoubleDouble, in_radians, sine_and_cosine, square_root
 from ..numbers.precision import Array
 from ..scenes.inputs import GravityIs, Inputs
+from ..scenes.scene import Scene
+from .axes import Table
 
 Columns = Mapping[str, DoubleDouble]
 
@@ -36,6 +37,47 @@ def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
     named |= dict(zip(POSITION, inputs.position, strict=True)) if inputs.position is not None else {}
     named |= dict(zip(ANGLES, inputs.angles, strict=True)) if inputs.angles is not None else {}
     return {name: DoubleDouble.of([value]) for name, value in named.items()}
+
+
+def engine_rows(scene: Scene, table: Table, numbers: Any) -> Rows:
+    """Return the constants and releases of rows; not finite where something is wrong with the scene.
+
+    Args:
+        scene: the scene that is varied.
+        table: its values.
+        numbers: of the rows.
+    """
+    numbers = np.asarray(numbers, np.int64)
+    words = table.words(numbers)
+    if not words:
+        return _of_kind(scene, table, numbers)
+    kinds = list(zip(*words.values(), strict=True))
+    order, blocks = [], []
+    for kind in sorted(set(kinds)):
+        places = np.flatnonzero([other == kind for other in kinds])
+        worded = scene.with_values(f"{key}={word}" for key, word in zip(words, kind, strict=True))
+        order.append(places)
+        blocks.append(_of_kind(worded, table, numbers[places]))
+    return Rows.joined(blocks)[np.argsort(np.concatenate(order))]
+
+
+def _of_kind(scene: Scene, table: Table, numbers: Any) -> Rows:
+    """Return rows whose words are those of the scene."""
+    columns = columns_of(scene.exact)
+    for key, values in table.numbers(numbers, scene.inputs).items():
+        if key == "site.inverse_flattening":
+            columns["flattening"] = _inverse(values)
+        else:
+            columns[key.rpartition(".")[2]] = values
+    with np.errstate(all="ignore"):
+        return row_constants(columns, scene.site.gravity_is, len(numbers))
+
+
+def _inverse(numbers: DoubleDouble) -> DoubleDouble:
+    """Return 1/numbers, of infinity zero."""
+    zero, unit = DoubleDouble(np.zeros(1), np.zeros(1)), DoubleDouble(np.ones(1), np.zeros(1))
+    with np.errstate(invalid="ignore"):
+        return zero.where(np.isinf(numbers.high), unit / numbers)
 
 
 def row_constants(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
@@ -55,7 +97,7 @@ def row_constants(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
             for name, value in columns.items()
         }
         blocks.append(_of_block(block, gravity_is, size))
-    return Rows(*(np.concatenate([getattr(b, field.name) for b in blocks]) for field in fields(Rows)))
+    return Rows.joined(blocks)
 
 
 def _of_block(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
@@ -111,12 +153,9 @@ def _balanced(n: Vector, k: Constants) -> Any:
     return across[0].vanishes & across[1].vanishes & across[2].vanishes
 
 
-def _stacked(parts: tuple[DoubleDouble, ...], count: int) -> Array:
+def _stacked(parts: Sequence[DoubleDouble], count: int) -> Array:
     """Return numbers as an array of shape (count, parts, 2)."""
-    result = np.empty((count, len(parts), 2))
-    for i, part in enumerate(parts):
-        result[:, i, 0], result[:, i, 1] = part.high, part.low
-    return result
+    return np.stack([np.broadcast_to(part.pairs, (count, 2)) for part in parts], axis=1)
 
 
 def _spread(values: Any, count: int) -> Any:

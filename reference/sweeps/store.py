@@ -9,58 +9,55 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..errors import InputError
+from ..engines.registry import batches
+from ..errors import InputError, plain_json
 from ..system.documents import json_document
 from ..system.workspace import replace_file
-from .parquet import PYARROW, arrays, footer, parquet
+from .parquet import TRANSIT_COLUMNS, Column, arrays, footer, need_pyarrow, parquet, pyarrow_version
 from .part import Part
 from .request import Request
-from .row import Column
 
 PLAN, SUMMARY, ROWS, TRANSITS = "plan.json", "summary.json", "rows", "transits"
-_TRANSIT_COLUMNS = (
-    Column("row", "int64", "number of the row"),
-    Column("t_s", "float64", "time of the transit"),
-    Column("direction", "int8", "+1 where xdot goes from - to +"),
-)
 
 
+@dataclass(frozen=True)
 class Store:
     """The folder of a sweep.
 
-    Args:
+    Attributes:
         folder: where it is.
         request: the sweep.
+        pyarrow: the version that it was begun with.
     """
 
-    def __init__(self, folder: Path, request: Request) -> None:
-        self.folder, self.request = folder, request
+    folder: Path
+    request: Request
+    pyarrow: str = ""
 
     @classmethod
     def begun(cls, folder: Path, request: Request) -> Store:
         """Begin a folder, or go on with that of the same sweep.
 
         Raises:
-            InputError: it holds another sweep, or something else.
+            InputError: it holds another sweep, or something else, or other versions would write other bytes.
             OSError: it cannot be written.
         """
         if (folder / PLAN).exists():
             store = cls.opened(folder)
-            if store.request.hash != request.hash:
-                names = _differences(store.request.document(), request.document())
-                raise InputError(
-                    "--out", str(folder), f"the sweep that is there, which differs in {names}", "Take another folder."
-                )
-            return store
-        if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
-            raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
-        folder.mkdir(parents=True, exist_ok=True)
-        store = cls(folder, request)
-        store._make_folders()
-        _write_json(folder / PLAN, {"hash": request.hash, "pyarrow": PYARROW, **request.document()})
+            store._check_same(request)
+        else:
+            _need_pyarrow()
+            if folder.exists() and (not folder.is_dir() or any(map(_foreign, folder.iterdir()))):
+                raise InputError("--out", str(folder), "a new or empty folder, or that of this sweep")
+            store = cls(folder, request, pyarrow_version())
+        for kind in store._kinds:
+            (folder / kind).mkdir(parents=True, exist_ok=True)
+        if not (folder / PLAN).exists():
+            _write_json(folder / PLAN, {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()})
         return store
 
     @classmethod
@@ -70,43 +67,40 @@ class Store:
         Raises:
             InputError: there is none, or its plan is damaged.
         """
+        _need_pyarrow()
         try:
             document = json_document(folder / PLAN, "--out")
-            store = cls(folder, Request.of(document))
+            request = Request.of(document)
         except FileNotFoundError:
             raise InputError("--out", str(folder), f"a folder of a sweep, with {PLAN}") from None
         except (ValueError, KeyError, TypeError, AttributeError, InputError):
-            document, store = {}, None
-        if store is None or store.request.hash != document.get("hash"):
+            document, request = {}, None
+        if request is None or request.hash != document.get("hash"):
             raise InputError("--out", str(folder), f"a {PLAN} as it was written", "It was changed: sweep anew.")
-        store._made_with = str(document.get("pyarrow"))
-        return store
+        return cls(folder, request, str(document.get("pyarrow")))
 
-    _made_with = PYARROW
-
-    def check_versions(self) -> None:
-        """Refuse to go on with versions that would write other bytes.
+    def _check_same(self, request: Request) -> None:
+        """Refuse to go on with another sweep, or with versions that would write other bytes.
 
         Raises:
-            InputError: they differ from the plan's.
+            InputError: it differs from the plan.
         """
-        from ..engines.registry import batches
-
-        here = batches()[self.request.engine].identity
-        for got, expected in (
-            (here, self.request.identity),
-            (f"pyarrow {PYARROW}", f"pyarrow {self._made_with}"),
-        ):
+        there, here = self.request.document(), request.document()
+        differing = [key for key in sorted(here) if json.dumps(there.get(key)) != json.dumps(here[key])]
+        if differing:
+            expected = f"the sweep that is there, which differs in {', '.join(differing)}"
+            raise InputError("--out", str(self.folder), expected, "Take another folder.")
+        versions = {
+            batches()[self.request.engine].identity: self.request.identity,
+            f"pyarrow {pyarrow_version()}": f"pyarrow {self.pyarrow}",
+        }
+        for got, expected in versions.items():
             if got != expected:
                 advice = "Install the versions that the sweep was begun with, or begin it anew in another folder."
                 raise InputError("--out", got, f"{expected}, as in {self.folder / PLAN}", advice)
 
-    def _make_folders(self) -> None:
-        for name in self._folders:
-            (self.folder / name).mkdir(exist_ok=True)
-
     @property
-    def _folders(self) -> tuple[str, ...]:
+    def _kinds(self) -> tuple[str, ...]:
         return (ROWS, TRANSITS) if self.request.wanted.times else (ROWS,)
 
     def path(self, part: int, kind: str = ROWS) -> Path:
@@ -115,16 +109,10 @@ class Store:
 
     def missing(self) -> list[int]:
         """Return the parts that are not there yet, or not whole, or of another plan."""
-        self._make_folders()
-        return [
-            part for part in range(self.request.parts) if not all(self._sound(part, kind) for kind in self._folders)
-        ]
+        return [part for part in range(self.request.parts) if not all(self._sound(part, kind) for kind in self._kinds)]
 
     def _sound(self, part: int, kind: str) -> bool:
-        path = self.path(part, kind)
-        if not path.exists():
-            return False
-        rows, plan = footer(path)
+        rows, plan = footer(self.path(part, kind))
         return plan == self.request.hash and (kind == TRANSITS or rows == len(self.request.rows_of(part)))
 
     def save(self, part: int, solved: Part) -> None:
@@ -134,7 +122,7 @@ class Store:
             OSError: it cannot be written.
         """
         if solved.transits:
-            self._write(self.path(part, TRANSITS), _TRANSIT_COLUMNS, solved.transits)
+            self._write(self.path(part, TRANSITS), TRANSIT_COLUMNS, solved.transits)
         self._write(self.path(part), self.request.columns, solved.columns)
 
     def _write(self, path: Path, columns: Iterable[Column], values: dict[str, Any]) -> None:
@@ -155,15 +143,15 @@ class Store:
         _write_json(self.folder / SUMMARY, document)
 
 
+def _need_pyarrow() -> None:
+    need_pyarrow("--out", "no pyarrow", "the package pyarrow, which writes Parquet")
+
+
 def _foreign(path: Path) -> bool:
     """Return whether a file is none of those that a sweep leaves which was killed as it began."""
     return path.name not in (ROWS, TRANSITS, PLAN) and not path.name.startswith(f".{PLAN}.")
 
 
 def _write_json(path: Path, document: dict[str, Any]) -> None:
-    data = (json.dumps(document, indent=1, ensure_ascii=False) + "\n").encode()
+    data = (plain_json(document) + "\n").encode()
     replace_file(path, lambda stream: stream.write(data))
-
-
-def _differences(there: dict[str, Any], here: dict[str, Any]) -> str:
-    return ", ".join(sorted(key for key in here if there.get(key) != here[key]))

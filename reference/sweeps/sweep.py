@@ -3,31 +3,119 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from contextlib import ExitStack
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import asdict, dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import numpy as np
 
 from ..engines import AUTO
-from ..errors import InputError
+from ..errors import InputError, unknown
 from ..scenes.scene import Scene
+from ..status import Status
 from ..system.imports import missing
 from ..system.workers import usable_cores
-from .driver import Executor, Tally, drive, joined
-from .local import LocalExecutor
-from .part import Part
-from .promote import Audit, resolved
-from .request import Request, default_audit, request
-from .swept import Swept
-
-if TYPE_CHECKING:
-    from .store import Store
+from .axes import TEXTS
+from .driver import Executor, drive, on_this_machine
+from .part import Part, Tally
+from .promote import Audit, audited
+from .request import Request, request
+from .store import PLAN, TRANSITS, Store
 
 MOST_IN_MEMORY = 100_000  # rows
 PIECES, LEAST_PIECE = 16, 256  # pieces of a sweep in memory, and rows of one at least
+LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000  # audited rows: at least, at most, else one in AUDITED
 
 Report = Callable[[int], None]
+
+
+@dataclass(frozen=True)
+class Swept:
+    """A sweep that is done: its columns as arrays, in memory or read from its folder.
+
+    Attributes:
+        request: what was asked for.
+        store: its folder, if it has one.
+        solved: its rows, if it has none.
+        tally: counts by status and costs; of the rows that were computed now, where a folder was gone on with.
+        audit: what solving a sample again has found, if it was done.
+        compile_s: CPU seconds of compiling.
+        wall_s: seconds from the start to the end.
+    """
+
+    request: Request
+    store: Store | None = None
+    solved: Part = field(default_factory=Part, repr=False)
+    tally: Tally = field(default_factory=Tally)
+    audit: Audit | None = None
+    compile_s: float = 0.0
+    wall_s: float = 0.0
+
+    def __len__(self) -> int:
+        return self.request.table.count
+
+    @cached_property
+    def counts(self) -> dict[str, int]:
+        """How many rows there are of each status."""
+        words, counts = np.unique(self["status"].astype(str), return_counts=True)
+        return dict(zip(words.tolist(), counts.tolist(), strict=True))
+
+    @property
+    def first_bad(self) -> int:
+        """The first row that is not ok; only where there is one."""
+        return int(np.argmax(self["status"] != Status.OK.value))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The names of the columns."""
+        return tuple(column.name for column in self.request.columns)
+
+    def columns(self, names: Iterable[str] | None = None) -> dict[str, Any]:
+        """Return columns as arrays of shape (rows,), all if no names are given; `pandas.DataFrame` takes them."""
+        chosen = list(self.names if names is None else names)
+        for name in chosen:
+            if name not in self.names:
+                raise unknown("column", name, "a column of this sweep", self.names, "")
+        if self.store is not None:
+            return self.store.read(chosen)
+        return {name: self.solved.columns[name] for name in chosen}
+
+    def __getitem__(self, name: str) -> Any:
+        """Return one column, shape (rows,)."""
+        return self.columns([name])[name]
+
+    def grid(self, name: str) -> Any:
+        """Return a column on the grid of the axes: an xarray.DataArray where xarray is installed, else an array.
+
+        Of a list of rows it is the column itself.
+        """
+        table = self.request.table
+        values = self[name].reshape(table.shape)
+        if table.typed is None or missing(["xarray"]):
+            return values
+        import xarray
+
+        coords = {key: list(texts) if key in TEXTS else np.array(texts, float) for key, texts in table.values.items()}
+        return xarray.DataArray(values, coords=coords, dims=list(coords), name=name)
+
+    def transits(self) -> dict[str, Any]:
+        """Return row, t_s and direction of every transit, if they were wanted.
+
+        Raises:
+            InputError: they were not.
+        """
+        if not self.request.wanted.times:
+            raise unknown("transits", "transits", "a sweep with --want transit-times", (), "Sweep again with it.")
+        return self.store.read(kind=TRANSITS) if self.store is not None else self.solved.transits
+
+    def rows(self, most: int | None = None) -> Iterator[dict[str, Any]]:
+        """Yield the first rows, each as a mapping from column to Python value; None where there is no number."""
+        columns = {name: values[:most].tolist() for name, values in self.columns().items()}
+        for row in zip(*columns.values(), strict=True):
+            yield {name: None if value != value else value for name, value in zip(columns, row, strict=True)}
 
 
 def sweep(
@@ -69,20 +157,9 @@ def sweep(
     Raises:
         InputError: a wrong axis, option or folder; before any work.
     """
-    asked = asked_for(
-        scene,
-        over,
-        Path(rows) if rows is not None else None,
-        Path(out) if out is not None else None,
-        want=want,
-        level=level,
-        digits=digits,
-        tolerance=tolerance,
-        engine=engine,
-        audit=audit_rows,
-    )
-    folder = Path(out) if out is not None else None
-    return run(asked, folder, workers, cluster, report)
+    file, folder = (Path(path) if path is not None else None for path in (rows, out))
+    options = {"want": want, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
+    return run(asked_for(scene, over, file, folder, audit=audit_rows, **options), folder, workers, cluster, report)
 
 
 def asked_for(
@@ -93,15 +170,17 @@ def asked_for(
     Raises:
         InputError: a wrong axis or option, or more rows than memory should hold.
     """
-    if out is not None and options.get("engine", AUTO) == AUTO and (out / "plan.json").exists():
-        options["engine"] = opened(out).request.engine  # a sweep goes on as it began
+    if out is not None and options.get("engine", AUTO) == AUTO and (out / PLAN).exists():
+        options["engine"] = Store.opened(out).request.engine  # a sweep goes on as it began
     asked = request(scene, over, rows, audit=audit, **options)
     count = asked.table.count
     if out is None:
         if count > MOST_IN_MEMORY:
             raise InputError("--out", "nothing", f"a folder, for more than {MOST_IN_MEMORY:,} rows", "Give --out DIR.")
         return replace(asked, rows_per_part=min(asked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES))))
-    return replace(asked, audit=default_audit(count)) if audit is None else asked
+    if audit is None:
+        return replace(asked, audit=min(max(LEAST_AUDIT, count // AUDITED), MOST_AUDIT, count))
+    return asked
 
 
 def load_sweep(folder: str | Path) -> Swept:
@@ -110,37 +189,14 @@ def load_sweep(folder: str | Path) -> Swept:
     Raises:
         InputError: there is none, or it is not done yet.
     """
-    store = opened(Path(folder))
+    store = Store.opened(Path(folder))
     left = len(store.missing())
     if left:
         advice = f"Go on with `foucault sweep --out {folder}`."
         raise InputError(
             "sweep", str(folder), "a sweep that is done", f"{left} of {store.request.parts} parts miss. {advice}"
         )
-    return Swept(store.request, store=store)
-
-
-def opened(folder: Path) -> Store:
-    """Open the folder of a sweep, done or not.
-
-    Raises:
-        InputError: there is none.
-    """
-    need_pyarrow()
-    from .store import Store
-
-    return Store.opened(folder)
-
-
-def need_pyarrow() -> None:
-    """Refuse what needs a folder where pyarrow is not installed.
-
-    Raises:
-        InputError: it is not.
-    """
-    if missing(["pyarrow"]):
-        advice = "Install it with pip install 'foucault-reference[sweep]'."
-        raise InputError("--out", "no pyarrow", "the package pyarrow, which writes Parquet", advice)
+    return Swept(store.request, store)
 
 
 def run(
@@ -154,60 +210,31 @@ def run(
     started = time.perf_counter()
     store, parts = None, list(range(asked.parts))
     if out is not None:
-        need_pyarrow()
-        from .store import Store
-
         store = Store.begun(out, asked)
-        store.check_versions()
         parts = store.missing()
         report(asked.table.count - sum(len(asked.rows_of(part)) for part in parts))
     kept: dict[int, Part] = {}
-    keep = kept.__setitem__ if store is None else store.save
     tally, compile_s = Tally(), 0.0
     if parts:
-        with ExitStack() as stack:
-            executor = _executor(asked, out, workers, cluster, len(parts), stack)
-            tally = drive(asked, parts, executor, keep, report)
+        with _workers(asked, out, workers, cluster, len(parts)) as executor:
+            tally = drive(asked, parts, executor, store.save if store is not None else kept.__setitem__, report)
         compile_s = executor.compile_s
-    done = joined([kept[part] for part in sorted(kept)]) if store is None else Part({})
-    swept = Swept(asked, tally, None, store, compile_s, 0.0, done.columns, done.transits)
-    found = resolved(asked, _reader(swept)) if asked.audit else None
-    swept = Swept(asked, tally, found, store, compile_s, time.perf_counter() - started, done.columns, done.transits)
+    audit = None
+    if asked.audit:
+        audit = audited(asked, store.read_part if store is not None else lambda part: kept[part].columns)
+    solved = Part.joined([kept[part] for part in sorted(kept)]) if kept else Part()
+    swept = Swept(asked, store, solved, tally, audit, compile_s, time.perf_counter() - started)
     if store is not None:
-        store.summarize(_summary(swept))
+        document = asdict(audit) if audit is not None else None
+        store.summarize({"rows": len(swept), "counts": swept.counts, "audit": document})
     return swept
 
 
-def _executor(
-    asked: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int, stack: ExitStack
-) -> Executor:
+def _workers(
+    asked: Request, out: Path | None, workers: int | None, cluster: str | None, parts: int
+) -> AbstractContextManager[Executor]:
     if cluster is not None:
-        from .cluster import ClusterExecutor
+        from .cluster import on_cluster
 
-        return stack.enter_context(ClusterExecutor(asked, out, cluster))
-    return stack.enter_context(LocalExecutor(asked, out, min(workers or usable_cores(), parts)))
-
-
-def _reader(swept: Swept) -> Callable[[int], Mapping[str, Any]]:
-    """Return what reads one row of a sweep."""
-    if swept.store is None:
-        return lambda number: {name: values[number] for name, values in swept.kept.items()}
-    store, known = swept.store, dict[int, dict[str, Any]]()
-
-    def read(number: int) -> Mapping[str, Any]:
-        part, place = divmod(number, store.request.rows_per_part)
-        if part not in known:
-            known.clear()  # the rows come in order
-            known[part] = store.read_part(part)
-        return {name: values[place] for name, values in known[part].items()}
-
-    return read
-
-
-def _summary(swept: Swept) -> dict[str, Any]:
-    """Return what became of all rows: the same whoever computed them."""
-    return {
-        "rows": len(swept),
-        "counts": swept.counts,
-        "audit": swept.audit.document if isinstance(swept.audit, Audit) else None,
-    }
+        return on_cluster(asked, out, cluster)
+    return on_this_machine(asked, out, min(workers or usable_cores(), parts))

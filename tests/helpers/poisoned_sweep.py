@@ -27,9 +27,9 @@ def solved(*_: Any, **__: Any) -> Any:
 
 
 def compute_here(document: str, rows: range, folder: Any) -> Any:
-    """Compute rows as `local.compute` does, with a solver that is done at once, but die at the row."""
+    """Compute rows as `driver.compute` does, with a solver that is done at once, but die at the row."""
     from reference.sweeps.driver import work
-    from reference.sweeps.local import request_of
+    from reference.sweeps.request import request_of
 
     if POISON in rows:
         os.kill(os.getpid(), signal.SIGKILL)

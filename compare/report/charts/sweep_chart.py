@@ -45,11 +45,9 @@ def check(request: Request, path: Path) -> None:
     Raises:
         InputError: a wrong path, other than one or two fields that are numbers, or neither quantity is wanted.
     """
-    from reference.sweeps.axes import Grid
-
     check_target(path)
     shape = request.table.shape
-    if not isinstance(request.table, Grid) or len(shape) > 2 or not _numeric(request):
+    if request.table.typed is None or len(shape) > 2 or not _numeric(request):
         raise InputError(
             "--plot", str(path), "one or two fields varied by --over, both numbers", "Or draw the columns."
         )
@@ -71,7 +69,7 @@ def draw(swept: Swept, path: Path) -> None:
 
 
 def _numeric(request: Request) -> bool:
-    from reference.sweeps.values import TEXTS
+    from reference.sweeps.axes import TEXTS
 
     return not set(request.table.keys) & set(TEXTS)
 

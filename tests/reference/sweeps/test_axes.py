@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from reference import InputError
-from reference.sweeps.axes import axis, grid, listed
-from reference.sweeps.values import varied_names
+from reference.sweeps.axes import axis, grid, listed, varied_names
 
 
 def texts(word: str) -> list[str]:

@@ -39,7 +39,7 @@ def cluster():
 
 
 def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(cluster, tmp_path):
-    from reference.sweeps.cluster import ClusterExecutor
+    from reference.sweeps.cluster import on_cluster
     from reference.sweeps.driver import drive
     from reference.sweeps.store import Store
 
@@ -47,12 +47,12 @@ def test_a_killed_worker_costs_nothing_and_the_bytes_are_those_of_one_thread(clu
     run(asked(here), here, workers=1)
     request = asked(there)
     store = Store.begun(there, request)
-    with ClusterExecutor(request, there, cluster.scheduler_address) as executor:
+    with on_cluster(request, there, cluster.scheduler_address) as executor:
 
         def report(rows: int) -> None:
             done[0] += rows
             if done[0] >= 16 and not killed:
-                killed.extend(executor._client.run(os.getpid).values())
+                killed.extend(nanny.pid for nanny in cluster.workers.values())
                 os.kill(killed[0], signal.SIGKILL)
 
         tally = drive(request, store.missing(), executor, store.save, report)

@@ -11,7 +11,7 @@ import poisoned_sweep
 import pytest
 
 from reference import InputError, load_scene, load_sweep, sweep
-from reference.sweeps import local
+from reference.sweeps import driver
 from reference.sweeps.driver import WorkerDied, work
 from reference.sweeps.sweep import asked_for, run
 
@@ -97,6 +97,14 @@ def test_another_sweep_or_other_files_are_left_alone(whole, tmp_path):
         load_sweep(tmp_path)
 
 
+def test_the_same_fields_in_another_order_are_another_sweep(tmp_path):
+    scene, over = load_scene("paris", ["run.t_end=30"]), ["site.latitude=0:20:10", "release.x=0.1,0.2"]
+    folder = tmp_path / "ordered"
+    run(asked_for(scene, over, None, folder, audit=0, engine="heyoka"), folder)
+    with pytest.raises(InputError, match=r"differs in over\b"):
+        run(asked_for(scene, over[::-1], None, folder, audit=0, engine="heyoka"), folder)
+
+
 def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
     folder = tmp_path / "changed"
     shutil.copytree(whole, folder)
@@ -140,7 +148,7 @@ def test_the_times_of_transits_are_a_dataset_of_their_own(tmp_path):
 class Dying:
     """An executor whose workers die of the poisonous row."""
 
-    workers = 1
+    workers, check = 1, None
 
     def __init__(self, asked, folder):
         self._asked, self._folder = asked, folder
@@ -154,9 +162,6 @@ class Dying:
         else:
             future.set_result(work(self._asked, rows, self._folder))
         return future
-
-    def check(self):
-        pass
 
 
 def test_of_a_part_that_kills_its_worker_the_row_alone_crashes(whole, tmp_path):
@@ -177,7 +182,7 @@ def test_of_a_part_that_kills_its_worker_the_row_alone_crashes(whole, tmp_path):
 
 
 def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, monkeypatch):
-    monkeypatch.setattr(local, "compute", poisoned_sweep.compute_here)
+    monkeypatch.setattr(driver, "compute", poisoned_sweep.compute_here)
     folder = tmp_path / "isolated"
     scene = load_scene("paris", ["run.t_end=2"])
     request = asked_for(scene, ["site.latitude=0:38:1"], None, folder, audit=0, digits=16, want=("state",))
@@ -186,11 +191,10 @@ def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, mon
 
     Store.begun(folder, request)
     for part in (12,):  # of rows 36, 37, 38
-        from reference.sweeps.driver import drive
-        from reference.sweeps.local import LocalExecutor
+        from reference.sweeps.driver import drive, on_this_machine
 
         kept = {}
-        with LocalExecutor(request, folder, 1) as executor:
+        with on_this_machine(request, folder, 1) as executor:
             tally = drive(request, [part], executor, kept.__setitem__, lambda _: None)
     assert tally.counts == {"ok": 2, "crashed": 1}
     assert kept[12].columns["status"].tolist() == ["ok", "crashed", "ok"]

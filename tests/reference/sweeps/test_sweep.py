@@ -201,14 +201,14 @@ def test_more_than_memory_should_hold_needs_a_folder(paris, tmp_path):
 
 
 def test_rows_that_another_process_solves_cost_what_they_cost_there(paris, monkeypatch):
-    from reference.sweeps import local
+    from reference.sweeps import driver
     from reference.sweeps.part import solve_part
     from reference.sweeps.promote import Promoted
     from reference.sweeps.request import request
 
     asked = request(paris.with_values(["run.t_end=30"]), ["site.latitude=10,20"], engine="heyoka", tolerance=1e-30)
     part = solve_part(asked, range(2), lambda *_, **__: Promoted({}, ([], []), cpu_s=100.0))
-    assert 200.0 < part.cpu_s < 300.0
+    assert 200.0 < part.tally.cpu_s < 300.0
 
-    monkeypatch.setattr(local, "promoted", lambda *_, **__: Promoted({"x_m": sum(range(3 * 10**6))}, ([], [])))
-    assert local.compute_alone(local.text_of(asked), 0, True).cpu_s > 0
+    monkeypatch.setattr(driver, "promoted", lambda *_, **__: Promoted({"x_m": sum(range(3 * 10**6))}, ([], [])))
+    assert driver.compute_alone(asked.text, 0, True).cpu_s > 0
