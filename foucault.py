@@ -74,9 +74,8 @@ def main() -> None:
 
 
 def _run() -> None:
-    from reference.errors import FoucaultError, Stopped, plain_lines
+    from reference.errors import FoucaultError, Stopped, plain_lines, plain_output
     from reference.system.interruption import terminable
-    from reference.system.plain_output import plain_output
 
     signals: list[int] = []
     try:

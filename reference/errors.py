@@ -1,7 +1,8 @@
-r"""Messages to users: the exceptions of this project, each with an exit status; plain text; names near a wrong one.
+r"""Messages to users: the exceptions of this project, each with an exit status; names near a wrong one; plain text.
 
 Titles, file names and what programs print come from strangers; an escape sequence among them could rewrite a verdict
-on the screen, so control characters are written out, as in \x1b, and never obeyed.
+on the screen, so control characters are written out, as in \x1b, and never obeyed: in messages, in documents, and in
+all that a command prints.
 """
 
 from __future__ import annotations
@@ -9,9 +10,11 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Iterable, Sequence
+import sys
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, TextIO, cast
 
 LONGEST_VALUE = 120  # characters of a value that a message repeats
 MOST = 5  # names in a message at most
@@ -169,3 +172,46 @@ def _written_out(match: re.Match[str]) -> str:
 def shortened(text: str, most: int) -> str:
     """Return a text of at most `most` characters, which ends in … if it was longer."""
     return text if len(text) <= most else f"{text[: most - 1]}…"
+
+
+class PlainStream:
+    """A stream of text that writes control characters out, and characters that its encoding lacks."""
+
+    encoding = "utf-8"  # every text can be written
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        """Write a text, and return its length."""
+        encoding = self._stream.encoding or "utf-8"
+        self._stream.write(plain_lines(text).encode(encoding, "backslashreplace").decode(encoding))
+        return len(text)
+
+    def writelines(self, texts: Iterable[str]) -> None:
+        """Write texts one after the other."""
+        for text in texts:
+            self.write(text)
+
+
+@contextmanager
+def plain_output() -> Iterator[None]:
+    """Write control characters out, in all that this process prints on stdout and stderr."""
+    before = {name: getattr(sys, name) for name in ("stdout", "stderr")}
+    during = {name: PlainStream(stream) for name, stream in before.items()}
+    for name, stream in during.items():
+        setattr(sys, name, stream)
+    try:
+        yield
+    finally:
+        for name, stream in during.items():
+            if getattr(sys, name) is stream:  # a command line puts another in place when its reader has gone
+                setattr(sys, name, before[name])
+
+
+def terminal_of(stream: TextIO) -> TextIO:
+    """Return the stream behind a `PlainStream`, for those who write their own escape sequences, such as bars."""
+    return cast("TextIO", getattr(stream, "_stream", stream))

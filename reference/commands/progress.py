@@ -11,9 +11,8 @@ from typing import Any, Protocol
 
 import typer
 
-from ..errors import plain
+from ..errors import plain, terminal_of
 from ..system.first_use import announced_to
-from ..system.plain_output import terminal_of
 
 NOTICE_S = 20.0  # work that takes no longer than this goes without a notice
 MEASURED_S = 5.0  # shortest time from which the rest is estimated

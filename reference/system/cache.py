@@ -15,7 +15,6 @@ import sys
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 from platformdirs import user_cache_path
@@ -27,7 +26,6 @@ from .workspace import replace_file, workspace
 KEEP = 40  # entries of one kind at most; the least recently used are deleted first
 _ROOM = bytes(1 << 18)  # a disk without room for this much is full
 _SAID = "FOUCAULT_CACHE_SAID"  # tells child processes, too, that the line was printed
-_NAME = "entry"  # array of an entry that holds its name
 
 
 def root() -> Path:
@@ -37,21 +35,6 @@ def root() -> Path:
         RuntimeError: this user has no home folder.
     """
     return Path(os.environ.get("FOUCAULT_CACHE") or user_cache_path("foucault", appauthor=False)).expanduser()
-
-
-def distrust(*folders: Path) -> str:
-    """Return why what stands in folders, each inside the one before, is not read back; empty if it may be."""
-    for folder in folders:
-        status = folder.stat() if folder.exists() else None
-        if status is None or not hasattr(os, "getuid"):
-            return ""
-        if status.st_uid != os.getuid():
-            return f"{folder} belongs to another user"
-        if status.st_mode & 0o022:
-            return f"others can write into {folder} (chmod 700 {folders[0]} ends that)"
-        if not status.st_mode & 0o011:
-            return ""  # nobody else gets any further
-    return ""
 
 
 def entry(kind: str, name: str) -> Path | None:
@@ -93,7 +76,7 @@ def _folder(kind: str) -> Path | None:
         folder = base / kind
         base.mkdir(mode=0o700, parents=True, exist_ok=True)
         folder.mkdir(mode=0o700, exist_ok=True)
-        doubt = distrust(base, folder, folder / "__pycache__")
+        doubt = _distrust(base)
     except RuntimeError:
         doubt = "this user has no home folder (FOUCAULT_CACHE names another)"
     except OSError as error:
@@ -102,6 +85,16 @@ def _folder(kind: str) -> Path | None:
         _say(doubt)
         return None
     return folder
+
+
+def _distrust(folder: Path) -> str:
+    """Return why what stands in the cache, code among it, is not read back; empty if it may be."""
+    status = folder.stat()
+    if status.st_uid != os.getuid():
+        return f"{folder} belongs to another user"
+    if status.st_mode & 0o022:
+        return f"others can write into {folder} (chmod 700 {folder} ends that)"
+    return ""
 
 
 def _say(why: str) -> None:
@@ -129,32 +122,23 @@ def discard(path: Path) -> None:
 
 
 def arrays(kind: str, name: str, make: Callable[[], dict[str, Array]]) -> dict[str, Array]:
-    """Return the arrays of an entry; `make()` computes them if it is missing, damaged, or another's under its name."""
+    """Return the arrays of an entry; `make()` computes them if it is missing or damaged."""
     path = entry(kind, name)
     if path is not None:
         with contextlib.suppress(Exception):  # a damaged entry may raise anything; it is made again
-            found = _read(path)
-            if found.pop(_NAME) == name:
-                with contextlib.suppress(OSError):
-                    path.touch()
-                return found
+            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
+                stored = dict(archive)
+            with contextlib.suppress(OSError):
+                path.touch()
+            return stored
         discard(path)
     made = make()
-
-    def write(stream: BinaryIO) -> None:
-        np.savez(stream, allow_pickle=False, **{_NAME: np.array(name)}, **made)
-
-    path = store(kind, name, lambda path: replace_file(path, write))
+    path = store(
+        kind, name, lambda path: replace_file(path, lambda stream: np.savez(stream, allow_pickle=False, **made))
+    )
     if path is not None:
         _prune(path.parent)
     return made
-
-
-def _read(path: Path) -> dict[str, Array]:
-    with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
-        if archive.zip.testzip() is not None:
-            raise OSError("damaged")
-        return {key: archive[key] for key in archive.files}
 
 
 def _prune(folder: Path) -> None:

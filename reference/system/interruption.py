@@ -10,16 +10,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 AGAIN_S = 0.05  # seconds after which a signal is sent again whose exception was lost
 
 
 @contextmanager
 def held() -> Iterator[None]:
     """Hold the signals back: a process that is started meanwhile begins with them held back too."""
-    if not hasattr(signal, "pthread_sigmask"):
-        yield
-        return
     before = signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     try:
         yield

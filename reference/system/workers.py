@@ -81,16 +81,15 @@ class Worker:
             IntegrationError: the function failed, or the process ended before it returned.
         """
         try:
-            if not self._connection.poll(timeout_s):
-                raise TimeoutError
-            last, item = self._connection.recv()
-        except TimeoutError:
-            raise
+            in_time = self._connection.poll(timeout_s)
+            item = self._connection.recv() if in_time else None
         except (EOFError, OSError, pickle.UnpicklingError):
             raise IntegrationError("a child process of the solver ended without a result.") from None
+        if not in_time:
+            raise TimeoutError
         if isinstance(item, BaseException):
             raise item
-        return None if last else item
+        return item
 
     def __iter__(self) -> Iterator[Any]:
         """Yield the objects that the function sends; raise as `receive`."""
@@ -124,7 +123,7 @@ class Pool:
 
     def __init__(self, workers: int) -> None:
         self.workers = workers
-        self._of_thread, self._processes, self._ended = threading.local(), list[Worker](), threading.Event()
+        self._processes, self._ended = dict[int, Worker](), threading.Event()  # by the thread that each works for
         self._threads = ThreadPoolExecutor(workers, thread_name_prefix="pool")
 
     def __enter__(self) -> Self:
@@ -134,10 +133,10 @@ class Pool:
         """Wait for what is begun; after an exception, end it."""
         if kind:
             self._ended.set()
-            for process in list(self._processes):  # a thread may be taking one out
+            for process in list(self._processes.values()):  # a thread may be taking one out
                 process.kill()
         self._threads.shutdown(cancel_futures=kind is not None)
-        for process in self._processes:
+        for process in self._processes.values():
             process.stop()
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
@@ -148,32 +147,25 @@ class Pool:
         return self._threads.submit(self._call, function, arguments)
 
     def _call(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
-        reason = "the work was ended"
+        thread, reason = threading.get_ident(), "the work was ended"
         for _ in range(TRIES):
-            worker = self._worker()
+            if thread not in self._processes:
+                self._processes[thread] = Worker(_answer)
             if self._ended.is_set():  # asked when `__exit__` can see the process
                 break
+            worker = self._processes[thread]
             try:
                 worker.send((function, arguments))
                 result, error = worker.receive()
             except (IntegrationError, OSError) as death:
                 worker.stop()
-                self._processes.remove(worker)
-                del self._of_thread.worker
+                del self._processes[thread]
                 reason = str(death)
                 continue
             if error is not None:
                 raise error
             return result
         raise WorkerDied(reason)
-
-    def _worker(self) -> Worker:
-        """Return this thread's process, a new one where it has none."""
-        if not hasattr(self._of_thread, "worker"):
-            self._of_thread.worker = Worker(_answer)
-            self._processes.append(self._of_thread.worker)
-        worker: Worker = self._of_thread.worker
-        return worker
 
 
 def as_done(
@@ -208,16 +200,12 @@ class Parent:
 
     def __call__(self, item: Any) -> None:
         """Send an object to the parent."""
-        self.send(False, item)
+        self._connection.send(item)
 
     def __iter__(self) -> Iterator[Any]:
         """Yield the objects that the parent sends, for as long as the parent wants them; the process ends with it."""
         while True:
             yield self._received.get()
-
-    def send(self, last: bool, item: Any) -> None:
-        """Send an object, the last one or not."""
-        self._connection.send((last, item))
 
 
 def _answer(parent: Parent) -> None:
@@ -241,9 +229,9 @@ def serve(line: int) -> None:
     parent = Parent(connection, received)
     try:
         function(parent, *arguments)
-        parent.send(True, None)
+        parent(None)
     except FoucaultError as error:
-        parent.send(True, IntegrationError(str(error)))
+        parent(IntegrationError(str(error)))
     except SystemExit:
         os._exit(0)
     except BrokenPipeError:
@@ -270,8 +258,7 @@ def _leave_ending_to_parent() -> threading.Event:
 
     for number in SIGNALS:
         signal.signal(number, take)
-    if hasattr(signal, "pthread_sigmask"):
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
     return ended
 
 
@@ -281,7 +268,6 @@ def _receive(connection: Connection, received: queue.SimpleQueue[Any], ended: th
         while True:
             received.put(connection.recv())
     ended.set()
-    if hasattr(signal, "pthread_kill"):
-        signal.pthread_kill(cast("int", threading.main_thread().ident), signal.SIGTERM)
-        time.sleep(LEAVE_S)
+    signal.pthread_kill(cast("int", threading.main_thread().ident), signal.SIGTERM)
+    time.sleep(LEAVE_S)
     os._exit(0)

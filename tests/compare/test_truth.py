@@ -200,14 +200,6 @@ def test_a_damaged_evaluation_is_made_again(damage, own_cache):
     assert len(path.read_bytes()) == len(whole)
 
 
-def test_two_evaluations_that_were_swapped_are_made_again(own_cache):
-    golden, ends = load("paris"), (90, 95)
-    first = [truth_at(golden, np.linspace(0, end, 7)).states for end in ends]
-    swap(*(own_cache / "dense").iterdir())
-    for end, states in zip(ends, first, strict=True):
-        assert np.array_equal(truth_at(golden, np.linspace(0, end, 7)).states, states)
-
-
 def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
     own = tmp_path / "long.toml"
     own.write_text('id = "long"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "864000"\n')

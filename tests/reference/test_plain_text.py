@@ -10,8 +10,18 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from reference.errors import DatasetError, InputError, UnreachableError, is_plain, plain, plain_json, plain_lines
-from reference.system.plain_output import PlainStream, plain_output, terminal_of
+from reference.errors import (
+    DatasetError,
+    InputError,
+    PlainStream,
+    UnreachableError,
+    is_plain,
+    plain,
+    plain_json,
+    plain_lines,
+    plain_output,
+    terminal_of,
+)
 
 DANGEROUS = [
     "\x1b[31m",
