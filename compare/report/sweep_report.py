@@ -79,7 +79,7 @@ def text(swept: Swept, out: Path | None) -> str:
     lines = []
     if out is None:
         names = [name for name in SHOWN if name in swept.names]
-        keys = list(swept.request.table.keys)
+        keys = list(swept.request.table.values)
         rows = []
         for number, row in enumerate(swept.rows()):
             texts = swept.request.table.texts(number)

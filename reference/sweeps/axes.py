@@ -57,11 +57,6 @@ class Table:
             key: texts for key, texts in self.values.items() if self.typed is None or self.typed[key].startswith("@")
         }
 
-    @property
-    def keys(self) -> tuple[str, ...]:
-        """The fields that are varied."""
-        return tuple(self.values)
-
     @cached_property
     def shape(self) -> tuple[int, ...]:
         """The shape of a column as an array: the numbers of values of the fields, or the length of a list."""

@@ -80,7 +80,7 @@ class Request:
         """The columns of a row: its number, a column for each field that is varied, and those that are wanted."""
         varied = [
             Column(key, WORDS if key in TEXTS else "float64", f"{key} of the scene, the nearest double")
-            for key in self.table.keys
+            for key in self.table.values
         ]
         wanted = [column for column in COLUMNS[1:] if not column.wants or set(column.wants) & set(self.want)]
         return (COLUMNS[0], *varied, *wanted)
@@ -177,7 +177,7 @@ def request(
         raise InputError("--over", " ".join(words) or "nothing", "--over KEY=…, or --rows FILE", "Give one of the two.")
     scene = scene.with_values([f"run.grid_step={scene.run.t_end}"])
     table = listed(rows) if rows else grid(words, scene.inputs)
-    _check_release(scene, table.keys)
+    _check_release(scene, table.values)
     swings = _swings(scene) * table.count
     chosen = _engine(engine, swings)
     row_s = PROMOTED_S if level != "computed" or digits is not None else chosen.expected_s(swings) / table.count
@@ -195,7 +195,7 @@ def request(
     )
 
 
-def _check_release(scene: Scene, keys: Sequence[str]) -> None:
+def _check_release(scene: Scene, keys: Iterable[str]) -> None:
     """Refuse fields of the kind of release that the scene does not have."""
     kind, other = (POSITION, ANGLES) if scene.release.angle is None else (ANGLES, POSITION)
     for key in keys:

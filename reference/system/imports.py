@@ -40,7 +40,7 @@ def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
         return AttributeError(text)
     known = sorted(names)
     near = nearest(name, known)
-    return AttributeError(f"{text}; it has {', '.join([*near, *(one for one in known if one not in near)])}")
+    return AttributeError(f"{text}; it has {', '.join([*near, *(other for other in known if other not in near)])}")
 
 
 class Declaration(Protocol):
@@ -71,8 +71,8 @@ class Registry(Mapping[str, D]):
     def _by_id(self) -> dict[str, D]:
         names = sorted(module.name for module in iter_modules(import_module(self._package).__path__))
         modules = [import_module(f"{self._package}.{name}") for name in names]
-        declared: list[D] = [one for module in modules for one in getattr(module, self._variable, ())]
-        by_id = {one.id: one for one in sorted(declared, key=self._group)}
+        declared: list[D] = [entry for module in modules for entry in getattr(module, self._variable, ())]
+        by_id = {entry.id: entry for entry in sorted(declared, key=self._group)}
         if len(by_id) < len(declared):
             raise ValueError(f"two files of {self._package} declare the same id")
         return by_id

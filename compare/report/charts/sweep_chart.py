@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,13 +19,9 @@ if TYPE_CHECKING:
     from reference.sweeps.request import Request
 
 LABELS = {
-    "frequency_hz": "frequency of the transits in Hz",
     "swing_hz": "frequency of the swing in Hz",
     "precession_deg_per_h": "precession in °/h, east to north",
-    "precession_ratio": "precession over −Ω sin(latitude)",
-    "max_angle_deg": "largest angle in °",
-    "position_error_m": "error of the position in m",
-}
+}  # of the columns that are drawn
 UNITS = {
     "m": ("length", "altitude", "x", "y", "equatorial_radius"),
     "m/s": ("vx", "vy"),
@@ -45,9 +41,11 @@ def check(request: Request, path: Path) -> None:
     Raises:
         InputError: a wrong path, other than one or two fields that are numbers, or neither quantity is wanted.
     """
+    from reference.sweeps.axes import TEXTS
+
     check_target(path)
-    shape = request.table.shape
-    if request.table.typed is None or len(shape) > 2 or not _numeric(request):
+    table = request.table
+    if table.typed is None or len(table.shape) > 2 or set(table.values) & set(TEXTS):
         raise InputError(
             "--plot", str(path), "one or two fields varied by --over, both numbers", "Or draw the columns."
         )
@@ -58,45 +56,23 @@ def check(request: Request, path: Path) -> None:
 def draw(swept: Swept, path: Path) -> None:
     """Draw frequency and precession of a sweep, those of them that were wanted, into a file."""
     request = swept.request
-    keys = request.table.keys
-    columns = swept.columns([*keys, *_drawn(request)])
-    axes = []
-    for place, key in enumerate(keys):
-        grid = columns[key].reshape(request.table.shape)
-        axes.append((key, np.moveaxis(grid, place, 0).reshape(grid.shape[place], -1)[:, 0]))
-    title = f"{request.scene.id}, {float(request.scene.exact.t_end):g} s"
-    sweep_picture(title, axes, {name: columns[name] for name in _drawn(request)}, path)
-
-
-def _numeric(request: Request) -> bool:
-    from reference.sweeps.axes import TEXTS
-
-    return not set(request.table.keys) & set(TEXTS)
+    drawn = _drawn(request)
+    columns = swept.columns(drawn)
+    axes = [(key, np.array(texts, float)) for key, texts in request.table.values.items()]
+    draw_panel, height = (_curve, 3.0) if len(axes) == 1 else (_map, 3.6)
+    with sheet((8, height * len(drawn) + 0.4)) as figure:
+        panels = np.atleast_1d(figure.subplots(len(drawn), 1, sharex=True))
+        for panel, name in zip(panels, drawn, strict=True):
+            draw_panel(figure, panel, axes, LABELS[name], columns[name])
+        panels[-1].set_xlabel(_label(axes[-1][0]))
+        panels[0].set_title(f"{request.scene.id}, {float(request.scene.exact.t_end):g} s")
+        content = picture(figure, path.suffix[1:].lower())
+    write_file(path, content, "--plot")
 
 
 def _drawn(request: Request) -> list[str]:
     names = [column.name for column in request.columns]
-    return [name for name in ("swing_hz", "precession_deg_per_h") if name in names]
-
-
-def sweep_picture(title: str, axes: Sequence[tuple[str, Array]], quantities: Mapping[str, Array], path: Path) -> None:
-    """Draw quantities over one or two varied fields.
-
-    Args:
-        title: of the picture.
-        axes: one or two fields and their values, increasing or not.
-        quantities: columns by name, each with one value a row, the last axis fastest; NaN where there is none.
-        path: of the file, which ends in .svg, .png or .pdf.
-    """
-    draw = _curve if len(axes) == 1 else _map
-    with sheet((8, 3.0 * len(quantities) + 0.4) if len(axes) == 1 else (8, 3.6 * len(quantities) + 0.4)) as figure:
-        panels = np.atleast_1d(figure.subplots(len(quantities), 1, sharex=True))
-        for panel, (name, values) in zip(panels, quantities.items(), strict=True):
-            draw(figure, panel, axes, LABELS.get(name, name), np.asarray(values, float))
-        panels[-1].set_xlabel(_label(axes[-1][0]))
-        panels[0].set_title(title)
-        content = picture(figure, path.suffix[1:].lower())
-    write_file(path, content, "--plot")
+    return [name for name in LABELS if name in names]
 
 
 def _label(key: str) -> str:
