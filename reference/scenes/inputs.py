@@ -94,8 +94,6 @@ def _as_text(value: object) -> object:
     if isinstance(value, float):
         raise Refused("a decimal number in quotes", 'A bare TOML float is rounded: write it as a string, "0.3".')
     if isinstance(value, int) and not isinstance(value, bool):
-        if abs(value) >= 10**MAX_LENGTH:
-            raise Refused(_SIZES)
         return str(value)
     return value
 
@@ -130,20 +128,18 @@ def _one_line(text: str) -> str:
     return text
 
 
-def within(low: str | None, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
+def within(low: str, high: str | None = None, *, open_low: bool = False) -> AfterValidator:
     """Return the check that a number lies in a range, with its ends or (`open_low`) without the lower one."""
-    words = [
-        *([f"{'above' if open_low else 'at least'} {low}"] if low is not None else []),
-        *([f"at most {high}"] if high is not None else []),
-    ]
+    least, most = Fraction(low), Fraction(high) if high else None
+    expected = f"a number {'above' if open_low else 'at least'} {low}" + (f" and at most {high}" if high else "")
 
     def check(text: str, info: ValidationInfo) -> str:
         if text == "inf":
             return text
         value = as_read(text, _reading(info))
-        too_low = low is not None and (value < Fraction(low) or (open_low and value == Fraction(low)))
-        if too_low or (high is not None and value > Fraction(high)):
-            raise Refused("a number " + " and ".join(words), _DOUBLES if value != Fraction(text) else "")
+        too_low = value <= least if open_low else value < least
+        if too_low or (most is not None and value > most):
+            raise Refused(expected, _DOUBLES if value != Fraction(text) else "")
         return text
 
     return AfterValidator(check)

@@ -12,8 +12,6 @@ import pytest
 from interruption import gone_within, interrupted, members
 from places import ROOT
 
-from reference.dataset.checks import motion
-
 SHORT = ("--t-end", "60", "--digits", "10", "--level", "computed")
 
 
@@ -96,15 +94,6 @@ def test_generate_writes_a_dataset_that_verify_accepts(foucault, tmp_path):
     assert (status, out) == (0, f"{target}: ok\n")
 
 
-def test_verify_says_what_it_left_out_unless_it_solves_the_scene_again(foucault, tmp_path, monkeypatch):
-    for name in ("BASE_S", "ROW_S", "TRANSIT_S"):
-        monkeypatch.setattr(motion, name, 0.0)
-    target = tmp_path / "paris"
-    foucault("generate", "paris", *SHORT, "--out", str(target))
-    assert "motion not decided without --recompute" in foucault("verify", str(target))[1]
-    assert foucault("verify", str(target), "--recompute")[1] == f"{target}: ok\n"
-
-
 def test_generate_json_has_the_keys_of_the_contract_and_nothing_else_on_stdout(foucault, tmp_path):
     status, out, _ = foucault("generate", "paris", *SHORT, "--json", "--out", str(tmp_path / "p"))
     document = json.loads(out)
@@ -148,6 +137,7 @@ BAD = [
     (("generate", "paris", "--t-end", "soon"), "run.t_end", "decimal number"),
     (("generate", "paris", "--t-end", "nan"), "run.t_end", "decimal number"),
     (("generate", "paris", "--t-end", "-5"), "run.t_end", "above 0"),
+    (("generate", "paris", "--t-end", "1e399"), "run.t_end", "at most 1e15"),
     (("generate", "paris", "--set", "site.latitude=91"), "site.latitude", "at most 90"),
     (("generate", "paris", "--set", "pendulum.length=0"), "pendulum.length", "above 0"),
     (("generate", "paris", "--set", "release.x=70"), "release", "below the suspension"),
@@ -253,9 +243,3 @@ def test_show_says_how_many_digits_the_flow_costs(foucault):
     document = json.loads(foucault("show", "two_radians", "--sensitivity", "--json")[1])
     assert 2 < document["digits_lost"] < 4
     assert f"the flow costs {document['digits_lost']:.1f} digits" in foucault("show", "two_radians", "--sensitivity")[1]
-
-
-def test_an_end_beyond_all_numbers_is_refused(foucault):
-    status, _, err = foucault("generate", "paris", "--t-end", "1e399")
-    assert status == 2
-    assert "run.t_end" in err

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
@@ -15,7 +14,6 @@ from pydantic import ValidationError
 from small_scenes import make_scene
 
 import reference
-from reference.dataset.checks import manifest_check
 from reference.dataset.checks.tables import _order, _signs_on_grid
 from reference.dataset.golden import read_files
 from reference.dataset.manifest import ALWAYS, MANIFEST, Manifest
@@ -54,17 +52,6 @@ def sealed(dataset, name, old, new):
     seal(dataset, json.loads((dataset / MANIFEST).read_text()), {**files.texts, name: text})
 
 
-def test_a_malformed_cell_is_shown_up_to_its_eightieth_character(dataset):
-    sealed(dataset, "grid.csv", "\n120,", "\n" + "x" * 200 + ",")
-    assert f"grid.csv: row 3: t = '{'x' * 80}' is not a number of this column's form" in problems(dataset)
-
-
-def test_only_a_proof_is_audited(dataset):
-    command = json.loads((dataset / MANIFEST).read_text())["command"]
-    forge(dataset, manifest=lambda document: document.update(command=f"{command} --audit"))
-    assert "command does not follow from the scene" in problems(dataset)
-
-
 def test_a_dataset_needs_the_files_of_every_one_and_no_others(dataset):
     document = json.loads((dataset / MANIFEST).read_text())
     files = {name: document["files"][name] for name in ALWAYS}
@@ -72,64 +59,6 @@ def test_a_dataset_needs_the_files_of_every_one_and_no_others(dataset):
     for name in ALWAYS:
         with pytest.raises(ValidationError, match="belong to every dataset"):
             Manifest.model_validate({**document, "files": {other: files[other] for other in ALWAYS if other != name}})
-
-
-def test_a_grid_of_two_times_is_one_and_of_one_is_none(dataset):
-    document = json.loads((dataset / MANIFEST).read_text())
-    assert Manifest.model_validate({**document, "counts": {**document["counts"], "grid": 2}}).counts.grid == 2
-    with pytest.raises(ValidationError, match="a grid has two times at least"):
-        Manifest.model_validate({**document, "counts": {**document["counts"], "grid": 1}})
-
-
-@pytest.mark.parametrize("kind", ["grid", "transits"])
-@pytest.mark.parametrize(
-    "change",
-    [lambda names: names.pop("x"), lambda names: names.update(w=3), lambda names: names.clear()],
-    ids=["one less", "one more", "none"],
-)
-def test_decimals_name_the_columns(dataset, kind, change):
-    forge(dataset, manifest=lambda document: change(document["decimals"][kind]))
-    assert f"decimals.{kind}: must name the columns" in problems(dataset)
-
-
-def changed_manifest(dataset, change):
-    found = read_files(dataset)
-    changed = replace(found, manifest=found.manifest.model_copy(deep=True))
-    change(changed.manifest)
-    return changed
-
-
-def test_of_a_run_in_no_formulation_nothing_else_is_said(dataset):
-    changed = changed_manifest(dataset, lambda m: m.run.__dict__.update(formulation="guess"))
-    assert list(manifest_check.problems(changed)) == [f"{MANIFEST}: run.formulation = guess is none"]
-
-
-def test_a_scene_is_written_as_it_is_read(dataset):
-    changed = changed_manifest(dataset, lambda m: m.scene["site"].update(gravity="9.806650 "))
-    said = "scene.site.gravity = 9.806650  does not follow from the scene and the tables, which give 9.80665"
-    assert f"{MANIFEST}: {said}" in list(manifest_check.problems(changed))
-
-
-@pytest.mark.parametrize(("part", "found"), [("0.5", False), ("0.49", True)])
-@pytest.mark.parametrize("kind", ["grid", "transits"])
-def test_a_bound_is_at_least_half_a_unit_of_the_last_digit(dataset, kind, part, found):
-    manifest = read_files(dataset).manifest
-    decimals = manifest.decimals[kind]["y"]
-    bounds = getattr(manifest.bounds, kind) | {"y": f"{part}e-{decimals}"}
-    changed = manifest.model_copy(update={"bounds": manifest.bounds.model_copy(update={kind: bounds})})
-    said = [line for line in manifest_check._bounds(changed) if f"bounds.{kind}.y" in line and "half a unit" in line]
-    assert bool(said) is found
-
-
-def test_runs_that_are_one_are_no_evidence_of_themselves(dataset):
-    def one_run_twice(document):
-        level = document["scene"]["run"]["level"] = document["level"] = "self_consistent"
-        document["command"] = document["command"].replace("confirmed", level)
-        for check in document["cross_checks"]:
-            check |= {name: document["run"][name] for name in ("formulation", "number")}
-
-    forge(dataset, manifest=one_run_twice)
-    assert "level = self_consistent, and no cross-check differs from the run" in problems(dataset)
 
 
 @pytest.mark.parametrize(("first", "last", "outside"), [("-0.9", "9", False), ("-1", "9", True), ("1", "1e5", True)])
@@ -171,15 +100,6 @@ def test_a_transit_at_which_the_cord_is_level_passes_and_its_place_is_checked(tm
 def test_a_row_of_another_length_is_counted(dataset):
     sealed(dataset, "grid.csv", "\n120,", "\n120,1,")
     assert "grid.csv: row 3: 8 numbers, not 7" in problems(dataset)
-
-
-@pytest.mark.parametrize("factor, found", [(1, False), (3, True)])
-def test_the_bound_of_a_time_is_hardly_more_than_the_error_of_xdot_over_ax(dataset, factor, found):
-    def widen(rows, _):
-        rows[4][-1] = f"{float(factor * Fraction(rows[4][-1])):.1e}"
-
-    forge(dataset, transits=widen)
-    assert any("transit 5: bound" in problem and "leave open" in problem for problem in problems_of(dataset)) is found
 
 
 def test_the_doubles_have_the_words_of_the_decimals(dataset):
