@@ -56,20 +56,17 @@ def progress() -> Iterator[Show]:
         Progress(*columns, console=console, transient=True) as bars,
         announced_to(partial(bars.console.print, markup=False, highlight=False)),
     ):
-        yield lambda label, total=0, unit="s simulated": _bar(bars, label, total, unit)
+        yield partial(_bar, bars)
 
 
-def _bar(bars: Any, label: str, total: float, unit: str) -> Move:
+def _bar(bars: Any, label: str, total: float = 0, unit: str = "s simulated") -> Move:
     """Return the function that moves a bar, which appears at its first move and goes when it is full."""
     task = bars.add_task(label, total=total, unit=unit, visible=False, start=False)
 
-    whole_before = total
-
     def move(completed: float, total: float | None = None, item: str = "") -> None:
-        if not bars.tasks[task].started:
-            bars.start_task(task)
-        whole = whole_before if total is None else total
+        bars.start_task(task)
         text = plain(f"{label}: {item}" if item else label)
+        whole = bars.tasks[task].total if total is None else total
         bars.update(task, completed=completed, total=whole, description=text, visible=completed < whole)
 
     return move

@@ -107,7 +107,7 @@ class _Evaluation:
         self._propagator = self._model.propagator(tolerance)
         self._grid, self._requested = grid, requested
         self._nearest = np.array([float(t) for t in grid])
-        self._widened = _widened(self._nearest, self._numbers)
+        self._widened = _converted(self._nearest, self._numbers)
         self._edges = np.append(np.searchsorted(requested, self._nearest), len(requested))
         for i, (nearest, t) in enumerate(zip(self._nearest, grid, strict=True)):
             at = self._edges[i]
@@ -159,7 +159,7 @@ class _Evaluation:
         numbers, start = self._numbers, self._anchors[i]
         # a grid time is a double and a remainder: the difference of the doubles is exact, and rounded once
         remainder = self._grid[i] - Fraction(self._nearest[i])
-        offsets = _widened(inside, numbers) - self._widened[i]
+        offsets = _converted(inside, numbers) - self._widened[i]
         offsets = offsets - numbers.of(remainder) if remainder else offsets
         on_anchor = len(inside) > 0 and Fraction(inside[0]) == self._grid[i]
         stops = list(offsets[1:] if on_anchor else offsets)
@@ -195,20 +195,13 @@ def _speeds(anchors: Array, golden: Golden) -> tuple[Array, Array]:
 
 def _anchors(golden: Golden, numbers: Any, k: Constants) -> Any:
     """Return the golden states in the variables of `momentum`, in the run's number type, shape (grid times, 6)."""
-    columns = [_parsed(golden.decimals(name), numbers) / k.length for name in STATE]
+    columns = [_converted(golden.decimals(name), numbers) / k.length for name in STATE]
     start = FORMULATIONS["momentum"].start(tuple(columns[:3]), tuple(columns[3:]), k, np)
     return np.ascontiguousarray(np.array(start, dtype=numbers.dtype).T)
 
 
-def _widened(values: Array, numbers: Any) -> Any:
-    """Return doubles as numbers of the run's type."""
+def _converted(values: Array | list[str], numbers: Any) -> Any:
+    """Return doubles or printed decimals as numbers of the run's type, each rounded once."""
     if numbers.number == LONG_DOUBLE:
-        return values.astype(np.longdouble)
+        return np.array(values, dtype=np.longdouble)
     return np.array([numbers.of(Fraction(value)) for value in values], dtype=numbers.dtype)
-
-
-def _parsed(texts: list[str], numbers: Any) -> Any:
-    """Return printed decimals as numbers of the run's type."""
-    if numbers.number == LONG_DOUBLE:
-        return np.array([np.longdouble(text) for text in texts])
-    return np.array([numbers.of(Fraction(text)) for text in texts], dtype=numbers.dtype)

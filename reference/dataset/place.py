@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import golden_root, in_checkout, scene_ids
-from .sheets import scene_inputs
+from .sheets import by_field, scene_inputs
 
 GOLDEN = "golden"
 MAX_ID = 160  # characters; more changes than fit are named by their hash
@@ -15,13 +15,8 @@ MAX_ID = 160  # characters; more changes than fit are named by their hash
 
 def changes(scene: Scene, base: Scene) -> list[str]:
     """Return the fields of a scene that are not those of another, each as section.key=value."""
-    before = scene_inputs(base)
-    return [
-        f"{section}.{key}={value}"
-        for section, table in scene_inputs(scene).items()
-        for key, value in table.items()
-        if before.get(section, {}).get(key) != value
-    ]
+    before, after = by_field(scene_inputs(base)), by_field(scene_inputs(scene))
+    return [f"{field}={value}" for field, value in after.items() if before.get(field) != value]
 
 
 def shipped_scene(scene: Scene) -> Scene:

@@ -113,11 +113,11 @@ def generator() -> dict[str, str]:
 
     The version of the code is not among them: a release that changes no digit changes no dataset.
     """
-    found = {"foucault-data": DATA_VERSION}
+    versions = {"foucault-data": DATA_VERSION}
     for name in PACKAGES:
         with suppress(PackageNotFoundError):
-            found[name] = version(name)
-    return found
+            versions[name] = version(name)
+    return versions
 
 
 def command(scene: Scene, name: str, making: Making) -> str:
@@ -150,16 +150,12 @@ def _bounds(solution: Solution, grid: Sheet, transits: Sheet) -> Bounds:
 def bounds_of(grid: dict[str, str], transits: dict[str, str]) -> Bounds:
     """Return the bounds of columns, and the largest of each kind."""
     return Bounds(
-        position_m=_largest(grid, POSITION),
-        velocity_m_s=_largest(grid, VELOCITY),
+        position_m=max((grid[name] for name in POSITION), key=Fraction),
+        velocity_m_s=max((grid[name] for name in VELOCITY), key=Fraction),
         transit_s=transits.get("t"),
         grid=grid,
         transits=transits,
     )
-
-
-def _largest(bounds: dict[str, str], columns: tuple[str, ...]) -> str:
-    return max((bounds[name] for name in columns), key=Fraction)
 
 
 def completeness(scene: Scene, vanishes: bool, undecided: bool) -> Any:

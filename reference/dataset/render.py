@@ -8,7 +8,7 @@ from ..scenes.scene import Level
 from ..solver.solution import Solution
 from .manifest import MANIFEST, FileRecord, Manifest
 from .record import manifest_of
-from .sheets import GRID_HEADER, Sheet, binary64_sheet, grid_sheet, nearest_doubles, transits_sheet
+from .sheets import GRID_HEADER, Sheet, binary64_sheet, by_field, grid_sheet, nearest_doubles, transits_sheet
 from .vectors import vectors
 
 MOST_DOUBLES = 1000  # transits; more are written as decimals alone, which read as the same doubles
@@ -61,11 +61,6 @@ def certified_page(manifest: Manifest, grid: Sheet, transits: Sheet | None) -> s
 
 
 def _inputs(manifest: Manifest) -> list[str]:
-    rows = [
-        f"  {section + '.' + key:26} {value}"
-        for section, table in manifest.scene.items()
-        for key, value in table.items()
-    ]
     return [
         f"Foucault pendulum reference: {manifest.id}",
         manifest.title,
@@ -77,7 +72,7 @@ def _inputs(manifest: Manifest) -> list[str]:
         *(f"  {flag}: {manifest.notes[flag]}" for flag in manifest.flags),
         "",
         "Inputs (SI units, angles in degrees)",
-        *rows,
+        *(f"  {field:26} {value}" for field, value in by_field(manifest.scene).items()),
         "",
         "Model: full Lagrangian of the Foucault pendulum (Mathar), axes x east, y north, z up, origin at the",
         f"suspension; {_GRAVITY[manifest.scene['site']['gravity_is']]}",

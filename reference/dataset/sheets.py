@@ -109,6 +109,11 @@ def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:
     return {name: rounded_up(bounds[name] + Fraction(1, 2 * 10 ** decimals[name])) for name in table.columns}
 
 
+def by_field(inputs: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
+    """Return the inputs of a scene, given section by section, by names such as site.latitude."""
+    return {f"{section}.{key}": value for section, table in inputs.items() for key, value in table.items()}
+
+
 def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
     """Return all inputs of a scene as strings, section by section."""
     document = scene.model_dump(exclude_none=True, include={"pendulum", "site", "release", "run"})

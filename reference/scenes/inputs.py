@@ -175,14 +175,11 @@ def explained(error: ValidationError, known: Iterable[str]) -> InputError:
     if kind == "missing":
         return InputError(field, "nothing", "a value", "Add this field to the scene.")
     expected = {
-        "literal_error": "one of " + str(details.get("ctx", {}).get("expected", "")),
-        "int_parsing": "a whole number",
-        "int_type": "a whole number",
-        "int_from_float": "a whole number",
-        "bool_parsing": "true or false",
-        "bool_type": "true or false",
-        "string_type": "text in quotes" if field.partition(".")[0] in _TEXTS else "a number in quotes",
-        "tuple_type": "a list of words",
-        "model_type": f"a table, written [{field}]",
-    }.get(kind, details["msg"])
+        "literal": "one of " + str(details.get("ctx", {}).get("expected", "")),
+        "int": "a whole number",
+        "bool": "true or false",
+        "string": "text in quotes" if field.partition(".")[0] in _TEXTS else "a number in quotes",
+        "tuple": "a list of words",
+        "model": f"a table, written [{field}]",
+    }.get(kind.partition("_")[0], details["msg"])
     return InputError(field, got, expected)

@@ -208,10 +208,8 @@ def checked_value(name: str, value: str, reading: Reading) -> str:
 def _field(name: str) -> TypeAdapter[Any]:
     """Return what checks one field."""
     table, _, key = name.rpartition(".")
-    fields = Scene.model_fields
-    for part in (table,) if table else ():
-        fields = fields[part].annotation.model_fields  # type: ignore[union-attr]
-    return TypeAdapter(fields[key].rebuild_annotation())
+    model: Any = Scene.model_fields[table].annotation if table else Scene
+    return TypeAdapter(model.model_fields[key].rebuild_annotation())
 
 
 def parse_scene(document: Mapping[str, Any]) -> Scene:
@@ -231,7 +229,7 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
 
 def _check_release(scene: Scene) -> None:
     release = scene.release
-    fields = release.model_fields_set & {n for n in type(release).model_fields if getattr(release, n) is not None}
+    fields = set(release.model_dump(exclude_none=True))
     cartesian, angular = fields & {"x", "y", "vx", "vy"}, fields & {"angle", "azimuth", "angle_rate", "azimuth_rate"}
     if cartesian and angular:
         raise InputError(

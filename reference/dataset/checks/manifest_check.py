@@ -15,6 +15,7 @@ from ..manifest import MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
 from ..record import NO_CONFIRM, Making, bounds_of, command, completeness, following
 from ..render import derived_texts
+from ..sheets import by_field
 from .tables import SLACK
 
 PREC = 128  # bits; only exact zeros matter here
@@ -60,9 +61,7 @@ def _is_its_id(files: Files) -> bool:
     if name == full_id or shipped_scene(scene) is not scene:
         return name == full_id
     # of a user's own scene the fields before the changes are not known
-    fields = {
-        f"{section}.{key}={value}" for section, table in files.manifest.scene.items() for key, value in table.items()
-    }
+    fields = {f"{field}={value}" for field, value in by_field(files.manifest.scene).items()}
     return name.startswith(f"{full_id}+") and fields.issuperset(changes_in(name))
 
 
