@@ -1,41 +1,73 @@
-"""Thousands of hostile scenes, assignments, candidates, lists of transits and commands: each is read or refused."""
+"""Thousands of damaged and strange scenes, assignments, candidates, transits and commands: each is read or refused."""
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
+import contextlib
+from collections import Counter
 
-from hostile_runs import LIMIT_BYTES, LIMIT_S
-from places import ROOT
+import pytest
+from strange_inputs import (
+    Chance,
+    a_candidate,
+    a_command,
+    a_command_line,
+    a_list_of_transits,
+    a_scene,
+    an_assignment,
+)
 
-SEED = 1
-# kind: how many in a short run, in a long one
-COUNTS = {
-    "scene": (120, 3000),
-    "--set": (100, 2000),
-    "candidate": (150, 3000),
-    "transits": (50, 1000),
-    "--run": (50, 1000),
-    "command line": (40, 1000),
+from compare.candidates.external import arguments, placeholders, run_program
+from compare.candidates.read import read, read_transits
+from reference.commands.show import command as show
+from reference.errors import FoucaultError, UnreachableError
+from reference.scenes.scene import load_scene
+
+KINDS = {  # what makes an input, what takes it from a file or as it is, and how many in a short run, in a long one
+    "scene": (a_scene, lambda path: examine(str(path)), 120, 3000),
+    "--set": (an_assignment, lambda word: examine("paris", word), 100, 2000),
+    "candidate": (a_candidate, read, 150, 3000),
+    "transits": (a_list_of_transits, read_transits, 50, 1000),
+    "--run": (a_command, lambda word: run_program(arguments(word, load_scene("paris"))), 50, 1000),
 }
 
 
-def test_no_input_ends_in_a_traceback_a_hang_or_full_memory(size, tally, tmp_path):
-    counts = {kind: size(*numbers) for kind, numbers in COUNTS.items()}
-    program = ROOT / "tests/helpers/hostile_runs.py"
-    words = [sys.executable, str(program), str(SEED), json.dumps(counts), str(tmp_path)]
-    environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{ROOT / 'tests/helpers'}", "OMP_NUM_THREADS": "1"}
-    done = subprocess.run(words, capture_output=True, text=True, env=environment, cwd=tmp_path, check=False)
-    assert done.returncode == 0, done.stderr[-2000:]
-    found = json.loads(done.stdout)
-    for kind, outcomes in found["tried"].items():
-        tally(f"fuzzed inputs, {kind}: {sum(outcomes.values())} tried, {outcomes}")
-    seconds, kind, _ = found["slowest"]
-    tally(f"fuzzed inputs: the slowest took {seconds:.1f} CPU s ({kind}), peak memory {found['peak_mb']} MB")
-    assert {kind: sum(outcomes.values()) for kind, outcomes in found["tried"].items()} == counts
-    assert all(outcomes["read"] for kind, outcomes in found["tried"].items() if kind != "--run"), "all were refused"
-    assert found["wrong"] == []
-    assert seconds < LIMIT_S
-    assert found["peak_mb"] << 20 < LIMIT_BYTES
+def examine(word, *assignments):
+    """Do with a scene what the commands do before they solve it."""
+    scene = load_scene(word, assignments)
+    with contextlib.suppress(FoucaultError):  # no double is as large
+        scene.with_values(["inputs=binary64"])
+    placeholders(scene)
+    show(word, set_=list(assignments))
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_input_is_read_or_refused(kind, size, tally, tmp_path):
+    make, use, *counts = KINDS[kind]
+    file, outcomes = tmp_path / "input", Counter()
+    for i in range(size(*counts)):
+        made = make(Chance(f"1 {kind} {i}"))
+        if isinstance(made, bytes):
+            file.write_bytes(made)
+        try:
+            use(file if isinstance(made, bytes) else made)
+            outcomes["read"] += 1
+        except FoucaultError:
+            outcomes["refused"] += 1
+        except Exception as error:
+            raise AssertionError(f"{kind} {i}: {ascii(made)[:2000]}") from error
+    tally(f"fuzzed inputs, {kind}: {dict(outcomes)}")
+    assert outcomes["read"] or kind == "--run", "all were refused"
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_no_command_line_ends_in_a_traceback_or_moves_the_cursor(size, foucault, monkeypatch, tmp_path):
+    def stop(*_, **__):
+        raise UnreachableError("Nothing is solved here.")
+
+    for place in ("compare.score.judge.golden_of", "compare.studies.study.golden_of", "reference.solver.solve.solve"):
+        monkeypatch.setattr(place, stop)
+    for i in range(size(40, 1000)):
+        words = a_command_line(Chance(f"1 command line {i}"), tmp_path / "input")
+        status, out, err = foucault(*words)
+        assert status in (0, 2, 3) and "\x1b" not in out + err and "Traceback" not in err, (i, words, err[-1000:])

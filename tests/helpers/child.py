@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import contextlib
-import io
 import os
 import signal
-import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -58,20 +55,6 @@ def hold(parent: Any, folder: str) -> None:
             time.sleep(600)
     finally:
         (Path(folder) / "cleared").touch()
-
-
-def said_by(words: list[str]) -> tuple[int, str]:
-    """Run a command in this process; return its exit status and all that it printed."""
-    from foucault import main
-
-    sys.argv = ["foucault", *words]
-    out, err, status = io.StringIO(), io.StringIO(), 0
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        try:
-            main()
-        except SystemExit as stop:
-            status = int(stop.code or 0)
-    return status, out.getvalue() + err.getvalue()
 
 
 def die() -> None:

@@ -62,41 +62,23 @@ def _text(document: dict[str, Any]) -> str:
 
 
 def _change_table(tables: dict[str, Sheet], kind: str, change: Change) -> None:
-    """Change the rows of a table, and the doubles of every number that is new."""
-    sheet, doubles = tables[f"{kind}.csv"], tables.get(f"{kind}.binary64.csv")
-    width = len(sheet.header)
-    known = {
-        (name, row[sheet.header.index(name)]): float.fromhex(other[width + i])
-        for row, other in zip(sheet.rows, doubles.rows if doubles else [], strict=doubles is not None)
-        for i, name in enumerate(NUMBERS[kind])
-    }
+    """Change the rows of a table, and write their doubles anew."""
+    sheet = tables[f"{kind}.csv"]
     rows = [list(row) for row in sheet.rows]
     change(rows, list(sheet.header))
     forged = Sheet(sheet.header, [tuple(row) for row in rows], sheet.decimals)
     tables[f"{kind}.csv"] = forged
-    if doubles is not None:
-        columns = {
-            name: [_double(known, name, row[sheet.header.index(name)]) for row in forged.rows] for name in NUMBERS[kind]
-        }
-        tables[f"{kind}.binary64.csv"] = binary64_sheet(forged, columns)
-
-
-def _double(known: dict[tuple[str, str], float], name: str, text: str) -> float:
-    try:
-        return known.get((name, text), float(Fraction(text)))
-    except ValueError:
-        return 0.0
+    if f"{kind}.binary64.csv" in tables:
+        places = {name: sheet.header.index(name) for name in NUMBERS[kind]}
+        doubles = {name: [float(Fraction(row[place])) for row in forged.rows] for name, place in places.items()}
+        tables[f"{kind}.binary64.csv"] = binary64_sheet(forged, doubles)
 
 
 def moved(text: str, by: Fraction) -> str:
-    """Return a decimal changed by an amount, with as many digits, and not as it was."""
+    """Return a decimal changed by an amount, with as many digits; by one unit of the last at least."""
     places = len(text.partition(".")[2])
-    changed = fixed_decimal(Fraction(text) + by, places)
-    return (
-        changed
-        if changed != text
-        else fixed_decimal(Fraction(text) + Fraction(1 if by > 0 else -1, 10**places), places)
-    )
+    unit = Fraction(1 if by > 0 else -1, 10**places)
+    return fixed_decimal(Fraction(text) + (by if abs(by) > abs(unit) else unit), places)
 
 
 def bound_of(files: Files, kind: str, column: str, row: int) -> Fraction:

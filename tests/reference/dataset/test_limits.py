@@ -97,11 +97,6 @@ def test_a_transit_at_which_the_cord_is_level_passes_and_its_place_is_checked(tm
     assert "distance 1 m from the pivot" in found and "ax = -18" in found
 
 
-def test_a_row_of_another_length_is_counted(dataset):
-    sealed(dataset, "grid.csv", "\n120,", "\n120,1,")
-    assert "grid.csv: row 3: 8 numbers, not 7" in problems(dataset)
-
-
 def test_the_doubles_have_the_words_of_the_decimals(dataset):
     files = read_files(dataset)
     row = files.texts["transits.binary64.csv"].splitlines()[3]

@@ -326,8 +326,6 @@ def test_a_dataset_is_called_by_its_scene_and_by_what_was_changed(paris):
     assert dataset_id(changed, changed) == "paris"
     mine = make_scene("mine")
     assert dataset_id(mine.with_values(["site.latitude=1"]), mine) == "mine+site.latitude=1"
-    many = dataset_id(paris.with_values([f"pendulum.length=67.{'0' * 200}1"]))
-    assert many.startswith("paris+sha256=") and len(many) < 40
 
 
 def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch, tmp_path, paris):

@@ -1,4 +1,4 @@
-"""Hostile inputs of every kind, each made from a seed."""
+"""Damaged and strange inputs of every kind, each made from a seed."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def encoded(chance: Chance, text: str) -> bytes:
 
 
 def damaged(chance: Chance, data: bytes) -> bytes:
-    """Return data with some places changed, dropped, repeated, cut or filled with hostile text."""
+    """Return data with some places changed, dropped, repeated, cut or filled with strange text."""
     for _ in range(chance.choice((0, 1, 1, 2, 5))):
         a, b = sorted(chance.randint(0, len(data)) for _ in range(2))
         junk = chance.choice((bytes([chance.randrange(256)]), chance.choice(WORDS).encode(errors="surrogatepass")))
@@ -130,7 +130,7 @@ def damaged(chance: Chance, data: bytes) -> bytes:
 
 
 def a_command_line(chance: Chance, file: Path) -> list[str]:
-    """Return the words of a command with a hostile input; nothing is solved."""
+    """Return the words of a command with a strange input; nothing is solved."""
     kind = chance.randrange(5)
     if kind in (0, 1):
         file.write_bytes((a_scene, a_candidate)[kind](chance))
