@@ -55,8 +55,6 @@ def prepare(
     Raises:
         IntegrationError: it cannot be compiled; the compiler's words.
     """
-    if len(problem.times) == 1:
-        return lambda: outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
     if library is SUNDIALS and not f"{library.version}".startswith("6."):  # since 7
         link = (*link, "sundials_core")
     program = _compiled(source(problem, parts), library, defines, link)

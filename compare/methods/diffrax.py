@@ -53,8 +53,6 @@ def prepare(problem: Problem, setting: float) -> Work:
     stages = solver.tableau.num_stages - int(solver.tableau.fsal)
 
     def work() -> Outcome:
-        if len(problem.times) == 1:
-            return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
         ys, step_count, successful = compiled(start, times)
         states, steps = np.array(ys), int(step_count)
         reason = "" if successful else "diffrax stopped before the end"

@@ -88,8 +88,6 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
 def _scene(problem: Problem) -> Scene:
     """Return the scene with the end and the grid step of the problem's times."""
     times = problem.times.tolist()
-    if len(times) < 2:
-        raise InputError("times", times, "at least one output time after 0")
     return problem.scene.with_values([f"run.t_end={times[-1]!r}", f"run.grid_step={times[1] - times[0]!r}"])
 
 

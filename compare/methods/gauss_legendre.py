@@ -107,37 +107,22 @@ def gauss(stages: int) -> Collocation:
         TableauError: the quadrature does not have that order.
     """
     ctx = context(_BITS)
-    roots = [
-        ctx.findroot(lambda x: ctx.legendre(stages, x), guess) for guess in np.polynomial.legendre.leggauss(stages)[0]
-    ]
-    nodes = [(1 + root) / 2 for root in roots]
-    basis = [_cardinal(ctx, nodes, j) for j in range(stages)]
+    guesses = np.polynomial.legendre.leggauss(stages)[0]
+    nodes = [(1 + ctx.findroot(lambda x: ctx.legendre(stages, x), guess)) / 2 for guess in guesses]
+    powers = ctx.matrix([[node**power for node in nodes] for power in range(stages)])
 
-    def integral(coefficients: list[Any], end: Any) -> Any:
-        return sum(c * end ** (i + 1) / (i + 1) for i, c in enumerate(coefficients))
+    def weights(values: list[Any]) -> list[Any]:
+        """Return the weights of the nodes whose sums over the powers 1, c, c², … have these values."""
+        return list(ctx.lu_solve(powers, values))
 
-    def value(coefficients: list[Any], at: Any) -> Any:
-        return sum(c * at**i for i, c in enumerate(coefficients))
-
-    b = [integral(row, ctx.mpf(1)) for row in basis]
+    b = weights([ctx.mpf(1) / (power + 1) for power in range(stages)])
     for order in range(1, 2 * stages + 1):
         residual = abs(sum(w * c ** (order - 1) for w, c in zip(b, nodes, strict=True)) - ctx.mpf(1) / order)
         if residual > ctx.mpf(2) ** (-_BITS // 2):
             raise TableauError(f"Gauss-Legendre with {stages} stages", order, residual)
-    a = [[integral(row, c) for row in basis] for c in nodes]
-    ahead = [[value(row, 1 + c) for row in basis] for c in nodes]
+    a = [weights([node ** (power + 1) / (power + 1) for power in range(stages)]) for node in nodes]
+    ahead = [weights([(1 + node) ** power for power in range(stages)]) for node in nodes]
     return Collocation(np.array(a, dtype=float), np.array(b, dtype=float), np.array(ahead, dtype=float))
-
-
-def _cardinal(ctx: Any, nodes: list[Any], j: int) -> list[Any]:
-    """Return the coefficients, lowest power first, of the polynomial that is 1 at node j and 0 at the others."""
-    coefficients = [ctx.mpf(1)]
-    for i, node in enumerate(nodes):
-        if i != j:
-            gap = nodes[j] - node
-            raised, lowered = [ctx.mpf(0), *coefficients], [*(c * node for c in coefficients), ctx.mpf(0)]
-            coefficients = [(up - down) / gap for up, down in zip(raised, lowered, strict=True)]
-    return coefficients
 
 
 def prepare(problem: Problem, setting: float, stages: int = STAGES) -> Work:

@@ -14,8 +14,6 @@ from reference.status import Status
 from ..rhs.problem import Problem
 from .method import Family, Method, Outcome, Work, failed
 
-LADDER = (100, 150, 200)  # precisions in bits
-
 
 def prepare(problem: Problem, setting: float) -> Work:
     """Compile the engine's kernels by a short first run; the returned function makes the whole run."""
@@ -53,7 +51,7 @@ METHODS = (
         id="limbs",
         title="Taylor series, adaptive step, this project's limbs of 22 bits",
         setting="precision",
-        ladder=LADDER,
+        ladder=(100, 150, 200),
         source="this project's reference/engines/limbs",
         licence="this project's",
         prepare=prepare,

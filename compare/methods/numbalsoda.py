@@ -50,13 +50,12 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
         data = np.append(problem.parameters, 0.0)
         pointers: list[Any] = [array.ctypes.data for array in (start, data, problem.times, states, success)]
         with captured(1, 2) as output:
-            if rows > 1:
-                integrate(
-                    address, variables, pointers[0], pointers[1], rows, pointers[2], pointers[3],
-                    setting, absolute, MOST_STEPS, pointers[4],
-                )  # fmt: skip
+            integrate(
+                address, variables, pointers[0], pointers[1], rows, pointers[2], pointers[3],
+                setting, absolute, MOST_STEPS, pointers[4],
+            )  # fmt: skip
         calls = int(data[-1])
-        if rows == 1 or success == 1:
+        if success == 1:
             return outcome(problem, states, steps=None, rhs_evaluations=calls, reason=output.words())
         finite = np.isfinite(states).all(axis=1)
         reached = rows if finite.all() else int(np.argmin(finite))

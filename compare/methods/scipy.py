@@ -28,14 +28,11 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
     if code in IMPLICIT:
         keywords["jac"] = problem.jacobian
     rhs, end = problem.rhs, float(problem.times[-1])
-    if len(problem.times) > 1:  # a tiny run triggers the method's late imports
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            solve_ivp(rhs, (0.0, end * 1e-12), problem.start, **keywords)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        solve_ivp(rhs, (0.0, end * 1e-12), problem.start, **keywords)  # triggers the method's late imports
 
     def work() -> Outcome:
-        if len(problem.times) == 1:
-            return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             solution = solve_ivp(rhs, (0.0, end), problem.start, t_eval=problem.times, **keywords)

@@ -38,8 +38,6 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
 
     def work() -> Outcome:
         times = problem.times
-        if len(times) == 1:
-            return outcome(problem, problem.start[None, :], steps=0, rhs_evaluations=0)
         output_times = times if len(times) > 2 else np.array([times[0], times[1] / 2, times[1]])  # two mean every step
         with captured(1, 2):  # it prints its message as well
             solution = solver.solve(output_times, problem.start)

@@ -151,7 +151,7 @@ class Problem:
         formulation: a key of `reference.model.formulations.FORMULATIONS`.
         constants: of the model, each rounded once.
         start: state at t = 0, rounded once, shape (variables,).
-        times: output times in s, increasing, from 0, shape (rows,).
+        times: output times in s, increasing, from 0, at least two, shape (rows,).
         sizes: bound on each variable's swing, from the energy; absolute tolerances are parts of it.
         system: the equations, with the constants they use as parameters.
     """
@@ -230,14 +230,7 @@ class Problem:
         return np.array(rows, dtype=np.float64).T.copy()
 
 
-_STATE = """
-STATE = nb.types.Array(nb.float64, 1, "A", readonly=True)
-
-"""
-
-_RATES = (
-    _STATE
-    + """
+_RATES = """
 @nb.njit(nb.float64[::1](nb.float64, STATE, nb.float64[::1]), **OPTIONS)
 def rhs(t, y, k):
     dy = np.empty(len(y))
@@ -249,11 +242,8 @@ def rhs(t, y, k):
 def rhs_into(y, k, dy):
     ${dy}= traced(${y}${k})
 """
-)
 
-_SLOPES = (
-    _STATE
-    + """
+_SLOPES = """
 @nb.njit(nb.float64[:, ::1](nb.float64, STATE, nb.float64[::1]), **OPTIONS)
 def jacobian(t, y, k):
     j = np.empty((len(y), len(y)))
@@ -265,13 +255,13 @@ def jacobian(t, y, k):
 def jacobian_into(y, k, j):
     ${j}= traced(${y}${k})
 """
-)
 
 
 def _increasing(times: npt.ArrayLike) -> Array:
     t = np.array(times, dtype=np.float64).ravel()
-    if len(t) == 0 or t[0] != 0 or not np.isfinite(t).all() or not (np.diff(t) > 0).all():
-        raise InputError("times", t.tolist() if len(t) < 9 else "an array", "finite times increasing from 0")
+    if len(t) < 2 or t[0] != 0 or not np.isfinite(t).all() or not (np.diff(t) > 0).all():
+        given = t.tolist() if len(t) < 9 else "an array"
+        raise InputError("times", given, "at least two finite times, increasing from 0")
     return t
 
 

@@ -26,6 +26,7 @@ import numpy as np
 from math import {", ".join(FUNCTIONS)}
 
 OPTIONS = dict(cache=CACHE, error_model="numpy", fastmath=False)
+STATE = nb.types.Array(nb.float64, 1, "A", readonly=True)
 
 """
 

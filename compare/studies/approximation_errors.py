@@ -107,6 +107,14 @@ class ReferenceMotion:
         plane = np.abs(turned - np.pi * np.round(turned / np.pi)) * _ARCSEC
         return ApproximationErrors(self.times, np.maximum.accumulate(position), np.fmax.accumulate(plane))
 
+    def largest(self, motion: Motion, marks: Sequence[float]) -> list[tuple[float | None, float | None, Status, str]]:
+        """Return position error, plane error, status and reason of an approximation up to each of some times."""
+        try:
+            errors = self.errors(motion)
+        except FoucaultError as error:
+            return [(None, None, *failure(error))] * len(marks)
+        return [(*errors.at(t), Status.OK, "") for t in marks]
+
     def _plane(self, gauge: Gauge | None, rows: Array) -> Array:
         return np.full(len(rows), np.nan) if gauge is None else gauge.swing_plane(rows)
 
@@ -148,15 +156,12 @@ def error_table(
         InputError: an unknown id, or one of a single number.
     """
     chosen, marks = chosen_motions(ids), [*(t for t in times if t < t_end), t_end]
-    truth, rows = ReferenceMotion(scene, t_end, marks), []
-    for motion in chosen:
-        try:
-            errors = truth.errors(motion)
-        except FoucaultError as error:
-            rows += [TimeRow(motion.id, t, None, None, *failure(error)) for t in marks]
-        else:
-            rows += [TimeRow(motion.id, t, *errors.at(t)) for t in marks]
-    return rows
+    truth = ReferenceMotion(scene, t_end, marks)
+    return [
+        TimeRow(motion.id, t, *errors)
+        for motion in chosen
+        for t, errors in zip(marks, truth.largest(motion, marks), strict=True)
+    ]
 
 
 def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[QuantityRow]:

@@ -79,13 +79,7 @@ def sweep(
     for value in sweep_values(scene, over) if values is None else values:
         changed = varied(scene, over, value)
         truth = ReferenceMotion(changed, t)
-        for motion in chosen:
-            try:
-                errors = truth.errors(motion).at(t)
-            except FoucaultError as error:
-                rows.append(SweepRow(motion.id, over, value, t, None, None, *failure(error)))
-            else:
-                rows.append(SweepRow(motion.id, over, value, t, *errors))
+        rows += [SweepRow(motion.id, over, value, t, *truth.largest(motion, [t])[0]) for motion in chosen]
     return rows
 
 

@@ -79,7 +79,7 @@ class Bench:
         probe_outcome, probe_s = timed(probe)
         base = replace(base, compile_s=compile_s)
         if probe_outcome.status != Status.OK:
-            return self._stopped(base, probe_outcome, probe_s)
+            return self._row_of(base, probe_outcome, probe_s)
         probe_s = min(probe_s, timed(probe)[1]) if probe_s < self.limit_s / PROBE else probe_s
         expected_s, rows = probe_s * float(times[-1] / probe_times[-1]), min(len(times), longest)
         if rows <= len(probe_times) or probe_s > self.limit_s:
@@ -92,12 +92,12 @@ class Bench:
                     (times[-1] - part[-1]) / (part[-1] - probe_times[-1])
                 )
                 if outcome.status != Status.OK:
-                    return self._stopped(base, outcome, costs_s[0])
+                    return self._row_of(base, outcome, costs_s[0])
                 if expected_s > self.limit_s:
                     return self._finished(base, method, outcome, costs_s, part, expected_s)
         base, outcome, costs_s = self._run(base, method, times[:rows], self.repeats)
         if outcome.status != Status.OK:
-            return self._stopped(base, outcome, costs_s[0])
+            return self._row_of(base, outcome, costs_s[0])
         share = float(times[-1] / times[rows - 1])
         return self._finished(base, method, outcome, costs_s, times[:rows], statistics.median(costs_s) * share)
 
@@ -118,7 +118,8 @@ class Bench:
     def _problem(self, base: Row, times: Array) -> Problem:
         return Problem.of(self.scene, base.formulation, times)
 
-    def _stopped(self, base: Row, outcome: Outcome, cpu_s: float) -> Row:
+    def _row_of(self, base: Row, outcome: Outcome, cpu_s: float) -> Row:
+        """Return the row with what a run tells of itself, however far it came."""
         return replace(
             base,
             status=outcome.status,
@@ -138,17 +139,13 @@ class Bench:
         cpu_s = statistics.median(costs_s)
         reason = "" if whole else f"measured to t = {times[-1]:g} s; the cost is scaled to {self.truth.times[-1]:g} s"
         row = replace(
-            base,
+            self._row_of(base, outcome, cpu_s if whole else whole_s),
             status=Status.OK if whole else Status.EXTRAPOLATED,
             reason=reason,
             error_m=float(errors.max()),
             end_error_m=float(errors[-1]),
             h_drift=h_drift(self.scene, outcome),
-            cpu_s=cpu_s if whole else whole_s,
             cpu_spread=(max(costs_s) - min(costs_s)) / cpu_s if cpu_s and len(costs_s) > 1 else None,
-            rhs_evaluations=outcome.rhs_evaluations,
-            steps=outcome.steps,
-            reached_t=float(times[-1]),
         )
         return self._with_transits(row, method) if self.transits and whole and cpu_s <= TRANSIT_S else row
 

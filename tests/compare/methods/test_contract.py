@@ -64,13 +64,6 @@ def test_a_tighter_setting_is_better(name):
     assert errors[1] < errors[0] or errors[0] < 1e-13
 
 
-def test_problems_of_one_moment_need_no_integration(name):
-    method, paris = METHODS[name], case("paris")
-    outcome = method.prepare(paris.problem(name, rows=1), method.ladder[0])()
-    np.testing.assert_allclose(outcome.states, paris.truth[:1], atol=1e-13)
-    assert outcome.status == "ok"
-
-
 def test_a_declaration_is_complete(name):
     method = METHODS[name]
     assert method.id == name

@@ -154,7 +154,7 @@ def test_a_state_goes_back_to_metres():
     np.testing.assert_allclose(rows, [[0.3, 0.4, -math.sqrt(67**2 - 0.25), 0, 0, 0]], rtol=1e-15)
 
 
-@pytest.mark.parametrize("times", [[], [1.0, 2.0], [0.0, 2.0, 1.0], [0.0, math.nan], [0.0, 0.0]])
+@pytest.mark.parametrize("times", [[], [0.0], [1.0, 2.0], [0.0, 2.0, 1.0], [0.0, math.nan], [0.0, 0.0]])
 def test_times_that_do_not_increase_from_zero_are_refused(times):
     with pytest.raises(InputError, match="increasing"):
         Problem.of(load_scene("paris"), "plane", times)
