@@ -8,22 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
-from functools import cached_property, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from reference import Scene, load, load_scene, parse_scene
+from reference import Scene, load_scene
 from reference.status import Status
 
 from ..methods import METHODS, Problem, available
 from ..observed.position_error import power_of_time
 from ..truth import golden_of
-from .campaign import Counted, Measurement, campaign
-from .measure import timed
-from .method_errors import GridTruth
+from .campaign import Counted, campaign
+from .measure import OnScene, timed
 from .row import FAILURES, Record, failure
+from .study_plan import Item
 
 SCENE = "paris_30d"
 TRUTH_DIGITS = 36  # enough to judge runs in 113 bits
@@ -33,8 +33,6 @@ PATIENCE_S = 1800.0  # wall-clock time for one method
 FROM = 1 / 40  # the exponent of time is fitted from this part of the run to its end
 DAY_S = 86400.0
 PARTS = 24  # points of the fitted curve, equally far apart in log t
-
-Item = tuple[str, str, float]  # method, formulation, setting
 
 
 @dataclass(frozen=True)
@@ -102,35 +100,24 @@ def long_runs(
         scene, TRUTH_DIGITS, report=solving and (lambda t: solving(t / DAY_S, days)), level=TRUTH_LEVEL, grid=True
     )
     recipe = [scene.id, scene.run.t_end, golden.manifest.files["grid.csv"].sha256]
-    runs = _Runs(recipe, PATIENCE_S, scene.model_dump(exclude_none=True), golden.path)
+    runs = _Runs(recipe, PATIENCE_S, scene, golden.path)
     return campaign(runs, items, journal_path=journal_path, report=report)
 
 
 @dataclass(frozen=True)
-class _Runs(Measurement[Item, LongRun]):
+class _Runs(OnScene[Item, LongRun]):
     """Runs of methods over the whole span, with their errors at the grid times."""
-
-    document: dict[str, Any]
-    golden: Path
 
     kind = LongRun
 
-    @cached_property
-    def _scene(self) -> Scene:
-        return parse_scene(self.document)
-
-    @cached_property
-    def _truth(self) -> GridTruth:
-        return GridTruth(load(self.golden), float(self._scene.exact.t_end))
-
     def measure(self, item: Item) -> LongRun:
         name, formulation, setting = item
-        run, method, truth = partial(LongRun, *item), METHODS[name], self._truth
+        run, method, truth = partial(LongRun, *item), METHODS[name], self.truth
         missing = available(method)
         if missing is not None:
             return run(Status.NOT_INSTALLED, missing)
         try:
-            outcome, cpu_s = timed(method.prepare(Problem.of(self._scene, formulation, truth.times), setting))
+            outcome, cpu_s = timed(method.prepare(Problem.of(self.scene, formulation, truth.times), setting))
         except FAILURES as error:
             return run(*failure(error))
         errors = truth.position_errors(outcome)

@@ -14,14 +14,17 @@ import statistics
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
-from reference import Scene
+from reference import Scene, load
 from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..methods import Method, Outcome, Problem, Work, available, suited
+from .campaign import Item, Measurement, Result
 from .machine import load_per_core
 from .method_errors import GridTruth, h_drift
 from .row import FAILURES, Row, failure
@@ -167,6 +170,24 @@ class Bench:
             return replace(row, status=Status.MISSED_TRANSITS, reason=text)
         floor_s, largest = self.truth.transit_floor(self.scene, outcome), float(errors_s.max())
         return replace(row, transit_error_s=largest if largest > floor_s else None, transit_floor_s=floor_s)
+
+
+@dataclass(frozen=True)
+class OnScene(Measurement[Item, Result]):
+    """A measurement on one scene, whose golden dataset each child process reads for itself.
+
+    Attributes:
+        scene: its inputs read as the methods read them.
+        golden: folder of its dataset.
+    """
+
+    scene: Scene
+    golden: Path
+
+    @cached_property
+    def truth(self) -> GridTruth:
+        """The golden states of the scene's span."""
+        return GridTruth(load(self.golden), float(self.scene.exact.t_end))
 
 
 def _spent_s() -> float:

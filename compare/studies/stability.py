@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from reference import Golden, Scene, UnreachableError, load, load_scene, parse_scene, scene_ids
+from reference import Scene, UnreachableError, load, load_scene, scene_ids
 from reference.model.constants import constants_in_double
 from reference.numbers.columns import STATE
 from reference.status import Status
@@ -41,7 +41,7 @@ TRUTH_DIGITS = 34  # six more than are asked of the finest method
 
 # method or program, formulation and setting as the method declares them, and the scene
 Item = tuple[str, str | None, float, str]
-Problems = dict[str, tuple[dict[str, Any], Path, Character]]  # document and golden folder of each scene, its difficulty
+Problems = dict[str, tuple[Scene, Path, Character]]  # each scene, the folder of its golden dataset, its difficulty
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,9 @@ def stability(
         moved = solving and partial(_moved, solving, count, len(cuts), float(scene.exact.t_end))
         try:
             golden = golden_of(scene, TRUTH_DIGITS, report=moved, grid=True)
-            problems[name] = scene.model_dump(exclude_none=True), golden.path, _traits(scene, golden)
+            times = GridTruth(golden, float(scene.exact.t_end)).times
+            states = np.column_stack([getattr(golden, column) for column in STATE])[: len(times)]
+            problems[name] = scene, golden.path, character(scene, times, states)
         except UnreachableError as error:
             unsolved[name] = f"The reference cannot solve it: {error}"
         if solving is not None:
@@ -138,12 +140,6 @@ def stability(
     measured = campaign(cells, solved, journal_path=journal_path, report=report)
     finished = dict(zip(solved, measured, strict=True))
     return [finished.get(item) or cells.failed(item, Status.UNREACHABLE, unsolved[item[-1]]) for item in items]
-
-
-def _traits(scene: Scene, golden: Golden) -> Character:
-    times = GridTruth(golden, float(scene.exact.t_end)).times
-    states = np.column_stack([getattr(golden, column) for column in STATE])
-    return character(scene, times, states[: len(times)])
 
 
 def _moved(solving: Callable[[float, int], None], solved: int, scenes: int, t_end: float, t: float) -> None:
@@ -172,18 +168,19 @@ class _Cells(Measurement[Item, Cell]):
 
     def measure(self, item: Item) -> Cell:
         name, formulation, setting, scene_id = item
-        document, folder, traits = self.problems[scene_id]
-        scene, golden = parse_scene(document), load(folder)
+        scene, folder, traits = self.problems[scene_id]
+        golden = load(folder)
         length = float(scene.exact.length)
+        amplitude = traits.amplitude * length or length
         step = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
         if name in self.commands:
             run = users_program.measured(name, self.commands[name], step, scene, golden, self.limit_s)
-            return _of_program(item, run, traits, length, self.limit_s)
+            return _of_program(item, run, traits, amplitude, self.limit_s)
         method = METHODS[name]
         used = step if method.setting == "step" else setting
         truth = GridTruth(golden, float(scene.exact.t_end))
         row = Bench(scene, truth, self.limit_s, repeats=1, transits=False).row(method, formulation, used)
-        return _judged(item, row, traits, length, self.limit_s)
+        return _judged(item, row, traits, amplitude, self.limit_s)
 
     def failed(self, item: Item, status: Status, reason: str) -> Cell:
         method, formulation, setting, scene = item
@@ -193,9 +190,10 @@ class _Cells(Measurement[Item, Cell]):
         return Cell(scene, method, precision, status, None, asked, None, reason, setting=used, kind=kind)
 
 
-def _judged(item: Item, row: Row, traits: Character, length: float, limit_s: float) -> Cell:
+def _judged(item: Item, row: Row, traits: Character, amplitude: float, limit_s: float) -> Cell:
+    """Return the cell of a run, whose error in m is judged as a part of the amplitude in m."""
     method, formulation, setting, scene = item
-    amplitude, requested = traits.amplitude * length or length, digits_asked(method, setting)
+    requested = digits_asked(method, setting)
     digits = None if row.error_m is None else (-math.log10(row.error_m / amplitude) if row.error_m else 40.0)
     status = row.status
     if status == Status.EXTRAPOLATED:
@@ -218,10 +216,10 @@ def _judged(item: Item, row: Row, traits: Character, length: float, limit_s: flo
     )
 
 
-def _of_program(item: Item, run: users_program.Measured, traits: Character, length: float, limit_s: float) -> Cell:
+def _of_program(item: Item, run: users_program.Measured, traits: Character, amplitude: float, limit_s: float) -> Cell:
     """Return the cell of a program, whose reason says from when on it is off."""
-    cell = _judged(item, run.row, traits, length, limit_s)
-    since = run.breaks_at(WRONG * 10**-users_program.DIGITS * (traits.amplitude * length or length))
+    cell = _judged(item, run.row, traits, amplitude, limit_s)
+    since = run.breaks_at(WRONG * 10**-users_program.DIGITS * amplitude)
     if cell.status != Status.SILENTLY_WRONG or since is None:
         return cell
     return replace(cell, reason=f"From t = {since:g} s on it is wrong. {cell.reason}", wrong_from_s=since)

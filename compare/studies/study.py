@@ -9,21 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from reference import Golden, Scene, load, load_scene, parse_scene
+from reference import Golden, Scene, load_scene
 from reference.status import Status
 
 from ..candidates.candidate import Candidate
 from ..methods import METHODS, external
 from ..observed.position_error import LEAST_POINTS, PowerLaw, power_law
 from ..truth import Report, golden_of
-from .campaign import Counted, Measurement, campaign
+from .campaign import Counted, campaign
 from .machine import machine
-from .measure import Bench
-from .method_errors import GridTruth
+from .measure import Bench, OnScene
 from .row import Row
 from .study_plan import Item, on_doubles, plan
 from .users_program import file_row
@@ -85,20 +83,13 @@ class Study:
 
 
 @dataclass(frozen=True)
-class _Runs(Measurement[Item, Row]):
+class _Runs(OnScene[Item, Row]):
     """Runs of methods and of programs on a scene, with their costs and errors."""
 
-    document: dict[str, Any]
-    golden: Path
     limit_s: float
     commands: Mapping[str, str]
 
     kind = Row
-
-    @cached_property
-    def _bench(self) -> Bench:
-        scene = parse_scene(self.document)
-        return Bench(scene, GridTruth(load(self.golden), float(scene.exact.t_end)), self.limit_s)
 
     def recipe_of(self, item: Item) -> tuple[Any, ...]:
         return (self.commands.get(item[0]),)
@@ -106,11 +97,11 @@ class _Runs(Measurement[Item, Row]):
     def measure(self, item: Item) -> Row:
         name, formulation, setting = item
         method = external(self.commands[name], name=name) if name in self.commands else METHODS[name]
-        return self._bench.row(method, formulation, setting)
+        return Bench(self.scene, self.truth, self.limit_s).row(method, formulation, setting)
 
     def failed(self, item: Item, status: Status, reason: str) -> Row:
         kind = "step" if item[0] in self.commands else METHODS[item[0]].setting
-        return Row(*item, kind, self.document["inputs"], status, reason)
+        return Row(*item, kind, self.scene.inputs, status, reason)
 
 
 def study(
@@ -159,7 +150,7 @@ def study(
     runs = _Runs(
         [problem.model_dump(mode="json", exclude={"title", "source", "flags"}), limit_s],
         PATIENCE * limit_s,
-        problem.model_dump(exclude_none=True),
+        problem,
         golden.path,
         limit_s,
         commands,

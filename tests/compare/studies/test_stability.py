@@ -130,7 +130,7 @@ def judged(digits: float, magnified: float) -> Cell:
     """The cell of a run asked for 9 digits that kept so many, on a motion that magnifies an error so many times."""
     traits = Character(0.4, 0.0, 1.0, magnified, 9.0, 0.001, 0.01, 600.0)
     row = Row("scipy_dop853", "space", 1e-9, "tolerance", "binary64", Status.OK, "", 0.01 * 10**-digits, load=0.5)
-    return _judged(("scipy_dop853", "space", 1e-9, "x"), row, traits, 1.0, 3.0)
+    return _judged(("scipy_dop853", "space", 1e-9, "x"), row, traits, 0.01, 3.0)
 
 
 @pytest.mark.parametrize(
