@@ -30,7 +30,6 @@ def captured(*descriptors: int) -> Iterator[Capture]:
 
     What other threads print meanwhile is captured too.
     """
-    flush = ctypes.CDLL(None).fflush if os.name == "posix" else None
     with _turn, tempfile.TemporaryFile() as handle:
         sys.stdout.flush()
         sys.stderr.flush()
@@ -41,8 +40,7 @@ def captured(*descriptors: int) -> Iterator[Capture]:
                 os.dup2(handle.fileno(), descriptor)
             yield capture
         finally:
-            if flush is not None:
-                flush(None)  # empty the buffers of C's own streams
+            ctypes.CDLL(None).fflush(None)  # empties the buffers of C's own streams
             for descriptor, original in zip(descriptors, originals, strict=True):
                 os.dup2(original, descriptor)
                 os.close(original)

@@ -18,8 +18,8 @@ from reference.numbers.precision import Array, context
 
 from ..rhs.problem import Problem
 from ..rhs.straight_line import elements, generated, names, unpacked
-from .method import Family, Outcome, Work, fixed_step, outcome
-from .runge_kutta.fixed_step import steps_between
+from .method import Family, Outcome, Work, outcome
+from .runge_kutta.fixed_step import fixed_step, steps_between
 from .runge_kutta.tableau import TableauError
 
 STAGES = 8

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -20,7 +20,6 @@ from reference.system.imports import missing, switched_off
 
 from ..rhs.problem import Problem
 from .native.library import Library
-from .runge_kutta.fixed_step import Step, steps_through
 
 Setting = Literal["step", "tolerance", "precision"]
 
@@ -194,34 +193,3 @@ def outcome(
 def failed(problem: Problem, reason: str) -> Outcome:
     """Return the outcome of a run that gave up and produced no state after the first."""
     return outcome(problem, problem.start[None, :], steps=None, rhs_evaluations=None, reason=reason)
-
-
-# a method of this project's that takes steps of a fixed size, compiled by numba
-fixed_step = partial(
-    Method,
-    setting="step",
-    licence="this project's",
-    requires=("numba",),
-    extra="methods",
-    libraries=("numpy", "numba"),
-)
-
-
-def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
-    """Return the `prepare` of a method that takes explicit steps of a fixed size in s.
-
-    Args:
-        step: of the method.
-        stages: evaluations of the right-hand side in a step.
-    """
-
-    def prepare(problem: Problem, setting: float) -> Work:
-        run = steps_through(problem, setting, step)
-
-        def work() -> Outcome:
-            states, steps = run()
-            return outcome(problem, states, steps=steps, rhs_evaluations=stages * steps)
-
-        return work
-
-    return prepare

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
-from .runge_kutta.fixed_step import runge_kutta
+from .method import TWO_HUNDRED_STEPS, Family
+from .runge_kutta.fixed_step import explicit, fixed_step, runge_kutta
 from .runge_kutta.tableau import Tableau, fractions, triangle
 
 TABLEAU = Tableau(
     name="rk4",
     order=4,
     a=triangle("", "1/2", "0 1/2", "0 0 1"),
-    b=fractions("1/6", "1/3", "1/3", "1/6"),
+    b=fractions("1/6 1/3 1/3 1/6"),
 )
 
 METHODS = (

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from .method import Family, explicit, fixed_step
-from .runge_kutta.fixed_step import nystrom
+from .method import Family
+from .runge_kutta.fixed_step import explicit, fixed_step, nystrom
 from .runge_kutta.tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(
     name="RKN-G-5(6)-8",
     order=5,
-    c=fractions("0", "4/15", "2/5", "3/5", "9/10", "3/4", "2/7", "1"),
+    c=fractions("0 4/15 2/5 3/5 9/10 3/4 2/7 1"),
     velocity=triangle(
         "",
         "4/15",
@@ -30,8 +30,8 @@ TABLEAU = NystromTableau(
         "6250/194481 0 0 0 -3400/194481 1696/64827",
         "-6706/45279 0 0 0 1047925/1946997 -147544/196209 1615873/1874886",
     ),
-    velocity_weights=fractions("7/81", "0", "0", "0", "-250/3483", "160/351", "2401/5590", "1/10"),
-    position_weights=fractions("31/360", "0", "0", "0", "0", "64/585", "2401/7800", "-1/300"),
+    velocity_weights=fractions("7/81 0 0 0 -250/3483 160/351 2401/5590 1/10"),
+    position_weights=fractions("31/360 0 0 0 0 64/585 2401/7800 -1/300"),
 )
 
 # Misprints of public copies: (table, row, column, as printed), counted from 0. Only the tests use them: put in place of

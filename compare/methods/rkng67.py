@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from .method import TWO_HUNDRED_STEPS, Family, explicit, fixed_step
-from .runge_kutta.fixed_step import nystrom
+from .method import TWO_HUNDRED_STEPS, Family
+from .runge_kutta.fixed_step import explicit, fixed_step, nystrom
 from .runge_kutta.tableau import NystromTableau, fractions, triangle
 
 TABLEAU = NystromTableau(
     name="RKN-G-6(7)-10",
     order=6,
-    c=fractions("0", "11/108", "11/72", "11/48", "5/8", "3/8", "2/3", "1/6", "5175/5333", "1"),
+    c=fractions("0 11/108 11/72 11/48 5/8 3/8 2/3 1/6 5175/5333 1"),
     velocity=triangle(
         "",
         "11/108",
@@ -44,28 +44,12 @@ TABLEAU = NystromTableau(
         " 0.0025357326422396130665331704968283",
     ),
     velocity_weights=fractions(
-        "100063/1863000",
-        "0",
-        "0",
-        "0",
-        "0",
-        "43040768/200032875",
-        "465399/1360520",
-        "728136/3214625",
-        "47451571895192760823/155717244444658077000",
-        "-11233/79000",
+        "100063/1863000 0 0 0 0 43040768/200032875 465399/1360520 728136/3214625"
+        " 47451571895192760823/155717244444658077000 -11233/79000"
     ),
     position_weights=fractions(
-        "698941/13041000",
-        "0",
-        "0",
-        "0",
-        "0",
-        "37507072/280046025",
-        "1090431/9523640",
-        "851292/4500475",
-        "4313779263199341893/545010355556303269500",
-        "1/1106",
+        "698941/13041000 0 0 0 0 37507072/280046025 1090431/9523640 851292/4500475"
+        " 4313779263199341893/545010355556303269500 1/1106"
     ),
     tolerance=Fraction("1e-30"),
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -130,28 +131,25 @@ def _below(
 ) -> tuple[tuple[float, float], ...]:
     """Return the intervals of `values` with errors up to the limit; their ends are interpolated in log(error)."""
     scale, back = (float, float) if over == "latitude" else (np.log, np.exp)
-    good: list[tuple[float, float]] = []
     inside = [error is not None and error <= limit for error in errors]
-    for i, value in enumerate(values):
-        if not inside[i]:
-            continue
-        low = value if i == 0 or inside[i - 1] else _crossing(scale, back, values, errors, limit, i - 1)
-        high = value if i == len(values) - 1 or inside[i + 1] else _crossing(scale, back, values, errors, limit, i)
-        if good and i and inside[i - 1]:
-            low = good.pop()[0]
-        good.append((low, high))
+
+    def crossing(i: int) -> float:
+        """Return the value between values i and i + 1 at which the error equals the limit."""
+        a, b = errors[i], errors[i + 1]
+        if a is None or b is None:
+            return values[i] if a is not None else values[i + 1]
+        first, second = (np.log(max(error, np.finfo(float).tiny)) for error in (a, b))
+        share = (np.log(limit) - first) / (second - first)
+        return float(back(scale(values[i]) + share * (scale(values[i + 1]) - scale(values[i]))))
+
+    good = []
+    for is_good, group in groupby(range(len(values)), inside.__getitem__):
+        if is_good:
+            indices = list(group)
+            low = crossing(indices[0] - 1) if indices[0] > 0 else values[0]
+            high = crossing(indices[-1]) if indices[-1] < len(values) - 1 else values[-1]
+            good.append((low, high))
     return tuple(good)
-
-
-def _crossing(scale: Any, back: Any, values: Sequence[float], errors: Any, limit: float, i: int) -> float:
-    """Return the value between values i and i + 1 at which the error equals the limit."""
-    a, b = errors[i], errors[i + 1]
-    if a is None or b is None:
-        return values[i] if a is not None else values[i + 1]
-    tiny = np.finfo(float).tiny
-    first, second = np.log(max(a, tiny)), np.log(max(b, tiny))
-    share = (np.log(limit) - first) / (second - first)
-    return float(back(scale(values[i]) + share * (scale(values[i + 1]) - scale(values[i]))))
 
 
 def varied(scene: Scene, over: str, value: float | str) -> Scene:

@@ -174,8 +174,12 @@ class _Cells(Measurement[Item, Cell]):
         amplitude = traits.amplitude * length or length
         step = setting * 2 * math.pi / traits.fastest if traits.fastest else setting
         if name in self.commands:
-            run = users_program.measured(name, self.commands[name], step, scene, golden, self.limit_s)
-            return _of_program(item, run, traits, amplitude, self.limit_s)
+            wrong_m = WRONG * 10**-users_program.DIGITS * amplitude
+            row, since = users_program.measured(name, self.commands[name], step, scene, golden, self.limit_s, wrong_m)
+            cell = _judged(item, row, traits, amplitude, self.limit_s)
+            if cell.status != Status.SILENTLY_WRONG or since is None:
+                return cell
+            return replace(cell, reason=f"From t = {since:g} s on it is wrong. {cell.reason}", wrong_from_s=since)
         method = METHODS[name]
         used = step if method.setting == "step" else setting
         truth = GridTruth(golden, float(scene.exact.t_end))
@@ -214,15 +218,6 @@ def _judged(item: Item, row: Row, traits: Character, amplitude: float, limit_s: 
         kind=row.kind,
         load=row.load,
     )
-
-
-def _of_program(item: Item, run: users_program.Measured, traits: Character, amplitude: float, limit_s: float) -> Cell:
-    """Return the cell of a program, whose reason says from when on it is off."""
-    cell = _judged(item, run.row, traits, amplitude, limit_s)
-    since = run.breaks_at(WRONG * 10**-users_program.DIGITS * amplitude)
-    if cell.status != Status.SILENTLY_WRONG or since is None:
-        return cell
-    return replace(cell, reason=f"From t = {since:g} s on it is wrong. {cell.reason}", wrong_from_s=since)
 
 
 def digits_asked(method: str, setting: float) -> float:

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from reference import Golden, InputError, Scene
 from reference.errors import plain, shortened
-from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..candidates.candidate import Candidate, NotFiniteError
@@ -36,28 +35,12 @@ FILE = "file"  # kind of the row of a file, which has no setting; in place of it
 STATED = "the CPU seconds are those that were stated"
 
 
-@dataclass(frozen=True)
-class Measured:
-    """A program's run on a scene.
+def measured(
+    name: str, command: str, setting: float, scene: Scene, golden: Golden, limit_s: float, wrong_m: float
+) -> tuple[Row, float | None]:
+    """Run a program on a scene; return its row, and the first time in s at which it is wrong, None if it never is.
 
-    Attributes:
-        row: status, errors and cost.
-        t: its times in s.
-        errors: position errors in m at these times.
-    """
-
-    row: Row
-    t: Array
-    errors: Array
-
-    def breaks_at(self, above_m: float) -> float | None:
-        """Return the first time in s at which the error exceeds `above_m`; None if it never does."""
-        beyond = self.errors > above_m
-        return float(self.t[np.argmax(beyond)]) if beyond.any() else None
-
-
-def measured(name: str, command: str, setting: float, scene: Scene, golden: Golden, limit_s: float) -> Measured:
-    """Run a program on a scene and measure its error; a failure of any kind becomes the row's status and reason.
+    A failure of any kind becomes the row's status and reason.
 
     Args:
         name: its name in the row.
@@ -66,18 +49,19 @@ def measured(name: str, command: str, setting: float, scene: Scene, golden: Gold
         scene: as the program is given it.
         golden: its truth.
         limit_s: CPU seconds that it may take.
+        wrong_m: position error in m above which it is wrong.
     """
     base = Row(name, NUMBER, setting, "step", scene.inputs, Status.OK, load=load_per_core())
 
-    def failed(status: Status, reason: object) -> Measured:
-        return Measured(replace(base, status=status, reason=str(reason)), np.empty(0), np.empty(0))
+    def failed(status: Status, reason: object) -> tuple[Row, None]:
+        return replace(base, status=status, reason=str(reason)), None
 
     try:
         words = arguments(command.replace(SETTING, repr(setting)), scene)
         output, cpu_s, _ = run_program(words, PATIENCE * limit_s)
         with output:
             candidate = read_stream(output, "its output")
-        return _against(base, candidate, cpu_s, scene, golden)
+        return _against(base, candidate, cpu_s, scene, golden, wrong_m)
     except OutOfTimeError as error:
         return failed(Status.OUT_OF_TIME, error)
     except NotFiniteError as error:
@@ -132,13 +116,16 @@ def file_row(name: str, candidate: Candidate, cpu_s: float | None, scene: Scene,
     """
     base = Row(name, FILE, 0.0, FILE, scene.inputs, Status.OK, "" if cpu_s is None else STATED)
     try:
-        row = _against(base, candidate, cpu_s, scene, golden).row
+        row, _ = _against(base, candidate, cpu_s, scene, golden, math.inf)
     except InputError as error:
         return replace(base, status=Status.GAVE_UP, reason=str(error))
     return replace(row, reason=row.reason or base.reason)
 
 
-def _against(base: Row, candidate: Candidate, cpu_s: float | None, scene: Scene, golden: Golden) -> Measured:
+def _against(
+    base: Row, candidate: Candidate, cpu_s: float | None, scene: Scene, golden: Golden, wrong_m: float
+) -> tuple[Row, float | None]:
+    """Return the row of somebody's output, and the first time in s at which its error exceeds `wrong_m`."""
     end, step = float(scene.exact.t_end), float(scene.exact.grid_step)
     kept = candidate.t <= end + step / 2
     t = candidate.t[kept]
@@ -157,4 +144,5 @@ def _against(base: Row, candidate: Candidate, cpu_s: float | None, scene: Scene,
         cpu_s=cpu_s,
         reached_t=float(t[-1]),
     )
-    return Measured(row, t, errors)
+    beyond = errors > wrong_m
+    return row, float(t[np.argmax(beyond)]) if beyond.any() else None

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from reference.numbers.precision import Array
 
 from ...rhs.problem import Problem
 from ...rhs.straight_line import Program, elements, generated, names, unpacked
+from ..method import Method, Outcome, Work, outcome
 from .tableau import NystromTableau, Tableau
 
 Derivatives = Callable[[Sequence[Any]], Sequence[Any]]
@@ -36,6 +38,17 @@ def march(y, k, times, counts, states):
             return row + 1
     return len(times)
 """
+
+
+# a method of this project's that takes steps of a fixed size, compiled by numba
+fixed_step = partial(
+    Method,
+    setting="step",
+    licence="this project's",
+    requires=("numba",),
+    extra="methods",
+    libraries=("numpy", "numba"),
+)
 
 
 def runge_kutta(tableau: Tableau) -> Step:
@@ -91,38 +104,41 @@ def traced_step(problem: Problem, step: Step) -> Program:
     return problem.system.traced(whole_step, "h")
 
 
-def steps_through(problem: Problem, length: float, step: Step) -> Callable[[], tuple[Array, int]]:
-    """Compile a step for a problem's system; the returned function takes all steps.
+def explicit(step: Step, stages: int) -> Callable[[Problem, float], Work]:
+    """Return the `prepare` of a method that takes explicit steps of a fixed size in s.
+
+    The step is compiled for a problem's system. It is shortened where output times are not a whole number of steps
+    apart, and the run ends after the first output time at which the state is not finite.
 
     Args:
-        problem: to be solved.
-        length: of a step in s; shortened where output times are not a whole number of steps apart.
         step: `step(state, h, derivatives)` in the model's generic style.
-
-    Returns:
-        A function that returns the states at the output times, up to the first that is not finite, shape
-        (rows, variables), and the number of steps that led there.
+        stages: evaluations of the right-hand side in a step.
     """
-    variables, parameters = len(problem.start), len(problem.system.parameters)
-    march = generated(
-        traced_step(problem, step),
-        "step",
-        _MARCH,
-        unpack_state=unpacked("x", "y", variables),
-        unpack_parameters=unpacked("c", "k", parameters),
-        x=names("x", variables),
-        c=names("c", parameters),
-        out=elements("states", variables, "row"),
-    ).march
-    counts = steps_between(problem.times, length)
 
-    def run() -> tuple[Array, int]:
-        states = np.empty((len(problem.times), variables))
-        states[0] = problem.start
-        rows = march(problem.start, problem.parameters, problem.times, counts, states)
-        return states[:rows], int(counts[:rows].sum())
+    def prepare(problem: Problem, setting: float) -> Work:
+        variables, parameters = len(problem.start), len(problem.system.parameters)
+        march = generated(
+            traced_step(problem, step),
+            "step",
+            _MARCH,
+            unpack_state=unpacked("x", "y", variables),
+            unpack_parameters=unpacked("c", "k", parameters),
+            x=names("x", variables),
+            c=names("c", parameters),
+            out=elements("states", variables, "row"),
+        ).march
+        counts = steps_between(problem.times, setting)
 
-    return run
+        def work() -> Outcome:
+            states = np.empty((len(problem.times), variables))
+            states[0] = problem.start
+            rows = march(problem.start, problem.parameters, problem.times, counts, states)
+            steps = int(counts[:rows].sum())
+            return outcome(problem, states[:rows], steps=steps, rhs_evaluations=stages * steps)
+
+        return work
+
+    return prepare
 
 
 def steps_between(times: Array, step: float) -> Any:

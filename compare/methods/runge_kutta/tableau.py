@@ -108,14 +108,14 @@ class NystromTableau:
                 raise TableauError(self.name, order, residual)
 
 
-def fractions(*numbers: str) -> Vector:
-    """Return exact numbers from "81/640" or decimals."""
-    return tuple(map(Fraction, numbers))
+def fractions(row: str) -> Vector:
+    """Return exact numbers, which are separated by blanks: fractions such as 81/640, or decimals."""
+    return tuple(map(Fraction, row.split()))
 
 
 def triangle(*rows: str) -> Matrix:
-    """Return rows of exact numbers, which are separated by blanks."""
-    return tuple(fractions(*row.split()) for row in rows)
+    """Return rows of exact numbers."""
+    return tuple(map(fractions, rows))
 
 
 def _square(rows: Sequence[Sequence[Fraction]], stages: int) -> Matrix:
