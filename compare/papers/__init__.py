@@ -1,7 +1,7 @@
-"""The three source papers, one folder each: every formula and printed number recomputed, judged, and shown on a page.
+"""The three source papers: every formula and printed number recomputed, judged, and shown on a page.
 
 The papers are Mathar's (`mathar/`), Gastebois's (`gastebois/`) and a third one, which solves the linear pendulum by
-three methods (`three_methods/`). A module of theirs holds a few sections; its function `checks` declares one row for
+three methods (`three_methods.py`). A module of theirs holds a few sections; its function `checks` declares one row for
 every printed formula, number or sentence, with the computation to compare it with. Verdicts are computed from these.
 
 - `checks.py`: the kinds of rows, and how each is judged (exact, reproduced, an approximation, or a misprint);
@@ -32,14 +32,15 @@ if TYPE_CHECKING:
 
 __all__ = ["build", "declared", "rows"]
 
-PAPERS = ("mathar", "gastebois", "three_methods")  # each lists its SECTIONS in the order of print
+MATHAR = ("kinematics", "lagrangian", "rest", "slow", "paris", "appendix_a")
+GASTEBOIS = ("rotation", "small", "swings", "lagrangian")
+SECTIONS = (*(f"mathar.{name}" for name in MATHAR), *(f"gastebois.{name}" for name in GASTEBOIS), "three_methods")
 Report = Callable[[str, int, int], None]
 
 
 def declared() -> list[Check]:
     """Return every declared row, in the order of print."""
-    modules = [f".{paper}.{name}" for paper in PAPERS for name in import_module(f".{paper}", __name__).SECTIONS]
-    return [check for module in modules for check in import_module(module, __name__).checks()]
+    return [check for name in SECTIONS for check in import_module(f".{name}", __name__).checks()]
 
 
 def rows(report: Report | None = None) -> list[JudgedRow]:

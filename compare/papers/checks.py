@@ -14,12 +14,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from reference.numbers.precision import fixed_decimal, to_fraction
 
-from .digits import AGREE_DIGITS, MP, Value, distance, mpf, shown, size
+from .digits import MP, ZERO_BELOW, Value, distance, mpf, shown, size
 from .points import Point, points
 
 Verdict = Literal["exact", "reproduced", "approximation", "misprint"]
@@ -69,15 +69,21 @@ class Check(ABC):
         id: paper and place in one word; as declared in a section its end.
         place: paper, section, equation; as declared in a section its end.
         printed: as printed, short.
+        remark: anything else worth knowing.
     """
 
     id: str
     place: str
     printed: str
+    remark: str = field(default="", kw_only=True)
 
     @abstractmethod
     def row(self) -> JudgedRow:
         """Judge the printed line."""
+
+    def judged(self, recomputed: str, verdict: Verdict, **more: str) -> JudgedRow:
+        """Return the row with a verdict and with what belongs to it; the remark is the declared one unless given."""
+        return JudgedRow(self.id, self.place, self.printed, recomputed, verdict, **{"remark": self.remark} | more)
 
 
 def section(prefix: str, place: str, *rows: Check) -> list[Check]:
@@ -105,27 +111,23 @@ class Identity(Check):
     truth: Callable[[Point], Value]
     correction: str = ""
     corrected: Callable[[Point], Value] | None = None
-    remark: str = ""
 
     def row(self) -> JudgedRow:
         """Judge the identity: exact, or a misprint whose correction is exact."""
         sample = points()
         printed, truth = [self.formula(p) for p in sample], [self.truth(p) for p in sample]
-        gap, tolerance = largest_gap(printed, truth), MP.mpf(10) ** -AGREE_DIGITS
-        recomputed = shown(truth[0])
-        if gap < tolerance:
+        gap, recomputed = largest_gap(printed, truth), shown(truth[0])
+        if gap < ZERO_BELOW:
             if self.corrected is not None:
                 raise UnexplainedError(self.id, "the print is right, yet a correction is declared")
-            return JudgedRow(self.id, self.place, self.printed, recomputed, "exact", remark=self.remark)
-        if self.corrected is None or largest_gap([self.corrected(p) for p in sample], truth) >= tolerance:
+            return self.judged(recomputed, "exact")
+        if self.corrected is None or largest_gap([self.corrected(p) for p in sample], truth) >= ZERO_BELOW:
             raise UnexplainedError(
                 self.id, f"the print has a relative error of {shown(gap, 3)}, and no declared correction holds"
             )
         note = f"as printed {shown(printed[0], 6)}"
         remark = f"{self.remark} ({note})" if self.remark else note
-        return JudgedRow(
-            self.id, self.place, self.printed, recomputed, "misprint", correction=self.correction, remark=remark
-        )
+        return self.judged(recomputed, "misprint", correction=self.correction, remark=remark)
 
 
 @dataclass(frozen=True)
@@ -139,7 +141,6 @@ class Approximate(Check):
     order: int
     small: str
     unit: str = ""
-    remark: str = ""
 
     def error(self, s: Any) -> Any:
         """Return the size of the error at s, relative unless there is a unit."""
@@ -158,10 +159,7 @@ class Approximate(Check):
             raise UnexplainedError(self.id, f"the error shrinks with order {shown(slope, 4)}, not {self.order}")
         error = f"{shown(self.error(1), 3)}{' ' + self.unit if self.unit else ' (relative)'}"
         order = f"order {shown(slope, 3)} in {self.small}"
-        recomputed = shown(self.pair(MP.one)[1])
-        return JudgedRow(
-            self.id, self.place, self.printed, recomputed, "approximation", f"{error}; {order}", remark=self.remark
-        )
+        return self.judged(shown(self.pair(MP.one)[1]), "approximation", error=f"{error}; {order}")
 
 
 @dataclass(frozen=True)
@@ -178,17 +176,11 @@ class PrintedNumber(Check):
     from_inputs: Callable[[], Any] | None = None
     inputs: str = ""
     decimals: int | None = None  # of the correction, where one more than printed is needed
-    remark: str = ""
 
-    def fits(self, value: Any) -> str:
-        """Return how the numeral follows from a value: "equal", "rounded", "cut off", or "" if it does not."""
-        if value == mpf(self.numeral):
-            return "equal"
-        signed = value / self.unit
-        if MP.nint(signed) * self.unit == mpf(self.numeral) or abs(signed - mpf(self.numeral) / self.unit) <= 0.5:
-            return "rounded"
-        towards_zero = MP.sign(signed) * MP.floor(abs(signed))
-        return "cut off" if abs(towards_zero - mpf(self.numeral) / self.unit) < MP.mpf("1e-30") else ""
+    @property
+    def number(self) -> Any:
+        """The printed number."""
+        return mpf(self.numeral)
 
     @property
     def unit(self) -> Any:
@@ -197,25 +189,36 @@ class PrintedNumber(Check):
         places = len(mantissa.partition(".")[2])
         return MP.mpf(10) ** (int(exponent or 0) - places)
 
+    def fits(self, value: Any) -> str:
+        """Return how the numeral follows from a value: "equal", "rounded", "cut off", or "" if it does not."""
+        if value == self.number:
+            return "equal"
+        signed = value / self.unit
+        if MP.nint(signed) * self.unit == self.number or abs(signed - self.number / self.unit) <= 0.5:
+            return "rounded"
+        towards_zero = MP.sign(signed) * MP.floor(abs(signed))
+        return "cut off" if abs(towards_zero - self.number / self.unit) < MP.mpf("1e-30") else ""
+
     def row(self) -> JudgedRow:
         """Judge the number: equal, reproduced, near enough for an "about", or a misprint."""
         value = self.value()
-        how = self.fits(value)
-        row = JudgedRow(self.id, self.place, self.printed, shown(value), "exact", remark=self.remark)
+        how, recomputed = self.fits(value), shown(value)
         if how == "equal":
-            return row
-        if how:
-            remark = self.remark if how == "rounded" else _joined("cut off, not rounded", self.remark)
-            return _changed(row, verdict="reproduced", remark=remark)
+            return self.judged(recomputed, "exact")
+        if how == "rounded":
+            return self.judged(recomputed, "reproduced")
+        if how == "cut off":
+            return self._noted(recomputed, "cut off, not rounded")
         if self.from_inputs is not None and self.fits(self.from_inputs()):
-            note = f"from {self.inputs}: {shown(self.from_inputs(), 8)}"
-            return _changed(row, verdict="reproduced", remark=_joined(note, self.remark))
-        off = abs(mpf(self.numeral) - value)
+            return self._noted(recomputed, f"from {self.inputs}: {shown(self.from_inputs(), 8)}")
+        off = abs(self.number - value)
         if self.about is not None and off <= mpf(LOOSE) * abs(self.about()):
-            return _changed(
-                row, verdict="approximation", error=f"{shown(off, 3)}, {shown(off / abs(value), 2)} (relative)"
-            )
-        return _changed(row, verdict="misprint", correction=self.rounded(value))
+            error = f"{shown(off, 3)}, {shown(off / abs(value), 2)} (relative)"
+            return self.judged(recomputed, "approximation", error=error)
+        return self.judged(recomputed, "misprint", correction=self.rounded(value))
+
+    def _noted(self, recomputed: str, note: str) -> JudgedRow:
+        return self.judged(recomputed, "reproduced", remark="; ".join(filter(None, (note, self.remark))))
 
     def rounded(self, value: Any) -> str:
         """Return the value with as many digits as are printed."""
@@ -242,26 +245,16 @@ class Statement(Check):
     correction: str = ""
     corrected: Callable[[], bool] | None = None
     by_run: bool = False
-    remark: str = ""
 
     def row(self) -> JudgedRow:
         """Judge the sentence: exact or reproduced, an approximation if an error is left, or a misprint."""
         finding = self.test()
-        row = JudgedRow(self.id, self.place, self.printed, finding.recomputed, "exact", remark=self.remark)
         if finding.holds:
             if self.corrected is not None:
                 raise UnexplainedError(self.id, "the sentence holds, yet a correction is declared")
             if finding.error:
-                return _changed(row, verdict="approximation", error=finding.error)
-            return _changed(row, verdict="reproduced") if self.by_run else row
+                return self.judged(finding.recomputed, "approximation", error=finding.error)
+            return self.judged(finding.recomputed, "reproduced" if self.by_run else "exact")
         if self.corrected is None or not self.corrected():
             raise UnexplainedError(self.id, "neither the sentence nor a declared correction holds")
-        return _changed(row, verdict="misprint", correction=self.correction)
-
-
-def _joined(*texts: str) -> str:
-    return "; ".join(text for text in texts if text)
-
-
-def _changed(row: JudgedRow, **fields: Any) -> JudgedRow:
-    return replace(row, **fields)
+        return self.judged(finding.recomputed, "misprint", correction=self.correction)

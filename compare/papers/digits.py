@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from reference.model.algebra import dot
 from reference.numbers.precision import bits_of, context
 
 DIGITS = 60  # decimal digits in which every comparison is made
@@ -13,6 +14,7 @@ GUARD_DIGITS = 20  # more than cancellations at the random points cost
 AGREE_DIGITS = 45  # two formulas that agree to this many digits at every point are the same formula
 
 MP = context(bits_of(DIGITS + GUARD_DIGITS))
+ZERO_BELOW = MP.mpf(10) ** -AGREE_DIGITS
 
 Vector = tuple[Any, ...]
 Value = Any  # an mpf, an mpc, or a tuple of them
@@ -53,6 +55,11 @@ def size(value: Value) -> Any:
     return max(abs(part) for part in parts(value))
 
 
+def vanishes(value: Value) -> bool:
+    """Return whether every component is zero to all digits compared."""
+    return bool(size(value) < ZERO_BELOW)
+
+
 def shown(value: Value, digits: int = SHOWN_DIGITS) -> str:
     """Return a value as text: a number, or components in brackets; "0" if it is zero to all digits compared."""
     texts = [_shown(MP.mpmathify(part), digits) for part in parts(value)]
@@ -60,7 +67,7 @@ def shown(value: Value, digits: int = SHOWN_DIGITS) -> str:
 
 
 def _shown(part: Any, digits: int) -> str:
-    return "0" if abs(part) < MP.mpf(10) ** -AGREE_DIGITS else str(MP.nstr(part, digits)).removesuffix(".0")
+    return "0" if abs(part) < ZERO_BELOW else str(MP.nstr(part, digits)).removesuffix(".0")
 
 
 def derivative(function: Callable[[Any], Any], at: Any = 0, order: int = 1) -> Any:
@@ -71,16 +78,6 @@ def derivative(function: Callable[[Any], Any], at: Any = 0, order: int = 1) -> A
 def vector_derivative(function: Callable[[Any], Vector], at: Any = 0, order: int = 1) -> Vector:
     """Return the derivative of a vector, whose components are computed together."""
     return tuple(derivative(lambda s: MP.matrix(function(s)), at, order))
-
-
-def dot(a: Vector, b: Vector) -> Any:
-    """Return the scalar product."""
-    return sum(p * q for p, q in zip(a, b, strict=True))
-
-
-def cross(a: Vector, b: Vector) -> Vector:
-    """Return the vector product."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def norm(a: Vector) -> Any:

@@ -12,14 +12,13 @@ from reference import InputError, load_scene
 from reference.numbers.precision import Array
 
 from ..approximations import APPROXIMATIONS, Motion
+from ..approximations.frequency import anharmonic
 from ..methods import METHODS, Problem, available
 from ..observed.position_error import difference, distance
 from ..observed.swing_plane import rest_in_metres
 from ..report.charts.drawing import COLOURS, FAINT, GUIDE, Line
 from ..report.charts.panels import Panel, dots, drawn, line
 from .digits import degrees, mpf
-from .first_principles import rest_angle
-from .mathar.paris import estimate
 from .points import paris
 from .runs import frequencies, paris_path, paris_swing_plane, window
 
@@ -45,7 +44,7 @@ def _rest_by_latitude() -> list[Panel]:
     lines = []
     for length, colour, dashes in zip((1, 10, 100), (BLUE, RED, GREEN), DASHES, strict=False):
         p = paris().but(length=mpf(length))
-        angles = [abs(degrees(rest_angle(p.but(latitude=mpf(float(d)))))) for d in latitudes]
+        angles = [abs(degrees(p.but(latitude=mpf(float(d))).case.rest_angle)) for d in latitudes]
         lines.append(line(f"l = {length} m", latitudes, angles, colour, dashes))
     return [
         Panel(lines, y="deviation from the vertical in °", named=True, xlim=(-90, 90), ylim=(0, 0.105), **EAST_WEST)
@@ -180,7 +179,7 @@ def _zero(begin: float, end: float) -> Line:
 
 def estimate_at(latitude: float) -> float:
     """Return the paper's last but one estimate of the frequency in Hz: (51)-(52) with g' of (48), slowed by 2K/π."""
-    return float(estimate(paris().but(latitude=mpf(latitude))))
+    return float(anharmonic(paris().but(latitude=mpf(latitude)).case))
 
 
 def orders_at(begin: float, span: float, step: float) -> dict[str, Array]:

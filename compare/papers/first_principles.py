@@ -12,9 +12,11 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from reference.model.force import acceleration, rest_position, tension
+from reference.model.algebra import cross, dot
+from reference.model.constants import Constants
+from reference.model.force import acceleration, tension
 
-from .digits import MP, Vector, add, cos, cross, derivative, dot, j, mpf, scale, sin, sqrt, tan, vector_derivative
+from .digits import MP, Vector, add, cos, derivative, j, mpf, scale, sin, sqrt, tan, vector_derivative
 from .points import Point
 
 Coordinates = Callable[[Point, Any, Any], Vector]
@@ -88,8 +90,7 @@ def euler_lagrange(
         return tuple(part + (by if k == i else 0) for k, part in enumerate(vector))
 
     def momentum(s: Any) -> Any:
-        position = tuple(q[k] + v[k] * s + a[k] * s * s / 2 for k in (0, 1))
-        rates = tuple(v[k] + a[k] * s for k in (0, 1))
+        position, rates = add(q, scale(s, v), scale(s * s / 2, a)), add(v, scale(s, a))
         ahead, behind = (lagrangian(p, coordinates, position, shifted(rates, by), rate, s) for by in (1, -1))
         return (ahead - behind) / 2  # exact: L is quadratic in the velocities
 
@@ -102,27 +103,34 @@ def in_rate(function: Callable[[Any], Any], power: int) -> Any:
     return (middle, (above - below) / 2, (above + below) / 2 - middle)[power]
 
 
+def _acceleration(p: Point, k: Constants) -> Vector:
+    """Return x'', y'', z'' of the reference's model with some constants."""
+    return scale(p.length, acceleration(p.case.n, p.case.v, k))
+
+
 def horizontal_acceleration(p: Point) -> Vector:
     """Return x'' and y'' of the reference's model at this point."""
-    n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
-    return tuple(p.length * part for part in acceleration(n, v, p.k)[:2])
+    return _acceleration(p, p.k)[:2]
+
+
+def acceleration_of(p: Point) -> Vector:
+    """Return x'', y'', z'' of the reference's model with gravity alone."""
+    return _acceleration(p, p.uniform)
+
+
+def uniform_acceleration(p: Point) -> Vector:
+    """Return x'', y'' of the same."""
+    return acceleration_of(p)[:2]
+
+
+def pull(p: Point) -> Any:
+    """Return the tension of the cord per mass, of the reference's model with gravity alone."""
+    return p.length * tension(p.case.n, p.case.v, p.uniform)
 
 
 def rest(p: Point) -> Vector:
     """Return the rest position by the reference, in m."""
-    return scale(p.length, rest_position(p.k, MP))
-
-
-def rest_angle(p: Point) -> Any:
-    """Return the angle of the rest position from straight down, to the south, in radians."""
-    _, y, z = rest(p)
-    return MP.atan2(-y, -z)
-
-
-def pull_at_rest(p: Point) -> Any:
-    """Return the tension of the cord per mass in the rest position."""
-    n = scale(1 / p.length, rest(p))
-    return p.length * tension(n, (0, 0, 0), p.k)
+    return scale(p.length, p.case.rest)
 
 
 def moving(p: Point, s: Any) -> Vector:
@@ -130,34 +138,29 @@ def moving(p: Point, s: Any) -> Vector:
     return by_angles(p, p.cord + p.cord_rate * s, p.azimuth + p.azimuth_rate * s)
 
 
+def moving_velocity(p: Point) -> Vector:
+    """Return the velocity of the same in local axes."""
+    return vector_derivative(lambda s: moving(p, s))
+
+
 def angle_state(p: Point) -> tuple[Vector, Vector, Vector]:
     """Return the angles, their rates and their accelerations."""
-    return (
-        (p.cord, p.azimuth),
-        (p.cord_rate, p.azimuth_rate),
-        (p.cord_second, p.azimuth_second),
-    )
+    return (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate), (p.cord_second, p.azimuth_second)
+
+
+def plane_state(p: Point) -> tuple[Vector, Vector, Vector]:
+    """Return x and y, their rates and their accelerations."""
+    return (p.x, p.y), (p.vx, p.vy), (p.ax, p.ay)
 
 
 def turning(p: Point) -> Vector:
     """Return Ω on east, north, up at the latitude λ."""
-    return (MP.zero, p.rate * cos(p.phi), p.rate * sin(p.phi))
-
-
-def uniform_acceleration(p: Point) -> Vector:
-    """Return x'', y'' of the reference's model with gravity alone."""
-    n, v = (scale(1 / p.length, vector) for vector in (p.position, p.velocity))
-    return tuple(p.length * part for part in acceleration(n, v, p.uniform)[:2])
+    return (MP.zero, p.rate * cos(p.phi), rate_up(p))
 
 
 def linearised(p: Point) -> Vector:
     """Return x'', y'' of the reference's model without centrifugal force, linear about straight down."""
-
-    def scaled(s: Any) -> Vector:
-        moved = p.but(x=p.x * s, y=p.y * s, vx=p.vx * s, vy=p.vy * s)
-        return uniform_acceleration(moved)
-
-    return vector_derivative(scaled)
+    return vector_derivative(lambda s: uniform_acceleration(p.swinging(s)))
 
 
 def rate_up(p: Point) -> Any:
@@ -186,32 +189,14 @@ def matrix(p: Point) -> Any:
     """Return the matrix of the reference's model with gravity alone, linear about straight down, from unit states."""
     columns = []
     for name in ("x", "y", "vx", "vy"):
-        state = dict.fromkeys(("x", "y", "vx", "vy"), MP.zero) | {name: MP.one / 10}
-        unit = p.but(**state)
-        columns.append([10 * part for part in (unit.vx, unit.vy, *linearised(unit))])
+        state = p.but(**(dict.fromkeys(("x", "y", "vx", "vy"), MP.zero) | {name: MP.one / 10}))
+        columns.append([10 * part for part in (state.vx, state.vy, *linearised(state))])
     return MP.matrix(columns).T
 
 
 def motion(p: Point, start: Vector, t: Any) -> Vector:
     """Return x, y, vx, vy of the linear system after a time."""
     return tuple(MP.expm(matrix(p) * t, method="taylor") * MP.matrix(start))
-
-
-def start_at_rest(p: Point) -> Vector:
-    """Return the start of a bob let go at rest at x, in the east."""
-    return (p.x, MP.zero, MP.zero, MP.zero)
-
-
-def motion_at_rest(p: Point, t: Any) -> Vector:
-    """Return x, y of the linear system let go at rest at x."""
-    return motion(p, start_at_rest(p), t)[:2]
-
-
-def acceleration_of(p: Point) -> Vector:
-    """Return x'', y'', z'' of the reference's model with gravity alone."""
-    ax, ay = uniform_acceleration(p)
-    z, vz = p.z, p.vz
-    return ax, ay, -(p.vx**2 + p.vy**2 + vz**2 + p.x * ax + p.y * ay) / z
 
 
 def turning_rates(p: Point) -> list[Any]:

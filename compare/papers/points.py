@@ -111,6 +111,19 @@ class Point:
         """The same numbers as the approximations take them."""
         return Case(MP, self.k, self.position, self.velocity)
 
+    @cached_property
+    def angle_functions(self) -> tuple[Any, Any, Any, Any]:
+        """Sine and cosine of the cord's angle, then of its azimuth."""
+        return sin(self.cord), cos(self.cord), sin(self.azimuth), cos(self.azimuth)
+
+    def swinging(self, s: Any) -> Point:
+        """Return the point with s times its place and velocity."""
+        return self.but(x=self.x * s, y=self.y * s, vx=self.vx * s, vy=self.vy * s)
+
+    def faster(self, s: Any) -> Point:
+        """Return the point with Ω² s times as large."""
+        return self.but(rate=self.rate * sqrt(s))
+
     def but(self, **changes: Any) -> Point:
         """Return the point with some of its numbers changed."""
         return replace(self, **changes)

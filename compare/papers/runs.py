@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
@@ -22,16 +21,16 @@ def paris_day() -> Golden:
 
 
 @cache
-def transit_times() -> list[Any]:
-    """Return the times of its transits in s."""
-    return [mpf(text) for text in paris_day().transits.decimals("t")]
+def transits(column: str) -> list[Any]:
+    """Return a column of its transits."""
+    return [mpf(text) for text in paris_day().transits.decimals(column)]
 
 
 @cache
 def paris_path() -> tuple[Array, Array]:
     """Return times every 30 s for 24 h and x, y, z, vx, vy, vz there, shape (times, 6), by a long double run."""
     times = np.arange(0.0, 86430.0, 30.0)
-    return times, trajectory(load_scene("paris"), times, number=LONG_DOUBLE)
+    return times, path_in(load_scene("paris"), times)
 
 
 def path_in(scene: Scene, times: Array) -> Array:
@@ -53,15 +52,11 @@ def rotation(scene: Scene, t_end: float) -> float:
     return float(np.polyfit(times / 3600, np.degrees(swing_plane(scene, path_in(scene, times))), 1)[0])
 
 
-def solved(assignments: Sequence[str], t_end: str, digits: int = 20) -> Solution:
-    """Solve the scene `paris` with some values changed, up to t_end, with its transits."""
-    return _solved(tuple(assignments), t_end, digits)
-
-
 @cache
-def _solved(assignments: tuple[str, ...], t_end: str, digits: int) -> Solution:
-    grid = f"run.grid_step={t_end}"
-    return solve(load_scene("paris", [*assignments, grid]), t_end=t_end, digits=digits, level="computed")
+def solved(changes: tuple[str, ...], t_end: str, digits: int = 20) -> Solution:
+    """Solve the scene `paris` with some values changed, up to t_end, with its transits."""
+    scene = load_scene("paris", [*changes, f"run.grid_step={t_end}"])
+    return solve(scene, t_end=t_end, digits=digits, level="computed")
 
 
 def frequency(solution: Solution) -> Any:
@@ -78,7 +73,7 @@ def frequency(solution: Solution) -> Any:
 def frequencies() -> dict[float, float]:
     """Return the frequency in Hz by latitude in degrees, from runs of ten minutes."""
     latitudes = [*map(str, range(-90, 91, 10)), "48.846111"]
-    return {float(text): float(frequency(solved([f"site.latitude={text}"], "600", 12))) for text in latitudes}
+    return {float(text): float(frequency(solved((f"site.latitude={text}",), "600", 12))) for text in latitudes}
 
 
 def swing_plane(scene: Scene, states: Array) -> Array:

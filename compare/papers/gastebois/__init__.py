@@ -1,3 +1,1 @@
-"""G. Gastebois, Le pendule de Foucault: its sections in the order of print."""
-
-SECTIONS = ("rotation", "small", "swings", "lagrangian")
+"""G. Gastebois, Le pendule de Foucault."""

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from reference.model.algebra import cross, dot
+
 from ..checks import Approximate, Check, Identity, component, section
-from ..digits import MP, Vector, add, cos, cross, derivative, dot, scale, sin, vector_derivative
+from ..digits import MP, Vector, add, cos, derivative, scale, sin, vector_derivative
 from ..first_principles import (
     acceleration_of,
     angle_state,
@@ -16,7 +18,7 @@ from ..first_principles import (
     euler_lagrange,
     lagrangian,
     linearised,
-    moving,
+    moving_velocity,
     rate_up,
     turning,
 )
@@ -24,19 +26,9 @@ from ..points import Point, points
 from .small import forces
 
 
-def angle_functions(p: Point) -> tuple[Any, ...]:
-    """Return sine and cosine of θ, then of φ."""
-    return sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth)
-
-
 def speeds(p: Point) -> Vector:
     """Return v_θ = L0 θ', v_φ = L0 sinθ φ'."""
     return p.length * p.cord_rate, p.length * sin(p.cord) * p.azimuth_rate
-
-
-def moving_velocity(p: Point) -> Vector:
-    """Return the velocity from the motion of the angles."""
-    return vector_derivative(lambda s: moving(p, s))
 
 
 def kinetic(p: Point, square: Any) -> Any:
@@ -64,19 +56,19 @@ def along(i: int) -> Callable[[Point], Vector]:
 
 
 def _by_theta(p: Point) -> Vector:
-    sp, cp, sl, cl = angle_functions(p)
+    sp, cp, sl, cl = p.angle_functions
     return cp * cl, cp * sl, sp
 
 
 def _by_phi(p: Point) -> Vector:
-    sp, _, sl, cl = angle_functions(p)
+    sp, _, sl, cl = p.angle_functions
     return -sp * sl, sp * cl, MP.zero
 
 
 def _velocity(p: Point) -> Vector:
     """Return v_x, v_y, v_z as printed."""
     along, across = speeds(p)
-    sp, cp, sl, cl = angle_functions(p)
+    sp, cp, sl, cl = p.angle_functions
     return along * cp * cl - across * sl, along * cp * sl + across * cl, along * sp
 
 
@@ -88,8 +80,7 @@ def _hung(p: Point) -> Point:
 
 def _balance(p: Point, by: Any) -> Vector:
     """Return (m g_a + T + f_c) / `by` minus the acceleration."""
-    accelerated, force = forces(_hung(p))
-    return add(scale(1 / by, force), scale(-1, accelerated))
+    return add(scale(1 / by, forces(_hung(p))), scale(-1, acceleration_of(_hung(p))))
 
 
 def _half(p: Point) -> Any:
@@ -101,13 +92,12 @@ def left_side(p: Point, i: int) -> Any:
     return p.mass * euler_lagrange(p, by_angles, *angle_state(p), i, MP.zero)
 
 
-def without_prime(p: Point, i: int) -> Any:
+def _without_prime(p: Point, i: int) -> Any:
     """Return d(dL/dq)/dt - dL/dq, as the general line is printed."""
     q, v, a = angle_state(p)
 
     def slope(s: Any) -> Any:
-        place = tuple(q[k] + v[k] * s + a[k] * s * s / 2 for k in (0, 1))
-        rates = tuple(v[k] + a[k] * s for k in (0, 1))
+        place, rates = add(q, scale(s, v), scale(s * s / 2, a)), add(v, scale(s, a))
         return derivative(lambda u: _lagrangian(p, tuple(x + (u if k == i else 0) for k, x in enumerate(place)), rates))
 
     return derivative(slope) - slope(MP.zero)
@@ -115,7 +105,7 @@ def without_prime(p: Point, i: int) -> Any:
 
 def angle_accelerations(p: Point) -> Vector:
     """Return θ'', φ'' of the reference's model with gravity alone, from its cartesian acceleration."""
-    sp, cp, sl, cl = angle_functions(p)
+    sp, cp, sl, cl = p.angle_functions
     ax, ay, az = scale(1 / p.length, acceleration_of(_hung(p)))
     second = (az - cp * p.cord_rate**2) / sp
     turned = sp * (cl * ay - sl * ax)
@@ -124,7 +114,7 @@ def angle_accelerations(p: Point) -> Vector:
 
 def printed_accelerations(p: Point) -> Vector:
     """Return θ'', φ'' as printed at the end of 7.2."""
-    sp, cp, sl, _ = angle_functions(p)
+    sp, cp, sl, _ = p.angle_functions
     along = cp * sin(p.phi) - sp * sl * cos(p.phi)
     theta = -p.gravity / p.length * sp + sp * cp * p.azimuth_rate**2 + 2 * sp * along * p.rate * p.azimuth_rate
     return theta, (-2 * cp * p.cord_rate * p.azimuth_rate - 2 * along * p.rate * p.cord_rate) / sp
@@ -135,13 +125,13 @@ def _accelerated(p: Point, accelerations: Vector) -> Point:
 
 
 def _theta_side(p: Point) -> Any:
-    sp, cp, *_ = angle_functions(p)
+    sp, cp, *_ = p.angle_functions
     turned = p.mass * p.length**2 * (p.cord_second - sp * cp * p.azimuth_rate**2)
     return turned + p.mass * p.gravity * p.length * sp
 
 
 def _phi_side(p: Point) -> Any:
-    sp, cp, *_ = angle_functions(p)
+    sp, cp, *_ = p.angle_functions
     return p.mass * p.length**2 * (sp**2 * p.azimuth_second + 2 * sp * cp * p.cord_rate * p.azimuth_rate)
 
 
@@ -150,7 +140,7 @@ def force(i: int, right: bool) -> Callable[[Point], Any]:
 
     def printed(p: Point) -> Any:
         along, across = speeds(p)
-        sp, cp, sl, cl = angle_functions(p)
+        sp, cp, sl, cl = p.angle_functions
         up, north = rate_up(p), p.rate * cos(p.phi)
         angle = (cl, sl, sl)[i] if right else (cp, sp, sp)[i]
         halves = (
@@ -177,14 +167,14 @@ def _narrow(s: Any) -> Point:
 
 def _flat(p: Point, s: Any = 0) -> Vector:
     """Return x = L0 θ cosφ, y = L0 θ sinφ of small angles, along the point's path."""
-    theta = p.cord + p.cord_rate * s + p.cord_second * s * s / 2
-    phi = p.azimuth + p.azimuth_rate * s + p.azimuth_second * s * s / 2
+    q, v, a = angle_state(p)
+    theta, phi = add(q, scale(s, v), scale(s * s / 2, a))
     return p.length * theta * cos(phi), p.length * theta * sin(phi)
 
 
 def _flat_printed(p: Point) -> Vector:
     """Return x'' and y'' in θ, φ of 7.3, first lines."""
-    _, _, sl, cl = angle_functions(p)
+    _, _, sl, cl = p.angle_functions
     length, theta, turn = p.length, p.cord, p.azimuth_rate
     x = length * p.cord_second * cl - 2 * length * p.cord_rate * sl * turn
     y = length * p.cord_second * sl + 2 * length * p.cord_rate * cl * turn
@@ -207,7 +197,7 @@ def _flat_middle(p: Point, sign: int) -> Vector:
 
 def _flat_end(p: Point) -> Vector:
     """Return x'' and y'' of 7.3, last lines in θ, φ."""
-    _, _, sl, cl = angle_functions(p)
+    _, _, sl, cl = p.angle_functions
     length, theta, up = p.length, p.cord, rate_up(p)
     along = length * p.cord_rate * cl - length * theta * sl * p.azimuth_rate
     across = length * p.cord_rate * sl + length * theta * cl * p.azimuth_rate
@@ -224,7 +214,7 @@ def checks() -> list[Check]:
     return section("gastebois_", "Gastebois",
         Identity("7_1_newton", "7.1", "a = m g_a + T + f_c",
             lambda p: _balance(p, MP.one), lambda p: (MP.zero,) * 3, "m a = m g_a + T + f_c",
-            lambda p: _balance(p, p.mass), "as m g_a + T + f_c minus the left side"),
+            lambda p: _balance(p, p.mass), remark="as m g_a + T + f_c minus the left side"),
         Identity("7_1_l", "7.1", "L = m v_θ²/2 + m v_φ²/2 + m g_a L0 cosθ",
             lambda p: kinetic(p, dot(speeds(p), speeds(p))), lambda p: _lagrangian(p, *angle_state(p)[:2])),
         Identity("7_1_v", "7.1", "v_x = v_θ cosθ cosφ - v_φ sinφ, v_y = v_θ cosθ sinφ + v_φ cosφ, v_z = v_θ sinθ",
@@ -236,8 +226,8 @@ def checks() -> list[Check]:
         Identity("7_1_l2", "7.1", "L = m L0² θ'²/2 + m L0² sin²θ φ'²/2 + m g_a L0 cosθ", lambda p: kinetic(p, _half(p)),
             lambda p: _lagrangian(p, *angle_state(p)[:2])),
         Identity("7_2_general", "7.2", "d(dL/dq)/dt - dL/dq = …",
-            lambda p: without_prime(p, 0), lambda p: left_side(p, 0), "d(dL/dq')/dt - dL/dq = …", _theta_side,
-            "for q = θ; the next two lines are printed with q'"),
+            lambda p: _without_prime(p, 0), lambda p: left_side(p, 0), "d(dL/dq')/dt - dL/dq = …", _theta_side,
+            remark="for q = θ; the next two lines are printed with q'"),
         Identity("7_2_theta", "7.2", "m L0² θ'' - m L0² sinθ cosθ φ'² + m g_a L0 sinθ = …",
             _theta_side, lambda p: left_side(p, 0)),
         Identity("7_2_phi", "7.2", "m L0² sin²θ φ'' + 2 m L0² sinθ cosθ θ' φ' = …",

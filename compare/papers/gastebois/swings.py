@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 from ...approximations import gastebois
 from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement, section
 from ..digits import MP, Vector, cos, mpf, pi, radians, scale, shown, sin, sqrt, vector_derivative
-from ..first_principles import motion, motion_at_rest, rate_up, start_at_rest, swing_rate
+from ..first_principles import motion, rate_up, swing_rate
 from ..points import Point, points
 from .rotation import (
     GRAVITY,
@@ -22,7 +21,6 @@ from .rotation import (
 )
 from .small import fitted_constants
 
-Motion = Callable[[Point, Any], Vector]
 OWN_LAMBDA = mpf("48.97")
 
 
@@ -41,10 +39,14 @@ def _start_simple(p: Point) -> Vector:
     return (p.x, MP.zero, MP.zero, -p.x * rate_up(p))
 
 
+def motion_at_rest(p: Point, t: Any) -> Vector:
+    """Return x, y of the linear system let go at rest at x, in the east."""
+    return motion(p, (p.x, MP.zero, MP.zero, MP.zero), t)[:2]
+
+
 def pantheon(s: Any = 1) -> Point:
     """Return the Pantheon's pendulum, rotation s times the Earth's."""
-    base = points()[0]
-    return base.but(
+    return points()[0].but(
         length=PANTHEON_LENGTH, gravity=GRAVITY, latitude=PANTHEON_LATITUDE, rate=RATE * MP.mpf(s), x=PANTHEON_RELEASE
     )
 
@@ -78,21 +80,19 @@ def at_rest(p: Point, t: Any) -> Vector:
     return scale(p.x, gastebois.in_turning_axes(up / w, w, up, t, MP)[:2])
 
 
-def _sense(motion_in_axes: Motion, p: Point, t: Any) -> Any:
-    """Return twice the area swept per time: positive counter-clockwise from above."""
-    x, y = motion_in_axes(p, t)
-    vx, vy = vector_derivative(lambda s: motion_in_axes(p, s), t)
+def _sense(p: Point) -> Any:
+    """Return twice the area that the ellipse sweeps per time: positive counter-clockwise from above."""
+    (x, y), (vx, vy) = _ellipse(p, p.t), vector_derivative(lambda t: _ellipse(p, t), p.t)
     return x * vy - y * vx
 
 
 def _clockwise() -> Finding:
     p = points()[0]
-    swept = _sense(_ellipse, p, p.t)
-    return Finding(swept < 0, f"x vy - y vx = {shown(swept)} in the turning axes, north")
+    return Finding(_sense(p) < 0, f"x vy - y vx = {shown(_sense(p))} in the turning axes, north")
 
 
 def _ellipse(p: Point, t: Any) -> Vector:
-    return in_turning_axes(p, motion(p, start_at_rest(p), t)[:2], t)
+    return in_turning_axes(p, motion_at_rest(p, t), t)
 
 
 def _one_swing(s: Any) -> tuple[Any, Any]:
@@ -132,13 +132,13 @@ def checks() -> list[Check]:
             lambda p: tuple((swing_rate(p) + sign * rate_up(p)) * p.x / (2 * swing_rate(p)) for sign in (-1, 1)),
             lambda p: fitted_constants(p.but(y=MP.zero, vx=MP.zero, vy=MP.zero))[::2]),
         Identity("6_3_xy", "6.3", "x = r0 cosΩ_z t cosωt + r0 Ω_z/ω sinΩ_z t sinωt, y = …",
-            lambda p: at_rest(p, p.t), lambda p: motion(p, start_at_rest(p), p.t)[:2]),
+            lambda p: at_rest(p, p.t), lambda p: motion_at_rest(p, p.t)),
         Identity("6_3_axes", "6.3", "X = r0 cosωt, Y = r0 Ω_z/ω sinωt",
             lambda p: (p.x * cos(swing_rate(p) * p.t), p.x * rate_up(p) / swing_rate(p) * sin(swing_rate(p) * p.t)),
             lambda p: _ellipse(p, p.t)),
         Statement("6_3_sense", "6.3", "the ellipse is described clockwise in the northern hemisphere",
             _clockwise, "counter-clockwise, in the axes that turn with the plane",
-            lambda: all(_sense(_ellipse, p, p.t) > 0 for p in points())),
+            lambda: all(_sense(p) > 0 for p in points())),
         Identity("6_3_speed", "6.3, remark", "as thrown with a transverse velocity of -r0 Ω_z",
             lambda p: -p.x * rate_up(p), lambda p: vector_derivative(lambda t: _ellipse(p, t), MP.zero)[1],
             "+r0 Ω_z", lambda p: p.x * rate_up(p)),
@@ -150,7 +150,7 @@ def checks() -> list[Check]:
         Identity("6_3_rate", "6.3", "ω_f = φ/T = Ω_z with φ = -2πΩ_z/ω",
             rate_up, lambda p: -2 * pi * rate_up(p) / swing_rate(p) / (2 * pi / swing_rate(p)),
             "a sign is dropped within the line: φ/T = -Ω_z", lambda p: -rate_up(p),
-            "φ = y/r0 counts anticlockwise, ω_f clockwise as in 4.1: ω_f = -φ/T"),
+            remark="φ = y/r0 counts anticlockwise, ω_f clockwise as in 4.1: ω_f = -φ/T"),
         Identity("6_3_tf", "6.3", "T_f = 2π/Ω_z = T / sinλ_a",
             lambda p: 2 * pi / swing_rate(p) / sin(p.phi), lambda p: 2 * pi / rate_up(p),
             "T_p / sinλ_a, T_p the day", lambda p: 2 * pi / p.rate / sin(p.phi)),

@@ -15,7 +15,7 @@ from ...methods.runge_kutta.tableau import NystromTableau, Tableau, TableauError
 from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, mpf, pi, shown
 from ..points import paris
-from ..runs import path_in, transit_times
+from ..runs import path_in, transits
 from .paris import swings_surplus
 
 WGS84_INVERSE_FLATTENING = "298.257223563"  # NIMA TR8350.2, table 3.1: defining parameter
@@ -67,14 +67,14 @@ def _by_parabola() -> Finding:
     times = np.arange(1001) / 100
     xdot = path_in(load_scene("paris"), times)[:, 3]
     xdot[0] = 0.0  # released at rest, exactly
-    zero, true = Transits().of(times, xdot)[0], float(transit_times()[0])
+    zero, true = Transits().of(times, xdot)[0], float(transits("t")[0])
     # of sin(wt) a parabola through three points h apart misses the zero by at most h³ w² max|s(s² - 1)|/6
     bound = 0.065 * 0.01**3 * 9.80665 / 67
     return Finding(abs(zero - true) < bound, f"{zero:.12f} s, {zero - true:.2e} s from the truth")
 
 
 def _two_transits() -> Finding:
-    count, surplus = len(transit_times()), swings_surplus()
+    count, surplus = len(transits("t")), swings_surplus()
     share = mpf(surplus) / count
     return Finding(
         share < mpf("1e-3"),

@@ -1,18 +1,30 @@
-"""Mathar, section II: the suspension and the axes at the _site, the bob and its velocity, (1)-(19)."""
+"""Mathar, section II: the suspension and the axes at the site, the bob and its velocity, (1)-(19)."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
+from reference.model.algebra import cross, dot
 from reference.model.constants import axis_distance
 
 from ..checks import Check, Finding, Identity, Statement, section
-from ..digits import MP, Vector, add, cos, cross, dot, norm, scale, shown, sin, sqrt, unit, vector_derivative
-from ..first_principles import by_angles, in_rate, moving, place, square_speed, suspension, turned_to_site
+from ..digits import MP, Vector, add, cos, norm, scale, shown, sin, sqrt, unit, vanishes, vector_derivative
+from ..first_principles import (
+    angle_state,
+    by_angles,
+    in_rate,
+    moving,
+    moving_velocity,
+    place,
+    square_speed,
+    suspension,
+    turned_to_site,
+)
 from ..points import Point, points
 
 AXES = ((MP.one, MP.zero, MP.zero), (MP.zero, MP.one, MP.zero), (MP.zero, MP.zero, MP.one))  # east, north, up
+Axis = Callable[[Point, Any], Vector]
 
 
 def printed_suspension(p: Point, t: Any) -> Vector:
@@ -47,59 +59,64 @@ def _meridian_radius(p: Point) -> Any:
 
 def _not_the_north_direction() -> Finding:
     p = points()[0]
-    gap = norm(cross(unit(_along_meridian(p)), north(p, p.t)))
-    return Finding(gap > MP.mpf("1e-45"), f"sine of the angle between them: {shown(gap)}")
+    between = cross(unit(_along_meridian(p)), north(p, p.t))
+    return Finding(not vanishes(between), f"sine of the angle between them: {shown(norm(between))}")
 
 
 def _is_the_north_direction() -> bool:
     return all(
-        norm(add(_along_meridian(p), scale(-(_meridian_radius(p) + p.altitude), north(p, p.t)))) < MP.mpf("1e-45")
-        for p in points()
+        vanishes(add(_along_meridian(p), scale(-(_meridian_radius(p) + p.altitude), north(p, p.t)))) for p in points()
     )
 
 
 def _distance_of_suspension(p: Point) -> Any:
-    x, y, _ = suspension(p, MP.one)
-    return sqrt(x * x + y * y)
+    return norm(suspension(p, MP.one)[:2])
 
 
 def _east_from_latitude() -> Finding:
     p = points()[0]
-    return Finding(
-        norm(cross(unit(_along_meridian(p)), east(p, p.t))) < MP.mpf("1e-45"),
-        f"cosine of the angle between dX_s/dϕ and e_E: {shown(dot(unit(_along_meridian(p)), east(p, p.t)))}",
-    )
+    along, e_east = unit(_along_meridian(p)), east(p, p.t)
+    cosine = shown(dot(along, e_east))
+    return Finding(vanishes(cross(along, e_east)), f"cosine of the angle between dX_s/dϕ and e_E: {cosine}")
 
 
 def _east_from_longitude() -> bool:
-    def gap(p: Point) -> Any:
-        along = vector_derivative(lambda turn: suspension(p, turn), p.rate * p.t)
-        return norm(cross(along, east(p, p.t)))
+    def along(p: Point) -> Vector:
+        return vector_derivative(lambda turn: suspension(p, turn), p.rate * p.t)
 
-    return all(gap(p) < MP.mpf("1e-45") for p in points())
+    return all(vanishes(cross(along(p), east(p, p.t))) for p in points())
 
 
-def _site(i: int) -> Any:
-    return lambda p: turned_to_site(p, AXES[i], p.rate * p.t)
+def _site_axis(i: int) -> Axis:
+    """Return the i-th of east, north, up, from the rotations."""
+    return lambda p, t: turned_to_site(p, AXES[i], p.rate * t)
+
+
+def _at_its_time(axis: Axis) -> Callable[[Point], Vector]:
+    return lambda p: axis(p, p.t)
+
+
+def _rates_of(axis: Axis) -> Callable[[Point], Vector]:
+    return lambda p: vector_derivative(lambda t: axis(p, t), p.t)
 
 
 def printed_position(p: Point, cord: Any, azimuth: Any) -> Vector:
     """Return x, y, z by (7)."""
-    return (
-        p.length * sin(cord) * cos(azimuth),
-        p.length * sin(cord) * sin(azimuth),
-        -p.length * cos(cord),
-    )
+    return scale(p.length, (sin(cord) * cos(azimuth), sin(cord) * sin(azimuth), -cos(cord)))
 
 
 def printed_velocity(p: Point) -> Vector:
     """Return the velocity by (10)."""
-    sp, cp, sl, cl = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth)
+    sp, cp, sl, cl = p.angle_functions
     return (
         p.length * (p.cord_rate * cl * cp - p.azimuth_rate * sp * sl),
         p.length * (p.cord_rate * sl * cp + p.azimuth_rate * sp * cl),
         p.length * p.cord_rate * sp,
     )
+
+
+def _up_cross_east(p: Point) -> Vector:
+    return cross(up(p, p.t), east(p, p.t))
 
 
 def _in_matrix(p: Point) -> Vector:
@@ -124,12 +141,9 @@ def _velocity_of_place(p: Point) -> Vector:
     return vector_derivative(lambda s: place(p, add(p.position, scale(s, p.velocity)), p.t + s))
 
 
-def _angles_alpha(power: int) -> Any:
-    def truth(p: Point) -> Any:
-        q, v = (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate)
-        return in_rate(lambda rate: square_speed(p, by_angles, q, v, rate), power)
-
-    return truth
+def _alpha(power: int) -> Callable[[Point], Any]:
+    """Return the coefficient of Ω**power in the squared velocity."""
+    return lambda p: in_rate(lambda rate: square_speed(p, by_angles, *angle_state(p)[:2], rate), power)
 
 
 def alpha_0(p: Point) -> Any:
@@ -139,20 +153,16 @@ def alpha_0(p: Point) -> Any:
 
 def alpha_1(p: Point) -> Any:
     """Return α1 by (18)."""
-    sp, cp, sl, cl, s, c = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth), sin(p.phi), cos(p.phi)
+    (sp, cp, sl, cl), s, c = p.angle_functions, sin(p.phi), cos(p.phi)
     first = 2 * (p.N + p.altitude) * c * p.length * (p.cord_rate * cp * cl - p.azimuth_rate * sp * sl)
     return first + 2 * p.length**2 * (sp * p.azimuth_rate * (s * sp + c * cp * sl) - c * p.cord_rate * cl)
 
 
 def alpha_2(p: Point) -> Any:
     """Return α2 by (19)."""
-    sp, cp, sl, cl, s, c = sin(p.cord), cos(p.cord), sin(p.azimuth), cos(p.azimuth), sin(p.phi), cos(p.phi)
+    (sp, cp, sl, cl), s, c = p.angle_functions, sin(p.phi), cos(p.phi)
     arm = (p.N + p.altitude) * c - p.length * (c * cp + s * sp * sl)
     return arm**2 + p.length**2 * sp**2 * cl**2
-
-
-def _rates_of(axis: Callable[[Point, Any], Vector]) -> Callable[[Point], Vector]:
-    return lambda p: vector_derivative(lambda t: axis(p, t), p.t)
 
 
 def checks() -> list[Check]:
@@ -169,13 +179,13 @@ def checks() -> list[Check]:
             remark="truth: reference.model.earth"),
         Statement("4_text", ", before (4)", "east: differentiate (1) with respect to the geodetic latitude Ωt",
             _east_from_latitude, "Ωt is the longitude: e_E is the direction of dX_s/d(Ωt)", _east_from_longitude),
-        Identity("4", "(4)", "e_E = (-sinΩt, cosΩt, 0), e_E² = 1", lambda p: east(p, p.t), _site(0)),
-        Identity("5", "(5)", "e_U = (cosϕ cosΩt, cosϕ sinΩt, sinϕ)", lambda p: up(p, p.t), _site(2)),
-        Identity("5_h", ", before (5)", "e_U by differentiating (1) with respect to h", lambda p: up(p, p.t),
+        Identity("4", "(4)", "e_E = (-sinΩt, cosΩt, 0), e_E² = 1", _at_its_time(east), _at_its_time(_site_axis(0))),
+        Identity("5", "(5)", "e_U = (cosϕ cosΩt, cosϕ sinΩt, sinϕ)", _at_its_time(up), _at_its_time(_site_axis(2))),
+        Identity("5_h", ", before (5)", "e_U by differentiating (1) with respect to h", _at_its_time(up),
             lambda p: vector_derivative(lambda h: suspension(p, p.rate * p.t, h), p.altitude)),
-        Identity("6", "(6)", "e_N = e_U × e_E", lambda p: cross(up(p, p.t), east(p, p.t)), _site(1)),
+        Identity("6", "(6)", "e_N = e_U × e_E", _up_cross_east, _at_its_time(_site_axis(1))),
         Identity("6_b", "(6)", "e_N = (-sinϕ cosΩt, -sinϕ sinΩt, cosϕ)",
-            lambda p: north(p, p.t), lambda p: unit(cross(up(p, p.t), east(p, p.t)))),
+            _at_its_time(north), lambda p: unit(_up_cross_east(p))),
         Statement("6_text", ", remark after (6)",
             "e_N is not exactly the normalized derivative of (1) with respect to ϕ",
             _not_the_north_direction, "it is exactly: dX_s/dϕ = (M+h) e_N, M = a(1-e²)/(1-e² sin²ϕ)^(3/2)",
@@ -187,12 +197,12 @@ def checks() -> list[Check]:
         Identity("9", "(9)", "X = X_s + matrix with the columns e_E, e_N, e_U · x",
             _in_matrix, lambda p: place(p, p.position, p.t)),
         Identity("10", "(10)", "xdot = l (φ' cosλ cosφ - λ' sinφ sinλ; φ' sinλ cosφ + λ' sinφ cosλ; φ' sinφ)",
-            printed_velocity, lambda p: vector_derivative(lambda s: moving(p, s))),
+            printed_velocity, moving_velocity),
         Identity("11", "(11)", "xdot² = l² (λ'² sin²φ + φ'²)",
             lambda p: p.length**2 * (p.azimuth_rate**2 * sin(p.cord) ** 2 + p.cord_rate**2),
-            lambda p: dot(vector_derivative(lambda s: moving(p, s)), vector_derivative(lambda s: moving(p, s)))),
+            lambda p: dot(moving_velocity(p), moving_velocity(p))),
         Identity("12", "(12)", "x · xdot = 0",
-            lambda p: MP.zero, lambda p: dot(moving(p, 0), vector_derivative(lambda s: moving(p, s)))),
+            lambda p: MP.zero, lambda p: dot(moving(p, 0), moving_velocity(p))),
         Identity("13", "(13)", "Xdot_s = (N+h) Ω (-cosϕ sinΩt, cosϕ cosΩt, 0)",
             lambda p: scale((p.N + p.altitude) * p.rate, (-cos(p.phi) * sin(p.rate * p.t), cos(p.phi) * cos(p.rate *
                 p.t), MP.zero)), lambda p: vector_derivative(lambda t: suspension(p, p.rate * t), p.t)),
@@ -200,18 +210,18 @@ def checks() -> list[Check]:
             _by_chain_rule, _velocity_of_place),
         Identity("15_e", "(15)", "e_E' = Ω (-cosΩt, -sinΩt, 0)",
             lambda p: scale(p.rate, (-cos(p.rate * p.t), -sin(p.rate * p.t), MP.zero)),
-            _rates_of(lambda p, t: turned_to_site(p, AXES[0], p.rate * t))),
+            _rates_of(_site_axis(0))),
         Identity("15_n", "(15)", "e_N' = Ω (sinϕ sinΩt, -sinϕ cosΩt, 0)",
             lambda p: scale(p.rate * sin(p.phi), (sin(p.rate * p.t), -cos(p.rate * p.t), MP.zero)),
-            _rates_of(lambda p, t: turned_to_site(p, AXES[1], p.rate * t))),
+            _rates_of(_site_axis(1))),
         Identity("15_u", "(15)", "e_U' = Ω (-cosϕ sinΩt, cosϕ cosΩt, 0)",
             lambda p: scale(p.rate * cos(p.phi), (-sin(p.rate * p.t), cos(p.rate * p.t), MP.zero)),
-            _rates_of(lambda p, t: turned_to_site(p, AXES[2], p.rate * t))),
+            _rates_of(_site_axis(2))),
         Identity("16", "(16)", "Xdot² + Ydot² + Zdot² = α0 + α1 Ω + α2 Ω²",
             lambda p: alpha_0(p) + alpha_1(p) * p.rate + alpha_2(p) * p.rate**2,
-            lambda p: square_speed(p, by_angles, (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate))),
-        Identity("17", "(17)", "α0 = l² (φ'² + sin²φ λ'²)", alpha_0, _angles_alpha(0)),
-        Identity("18", "(18)", "α1 = 2(N+h) cosϕ l (φ' cosφ cosλ - λ' sinφ sinλ) + 2l² […]", alpha_1, _angles_alpha(1)),
+            lambda p: square_speed(p, by_angles, *angle_state(p)[:2])),
+        Identity("17", "(17)", "α0 = l² (φ'² + sin²φ λ'²)", alpha_0, _alpha(0)),
+        Identity("18", "(18)", "α1 = 2(N+h) cosϕ l (φ' cosφ cosλ - λ' sinφ sinλ) + 2l² […]", alpha_1, _alpha(1)),
         Identity("19", "(19)", "α2 = [(N+h) cosϕ - l (cosϕ cosφ + sinϕ sinφ sinλ)]² + l² sin²φ cos²λ",
-            alpha_2, _angles_alpha(2)),
+            alpha_2, _alpha(2)),
     )  # fmt: skip

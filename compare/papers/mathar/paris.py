@@ -2,40 +2,33 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
 
 from reference import load_scene
+from reference.model.algebra import dot
 
 from ...approximations import APPROXIMATIONS, Motion
-from ...approximations.frequency import harmonic, planar
-from ...approximations.gastebois import turntable_frequency
+from ...approximations.frequency import anharmonic, harmonic, planar, turntable
 from ...approximations.mathar import slow_down
 from ..checks import Check, Finding, PrintedNumber, Statement, section
-from ..digits import MP, Vector, acos, add, asin, degrees, dot, mpf, norm, pi, shown, sin, sqrt
+from ..digits import MP, Vector, acos, add, asin, cos, degrees, mpf, norm, pi, shown, sin, sqrt
 from ..first_principles import rest
-from ..points import Point, paris
+from ..points import paris
 from ..runs import (
     frequency,
     lead,
-    paris_day,
     paris_passage,
     paris_path,
     paris_swing_plane,
     path_in,
     solved,
-    transit_times,
+    transits,
     window,
 )
 
-STILL = ["site.rotation_rate=0"]
-
-
-@cache
-def _transit(column: str) -> list[Any]:
-    return [mpf(text) for text in paris_day().transits.decimals(column)]
+STILL = ("site.rotation_rate=0",)
 
 
 def _frame_5() -> Any:
@@ -45,27 +38,26 @@ def _frame_5() -> Any:
 
 
 def _higher_after_half_a_swing() -> Finding:
-    rise = _transit("z")[0] - released()[2]
+    rise = transits("z")[0] - paris().z
     return Finding(bool(MP.mpf("1e-3") < rise < MP.mpf("1e-2")), f"{shown(1000 * rise)} mm higher")
 
 
 def _work_of_the_centrifugal_force() -> Finding:
     """Compare g Δz + Δv²/2 with Ω² Δ(x² + q²)/2 over the first half swing."""
     p = paris()
-    x, y, z, vy = (_transit(name)[0] for name in ("x", "y", "z", "vy"))
+    x, y, z, vy = (transits(name)[0] for name in ("x", "y", "z", "vy"))
     vz = -y * vy / z
 
     def square(place: Vector) -> Any:
-        q = p.R - MP.sin(p.phi) * place[1] + MP.cos(p.phi) * place[2]
-        return place[0] ** 2 + q**2
+        return place[0] ** 2 + (p.R - sin(p.phi) * place[1] + cos(p.phi) * place[2]) ** 2
 
     gained = p.gravity * (z - p.z) + (vy**2 + vz**2) / 2
-    work = p.rate**2 * (square((x, y, z)) - square(released())) / 2
+    work = p.rate**2 * (square((x, y, z)) - square(paris().position)) / 2
     return Finding(abs(gained - work) < MP.mpf("1e-25"), f"gained {shown(gained)} J/kg, work done {shown(work)} J/kg")
 
 
 def _middle_of_the_first_swing() -> Finding:
-    middle = tuple((_transit(name)[0] + start) / 2 for name, start in zip("xy", released(), strict=False))
+    middle = tuple((transits(name)[0] + start) / 2 for name, start in zip("xy", paris().position, strict=False))
     x, y, _ = rest(paris())
     gap = norm(add(middle, (-x, -y)))
     return Finding(gap < MP.mpf("1e-3"), f"middle {shown(middle)} m, rest position y = {shown(y)} m")
@@ -88,7 +80,7 @@ def _about_the_rest_position() -> Finding:
 
 
 def _clouds_move() -> Finding:
-    z = [float(value) for value in _transit("z")]
+    z = [float(value) for value in transits("z")]
     at_release, opposite = z[1:2000:2], z[0:2000:2]
     rising = at_release[-1] > at_release[0] and opposite[-1] < opposite[0]
     change = f"near the release {z[1]:.15f} to {z[1999]:.15f} m, opposite {z[0]:.15f} to {z[1998]:.15f} m in 4.6 h"
@@ -123,12 +115,6 @@ def _coupling_is_ahead() -> Finding:
     return Finding(0 < ahead < 1, f"{ahead:.9f} s ahead at 12000 s (double run)")
 
 
-def released() -> Vector:
-    """Return the place of release in m."""
-    p = paris()
-    return (p.x, p.y, p.z)
-
-
 def planar_amplitude() -> Any:
     """Return φ(0) of a swing of sqrt(0.3² + 0.4²) m, in rad."""
     return asin(sqrt(mpf("0.3") ** 2 + mpf("0.4") ** 2) / paris().length)
@@ -139,41 +125,31 @@ def planar_period() -> Any:
     return 1 / planar(paris().case)
 
 
-def harmonic_frequency(p: Point, gravity: Any) -> Any:
-    """Return the frequency of (51)-(52): sqrt(g/l + (Ω sinϕ)²) / 2π, in Hz."""
-    return turntable_frequency(p.case, gravity, p.rate * sin(p.phi)) / (2 * pi)
-
-
 def amplitude() -> Any:
     """Return the angle between the release and the rest position, seen from the suspension, in rad."""
-    return acos(dot(released(), rest(paris())) / paris().length ** 2)
-
-
-def estimate(p: Point) -> Any:
-    """Return the frequency of (51)-(52) with g' of (48), slowed down, in Hz."""
-    return harmonic_frequency(p, p.case.apparent_gravity) / slow_down(p.case)
+    return acos(dot(paris().position, rest(paris())) / paris().length ** 2)
 
 
 def first_period_frequency() -> Any:
     """Return the frequency from the release to the second transit, in Hz."""
-    return 1 / transit_times()[1]
+    return 1 / transits("t")[1]
 
 
 def day_frequency() -> Any:
     """Return the frequency over the day in Hz, from swings, not transits: the day has one transit too many."""
-    times = transit_times()
+    times = transits("t")
     return (len(times) - swings_surplus()) / (2 * times[-1])
 
 
 def swings_surplus() -> int:
     """Return the number of transits of the day beyond two a swing."""
-    times = transit_times()
+    times = transits("t")
     return len(times) - round(float(times[-1] / (times[1] / 2)))
 
 
 def transit_frequency() -> Any:
     """Return N/(2 t_n) at the end of the day, as the paper's program prints it, in Hz."""
-    times = transit_times()
+    times = transits("t")
     return len(times) / (2 * times[-1])
 
 
@@ -186,7 +162,7 @@ def _planar_run() -> Finding:
 
 def _slowed(by: Any) -> Finding:
     """Compare the factor, `by` times 2K/π, with the two frequencies between which the paper puts it."""
-    hertz = estimate(paris()) / by
+    hertz = anharmonic(paris().case) / by
     factor = by * slow_down(paris().case)
     return Finding(
         abs(hertz - mpf("0.060843634")) < mpf("5e-10"), f"0.060843935 Hz / {shown(factor)} = {shown(hertz)} Hz"
@@ -200,7 +176,7 @@ def checks() -> list[Check]:
         PrintedNumber("vii_l", "", "l = 67 m", "67", lambda: mpf(load_scene("paris").exact.length)),
         PrintedNumber("vii_lat", "", "ϕ = 48.846111°", "48.846111", lambda: mpf(load_scene("paris").exact.latitude)),
         PrintedNumber("vii_above", "", "roughly 2 mm above the lowest point",
-            "0.002", lambda: paris().length + released()[2], remark="m"),
+            "0.002", lambda: p.length + p.z, remark="m"),
         Statement("vii_higher", "", "the first swing ends a few millimetres higher than the release",
             _higher_after_half_a_swing, by_run=True),
         Statement("vii_energy", "", "the centrifugal force injects the energy",
@@ -213,10 +189,10 @@ def checks() -> list[Check]:
         Statement("fig4", ", Fig. 4", "the plane of the motion turns around the rest position",
             _about_the_rest_position, by_run=True, remark="swings from 0, 7000 and 12000 s"),
         PrintedNumber("fig5_start", ", Fig. 5", "point of release near -66.98",
-            "-66.98", lambda: released()[2], about=_frame_5, decimals=3,
+            "-66.98", lambda: p.z, about=_frame_5, decimals=3,
             remark="m; judged against the height of the figure, 4 mm"),
         PrintedNumber("fig5_opposite", ", Fig. 5", "opposite points near -66.9965",
-            "-66.9965", lambda: _transit("z")[0], about=_frame_5, remark="m"),
+            "-66.9965", lambda: transits("z")[0], about=_frame_5, remark="m"),
         Statement("fig5_clouds", ", Fig. 5", "one cloud goes up in time, the other down", _clouds_move, by_run=True),
         Statement("fig5_plane", ", Fig. 5", "from NE-SW to more E-W", _north_east_to_east, by_run=True),
         Statement("fig6", ", Fig. 6", "the rotation of the mean azimuth is very linear", _linear, by_run=True),
@@ -232,18 +208,18 @@ def checks() -> list[Check]:
         Statement("vii_formula", ", item 2", "period = 4 sqrt(l/g) K(sin(φ0/2))", _planar_run),
         PrintedNumber("vii_planar", ", item 2", "0.06088938 Hz", "0.06088938", lambda: 1 / planar_period()),
         PrintedNumber("vii_51", ", item 3", "sqrt(ĝ + (Ω sinϕ)²) ≈ 0.06088959 Hz",
-            "0.06088959", lambda: harmonic_frequency(p, p.gravity)),
+            "0.06088959", lambda: turntable(p.case, p.gravity)),
         PrintedNumber("vii_g", ", item 4", "g' = 9.79195 m/s²", "9.79195", lambda: p.case.apparent_gravity),
         PrintedNumber("vii_g_hz", ", item 4", "≈ 0.060843935 Hz",
-            "0.060843935", lambda: harmonic_frequency(p, p.case.apparent_gravity)),
+            "0.060843935", lambda: turntable(p.case, p.case.apparent_gravity)),
         Statement("vii_slow", ", item 5", "a slow-down with the factor 4K(sin(φ0/2))",
             lambda: _slowed(2 * pi), "the factor is 4K/2π = 2K/π", lambda: _slowed(MP.one).holds),
-        PrintedNumber("vii_z", ", item 5", "release at z = -66.9981 m", "-66.9981", lambda: released()[2]),
+        PrintedNumber("vii_z", ", item 5", "release at z = -66.9981 m", "-66.9981", lambda: p.z),
         PrintedNumber("vii_rest_y", ", item 5", "equilibrium y = -0.115202 m",
             "-0.115202", lambda: rest(p)[1], remark="the rest position of (46) with the paper's own inputs"),
         PrintedNumber("vii_rest_z", ", item 5", "equilibrium z = -66.999 m", "-66.999", lambda: rest(p)[2]),
         PrintedNumber("vii_amplitude", ", item 5", "φ(0) = 0.008898355 rad", "0.008898355", amplitude),
-        PrintedNumber("vii_estimate", ", item 5", "0.060843634 Hz", "0.060843634", lambda: estimate(p)),
+        PrintedNumber("vii_estimate", ", item 5", "0.060843634 Hz", "0.060843634", lambda: anharmonic(p.case)),
         PrintedNumber("vii_frequency", ", item 6", "the actual Foucault pendulum: 0.060843633 Hz",
             "0.060843633", first_period_frequency,
             remark=f"first period; swings of the day {shown(day_frequency(), 12)} Hz, which is the paper's digits "

@@ -6,19 +6,18 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from ...approximations.rest_angle import series
+from ...approximations.rest_angle import line_of_46, series, triangle
 from ..checks import Approximate, Check, Finding, Identity, Statement, section
-from ..digits import MP, Vector, asin, cos, degrees, derivative, scale, shown, sin, sqrt
-from ..first_principles import horizontal_acceleration, pull_at_rest, rest, rest_angle
+from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, scale, shown, sin, sqrt, vanishes
+from ..first_principles import horizontal_acceleration, rest
 from ..points import Point, paris, points
-from .cartesian import beta_x, beta_y
+from .lagrangian import beta_x, beta_y
 
 SERIES = (
     (2, "²", "/ 2g"),
     (4, "⁴", "[(N+h) (1+cos2ϕ)/2 - l cos2ϕ] / 2g²"),
     (6, "⁶", "{(N+h)² [cos4ϕ + 3cos2ϕ + 2] - (N+h) l [37/8 cos4ϕ + 11/8 + 6cos2ϕ] + l² [35/8 cos4ϕ + 13/8]} / 12g³"),
 )
-ZERO_BELOW = MP.mpf("1e-45")  # in absolute value; the numbers have 60 digits
 
 
 def _at_rest(p: Point, **changes: Any) -> Point:
@@ -34,7 +33,7 @@ def _right_side_of_45(p: Point) -> Any:
 
 def _hanging(p: Point) -> Point:
     x, y, _ = rest(p)
-    return _at_rest(p, x=MP.mpf(x), y=y)
+    return _at_rest(p, x=x, y=y)
 
 
 def _degree_of_45() -> Finding:
@@ -53,32 +52,28 @@ def _degree_of_45() -> Finding:
     return Finding(holds, f"fourth difference {shown(difference(4))}, fifth {shown(difference(5), 2)}")
 
 
-def _first_line_of_46(p: Point, sign: int, cord: Any) -> Any:
-    s, c, sp, cp = sin(p.phi), cos(p.phi), sin(cord), cos(cord)
-    turn2 = p.rate**2
+def _first_line_of_46(p: Point, sign: int) -> Any:
+    (sp, cp, *_), s, c, turn2 = p.angle_functions, sin(p.phi), cos(p.phi), p.rate**2
     far = p.R / p.length * turn2 * (sign * s * cp - c * sp)
     near = turn2 * (s * sp + sign * c * cp) * (sign * c * sp - s * cp)
     return far + near + p.gravity / p.length * sp
 
 
-def _second_line_of_46(p: Point, sign: int, cord: Any) -> Any:
-    turn2, tilted = p.rate**2, p.phi - sign * cord
-    far = sign * p.R / p.length * turn2 * sin(tilted)
-    return far - sign * turn2 * cos(tilted) * sin(tilted) + p.gravity / p.length * sin(cord)
-
-
-def _restoring(p: Point, sign: int, cord: Any) -> Any:
-    """Return -φ'' of a bob let go at rest in the meridian at the angle `cord`, to the north (+1) or the south (-1)."""
-    local = _at_rest(p, x=MP.zero, y=sign * p.length * sin(cord))
-    return -sign * horizontal_acceleration(local)[1] / (p.length * cos(cord))
+def _restoring(p: Point, sign: int) -> Any:
+    """Return -φ'' of a bob let go at rest in the meridian, to the north (+1) or the south (-1)."""
+    local = _at_rest(p, x=MP.zero, y=sign * p.length * sin(p.cord))
+    return -sign * horizontal_acceleration(local)[1] / (p.length * cos(p.cord))
 
 
 @cache
 def steepest() -> tuple[Any, Any]:
     """Return latitude and angle, in degrees, where a bob of l = 1 m hangs furthest from straight down."""
-    p = paris().but(length=MP.one)
-    best = MP.findroot(lambda latitude: derivative(lambda d: rest_angle(p.but(latitude=d)), latitude), 45, tol=1e-40)
-    return best, degrees(rest_angle(p.but(latitude=best)))
+
+    def angle(latitude: Any) -> Any:
+        return paris().but(length=MP.one, latitude=latitude).case.rest_angle
+
+    best = MP.findroot(lambda latitude: derivative(angle, latitude), 45, tol=1e-40)
+    return best, degrees(angle(best))
 
 
 def _below_a_tenth() -> Finding:
@@ -88,7 +83,7 @@ def _below_a_tenth() -> Finding:
 
 def _one_curve() -> Finding:
     latitudes = [MP.mpf(10 * k) for k in range(1, 9)]
-    angles = [[degrees(rest_angle(paris().but(length=MP.mpf(m), latitude=d))) for m in (1, 100)] for d in latitudes]
+    angles = [[degrees(paris().but(length=MP.mpf(m), latitude=d).case.rest_angle) for m in (1, 100)] for d in latitudes]
     gap = max(abs(a - b) for a, b in angles)
     return Finding(gap < MP.mpf("1e-4"), f"l = 1 m and 100 m differ by at most {shown(gap)}°")
 
@@ -100,11 +95,8 @@ def _south_in_the_north() -> Finding:
 
 
 def _on_the_meridian() -> Finding:
-    x, y, _ = rest(paris())
-    p = _at_rest(paris(), x=MP.mpf(x), y=y)
-    return Finding(
-        all(abs(a) < ZERO_BELOW for a in horizontal_acceleration(p)), f"x = {shown(MP.mpf(x))}, y = {shown(y)} m"
-    )
+    p = _hanging(paris())
+    return Finding(vanishes(horizontal_acceleration(p)), f"x = {shown(p.x)}, y = {shown(p.y)} m")
 
 
 def _forty_four(p: Point) -> Any:
@@ -117,7 +109,7 @@ def _derived_series(p: Point) -> Vector:
     """Return the same coefficients from the reference's rest position, an even function of Ω."""
 
     def angle(rate: Any) -> Any:
-        return rest_angle(p.but(rate=rate))
+        return p.but(rate=rate).case.rest_angle
 
     return tuple(derivative(angle, order=power) / MP.factorial(power) for power in (2, 4, 6))
 
@@ -127,25 +119,18 @@ def series_term(i: int) -> tuple[Callable[[Point], Any], Callable[[Point], Any]]
     return lambda p: series(p.case)[i], lambda p: _derived_series(p)[i]
 
 
-def triangle_angle(p: Point) -> Any:
-    """Return φ by (50)."""
-    return asin(p.R * p.rate**2 * sin(p.phi) / p.case.apparent_gravity)
-
-
 def _shorter(s: Any) -> Point:
     """Return Paris with a cord s times as long."""
-    base = paris()
-    return base.but(length=base.length * s)
+    return paris().but(length=paris().length * s)
 
 
 def _slower(s: Any) -> Point:
     """Return Paris with RΩ² s times as large, and a cord of negligible length."""
-    base = paris()
-    return base.but(rate=base.rate * sqrt(s), length=MP.mpf("1e-50"))
+    return paris().faster(s).but(length=MP.mpf("1e-50"))
 
 
 def _two_terms(p: Point) -> Any:
-    out, s, c, g = p.R * p.rate**2, sin(p.phi), cos(p.phi), p.gravity
+    out, s, c, g = p.case.outward, sin(p.phi), cos(p.phi), p.gravity
     return s / g * out + c * s / g**2 * out**2
 
 
@@ -154,7 +139,7 @@ def _one_term(p: Point) -> Any:
 
 
 def _vector_sum(p: Point) -> Vector:
-    out = p.R * p.rate**2
+    out = p.case.outward
     return MP.zero, -out * sin(p.phi), out * cos(p.phi) - p.gravity
 
 
@@ -165,7 +150,7 @@ def checks() -> list[Check]:
         Identity("44_text", ", before (44)", "β_x0 and β_x1 are both proportional to x (vanish at x = 0)",
             lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[1]), lambda p: (MP.zero, MP.zero),
             "β_x0 and β_x2 are", lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[2]),
-            "β_x1 vanishes at rest for any x; what must vanish with x is β_x2; at x = 0 with a moving bob"),
+            remark="β_x1 vanishes at rest for any x; what must vanish with x is β_x2; at x = 0 with a moving bob"),
         Identity("44", "(44)", "y'' = z² (-β_y0 - β_y2 Ω²) / (z⁴ l²) at x = 0, at rest",
             lambda p: _forty_four(_at_rest(p, x=MP.zero)),
             lambda p: horizontal_acceleration(_at_rest(p, x=MP.zero))[1]),
@@ -176,30 +161,30 @@ def checks() -> list[Check]:
         Statement("45_text", ", after (45)", "deviations from the vertical < 0.1°", _below_a_tenth),
         Statement("fig1", ", Fig. 1", "l = 1, 10, 100 m indistinguishable", _one_curve),
         Identity("46_a", "(46), first line", "R̂Ω² (±sinϕ cosφ - cosϕ sinφ) + Ω² (…)(…) + (g/l) sinφ",
-            lambda p: tuple(_first_line_of_46(p, sign, p.cord) for sign in (1, -1)),
-            lambda p: tuple(_restoring(p, sign, p.cord) for sign in (1, -1))),
+            lambda p: tuple(_first_line_of_46(p, sign) for sign in (1, -1)),
+            lambda p: tuple(_restoring(p, sign) for sign in (1, -1))),
         Identity("46_b", "(46), second line", "±R̂Ω² sin(ϕ∓φ) ∓ Ω² cos(ϕ∓φ) sin(ϕ∓φ) + (g/l) sinφ = 0",
-            lambda p: tuple(_second_line_of_46(p, sign, p.cord) for sign in (1, -1)),
-            lambda p: tuple(_restoring(p, sign, p.cord) for sign in (1, -1))),
+            lambda p: tuple(line_of_46(p.case, p.cord, sign) for sign in (1, -1)),
+            lambda p: tuple(_restoring(p, sign) for sign in (1, -1))),
         Identity("46_root", "(46)", "its root is the rest position",
-            lambda p: _second_line_of_46(p, -1, rest_angle(p)), lambda p: MP.zero,
+            lambda p: line_of_46(p.case, p.case.rest_angle), lambda p: MP.zero,
             remark="root: reference.model.force.rest_position"),
         *(Identity(f"47_{power}", f"(47), Ω{mark}", f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}", *series_term(i),
             remark="truth: Taylor series of the rest position") for i, (power, mark, printed) in enumerate(SERIES)),
         Statement("47_text", ", after (47)", "the sign of λ is opposite to that of ϕ", _south_in_the_north),
         Approximate("48", "(48)", "g' = sqrt(g² + (RΩ²)² - 2 g RΩ² cosϕ)",
-            lambda s: (_shorter(s).case.apparent_gravity, pull_at_rest(_shorter(s))), 1, "l", "m/s²",
-            "N+h stands for the distance of the bob, N+h-l"),
+            lambda s: (_shorter(s).case.apparent_gravity, _shorter(s).case.pull_at_rest), 1, "l", "m/s²",
+            remark="N+h stands for the distance of the bob, N+h-l"),
         Identity("49", "(49)", "RΩ² / sinφ = g' / sinϕ",
-            lambda p: p.R * p.rate**2 / sin(p.case.tilt), lambda p: p.case.apparent_gravity / sin(p.phi),
+            lambda p: p.case.outward / sin(p.case.tilt), lambda p: p.case.apparent_gravity / sin(p.phi),
             remark="the sine rule of the triangle of (48), its angle by atan2"),
         Identity("fig2", ", Fig. 2", "g' is the vector sum of g and RΩ², which is parallel to the equatorial plane",
             _vector_sum, lambda p: scale(p.length, p.k.pull),
             remark="on east, north, up; truth: reference.model.constants"),
         Approximate("50", "(50)", "sinφ = RΩ² sinϕ / sqrt(g² + (RΩ²)² - 2gRΩ² cosϕ)",
-            lambda s: (triangle_angle(_shorter(s)), rest_angle(_shorter(s))), 1, "l", "rad"),
+            lambda s: (triangle(_shorter(s).case), _shorter(s).case.rest_angle), 1, "l", "rad"),
         Approximate("50_two", ", after (50)", "sinφ ≈ (sinϕ/g) RΩ² + (cosϕ sinϕ/g²) (RΩ²)² + O((RΩ²)³)",
-            lambda s: (_two_terms(_slower(s)), sin(triangle_angle(_slower(s)))), 3, "RΩ²", "rad"),
+            lambda s: (_two_terms(_slower(s)), sin(triangle(_slower(s).case))), 3, "RΩ²", "rad"),
         Approximate("50_one", ", after (50)", "sinφ ≈ (1/2) (sin2ϕ/g) (N+h) Ω² + O((RΩ²)²)",
-            lambda s: (_one_term(_slower(s)), sin(triangle_angle(_slower(s)))), 2, "RΩ²", "rad"),
+            lambda s: (_one_term(_slower(s)), sin(triangle(_slower(s).case))), 2, "RΩ²", "rad"),
     )  # fmt: skip

@@ -8,18 +8,17 @@ from typing import Any
 from ...approximations.mathar import derivatives, truncated
 from ..checks import Approximate, Check, Identity, PrintedNumber, section
 from ..digits import MP, Vector, cos, scale, shown, sin, sqrt
-from ..first_principles import coupled_at, in_rate, linearised, pull_at_rest, uniform_acceleration
+from ..first_principles import coupled_at, in_rate, linearised, uniform_acceleration
 from ..points import Point, paris
-from .cartesian import solved
+from .lagrangian import solved
 
 
-def _swinging(s: Any, rate: Any = None) -> Point:
+def _swinging(s: Any, rate: Any = MP.zero) -> Point:
     """Return Paris half way through its swing, amplitude and speed s times its own, by default without rotation."""
     base = paris()
     x, y = MP.mpf("0.21") * s, MP.mpf("0.28") * s
     w = sqrt(base.gravity / base.length)
-    turning = MP.zero if rate is None else rate
-    return base.but(x=x, y=y, vx=w * y / 2, vy=w * x, rate=turning)
+    return base.but(x=x, y=y, vx=w * y / 2, vy=w * x, rate=rate)
 
 
 def without(item: int) -> Callable[[Point], Vector]:
@@ -35,18 +34,12 @@ def without(item: int) -> Callable[[Point], Vector]:
 
 def _depth_is_length(p: Point) -> Vector:
     """Return x'', y'' of item 5, in the term with g: z replaced by l."""
-    g = p.gravity / p.length
-    return (-g * p.x, -g * p.y)
+    return scale(-p.gravity / p.length, (p.x, p.y))
 
 
-def _dropped(simplified: Callable[[Point], Vector], turning: bool = False) -> Callable[[Any], tuple[Vector, Vector]]:
-    """Return print and truth at an amplitude s times that of Paris, with rotation only where it matters."""
-
-    def pair(s: Any) -> tuple[Vector, Vector]:
-        p = _swinging(s, paris().rate if turning else None)
-        return simplified(p), solved(p)
-
-    return pair
+def _dropped(item: int) -> Callable[[Any], tuple[Vector, Vector]]:
+    """Return print and truth at an amplitude s times that of Paris, without rotation."""
+    return lambda s: (without(item)(_swinging(s)), solved(_swinging(s)))
 
 
 def _sizes_at_rate(s: Any) -> tuple[Vector, Vector]:
@@ -55,20 +48,13 @@ def _sizes_at_rate(s: Any) -> tuple[Vector, Vector]:
 
 
 def _printed_gravity(s: Any) -> tuple[Any, Any]:
-    base = paris()
-    p = base.but(rate=base.rate * sqrt(s))
-    return p.gravity - p.R * p.rate**2 * cos(p.phi), p.case.apparent_gravity
+    p = paris().faster(s)
+    return p.gravity - p.case.outward * cos(p.phi), p.case.apparent_gravity
 
 
 def _no_centrifugal_force(s: Any) -> tuple[Any, Any]:
-    base = paris()
-    p = base.but(rate=base.rate * sqrt(s))
-    return p.gravity, pull_at_rest(p)
-
-
-def _share() -> Any:
-    p = paris()
-    return p.R * p.rate**2 / p.gravity
+    p = paris().faster(s)
+    return p.gravity, p.case.pull_at_rest
 
 
 def _cosine(s: Any) -> tuple[Vector, Vector]:
@@ -89,27 +75,26 @@ def _whole(s: Any) -> tuple[Vector, Vector]:
 
 def _pulled(p: Point) -> Vector:
     """Return x'', y'' from which item 5 starts: the diagonal of (43), with g alone."""
-    pull = p.gravity * abs(p.z) ** 3
-    b = (-p.x * pull, -p.y * pull)
-    return tuple(part * p.z**2 / (p.z**4 * p.length**2) for part in b)
+    return scale(-p.gravity * abs(p.z) / p.length**2, (p.x, p.y))
 
 
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
+    share = paris().case.outward / paris().gravity
     place = "s × the amplitude of Paris, half way through a swing"
     return section("mathar_", "Mathar VI",
         PrintedNumber("vi_1_size", "item 1", "Ω² is of the order of 5 × 10⁻⁹", "5e-9", lambda: paris().rate ** 2),
         Approximate("vi_1", "item 1", "the terms with Ω² are neglected, being of the order of 5 × 10⁻⁹",
             _no_centrifugal_force, 1, "Ω²", "m/s²",
-            f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(_share(), 3)} of g, not Ω²"),
+            remark=f"pull on the bob at rest; the terms dropped are RΩ²/g = {shown(share, 3)} of g, not Ω²"),
         Approximate("vi_1_order", "item 1", "β_x2 = β_y2 = 0",
-            _sizes_at_rate, 2, "Ω", "m/s²", "accelerations half way through a swing; bit 2 of the program's -a"),
+            _sizes_at_rate, 2, "Ω", "m/s²", remark="accelerations half way through a swing; bit 2 of the program's -a"),
         Approximate("vi_1_variant", "item 1, variant", "g - RΩ² cosϕ is the first order Taylor expansion of (48)",
             _printed_gravity, 2, "RΩ²", "m/s²"),
         Approximate("vi_2", "item 2", "-yx in (43) set to zero",
-            _dropped(without(2)), 2, "amplitude", remark=f"{place}; bit 1 of the program's -a"),
+            _dropped(2), 2, "amplitude", remark=f"{place}; bit 1 of the program's -a"),
         Approximate("vi_3", "item 3", "only the terms with g in (33), (39)",
-            _dropped(without(3)), 2, "amplitude", remark=place),
+            _dropped(3), 2, "amplitude", remark=place),
         Approximate("vi_4", "item 4", "only the terms with sinϕ in (34), (40)",
             _cosine, 1, "amplitude", remark=f"of the Coriolis acceleration; {place}"),
         Approximate("vi_5", "item 5", "z replaced by l",
@@ -118,7 +103,7 @@ def checks() -> list[Check]:
             lambda p: -(p.x / p.length) * (p.gravity / p.length) + 2 * p.rate * sin(p.phi) * p.y / p.length,
             lambda p: linearised(p)[0], "hat on x'' and dot on ŷ: x̂'' = -x̂ ĝ + 2Ω sinϕ ŷ'",
             lambda p: p.length * (-p.x / p.length * p.gravity / p.length + 2 * p.rate * sin(p.phi) * p.vy /
-                p.length), "truth: reference.model.force without centrifugal force, linear"),
+                p.length), remark="truth: reference.model.force without centrifugal force, linear"),
         Identity("52", "(52)", "ŷ'' = -ŷ ĝ - 2Ω sinϕ x̂'",
             lambda p: -p.y / p.length * p.gravity / p.length - 2 * p.rate * sin(p.phi) * p.vx / p.length,
             lambda p: linearised(p)[1] / p.length, remark="the text at hand has every hat and dot of this line"),

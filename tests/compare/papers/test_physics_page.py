@@ -7,25 +7,24 @@ from typing import Any
 import pytest
 from places import ROOT
 
+from compare.approximations.frequency import anharmonic
 from compare.approximations.mathar import slow_down
 from compare.papers.digits import MP, degrees, mpf, norm, pi, shown, sin, sqrt
-from compare.papers.first_principles import pull_at_rest, rest, rest_angle
+from compare.papers.first_principles import rest
 from compare.papers.mathar.paris import (
     day_frequency,
-    estimate,
     first_period_frequency,
     planar_period,
-    released,
     swings_surplus,
     transit_frequency,
 )
 from compare.papers.points import paris
-from compare.papers.runs import paris_day, transit_times
+from compare.papers.runs import transits
 
 PAGE = " ".join((ROOT / "docs/physics.md").read_text(encoding="utf-8").split())
 P = paris()
 OUTWARD = P.R * P.rate**2
-TURN = P.rate * sin(P.phi + rest_angle(P))  # of the swing plane, rad/s
+TURN = P.rate * sin(P.phi + P.case.rest_angle)  # of the swing plane, rad/s
 
 
 def fixed(value: Any, decimals: int) -> str:
@@ -43,31 +42,31 @@ def without_the_centrifugal_part() -> tuple[Any, Any]:
 
     def missed(latitude: Any, gravity: Any) -> tuple[Any, Any]:
         there = P.but(latitude=latitude, gravity=gravity)
-        return latitude + degrees(rest_angle(there)) - P.latitude, pull_at_rest(there) - P.gravity
+        return latitude + degrees(there.case.rest_angle) - P.latitude, there.case.pull_at_rest - P.gravity
 
-    return tuple(MP.findroot(missed, (P.latitude - degrees(rest_angle(P)), P.gravity), tol=1e-30))
+    return tuple(MP.findroot(missed, (P.latitude - degrees(P.case.rest_angle), P.gravity), tol=1e-30))
 
 
 def estimate_with_square_rate() -> Any:
     """Stiffness east T/l - Ω², along the meridian T/l - w²; their mean, and w² for the turning axes."""
-    square = pull_at_rest(P) / P.length - (P.rate**2 + TURN**2) / 2 + TURN**2
+    square = P.case.pull_at_rest / P.length - (P.rate**2 + TURN**2) / 2 + TURN**2
     return sqrt(square) / (2 * pi) / slow_down(P.case)
 
 
 def jump() -> Any:
-    times = transit_times()
+    times = transits("t")
     extra = next(i for i in range(2, len(times)) if times[i] - times[i - 1] < 6)
     assert extra + 1 == 5786
     return (extra + 2) / (2 * times[extra + 1])
 
 
 def gaps() -> list[Any]:
-    times = transit_times()
+    times = transits("t")
     return [times[i + 1] - times[i] for i in range(len(times) - 1)]
 
 
 def last_run_that_prints_633() -> Any:
-    times = transit_times()
+    times = transits("t")
     return next(times[n - 1] for n in range(2, 400, 2) if n / (2 * times[n - 1]) > mpf("0.0608436335"))
 
 
@@ -79,12 +78,12 @@ NUMBERS = {
     "turn": f"clockwise by {fixed(degrees(TURN) * 3600, 2)}° an hour",
     "full turn": f"a full turn in {fixed(2 * pi / TURN / 3600, 1)} hours",
     "ellipse": f"{fixed(half_axes()[0], 3)} m long and {fixed(1000 * half_axes()[1], 3)} mm wide",
-    "tilt": f"hangs {fixed(degrees(rest_angle(P)), 4)}° south of straight down, which at 67 m is",
+    "tilt": f"hangs {fixed(degrees(P.case.rest_angle), 4)}° south of straight down, which at 67 m is",
     "aside": f"{fixed(-100 * rest(P)[1], 1)} cm",
-    "rise": f"ends {fixed(1000 * (mpf(paris_day().transits.decimals('z')[0]) - released()[2]), 2)} mm *higher*",
+    "rise": f"ends {fixed(1000 * (transits('z')[0] - P.z), 2)} mm *higher*",
     "away": f"0.5 m from the one and {fixed(half_axes()[0], 3)} m from the other",
-    "leans": f"leans {fixed(degrees(rest_angle(P)), 4)}°",
-    "apparent": f"apparent gravity is {fixed(pull_at_rest(P), 5)} m/s²",
+    "leans": f"leans {fixed(degrees(P.case.rest_angle), 4)}°",
+    "apparent": f"apparent gravity is {fixed(P.case.pull_at_rest, 5)} m/s²",
     "slower": f"slower by {fixed(DETUNED, 7)} Hz",
     "half": f"after {int(1 / (2 * DETUNED) / 3600)} h {fixed((1 / (2 * DETUNED) % 3600) / 60, 0)} min",
     "latitude": f"site.latitude={fixed(without_the_centrifugal_part()[0], 4)}",
@@ -94,13 +93,13 @@ NUMBERS = {
     "gaps": " s and then ".join(fixed(gap, 2) for gap in gaps() if gap < 6) + " s: number 5786 is the extra one",
     "jump": f"from {fixed(first_period_frequency(), 7)} Hz to {fixed(jump(), 7)} Hz",
     "end": f"still {fixed(transit_frequency(), 7)} Hz",
-    "count": f"{len(transit_times()) - swings_surplus()} of them for {len(transit_times())} transits, gives "
+    "count": f"{len(transits('t')) - swings_surplus()} of them for {len(transits('t'))} transits, gives "
     f"{fixed(day_frequency(), 11)} Hz",
-    "estimate": f"amplitude | {fixed(estimate(P), 11)} Hz",
+    "estimate": f"amplitude | {fixed(anharmonic(P.case), 11)} Hz",
     "first": f"the first swing | {fixed(first_period_frequency(), 11)} Hz",
     "day": f"not rounded | {fixed(day_frequency(), 11)} Hz",
     "minutes": f"less than about {int(last_run_that_prints_633() / 60)} minutes",
-    "higher": f"higher by {float(estimate(P) - estimate_with_square_rate()):.0e} Hz",
+    "higher": f"higher by {float(anharmonic(P.case) - estimate_with_square_rate()):.0e} Hz",
     "corrected": f"estimate is {fixed(estimate_with_square_rate(), 11)} Hz",
     "agree": f"agree to {float(abs(estimate_with_square_rate() - day_frequency())):.0e} Hz",
 }
@@ -113,9 +112,9 @@ def test_a_number_on_the_page_is_the_recomputed_one(name: str) -> None:
 
 def test_the_page_s_remedy_hangs_the_bob_along_the_geodetic_vertical() -> None:
     remedied = P.but(latitude=mpf("48.7477"), gravity=mpf("9.8214"))
-    assert abs(remedied.latitude + degrees(rest_angle(remedied)) - P.latitude) < mpf("5e-5")  # the last digit given
-    assert f"{fixed(degrees(rest_angle(remedied)), 4)}° from the scene's own *z* axis" in PAGE
-    assert f"apparent gravity is {fixed(pull_at_rest(remedied), 4)}" in PAGE
+    assert abs(remedied.latitude + degrees(remedied.case.rest_angle) - P.latitude) < mpf("5e-5")  # the last digit given
+    assert f"{fixed(degrees(remedied.case.rest_angle), 4)}° from the scene's own *z* axis" in PAGE
+    assert f"apparent gravity is {fixed(remedied.case.pull_at_rest, 4)}" in PAGE
 
 
 def test_the_page_is_at_most_two_pages_long() -> None:
@@ -123,6 +122,6 @@ def test_the_page_is_at_most_two_pages_long() -> None:
 
 
 def test_between_transits_of_the_passage_the_plane_lies_north_south() -> None:
-    times = transit_times()
+    times = transits("t")
     passage = (pi / 2 + MP.atan2(P.y - rest(P)[1], P.x)) / TURN
     assert times[5784] < passage < times[5786], shown(passage)

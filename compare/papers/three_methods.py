@@ -1,39 +1,149 @@
-"""The third source paper, its three methods: turning axes, the Coriolis theorem used twice, complex variables."""
+"""The third source paper: its equations, and three methods: turning axes, the Coriolis theorem, complex variables."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Any
 
-from ..checks import Approximate, Check, Finding, Identity, Statement, section
-from ..digits import MP, Vector, add, cos, cross, derivative, j, mpf, norm, scale, shown, sin, sqrt, vector_derivative
-from ..first_principles import coupled, linearised, motion, rate_up
-from ..points import Point, paris, points
-from .equations import axes_rate, generic_path, measured_rate, primed, printed_rate, stiffness, unprimed_equation
+from reference.model.algebra import cross, dot
+
+from .checks import Approximate, Check, Finding, Identity, Statement, section
+from .digits import (
+    MP,
+    Vector,
+    add,
+    cos,
+    derivative,
+    j,
+    mpf,
+    norm,
+    scale,
+    shown,
+    sin,
+    sqrt,
+    unit,
+    vanishes,
+    vector_derivative,
+)
+from .first_principles import (
+    acceleration_of,
+    coupled,
+    coupled_at,
+    linearised,
+    motion,
+    rate_up,
+    turning,
+    uniform_acceleration,
+)
+from .points import Point, paris, points
+
+Path = Callable[[Any], Vector]
 
 
-def _own_rate(p: Point) -> Any:
+def axes_rate(p: Point) -> Any:
+    """Return ω_p = -ω sinα."""
+    return -rate_up(p)
+
+
+def primed(path: Path, rate: Any) -> Path:
+    """Return x' = x cosω_p t - y sinω_p t, y' = x sinω_p t + y cosω_p t along a path."""
+
+    def turned(t: Any) -> Vector:
+        x, y = path(t)
+        c, s = cos(rate * t), sin(rate * t)
+        return x * c - y * s, x * s + y * c
+
+    return turned
+
+
+def generic_path(p: Point) -> Path:
+    """Return a path x, y with the point's velocities and accelerations at its time."""
+    return lambda t: (
+        p.x + p.vx * (t - p.t) + p.ax * (t - p.t) ** 2 / 2,
+        p.y + p.vy * (t - p.t) + p.ay * (t - p.t) ** 2 / 2,
+    )
+
+
+def _excess(p: Point, rate: Any) -> Vector:
+    """Return what x', y' along the point's path leave over in the equations of motion."""
+    turned = primed(generic_path(p), rate)
+    place, speed, second = turned(p.t), vector_derivative(turned, p.t), vector_derivative(turned, p.t, 2)
+    return add(second, scale(-1, coupled(p, place, speed)))
+
+
+def unprimed_equation(p: Point, rate: Any) -> Vector:
+    """Return the x'', y'' for which x', y' obey the two equations, solved from their second derivatives."""
+    zero, *units = (_excess(p.but(ax=MP.mpf(ax), ay=MP.mpf(ay)), rate) for ax, ay in ((0, 0), (1, 0), (0, 1)))
+    columns = [add(excess, scale(-1, zero)) for excess in units]
+    solution = MP.lu_solve(MP.matrix([list(row) for row in zip(*columns, strict=True)]), MP.matrix([-z for z in zero]))
+    return solution[0], solution[1]
+
+
+def stiffness(p: Point) -> Any:
+    """Return g/L + ω_p²."""
+    return p.gravity / p.length + axes_rate(p) ** 2
+
+
+def printed_rate(p: Point) -> Any:
+    """Return ω̃ = sqrt(g/L + ω_p²)."""
+    return sqrt(stiffness(p))
+
+
+def measured_rate(p: Point) -> Any:
+    """Return ω̃ from x'' of a bob at rest at x = 1 in the turning axes."""
+    return sqrt(-unprimed_equation(p.but(x=MP.one, y=MP.zero, vx=MP.zero, vy=MP.zero), axes_rate(p))[0])
+
+
+def _away_from_axis() -> Finding:
+    p = points()[0]
+    axis, far = turning(p), (MP.zero, MP.zero, p.radius)
+    pushed = scale(-1, cross(axis, cross(axis, far)))
+    across = add(far, scale(-dot(far, unit(axis)), unit(axis)))
+    gap = norm(add(unit(pushed), scale(-1, unit(across))))
+    return Finding(vanishes(gap), f"-ω × (ω × r) points away from the axis to within {shown(gap)}")
+
+
+def _rising(s: Any) -> Point:
+    """Return the first random point, its amplitude times s."""
+    return points()[0].swinging(s)
+
+
+def _cord(p: Point) -> Vector:
+    """Return T along the cord, of the size that r·r'' = -v² requires."""
+    free = add((MP.zero, MP.zero, -p.gravity), scale(-2, cross(turning(p), p.velocity)))
+    pull = (dot(p.velocity, p.velocity) + dot(free, p.position)) / p.length**2
+    return scale(-p.mass * pull, p.position)
+
+
+def _horizontal(s: Any) -> Point:
+    return _rising(s).but(rate=MP.zero)
+
+
+def _any_rate(p: Point) -> Any:
     """Return some ω_p, not the special one."""
     return p.cord_rate
 
 
+def _turned(p: Point, xy: Vector) -> Vector:
+    """Return x cosω_p t - y sinω_p t and x sinω_p t + y cosω_p t."""
+    return primed(lambda t: xy, _any_rate(p))(p.t)
+
+
 def _first(p: Point) -> Vector:
     """Return x', y' dot as printed, second form."""
-    w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
-    along, across = p.vx - p.y * w, p.x * w + p.vy
-    return along * c - across * s, along * s + across * c
+    w = _any_rate(p)
+    return _turned(p, (p.vx - p.y * w, p.x * w + p.vy))
 
 
 def _second(p: Point) -> Vector:
     """Return x', y' double dot as printed, second form."""
-    w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
-    along, across = p.ax - 2 * p.vy * w - p.x * w**2, p.ay + 2 * p.vx * w - p.y * w**2
-    return along * c - across * s, along * s + across * c
+    w = _any_rate(p)
+    return _turned(p, (p.ax - 2 * p.vy * w - p.x * w**2, p.ay + 2 * p.vx * w - p.y * w**2))
 
 
 def _second_long(p: Point) -> Vector:
     """Return x', y' double dot as printed, first form."""
-    w, c, s = _own_rate(p), cos(_own_rate(p) * p.t), sin(_own_rate(p) * p.t)
+    w, c, s = _any_rate(p), cos(_any_rate(p) * p.t), sin(_any_rate(p) * p.t)
     return (
         (p.ax - p.vy * w) * c - (p.vx - p.y * w) * w * s - (p.vx * w + p.ay) * s - (p.x * w + p.vy) * w * c,
         (p.ax - p.vy * w) * s + (p.vx - p.y * w) * w * c + (p.vx * w + p.ay) * c - (p.x * w + p.vy) * w * s,
@@ -41,7 +151,7 @@ def _second_long(p: Point) -> Vector:
 
 
 def _derived(order: int) -> Callable[[Point], Vector]:
-    return lambda p: vector_derivative(primed(generic_path(p), _own_rate(p)), p.t, order)
+    return lambda p: vector_derivative(primed(generic_path(p), _any_rate(p)), p.t, order)
 
 
 def _printed_unprimed(p: Point, rate: Any) -> Vector:
@@ -53,17 +163,7 @@ def _printed_unprimed(p: Point, rate: Any) -> Vector:
 
 def _substituted_pair(p: Point) -> Vector:
     """Return the two lines before the pair, with all terms on one side."""
-    rate = _own_rate(p)
-    x, y = add((p.ax, p.ay), scale(-1, _printed_unprimed(p, rate)))
-    c, s = cos(rate * p.t), sin(rate * p.t)
-    return x * c - y * s, x * s + y * c
-
-
-def _excess(p: Point) -> Vector:
-    """Return what x', y' along a path leave over in the equations of motion."""
-    turned = primed(generic_path(p), _own_rate(p))
-    place, speed, second = turned(p.t), vector_derivative(turned, p.t), vector_derivative(turned, p.t, 2)
-    return add(second, scale(-1, coupled(p, place, speed)))
+    return _turned(p, add((p.ax, p.ay), scale(-1, _printed_unprimed(p, _any_rate(p)))))
 
 
 def _widest(s: Any) -> Any:
@@ -82,9 +182,8 @@ def _far_below_gravity() -> Finding:
     return Finding(ratio < mpf("1e-4"), f"ω xdot / g = {shown(ratio)} in Paris")
 
 
-def _turned(s: Any) -> Point:
-    base = paris()
-    return base.but(rate=base.rate * s)
+def _spinning(s: Any) -> Point:
+    return paris().but(rate=paris().rate * s)
 
 
 def _centrifugal(p: Point) -> Vector:
@@ -104,32 +203,17 @@ def _moved_acceleration(p: Point) -> Vector:
     rate = axes_rate(p)
     start = (p.x, p.y, p.vx - rate * p.y, p.vy + rate * p.x)
 
-    def in_turning_axes(t: Any) -> Vector:
-        x, y = motion(p, start, t)[:2]
-        c, s = cos(rate * t), sin(rate * t)
-        return x * c + y * s, y * c - x * s
-
-    return vector_derivative(in_turning_axes, MP.zero, 2)
-
-
-def _in_turning_frame(p: Point, rate: Any, drive: Callable[[Vector, Vector], Vector]) -> Vector:
-    """Return the acceleration in axes that turn at `rate`; in axes at rest it is `drive(place, velocity)`.
-
-    The point's x, y, vx, vy are those in the turning axes, which coincide with the axes at rest at this moment.
-    """
-    place, speed = (p.x, p.y), (p.vx, p.vy)
-    at_rest = add(speed, scale(rate, (-p.y, p.x)))
-    force = drive(place, at_rest)
-    return add(force, scale(2 * rate, (p.vy, -p.vx)), scale(rate**2, place))
+    return vector_derivative(primed(lambda t: motion(p, start, t)[:2], -rate), MP.zero, 2)
 
 
 def _simple_in_frame() -> Finding:
     def excess(p: Point) -> Any:
-        turned = _in_turning_frame(p, axes_rate(p), lambda place, speed: coupled(p, place, speed))
-        return norm(add(turned, scale(stiffness(p), (p.x, p.y))))
+        bent = scale(2 * axes_rate(p), (p.vy, -p.vx))  # as seen from the turning axes
+        pushed = scale(axes_rate(p) ** 2 + stiffness(p), (p.x, p.y))
+        return norm(add(_turned_drive(p), bent, pushed))
 
     gap = max(map(excess, points()))
-    return Finding(gap < mpf("1e-45"), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
+    return Finding(vanishes(gap), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
 
 
 def _equation(p: Point) -> Any:
@@ -156,6 +240,28 @@ def _substituted(p: Point) -> Any:
 def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return section("methods_", "Three methods",
+        Identity("newton", "", "T - mgk - 2m ω × v = m a",
+            lambda p: add(_cord(p), scale(p.mass, (MP.zero, MP.zero, -p.gravity)), scale(-2 * p.mass,
+                cross(turning(p), p.velocity))), lambda p: scale(p.mass, acceleration_of(p)),
+            remark="truth: reference.model.force with gravity alone; T along the cord"),
+        Identity("centrifugal", "", "|ω × (ω × r)| = ω² r cosα", lambda p: p.rate**2 * p.radius * cos(p.phi),
+            lambda p: norm(cross(turning(p), cross(turning(p), (MP.zero, MP.zero, p.radius))))),
+        Statement("away", "", "with direction away from the axis of rotation", _away_from_axis),
+        Approximate("sine", "", "mg sinθ ≈ mgθ",
+            lambda s: (points()[0].cord * s, sin(points()[0].cord * s)), 2, "θ", remark="at a random θ of 0.9 rad"),
+        Approximate("hooke", "", "T - mgk ≈ -(mg/L) ρ (i cosφ + j sinφ)",
+            lambda s: (scale(-_horizontal(s).gravity / _horizontal(s).length, (_horizontal(s).x, _horizontal(s).y)),
+                uniform_acceleration(_horizontal(s))), 2, "amplitude", remark="horizontal part, at a random point"),
+        Identity("omega", "", "ω = ω (j cosα + k sinα)",
+            lambda p: (MP.zero, p.rate * cos(p.phi), p.rate * sin(p.phi)), lambda p: p.k.turn),
+        Identity("cross", "", "-2ω × v = 2ω xdot k cosα - 2ω xdot j sinα + 2ω ydot i sinα",
+            lambda p: (2 * p.rate * p.vy * sin(p.phi), -2 * p.rate * p.vx * sin(p.phi), 2 * p.rate * p.vx *
+                cos(p.phi)), lambda p: scale(-2, cross(p.k.turn, (p.vx, p.vy, MP.zero)))),
+        Approximate("z", "", "2ω xdot cosα = zddot (and ignored)",
+            lambda s: (2 * _rising(s).rate * _rising(s).vx * cos(_rising(s).phi), acceleration_of(_rising(s))[2]), 1,
+            "amplitude", "m/s²", remark="at a random point; the cord's vertical pull differs from mg by as much"),
+        Identity("pair", "", "xddot + (g/L) x = 2ω sinα ydot, yddot + (g/L) y = -2ω sinα xdot", coupled_at, linearised,
+            remark="truth: reference.model.force with gravity alone, linear"),
         Identity("1_first", ", method 1", "xdot' = (xdot - yω_p) cosω_p t - (xω_p + ydot) sinω_p t, ydot' = …",
             _first, _derived(1)),
         Identity("1_second_a", ", method 1", "xddot' and yddot', first form", _second_long, _derived(2)),
@@ -164,10 +270,10 @@ def checks() -> list[Check]:
             _second, _derived(2)),
         Identity("1_substituted", ", method 1",
             "(xddot + (…) x - 2(…) ydot) cosω_p t = (yddot + (…) y + 2(…) xdot) sinω_p t, …",
-            _substituted_pair, _excess,
+            _substituted_pair, lambda p: _excess(p, _any_rate(p)),
             remark="the scan is garbled here; the brackets are those of the pair that follows"),
         Identity("1_pair", ", method 1", "xddot + (g/L - 2ω sinα ω_p - ω_p²) x - 2(ω sinα + ω_p) ydot = 0, yddot + …",
-            lambda p: _printed_unprimed(p, _own_rate(p)), lambda p: unprimed_equation(p, _own_rate(p))),
+            lambda p: _printed_unprimed(p, _any_rate(p)), lambda p: unprimed_equation(p, _any_rate(p))),
         Identity("1_rate", ", method 1", "decouples for ω_p = -ω sinα",
             lambda p: unprimed_equation(p.but(x=MP.zero, y=MP.zero), axes_rate(p)), lambda p: (MP.zero, MP.zero),
             remark="x'', y'' that velocities alone give"),
@@ -179,7 +285,7 @@ def checks() -> list[Check]:
             remark="truth: eigenvalues of the decoupled pair"),
         Identity("1_omega2", ", method 1", "ω̃ = sqrt(g/L + ω_p²)", printed_rate, measured_rate),
         Approximate("1_omega3", ", method 1", "ω̃ ≈ sqrt(g/L)",
-            lambda s: (sqrt(_turned(s).gravity / _turned(s).length), printed_rate(_turned(s))), 2, "ω",
+            lambda s: (sqrt(_spinning(s).gravity / _spinning(s).length), printed_rate(_spinning(s))), 2, "ω",
             remark="in Paris"),
         Approximate("1_amplitude", ", method 1", "A ω̃ = L θ_max ω̃",
             lambda s: (_widest(s), sin(_widest(s))), 2, "θ_max", remark="A over L, at a random θ"),
