@@ -1,23 +1,34 @@
-"""foucPend's output as lines of text: comments, snapshots and transits, in the format that the package describes."""
+"""foucPend's run, fixed steps of Mathar (43) with transits by parabolas, and its output as lines of text.
+
+A run is made in blocks, so that a long one needs little memory.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
-from reference import InputError, Scene, solve
-from reference.model.constants import constants
+from reference import InputError, IntegrationError, Scene, solve
+from reference.model.constants import axis_distance, constants
 from reference.model.start import Start
-from reference.numbers.precision import Array, context
+from reference.numbers.precision import Array, context, to_mpf
 from reference.scenes.scene import MAX_ROWS
 
+from ..approximations.mathar import VARIABLES, derivatives, truncated
+from ..methods import METHODS, FirstOrderSystem, Problem, available
 from .options import METHOD_OF, Options
 
 DIGITS = 17  # decimal digits that identify a double
 PREC = 128  # bits in which the site's constants are computed before they become doubles
 COLUMNS = "t/s x/m y/m z/m X/m Y/m Z/m phi/deg lambda/deg speed/(m/s)"
 _SNAPSHOT = " ".join(["%.17g"] * 10)
+BLOCK = 100_000  # steps whose states are in memory at a time
+# the items of section VI that the two lowest bits of -a leave out
+ITEMS = (frozenset[Any](), frozenset({2}), frozenset({1}), frozenset({1, 2}))
 
 
 def lines(options: Options) -> Iterator[str]:
@@ -60,8 +71,6 @@ def _order(method: str) -> str:
 
 def _integrated(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
     """Yield the snapshots of each block and the transits in it."""
-    from .fixed_steps import Transits, blocks
-
     transits, first = Transits(), 0
     for times, states in blocks(options):
         zeros = transits.of(times, states[:, 3])
@@ -96,14 +105,12 @@ class SiteFrame:
     def __init__(self, scene: Scene) -> None:
         ctx, exact = context(PREC), scene.exact
         k = constants(exact, ctx)
-        flattening = ctx.mpf(exact.flattening.numerator) / exact.flattening.denominator
-        altitude = ctx.mpf(exact.altitude.numerator) / exact.altitude.denominator
-        radius = ctx.mpf(exact.equatorial_radius.numerator) / exact.equatorial_radius.denominator
-        squared_eccentricity = flattening * (2 - flattening)
-        normal = radius / ctx.sqrt(1 - squared_eccentricity * k.sin * k.sin)
+        numbers = (exact.equatorial_radius, exact.flattening, exact.altitude)
+        radius, flattening, altitude = (to_mpf(number, ctx) for number in numbers)
+        normal = axis_distance(radius, flattening, 0, k.sin, 1, ctx.sqrt)  # N of (2), the normal down to the axis
         self.sin, self.cos, self.rate = float(k.sin), float(k.cos), float(k.rate)
         self.axis_distance = float(k.axis_distance * k.length)
-        self.height = float((normal * (1 - squared_eccentricity) + altitude) * k.sin)
+        self.height = float((normal * (1 - flattening) ** 2 + altitude) * k.sin)
 
     def snapshots(self, times: Array, states: Array) -> Array:
         """Return the ten columns, shape (rows, 10), of states x, y, z, vx, vy, vz, shape (rows, 6)."""
@@ -119,3 +126,106 @@ class SiteFrame:
         azimuth = np.degrees(np.arctan2(y, x))
         speed = np.sqrt((states[:, 3:] ** 2).sum(axis=1))
         return np.column_stack((times, x, y, z, *inertial, angle, azimuth, speed))
+
+
+def parabola_zero(t: Array, v: Array) -> float:
+    """Return the zero of the parabola through three values, between the two neighbours that differ in sign.
+
+    Args:
+        t: times, shape (3,), equally spaced.
+        v: values, shape (3,).
+    """
+    middle, h = t[1], t[1] - t[0]
+    c, b, a = v[1], (v[2] - v[0]) / 2, (v[2] - 2 * v[1] + v[0]) / 2
+    spread = np.sqrt(max(b * b - 4 * a * c, 0.0))
+    twice = -(b + np.copysign(spread, b))
+    roots = [twice / (2 * a)] if a else []
+    roots += [2 * c / twice] if twice else []
+    low, high = (0.0, 1.0) if np.sign(v[1]) != np.sign(v[2]) else (-1.0, 0.0)
+    inside = min(roots, key=lambda root: max(low - root, root - high))
+    return float(middle + h * inside)
+
+
+class Transits:
+    """Zeros of xdot, found block by block; a release at rest does not count."""
+
+    def __init__(self) -> None:
+        self._sign = 0.0  # of the last value that was not zero
+        self._before: tuple[float, float] | None = None  # the row before the block
+
+    def of(self, times: Array, v: Array) -> list[float]:
+        """Return the times of the zeros after the block's first row, up to its last.
+
+        Args:
+            times: shape (rows,), the first row being the last one of the block before.
+            v: xdot there.
+        """
+        signs = np.sign(v)
+        zeros = []
+        if self._sign == 0:
+            self._sign = float(signs[0])
+        # rows worth a look: the sign differs from that of the row before, or xdot is exactly zero
+        changes = np.nonzero((signs[1:] != signs[:-1]) | (signs[1:] == 0))[0] + 1
+        for i in changes:
+            sign = float(signs[i])
+            if sign == 0 or sign == self._sign:
+                continue
+            if self._sign != 0:
+                zeros.append(self._zero(times, v, int(i)))
+            self._sign = sign
+        self._before = (float(times[-2]), float(v[-2]))
+        return zeros
+
+    def _zero(self, times: Array, v: Array, i: int) -> float:
+        """Return the zero between rows i - 1 and i; v at i is the first value of the new sign."""
+        if v[i - 1] == 0:
+            return float(times[i - 1])
+        if i >= 2:
+            return parabola_zero(times[i - 2 : i + 1], v[i - 2 : i + 1])
+        if self._before is not None:
+            t, value = self._before
+            return parabola_zero(np.array([t, *times[:2]]), np.array([value, *v[:2]]))
+        if len(v) > 2:
+            return parabola_zero(times[:3], v[:3])
+        return float(times[0] + (times[1] - times[0]) * v[0] / (v[0] - v[1]))
+
+
+def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
+    """Yield blocks of times in s and states x, y, z, vx, vy, vz, shape (rows, 6).
+
+    The first row of a block is the last one of the block before it.
+
+    Raises:
+        InputError: numba is not installed.
+        IntegrationError: the bob reaches the height of the suspension, or the run fails otherwise.
+    """
+    method = METHODS[options.method]
+    missing = available(method)
+    if missing is not None:
+        raise InputError("-R", options.method, "a method that is installed", f"It is {missing}.")
+    step = float(options.step)
+    problem = _problem(options, step)
+    first = 0
+    while first < options.steps:
+        count = min(BLOCK, options.steps - first)
+        times: Array = np.arange(count + 1, dtype=np.float64) * step
+        problem = replace(problem, times=times)
+        outcome = method.prepare(problem, step)()
+        states = outcome.states
+        if len(states) <= count:
+            raise IntegrationError(
+                f"{method.title} at {step:g} s fails after t = {first * step + outcome.reached_t:g} s.",
+                "The equations in x and y hold below the suspension; a shorter step (-t) may help.",
+            )
+        yield np.asarray((first + np.arange(count + 1)) * step, dtype=np.float64), states
+        problem = replace(problem, start=states[-1, [0, 1, 3, 4]] / problem.constants.length)
+        first += count
+
+
+def _problem(options: Options, step: float) -> Problem:
+    problem = Problem.of(options.scene, "plane", [0.0, step])
+    items = ITEMS[options.bits % len(ITEMS)]
+    if not items:
+        return problem
+    k = truncated(problem.constants, items)
+    return replace(problem, system=FirstOrderSystem.of(VARIABLES, partial(derivatives, items=items), k))

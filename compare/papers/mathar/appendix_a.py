@@ -9,7 +9,7 @@ import numpy as np
 
 from reference import load_scene
 
-from ...foucpend.fixed_steps import Transits
+from ...foucpend.output import Transits
 from ...methods import rk4, rkng56, rkng67
 from ...methods.runge_kutta.tableau import NystromTableau, Tableau, TableauError
 from ..checks import Check, Finding, PrintedNumber, Statement, section

@@ -18,7 +18,7 @@ from compare.approximations import (
     motions,
     quantities,
 )
-from compare.foucpend.fixed_steps import ITEMS
+from compare.foucpend.output import ITEMS
 from reference import InputError, IntegrationError, UnreachableError, load_scene
 
 PARIS = load_scene("paris")

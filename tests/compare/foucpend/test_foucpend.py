@@ -17,9 +17,8 @@ from compare.approximations import APPROXIMATIONS, Motion
 from compare.candidates.read import read_stream
 from compare.commands.pend import command
 from compare.foucpend import Options, lines
-from compare.foucpend.fixed_steps import Transits, parabola_zero
 from compare.foucpend.options import DEFAULTS
-from compare.foucpend.output import SiteFrame
+from compare.foucpend.output import SiteFrame, Transits, parabola_zero
 from compare.papers.digits import degrees, norm
 from compare.papers.first_principles import place
 from compare.papers.points import paris
@@ -143,11 +142,11 @@ def test_a_transit_stands_between_the_snapshots_around_it_and_gives_n_over_two_t
 
 @pytest.mark.parametrize("block", [pytest.param(1, marks=pytest.mark.long), 7, 300, 599, 600])
 def test_the_length_of_a_block_changes_no_line(monkeypatch: pytest.MonkeyPatch, block: int) -> None:
-    from compare.foucpend import fixed_steps
+    from compare.foucpend import output as module
 
     options = {**PARIS, "T": "60", "t": "0.1", "s": "7", "R": "4"}
     whole = output(**options)
-    monkeypatch.setattr(fixed_steps, "BLOCK", block)
+    monkeypatch.setattr(module, "BLOCK", block)
     parts = output(**options)
     assert len(whole) == len(parts)
     assert snapshots(parts) == pytest.approx(snapshots(whole), rel=1e-12, abs=1e-11)
