@@ -13,8 +13,10 @@ from enclosure_recurrence import Recurrence
 
 from reference.enclosure.approximant import pair
 from reference.enclosure.bound import Piece, Radius, SceneBalls, output
+from reference.enclosure.enclosed_transits import Scan
 from reference.enclosure.frames import ColumnSource
 from reference.enclosure.six_columns import Columns
+from reference.numbers.taylor_step import TaylorStep
 from reference.scenes.inputs import Inputs
 
 PARIS = Inputs(
@@ -35,9 +37,12 @@ def scene(**changes: object) -> Inputs:
     return replace(PARIS, position=None if turned else tuple(start), angles=turned, **numbers)
 
 
+def q(number: Fraction):
+    return mp.mpf(number.numerator) / number.denominator
+
+
 def constants(inputs: Inputs):
     """sin, cos of the latitude, R, and the rest, as mpmath numbers."""
-    q = lambda f: mp.mpf(f.numerator) / f.denominator  # noqa: E731
     phi, f = q(inputs.latitude) * mp.pi / 180, q(inputs.flattening)
     s, c = mp.sin(phi), mp.cos(phi)
     R = (q(inputs.equatorial_radius) / mp.sqrt(1 - f * (2 - f) * s * s) + q(inputs.altitude)) * c
@@ -47,7 +52,6 @@ def constants(inputs: Inputs):
 
 def start(inputs: Inputs):
     """x, y, z, vx, vy, vz at t = 0."""
-    q = lambda f: mp.mpf(f.numerator) / f.denominator  # noqa: E731
     length = q(inputs.length)
     if inputs.position:
         x, y, vx, vy = map(q, inputs.position)
@@ -73,16 +77,8 @@ def acceleration(pars, state):
 
 @cache
 def integrator(prec: int):
-    x, y, z, u, v, w = names = hy.make_vars("x", "y", "z", "u", "v", "w")
-    two = hy.real(2, prec)
-    pars = [hy.par[i] for i in range(7)]
-    s, c, R, length, g, om, drag = pars
-    q = R - s * y + c * z
-    fx = om * om * x - two * om * (c * w - s * v) - drag * u
-    fy = -om * om * s * q - two * om * s * u - drag * v
-    fz = -g + om * om * c * q + two * om * c * u - drag * w
-    pull = (u * u + v * v + w * w + x * fx + y * fy + z * fz) / (length * length)
-    rates = [u, v, w, fx - x * pull, fy - y * pull, fz - z * pull]
+    names = hy.make_vars("x", "y", "z", "u", "v", "w")
+    rates = [*names[3:], *acceleration([hy.par[i] for i in range(7)], names)]
     zero = [hy.real(0, prec)] * 7
     return hy.taylor_adaptive(
         list(zip(names, rates, strict=True)), zero[:6], pars=zero, fp_type=hy.real, prec=prec, compact_mode=True
@@ -102,7 +98,7 @@ def truth(inputs: Inputs, times: list[Fraction], prec: int = 400) -> list[list[F
         ta.state[:] = [_real(x, prec) for x in start(inputs)]
         ta.pars[:] = [_real(x, prec) for x in constants(inputs)]
         for t in times:
-            ta.propagate_until(_real(mp.mpf(t.numerator) / t.denominator, prec))
+            ta.propagate_until(_real(q(t), prec))
             out.append([Fraction(mp.nstr(mp.mpf(str(x)), int(prec * 0.3))) for x in ta.state])
     return out
 
@@ -134,7 +130,7 @@ def steep_truth(inputs: Inputs, time: Fraction, prec: int) -> list[Fraction]:
         ta.time = hy.real(0, prec)
         ta.state[:] = [_real(q, prec) for q in first]
         ta.pars[:] = [_real(q, prec) for q in (wy, wz, -om * om * s * R / length, (om * om * c * R - g) / length)]
-        ta.propagate_until(_real(mp.mpf(time.numerator) / time.denominator, prec))
+        ta.propagate_until(_real(q(time), prec))
         x, y, z, a, b, d = (mp.mpf(str(q)) for q in ta.state)
         b, d = b - wy, d - wz
         end = [x, y, z, b * z - d * y, d * x - a * z, a * y - b * x]
@@ -151,8 +147,26 @@ def doubles(inputs: Inputs):
     return rates, np.array([float(x) for x in start(inputs)])
 
 
+def cross(a, b):
+    return [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
+
+
+def dot(a, b):
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def lin(*terms):
+    """The sum of vectors, each after its factor."""
+    return [sum(f * v[i] for f, v in terms) for i in range(3)]
+
+
 def contains(interval, x: Fraction) -> bool:
     return interval.low <= x <= interval.high
+
+
+def unit_step(bits: int, rows) -> TaylorStep:
+    """A made-up step of 1 s on either side of t = 1 s."""
+    return TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, rows)
 
 
 def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first: Fraction = Fraction(1, 4)):
@@ -173,6 +187,15 @@ def carry(inputs: Inputs, proposal, columns: bool = False):
         piece = Piece(balls, step)
         more = [source.propose(step, [float(z) for z in bound.z])] if source else []
         yield bound.advance(piece, *more)
+
+
+def scanned(inputs: Inputs, proposal, columns: bool = False):
+    """The transits of a proposal."""
+    scan = None
+    for covered in carry(inputs, proposal, columns):
+        scan = scan or Scan(covered.piece.balls)
+        scan.advance(covered)
+    return scan.finish()
 
 
 def last_state(inputs: Inputs, proposal, columns: bool = False):

@@ -125,8 +125,8 @@ def class_names(root: Path) -> dict[str, list[str]]:
     return {name: files for name, files in sorted(places.items()) if len(files) > 1}
 
 
-def code_lines(path: Path) -> int:
-    """The lines of a source file that hold code: neither blank, nor comments, nor docstrings, nor imports."""
+def code_lines(path: Path, imports: bool = False) -> int:
+    """The lines of a source file that hold code: neither blank, nor comments, nor docstrings; imports on demand."""
     text, skipped = path.read_text(encoding="utf-8"), {"COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENDMARKER"}
     tokens = tokenize.generate_tokens(io.StringIO(text).readline)
     held = {
@@ -138,7 +138,7 @@ def code_lines(path: Path) -> int:
     for node in ast.walk(tree(path)):
         if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node) is not None:
             held -= set(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
-        elif isinstance(node, (ast.Import, ast.ImportFrom)):
+        elif isinstance(node, (ast.Import, ast.ImportFrom)) and not imports:
             held -= set(range(node.lineno, (node.end_lineno or 0) + 1))
     return len(held)
 

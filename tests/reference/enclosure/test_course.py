@@ -5,14 +5,13 @@ from __future__ import annotations
 from fractions import Fraction
 
 import pytest
-from enclosure_oracle import PARIS, carry, scene, steps
+from enclosure_oracle import PARIS, carry, scene, steps, unit_step
 from flint import arb
 
 from reference.enclosure.bound import Piece, Radius, SceneBalls, output, tube
 from reference.enclosure.course import Course
 from reference.enclosure.enclosed_transits import MOST_LEAVES, Scan
 from reference.enclosure.shapes import Covered, Tube
-from reference.numbers.taylor_step import TaylorStep
 
 TIMES = [Fraction(0), Fraction(7), Fraction(20)]
 
@@ -69,7 +68,7 @@ def test_leaves_that_a_useless_tube_would_ask_for_are_one_possible_transit(width
     """Seed 5007 of the audit: |xddot| is known a billion times less closely than xdot."""
     balls = SceneBalls(scene(vx="1"), 264)
     row = [0, 1 << 230, 1 << 214]
-    step = TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 200, (row, *[[0]] * 3))
+    step = unit_step(200, (row, *[[0]] * 3))
     scan = Scan(balls)
     scan.advance(Covered(Piece(balls, step), Tube(*map(arb, widths))))
     assert scan.leaves < MOST_LEAVES * 3

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from fractions import Fraction
 from random import Random
 
 import numpy as np
 import pytest
-from enclosure_oracle import PARIS, scene
+from enclosure_oracle import PARIS, scene, unit_step
 from flint import fmpz_poly
 
 pytest.importorskip("numba")
@@ -16,7 +15,6 @@ from reference.enclosure.bound import Piece, SceneBalls, polynomials
 from reference.enclosure.digits import check, norms, split
 from reference.enclosure.sums_checked import compare
 from reference.numbers.packing import DIGIT_BITS, Digits
-from reference.numbers.taylor_step import TaylorStep
 
 MOST = 1 << (DIGIT_BITS - 1)
 WORLDS = [SceneBalls(PARIS, 400), SceneBalls(scene(drag="0.3", rotation_rate="-0.7", equatorial_radius="5"), 400)]
@@ -40,7 +38,7 @@ def table(rng: Random) -> np.ndarray:
 
 def piece_of(rows: np.ndarray, balls: SceneBalls) -> Piece:
     bits = DIGIT_BITS * rows.shape[1] - 1
-    return Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, Digits(rows)))
+    return Piece(balls, unit_step(bits, Digits(rows)))
 
 
 @pytest.mark.parametrize("seed", range(40))

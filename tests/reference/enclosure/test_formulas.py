@@ -7,32 +7,19 @@ from types import SimpleNamespace
 import mpmath as mp
 import numpy as np
 import pytest
-from enclosure_oracle import scene
+from enclosure_oracle import cross, dot, lin, scene, unit_step
 from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 
 from reference.enclosure.bound import Piece, Radius, Scaled, SceneBalls
 from reference.enclosure.shapes import Sizes
 from reference.enclosure.six_columns import CUT, FINE, Columns, cut, residuals
 from reference.numbers.packing import DIGIT_BITS, Digits
-from reference.numbers.taylor_step import TaylorStep
 
 
 def exact(x):
     """The middle of a ball, or a number, as a fraction."""
     m, e = x.mid().man_exp()
     return Fraction(int(m)) * Fraction(2) ** int(e)
-
-
-def cross(a, b):
-    return [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
-
-
-def lin(*terms):
-    return [sum(f * v[i] for f, v in terms) for i in range(3)]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 def length(a):
@@ -65,7 +52,7 @@ def anything(rng):
         for i, row in enumerate(rows):
             row[0] = 2**bits if i == rng.randrange(3) else 0
     rows.append([round(2**bits * rng.choice((0, 0, 1)) * 10 ** rng.uniform(-3, 2))])
-    return Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, tuple(rows)))
+    return Piece(balls, unit_step(bits, tuple(rows)))
 
 
 def of_digits(rng):
@@ -76,7 +63,7 @@ def of_digits(rng):
     if rng.random() < 0.3:
         table[:3, :, rng.randrange(orders) :] = 0
     bits = DIGIT_BITS * count - 1
-    return Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, Digits(table)))
+    return Piece(balls, unit_step(bits, Digits(table)))
 
 
 def defects(piece, s):

@@ -4,18 +4,7 @@ from fractions import Fraction
 from random import Random
 
 import pytest
-
-
-def cross(a, b):
-    return [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b, strict=True))
-
-
-def lin(*terms):
-    return [sum(f * v[i] for f, v in terms) for i in range(3)]
+from enclosure_oracle import cross, dot, lin
 
 
 def any_vector(rng):

@@ -6,7 +6,7 @@ from random import Random
 
 import mpmath as mp
 import pytest
-from enclosure_oracle import acceleration, constants, scene, truth
+from enclosure_oracle import acceleration, constants, scene, truth, unit_step
 from enclosure_recurrence import prove
 from flint import arb, ctx, fmpq, fmpq_poly
 
@@ -73,14 +73,6 @@ def test_known_zeros_are_found_once_wherever_steps_end(seed):
         1, 10**6
     ):
         assert [f.parity for f in found] == ["one"] * sum(0 < z <= edges[-1] for z in zeros)
-
-
-def cross(a, b):
-    return [a[i] * b[j] - a[j] * b[i] for i, j in ((1, 2), (2, 0), (0, 1))]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b, strict=True))
 
 
 def test_three_zeros_within_the_tube_are_odd_and_not_one():
@@ -151,7 +143,7 @@ def test_at_a_boundary_both_steps_are_asked():
 ])  # fmt: skip
 def test_constants_below_the_last_bit_still_count(changes, rows, least):
     balls = SceneBalls(scene(length="1", **changes), 192)
-    piece = Piece(balls, TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), 64, rows))
+    piece = Piece(balls, unit_step(64, rows))
     assert piece.sizes.d2 >= ball(least)
 
 

@@ -1,11 +1,10 @@
 """The code that has to be read to believe a proof: it is short, and nothing in it rounds on its own."""
 
 import ast
-import io
-import tokenize
 from pathlib import Path
 
 import pytest
+from structure import code_lines
 
 import reference.enclosure
 
@@ -15,33 +14,14 @@ ARRAYS = {"digits": {"numpy"}, "bound": {"numpy"}}  # integers only
 PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
 AUDITED = tuple(name for name in TRUSTED if name != "digits")  # what FLINT alone has proved does not rest on its sums
 BUDGET, AUDITED_BUDGET = 420, 365  # lines of code
-BARE = {tokenize.COMMENT, tokenize.NL, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER}
-SCOPES = (ast.Module, ast.ClassDef, ast.FunctionDef)
 
 
 def source(name):
     return (HOME / f"{name}.py").read_text(encoding="utf-8")
 
 
-def code_lines(text):
-    """Lines that carry code: not blank, not comment, not docstring."""
-    lines = set()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type not in BARE:
-            lines.update(range(token.start[0], token.end[0] + 1))
-    for scope in ast.walk(ast.parse(text)):
-        if isinstance(scope, SCOPES) and ast.get_docstring(scope) is not None:
-            lines.difference_update(range(scope.body[0].lineno, scope.body[0].end_lineno + 1))
-    return len(lines)
-
-
-def test_lines_are_counted_without_what_is_not_code():
-    text = '"""Doc\nstring."""\n\n# comment\nx = [\n    1,\n]\n\n\ndef f():\n    """Doc."""\n    return x  # why\n'
-    assert code_lines(text) == 5
-
-
 def test_trusted_code_stays_within_its_budget():
-    counts = {name: code_lines(source(name)) for name in TRUSTED}
+    counts = {name: code_lines(HOME / f"{name}.py", imports=True) for name in TRUSTED}
     assert sum(counts.values()) <= BUDGET, counts
     assert sum(counts[name] for name in AUDITED) <= AUDITED_BUDGET, counts
 
