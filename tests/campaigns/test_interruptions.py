@@ -83,47 +83,32 @@ def test_a_command_ends_with_one_line_and_nothing_half(
     tally(f"{name}: {hits} interruptions at work, {said} of them with a line, no traceback, no half file, no orphan")
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-@pytest.mark.parametrize(
-    "hides", ['ImportError("initialization failed")', 'InputError("--engine", "heyoka", "an installed engine")']
-)
-def test_an_interruption_that_other_code_turns_into_an_error_is_one(number: signal.Signals, hides: str) -> None:
-    """As code in C does that is interrupted while it is imported."""
-    program = f"""
-import os, foucault
-from reference.errors import InputError
-
-def interrupted(prog_name):
+# what happens inside a command, where INTERRUPT sends it a signal
+HIDDEN = """
     try:
-        os.kill(os.getpid(), {int(number)})
+        INTERRUPT
     except BaseException as end:
-        raise {hides} from end
-
-foucault.commands = lambda: interrupted
-foucault.main()
+        raise {} from end
 """
-    ended = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
-    assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "", "")
+LOST = """
+    class Last:
+        def __del__(self):
+            INTERRUPT
+            time.sleep(0)
 
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_an_interruption_that_is_lost_in_a_finaliser_is_sent_again(number: signal.Signals) -> None:
-    """Python ignores exceptions there."""
-    program = f"""
-import os, time, foucault
-
-class Last:
-    def __del__(self):
-        os.kill(os.getpid(), {int(number)})
-        time.sleep(0)
-
-def interrupted(prog_name):
     Last()
     time.sleep(20)
     print("went on")
-
-foucault.commands = lambda: interrupted
-foucault.main()
 """
+ENGINE = 'InputError("--engine", "heyoka", "an installed engine")'
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("body", [HIDDEN.format('ImportError("initialization failed")'), HIDDEN.format(ENGINE), LOST])
+def test_an_interruption_that_other_code_turns_into_an_error_or_loses_is_one(number: signal.Signals, body: str) -> None:
+    """Code in C that is interrupted while it is imported raises an error; Python ignores exceptions in a finaliser."""
+    body = body.replace("INTERRUPT", f"os.kill(os.getpid(), {int(number)})")
+    program = f"import os, time, foucault\nfrom reference.errors import InputError\n\ndef interrupted(prog_name):{body}"
+    program += "\nfoucault.commands = lambda: interrupted\nfoucault.main()\n"
     ended = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=False)
     assert (ended.returncode, ended.stdout, ended.stderr) == (128 + number, "", "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -33,12 +33,11 @@ def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path / "cache"
 
 
-def killed(words: list[object], times: list[float], count: int, seed: int) -> Iterator[Ended]:
-    """Run a command again and again, each time killed at work at another of the moments of an undisturbed run."""
-    for event in chosen(times, count, seed):
-        ended = ended_at(event, signal.SIGKILL, words)
-        assert gone_within(ended.group, ORPHANS_END_S), "processes run on"
-        yield ended
+def killed(words: list[object], event: int) -> Ended:
+    """Run a command, killed at an event of its run; nothing that it started runs on."""
+    ended = ended_at(event, signal.SIGKILL, words)
+    assert gone_within(ended.group, ORPHANS_END_S), "processes run on"
+    return ended
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -61,57 +60,29 @@ def finished(words: list[object]) -> Ended:
 
 
 def test_a_dataset_is_the_old_or_the_new_one_and_whole(tmp_path: Path, size: Size, tally: Tally) -> None:
+    """At moments of the whole run, and at the last events, which are those that touch the target."""
     place = tmp_path / "sets"
-    words = [*GENERATE, 21, "--out", place / "p"]
+    words: list[object] = [*GENERATE, 21, "--out", place / "p"]
     before = reference.write(reference.solve(make_scene(run={"t_end": "60", "digits": 6})), tmp_path / "old")
     assert finished(words).status == 0
     _, times = undisturbed(tmp_path / "note", words)
     whole = [contents(before), contents(place / "p")]
-
-    def restored() -> None:
+    count, last = size(1, 50), [len(times) - 1 - 5 * i for i in range(size(1, 60))]
+    seen, hits, litters = [0, 0], 0, 0
+    for event in [*chosen(times, count, 1), *last]:
         shutil.rmtree(place / "p")
         shutil.copytree(before, place / "p")
-
-    restored()
-    hits = old = new = left = 0
-    for ended in killed(words, times, size(1, 50), 1):
-        hits += ended.status == -signal.SIGKILL
+        hits += killed(words, event).status == -signal.SIGKILL
         assert len(litter(place)) <= 1
-        left += len(litter(place))
+        litters += len(litter(place))
         put_back(place)
-        now = contents(place / "p")
-        assert now in whole
+        seen[whole.index(contents(place / "p"))] += 1  # an error if it is neither
         reference.load(place / "p")
-        old, new = old + (now == whole[0]), new + (now == whole[1])
-        restored()
     assert finished(words).status == 0
     assert contents(place / "p") == whole[1]
     assert [path.name for path in place.iterdir()] == ["p"]
-    assert hits == size(1, 50)
-    tally(f"generate: {hits} kills at work, dataset whole {old} old {new} new, {left} left a folder, which went")
-
-
-def test_between_any_two_steps_of_its_putting_in_place_a_dataset_is_whole(
-    tmp_path: Path, size: Size, tally: Tally
-) -> None:
-    """The last events of a run are those that touch the target: each of them, one after the other."""
-    place = tmp_path / "sets"
-    words = [*GENERATE, 20, "--level", "computed", "--out", place / "p"]
-    assert finished(words).status == 0
-    last = len(undisturbed(tmp_path / "note", words)[1])
-    before = contents(place / "p")
-    steps = size(1, 60)
-    hits = 0
-    for event in range(last - 1, last - 1 - 5 * steps, -5):
-        ended = ended_at(event, signal.SIGKILL, words)
-        hits += ended.status == -signal.SIGKILL
-        assert len(litter(place)) <= 1
-        put_back(place)
-        assert contents(place / "p") == before
-    assert finished(words).status == 0
-    assert [path.name for path in place.iterdir()] == ["p"]
-    assert hits >= 0.9 * steps  # the number of events varies by a few
-    tally(f"generate: {hits} kills among its last {5 * steps} events, dataset whole every time")
+    assert hits >= count + 0.9 * len(last)  # the number of events varies by a few
+    tally(f"generate: {hits} kills, dataset whole {seen[0]} old {seen[1]} new, {litters} left a folder, which went")
 
 
 CAMPAIGNS = {
@@ -132,9 +103,7 @@ def test_a_campaign_goes_on_where_it_was_killed(name: str, tmp_path: Path, size:
     count = size(1, 20)
     for event in chosen(times, count, 6):
         shutil.rmtree(out)
-        ended = ended_at(event, signal.SIGKILL, words)
-        assert gone_within(ended.group, ORPHANS_END_S), "processes run on"
-        hits += ended.status == -signal.SIGKILL
+        hits += killed(words, event).status == -signal.SIGKILL
         stored = journal(out)
         kept += len(stored)
         assert len(litter(out)) <= 1
@@ -170,9 +139,7 @@ def test_a_score_after_a_kill_is_the_same(tmp_path: Path, own_cache: Path, size:
     for event in chosen(times, count, 13):
         for kind in ("golden", "dense", "floor"):
             shutil.rmtree(own_cache / kind, ignore_errors=True)
-        ended = ended_at(event, signal.SIGKILL, words)
-        assert gone_within(ended.group, ORPHANS_END_S), "processes run on"
-        hits += ended.status == -signal.SIGKILL
+        hits += killed(words, event).status == -signal.SIGKILL
         solved += bool(list(own_cache.glob("golden/paris*")))
         assert len(litter(own_cache)) <= 1
         again = finished(words)

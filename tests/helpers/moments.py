@@ -32,16 +32,14 @@ class Ended:
     group: int
 
 
-def ended_at(
-    event: int, number: signal.Signals, words: Sequence[object], environment: dict[str, str] | None = None
-) -> Ended:
+def ended_at(event: int, number: signal.Signals, words: Sequence[object]) -> Ended:
     """Run `foucault words`; at an event, a signal goes to its group, or to it alone if that is SIGKILL."""
-    return _run([str(event), str(int(number)), "-"], words, environment)
+    return _run([str(event), str(int(number)), "-"], words)
 
 
 def undisturbed(note: Path, words: Sequence[object]) -> tuple[Ended, list[float]]:
     """Run `foucault words` to its end; return it, and the time of each of its events in s."""
-    ended = _run(["-1", "0", str(note)], words, None)
+    ended = _run(["-1", "0", str(note)], words)
     assert ended.status in (0, 1), ended.err
     return ended, json.loads(note.read_text())
 
@@ -53,12 +51,11 @@ def chosen(times: list[float], count: int, seed: int) -> list[int]:
     return [next(i for i, time_s in enumerate(times) if time_s >= moment) for moment in moments]
 
 
-def _run(how: list[str], words: Sequence[object], environment: dict[str, str] | None) -> Ended:
+def _run(how: list[str], words: Sequence[object]) -> Ended:
     command = [sys.executable, __file__, *how, *map(str, words)]
     with subprocess.Popen(
         command,
         cwd=ROOT,
-        env={**os.environ, **(environment or {})},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
