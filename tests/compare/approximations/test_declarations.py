@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 
@@ -36,15 +33,6 @@ def test_every_declaration_is_filled_in():
         assert all((declared.title, declared.where, declared.domain, declared.drops, declared.orders)), word
     assert all(isinstance(APPROXIMATIONS[word], Motion) for word in motions())
     assert all(isinstance(APPROXIMATIONS[word], Quantity) for word in quantities())
-
-
-def test_the_reports_of_approximations_load_no_heavy_library():
-    code = (
-        "import sys, compare.studies.approximation_limits, compare.report.approximations;"
-        "print(sorted({'heyoka', 'flint', 'scipy', 'numba', 'matplotlib'} & set(sys.modules)))"
-    )
-    process = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert process.stdout.strip() == "[]"
 
 
 def test_an_unknown_word_is_answered_with_those_most_like_it():

@@ -284,18 +284,19 @@ def app() -> typer.Typer:
     return cli
 
 
-def test_the_command_prints_what_lines_gives(app: typer.Typer) -> None:
-    outcome = CliRunner().invoke(app, ["pend", "-x", "0.3", "-y", "0.4", "-T", "10", "-t", "0.5", "-R", "5"])
+@pytest.mark.parametrize(
+    ("typed", "switches"),
+    [
+        (["-x", "0.3", "-T", "10", "-t", "0.5", "-R", "5"], {"x": "0.3", "T": "10", "t": "0.5", "R": "5"}),
+        # two switches are letters or the digits that are printed
+        (["-O", "-1e-3", "-l", "66", "-T", "5", "-s", "50"], {"O": "-1e-3", "l": "66", "T": "5", "s": "50"}),
+        (["-0", "-1e-3", "-1", "66", "-T", "5", "-s", "50"], {"O": "-1e-3", "l": "66", "T": "5", "s": "50"}),
+    ],
+)
+def test_the_command_prints_what_lines_gives(app: typer.Typer, typed: list[str], switches: dict[str, str]) -> None:
+    outcome = CliRunner().invoke(app, ["pend", "-y", "-0.4", *typed])
     assert outcome.exit_code == 0
-    assert outcome.stdout.splitlines() == output(**PARIS, T="10", t="0.5", R="5")
-
-
-@pytest.mark.parametrize(("rotation", "length"), [("-O", "-l"), ("-0", "-1")])
-def test_two_switches_are_letters_or_the_digits_that_are_printed(app: typer.Typer, rotation: str, length: str) -> None:
-    typed = ["pend", "-y", "-0.4", rotation, "-1e-3", length, "66", "-T", "5", "-s", "50"]
-    outcome = CliRunner().invoke(app, typed)
-    assert outcome.exit_code == 0
-    assert outcome.stdout.splitlines() == output(y="-0.4", O="-1e-3", l="66", T="5", s="50")
+    assert outcome.stdout.splitlines() == output(y="-0.4", **switches)
 
 
 def test_its_output_scores_as_the_paris_pendulum(tmp_path: Path) -> None:

@@ -10,7 +10,6 @@ from compare.papers.first_principles import (
     horizontal_acceleration,
     in_rate,
     motion,
-    place,
     rest,
     rotated,
     suspension,
@@ -56,12 +55,6 @@ def test_euler_and_lagrange_of_a_planar_pendulum_are_the_textbook_s() -> None:
 
 def test_a_quadratic_s_coefficients_come_out() -> None:
     assert [in_rate(lambda w: 3 - 5 * w + 7 * w * w, power) for power in (0, 1, 2)] == [3, -5, 7]
-
-
-def test_the_place_of_the_bob_is_a_cord_away_from_the_suspension() -> None:
-    p = points()[0]
-    gap = tuple(a - b for a, b in zip(place(p, p.position, p.t), suspension(p, p.rate * p.t), strict=True))
-    assert abs(norm(gap) - p.length) < TINY
 
 
 def test_the_plumb_line_of_paris_is_that_of_the_closed_forms_elsewhere() -> None:
