@@ -1,25 +1,34 @@
-"""Report of the source papers' approximations on a scene: errors, and where each is accurate; text, JSON and page."""
+"""Report of the source papers' approximations on a scene, with charts of their errors and where each is accurate."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from reference import Scene
+from reference import InputError, Scene
 from reference.status import Status
 
 from ..approximations import APPROXIMATIONS
-from ..studies.approximation_errors import error_table, quantity_table
-from ..studies.approximation_limits import LIMITS, SWEEP_S, limits, sweep
-from .charts.approximations import plot
+from ..studies.approximation_errors import TimeRow, error_table, quantity_table
+from ..studies.approximation_limits import LIMITS, SWEEP_S, SweepRow, sweep
+from ..studies.approximation_limits import limits as limits_of
+from ..studies.variation import UNITS
+from .charts.drawing import COLOURS, FAINT, GUIDE, Line, draw, legend, limits, line_style, logarithmic, sheet, svg_text
 from .folder import Report
 from .page import Html, Table, figure, page, paragraph, section
 
 OVERS = ("time", "amplitude", "latitude", "length")
 CURVE_TIMES = 80  # points of a curve over time
+_SAME = 0.15  # relative difference: lines that differ by less everywhere are drawn as one
+_WRAP = 2  # names per line of a label
+_NAMES = {
+    "error_m": "largest error of position up to then, m",
+    "plane_error_arcsec": "largest error of the swing plane, arcsec",
+}
+_MARKS = {"error_m": ((1e-3, "1 mm"), (1e-6, "1 µm")), "plane_error_arcsec": ((1.0, "1 arcsec"),)}
 
 
 def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) -> dict[str, Any]:
@@ -32,7 +41,7 @@ def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) 
     t_end = float(scene.exact.t_end)
     within = min(SWEEP_S, t_end)
     tables: list[Callable[[], Iterable[Any]]] = [
-        *(partial(limits, scene, over=over, t_end=t_end if over == "time" else within) for over in OVERS),
+        *(partial(limits_of, scene, over=over, t_end=t_end if over == "time" else within) for over in OVERS),
         partial(error_table, scene, t_end=t_end),
         partial(quantity_table, scene),
     ]
@@ -54,26 +63,32 @@ def document_of(scene: Scene, report: Callable[[int, int], None] | None = None) 
 def text_table(report: dict[str, Any]) -> str:
     """Return the report as text for a terminal."""
     times = sorted({row["t"] for row in report["rows"]})
-    errors = {(row["approximation"], row["t"]): row for row in report["rows"]}
-    names = list(dict.fromkeys(row["approximation"] for row in report["rows"]))
-    good = {(row["approximation"], row["limit"]): row for row in report["limits"] if row["over"] == "time"}
+    good = _by_approximation([row for row in report["limits"] if row["over"] == "time"], "limit")
     rows: list[list[str]] = []
-    for name in names:
-        values = [errors[name, t]["error_m"] for t in times]
-        cells = ["" if value is None else f"{value:.2e}" for value in values]
-        intervals = [good[name, limit]["good"] for limit, _, _ in LIMITS]
-        first = [name, cells[0] or "does not apply", *cells[1:]]
-        rows.append([*first, *(f"{one[0][1]:.4g} s" if one else "–" for one in intervals)])
+    for name, errors in _by_approximation(report["rows"], "t").items():
+        values = [errors[t]["error_m"] for t in times]
+        first, *others = ["" if value is None else f"{value:.2e}" for value in values]
+        intervals = [good[name][limit]["good"] for limit, _, _ in LIMITS]
+        stays = [f"{ranges[0][1]:.4g} s" if ranges else "–" for ranges in intervals]
+        rows.append([name, first or "does not apply", *others, *stays])
     heads = (*(f"{t:g} s" for t in times), *(f"within {name}" for name, _, _ in LIMITS))
     lines = [
         f"{report['scene']}: largest position error in m up to a time, and how long it stays within a limit",
         *Table({"": "", **dict.fromkeys(heads, "number")}, rows).lines(),
+        "",
     ]
-    lines.append("")
     for row in report["quantities"]:
         error = "" if row["relative_error"] is None else f"  relative error {row['relative_error']:.1e}"
         lines.append(f"{row['approximation']:22}{row['value'] or row['reason']} {row['unit']}{error}")
     return "\n".join(lines)
+
+
+def _by_approximation(rows: Iterable[dict[str, Any]], key: str) -> dict[str, dict[Any, dict[str, Any]]]:
+    """Return rows by approximation, in order of appearance, and by what they have at a key."""
+    groups: dict[str, dict[Any, dict[str, Any]]] = {}
+    for row in rows:
+        groups.setdefault(row["approximation"], {})[row[key]] = row
+    return groups
 
 
 def report_of(scene: Scene) -> Report:
@@ -84,28 +99,29 @@ def report_of(scene: Scene) -> Report:
 def page_text(scene: Scene, report: dict[str, Any]) -> str:
     """Return the page as HTML."""
     t_end = report["t_end"]
+    within = min(SWEEP_S, t_end)
     over_time = error_table(scene, t_end=t_end, times=[float(t) for t in np.geomspace(1.0, t_end, CURVE_TIMES)])
-    pictures = [
+    same_line = "Approximations with nearly equal errors share a line."
+    sweeps = [
         figure(
-            plot(over_time),
-            "Largest position error up to each time. Approximations with nearly equal errors share a line.",
-        ),
-        figure(
-            plot(over_time, "plane_error_arcsec"), "Largest error of the direction of the swing plane up to each time."
-        ),
-    ]
-    pictures += [
-        figure(
-            plot(sweep(scene, over=over, t=min(SWEEP_S, t_end))),
-            f"Largest position error within {min(SWEEP_S, t_end):g} s, as a function of {over}.",
+            chart(sweep(scene, over=over, t=within)),
+            f"Largest position error within {within:g} s, as a function of {over}.",
         )
         for over in OVERS[1:]
     ]
     return page(
         f"{scene.id}: how accurate the approximations are",
         [
-            section("Error over time", *pictures[:2], _errors(report)),
-            section("Where each is accurate", *pictures[2:], *(_limits(report, over) for over in OVERS)),
+            section(
+                "Error over time",
+                figure(chart(over_time), f"Largest position error up to each time. {same_line}"),
+                figure(
+                    chart(over_time, "plane_error_arcsec"),
+                    "Largest error of the direction of the swing plane up to each time.",
+                ),
+                _errors(report),
+            ),
+            section("Where each is accurate", *sweeps, *(_limits(report, over) for over in OVERS)),
             section("Single quantities", _quantities(report)),
             section("The approximations", _about()),
         ],
@@ -118,12 +134,11 @@ def page_text(scene: Scene, report: dict[str, Any]) -> str:
 def _errors(report: dict[str, Any]) -> Html:
     """Return a table with one row for each approximation: errors of position and swing plane up to each time."""
     times = sorted({row["t"] for row in report["rows"]})
-    by_key = {(row["approximation"], row["t"]): row for row in report["rows"]}
     heads = (*(f"m, up to {t:g} s" for t in times), *(f"arcsec, up to {t:g} s" for t in times))
     rows = []
-    for name in dict.fromkeys(row["approximation"] for row in report["rows"]):
-        values = [by_key[name, t][what] for what in ("error_m", "plane_error_arcsec") for t in times]
-        remark = "" if by_key[name, times[0]]["status"] == Status.OK else "does not apply to this scene"
+    for name, errors in _by_approximation(report["rows"], "t").items():
+        values = [errors[t][what] for what in ("error_m", "plane_error_arcsec") for t in times]
+        remark = "" if errors[times[0]]["status"] == Status.OK else "does not apply to this scene"
         rows.append((name, *("" if value is None else f"{value:.3g}" for value in values), remark))
     columns = {"approximation": "", **dict.fromkeys(heads, "number"), "remark": "prose"}
     return Table(columns, rows).html("Largest errors of position and of the swing plane's direction")
@@ -131,10 +146,11 @@ def _errors(report: dict[str, Any]) -> Html:
 
 def _limits(report: dict[str, Any], over: str) -> Html:
     rows = [row for row in report["limits"] if row["over"] == over]
-    names = list(dict.fromkeys(row["approximation"] for row in rows))
-    by_key = {(row["approximation"], row["limit"]): row for row in rows}
     columns = {"approximation": "", **{f"within {name}": "number" for name, _, _ in LIMITS}}
-    cells = [(name, *(_intervals(by_key[name, limit]) for limit, _, _ in LIMITS)) for name in names]
+    cells = [
+        (name, *(_intervals(good[limit]) for limit, _, _ in LIMITS))
+        for name, good in _by_approximation(rows, "limit").items()
+    ]
     return Table(columns, cells).html(f"Ranges of {over} in {rows[0]['unit'] if rows else ''}")
 
 
@@ -157,3 +173,65 @@ def _quantities(report: dict[str, Any]) -> Html:
 def _about() -> Html:
     columns = {"id": "", "description": "prose", "source": "prose", "leaves out": "prose"}
     return Table(columns, [(one.id, one.title, one.where, one.drops) for one in APPROXIMATIONS.values()]).html()
+
+
+def chart(rows: Sequence[TimeRow | SweepRow], what: str = "error_m") -> str:
+    """Return an SVG of the errors in `rows`: those of `error_table` at many times, or of one `sweep`.
+
+    Args:
+        rows: rows of one kind; those without an error are left out.
+        what: error to draw, `error_m` or `plane_error_arcsec`.
+
+    Raises:
+        InputError: there is nothing to draw, or matplotlib is not installed.
+    """
+    lines = _lines(rows, what)
+    if not lines:
+        raise InputError("rows", f"{len(rows)} rows", f"some with {what}")
+    over = "time" if isinstance(rows[0], TimeRow) else rows[0].over
+    with sheet((9.5, max(4.8, 0.3 * sum(line.name.count("\n") + 1 for line in lines) + 3))) as figure:
+        axes = figure.subplots()
+        logarithmic(axes, "y", *limits([y for line in lines for y in line.y]), 16)
+        ends = min(line.x[0] for line in lines), max(line.x[-1] for line in lines)
+        if over == "latitude":
+            axes.set_xlim(*ends)
+            axes.grid(True, axis="x")
+        else:
+            logarithmic(axes, "x", *ends)
+        draw(axes, lines)
+        low, high = axes.get_ylim()
+        for height, name in _MARKS[what]:
+            if low < height < high:
+                axes.axhline(height, **GUIDE)
+                axes.text(
+                    0.995, height, name, transform=axes.get_yaxis_transform(), ha="right", va="bottom", color=FAINT,
+                    fontsize=8,
+                )  # fmt: skip
+        axes.set_xlabel("time since release, s" if over == "time" else f"{over.replace('_', ' ')}, {UNITS[over]}")
+        axes.set_ylabel(_NAMES[what])
+        legend(axes, lines)
+        names = ", ".join(line.name.replace("\n", ", ") for line in lines)
+        return svg_text(figure, f"{over}-{what}", f"{_NAMES[what].capitalize()}, against {over}: {names}.")
+
+
+def _lines(rows: Sequence[TimeRow | SweepRow], what: str) -> list[Line]:
+    """Return the lines of the rows, the one with the largest last error first."""
+    groups: list[tuple[list[str], Any, Any]] = []
+    for name in dict.fromkeys(row.approximation for row in rows):
+        mine = [row for row in rows if row.approximation == name and getattr(row, what)]
+        x = np.array([row.t if isinstance(row, TimeRow) else row.value for row in mine])
+        y = np.array([getattr(row, what) for row in mine])
+        same = [names for names, u, v in groups if np.array_equal(u, x) and np.all(np.abs(y / v - 1) < _SAME)]
+        if same:
+            same[0].append(name)
+        elif mine:
+            groups.append(([name], x, y))
+    groups.sort(key=lambda group: -group[2][-1])
+    return [
+        Line(_wrapped(names), x.tolist(), y.tolist(), line_style(COLOURS[i % len(COLOURS) - 1], i))  # the darkest first
+        for i, (names, x, y) in enumerate(groups)
+    ]
+
+
+def _wrapped(names: Sequence[str]) -> str:
+    return "\n".join(", ".join(names[i : i + _WRAP]) for i in range(0, len(names), _WRAP))

@@ -8,8 +8,6 @@ from dataclasses import asdict
 from statistics import median
 from typing import Any
 
-import numpy as np
-
 from reference import load_scene
 from reference.errors import shortened
 from reference.status import Status
@@ -19,8 +17,7 @@ from ..studies.machine import machine
 from ..studies.stability import WRONG, Cell
 from ..studies.users_program import NUMBER
 from .busy import busy
-from .charts import ErrorHistory, Field, error_growth, heat_map
-from .charts.heat_map import LETTERS
+from .charts.stability_charts import LETTERS, error_growth, heat_map
 from .folder import Report
 from .page import Html, Table, facts, figure, findings, page, paragraph, section
 from .study_tables import LONGEST_COMMAND, advice, cpu, setting, tidy, words
@@ -118,9 +115,6 @@ def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML."""
     cells, runs = _parsed(document)
     letters = "; ".join(f"{letter}: {status.words}" for status, letter in LETTERS.items())
-    squares = [
-        Field(cell.scene, f"{cell.method} {_short(cell.precision)}".strip(), cell.status, cell.digits) for cell in cells
-    ]
     failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
     wrong, magnified = ([cell for cell in failures if cell.status == one] for one in COUNTED)
     parts = [
@@ -128,7 +122,7 @@ def page_text(document: dict[str, Any]) -> str:
         section(
             "Digits kept",
             figure(
-                heat_map(squares),
+                heat_map(cells),
                 f"Digits of the amplitude that a run kept, rounded down, or a letter for how it failed. {letters}.",
             ),
         ),
@@ -141,12 +135,8 @@ def page_text(document: dict[str, Any]) -> str:
     ]
     measured = [run for run in runs if run.exponent is not None]
     if measured:
-        lines = [
-            ErrorHistory(f"{run.method}, {run.formulation}", np.array(run.t), np.array(run.error_m), run.exponent)
-            for run in measured
-        ]
         caption = "Largest position error so far against time, with the slopes of t, t^1.5 (Brouwer's law) and t²."
-        picture = figure(error_growth(lines, max(run.bound_m for run in measured)), caption)
+        picture = figure(error_growth(measured), caption)
         parts.append(section("Long runs", picture, findings(laws(runs))))
     programs = document.get("programs", {})
     if programs:
@@ -163,13 +153,6 @@ def page_text(document: dict[str, Any]) -> str:
             "the reference solution."
         ),
     )
-
-
-def _short(precision: str) -> str:
-    number, _, formulation = precision.partition(", ")
-    if number == NUMBER:
-        return ""
-    return formulation if number == "double" else f"{number} {formulation}"
 
 
 def _reasons(cells: Sequence[Cell]) -> Html:

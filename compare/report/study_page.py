@@ -52,7 +52,7 @@ def _lead(document: dict[str, Any]) -> Html:
 def _pictures(document: dict[str, Any], rows: Sequence[Row], bound_m: float) -> list[Html]:
     if importlib.util.find_spec("matplotlib") is None:
         return [section("Pictures", paragraph(explanations.NO_PICTURES))]
-    from . import charts
+    from .charts import study_charts as charts
 
     pictures = [
         ("Error against CPU time", charts.overview(rows, bound_m), explanations.overview(rows)),

@@ -54,6 +54,7 @@ _PARAMETERS = {
 }
 _NO_DATE = {"svg": {"Date": None, "Creator": None}, "pdf": {"CreationDate": None}}
 _FAINT = 0.35  # opacity of faint markers
+_NARROW = 0.06  # a band below this part of the height of the axes has its text above it
 _GAP = 5  # between a line's end and its name, in points
 
 
@@ -239,4 +240,16 @@ def name_ends(axes: Any, lines: Sequence[Line], *, size: float = 8.0) -> None:
         axes.annotate(
             line.name, (line.x[-1], line.y[-1]), (side * _GAP, 0), textcoords="offset points", fontsize=size,
             color=line.style["color"], ha="left" if side > 0 else "right", va="center_baseline",
+        )  # fmt: skip
+
+
+def band(axes: Any, bound_m: float) -> None:
+    """Draw a band over errors below the bound of the reference, where the reference itself is not known."""
+    low, high = axes.get_ylim()
+    if low < bound_m < high:
+        axes.axhspan(low, bound_m, color=BAND, linewidth=0, zorder=0)
+        inside = math.log(bound_m / low) > _NARROW * math.log(high / low)
+        axes.text(
+            0.005, low if inside else bound_m, f"bound of the reference, {bound_m:.1e} m",
+            transform=axes.get_yaxis_transform(), va="bottom", color=FAINT, fontsize=8,
         )  # fmt: skip

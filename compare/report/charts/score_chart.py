@@ -13,8 +13,7 @@ from reference.numbers.precision import Array
 
 from ...score.scored import Score
 from ..folder import write_file
-from .drawing import COLOURS, GUIDE, Line, draw, legend, line_style, logarithmic, picture, sheet
-from .ladders import band
+from .drawing import COLOURS, GUIDE, Line, band, draw, legend, line_style, logarithmic, picture, sheet
 
 LONGEST_NAME = 32  # characters of a file's name beside its line
 

@@ -8,7 +8,7 @@ import json
 import pytest
 from places import ROOT
 
-from compare.report.charts.heat_map import LETTERS
+from compare.report.charts.stability_charts import LETTERS
 from compare.studies.row import Row
 from reference.status import Status
 

@@ -1,18 +1,24 @@
-"""Charts of a study: error against CPU seconds, with the Pareto front and by family; against evaluations and tolerance.
+"""Charts of a study, whose lines are ladders: a method over its settings, in the colour of its family.
 
-Besides: what formulations and right-hand sides do, and the cost of digits.
+They show error against CPU seconds, with the Pareto front, by family and by formulation; against evaluations of the
+right-hand side and against the tolerance asked for; and the cost of digits.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import replace
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
+from reference.status import Status
+
+from ...methods import METHODS
 from ...methods.method import Family
 from ...studies.row import Row
 from ..pareto import Curve, cost_of, costs_of_digits, curves, digits_of, error_of, front, whole_evaluations
@@ -23,6 +29,7 @@ from .drawing import (
     GUIDE,
     RULE,
     Line,
+    band,
     draw,
     legend,
     limits,
@@ -31,14 +38,67 @@ from .drawing import (
     sheet,
     svg_text,
 )
-from .ladders import CPU, ERROR, FAMILY_COLOURS, Ladder, band, error_above, family_of, ladders
 
+Coordinate = Callable[[Row], float | None]
+
+CPU, ERROR = "CPU seconds", "largest error of position in m"
 FINEST_M = 1e-20  # m: the upper panel shows the methods of fixed precision, but no errors below this
 _SPLIT = 4.0  # the panels meet at the smallest error of these methods divided by this
 _BAND_WITHIN = 1e12  # the bound is shown if the smallest error is less than this many times larger
 _COLUMNS = 3  # panels side by side
 _STRIP = 0.95  # lower edge of the strip of failed rows, as a part of the height of the panel
 _TICKS = (1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 50, 70, 100, 150, 200, 300, 500)
+_BLUE, _VERMILLION, _GREEN, _PURPLE, _ORANGE, _SKY, _INK = COLOURS
+FAMILY_COLOURS = {
+    Family.PAPER: _INK,
+    Family.GEOMETRIC: _PURPLE,
+    Family.MANY_DIGITS: _SKY,
+    Family.HEYOKA: _BLUE,
+    Family.SCIPY: _ORANGE,
+    Family.COMPILED: _VERMILLION,
+    Family.REBOUND: _GREEN,
+    Family.OTHERS: FAINT,
+}
+
+
+@dataclass(frozen=True)
+class Ladder(Line):
+    """A method over its settings as a line; `family` is the method's."""
+
+    family: Family = Family.OTHERS
+
+
+def family_of(method: str) -> Family:
+    """Return a method's family; a program of the user's belongs to the others."""
+    return METHODS[method].family if method in METHODS else Family.OTHERS
+
+
+def ladders(
+    curves: Iterable[Curve], x_of: Coordinate, y_of: Coordinate, name: Callable[[Curve], str] = attrgetter("label")
+) -> list[Ladder]:
+    """Return a line for each curve that has points; within a family, markers and dashes differ.
+
+    Args:
+        curves: methods over their settings.
+        x_of: horizontal coordinate of a measured row; a row without one, or with zero or infinity, is left out.
+        y_of: vertical coordinate, likewise.
+        name: name of a curve's line.
+    """
+    places: Counter[Family] = Counter()
+    lines = []
+    for curve in curves:
+        points = [
+            (x, y, row.status == Status.EXTRAPOLATED)
+            for row in curve.measured
+            if (x := x_of(row)) and (y := y_of(row)) and math.isfinite(x + y)
+        ]
+        if points:
+            family = family_of(curve.method)
+            style = line_style(FAMILY_COLOURS[family], places[family])
+            across, up, faint = zip(*points, strict=True)
+            lines.append(Ladder(name(curve), across, up, style, faint, family))
+            places[family] += 1
+    return lines
 
 
 def overview(rows: Sequence[Row], bound_m: float) -> str | None:
@@ -49,7 +109,7 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
     best = front(rows, bound_m)
     on_front = {row.key for row in best}
     shown = [one for one in curves(rows) if one.own or any(row.key in on_front for row in one.rows)]
-    lines = ladders(shown, cost_of, error_above(bound_m))
+    lines = ladders(shown, cost_of, partial(error_of, bound_m=bound_m))
     if not lines:
         return None
     scales, staircase = _scales(lines, bound_m), _staircase(best, bound_m)
@@ -87,7 +147,7 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
 
     The family of many digits is left to `precision_ladder` if there are others. None if no row is measured.
     """
-    lines = ladders([one for one in curves(rows) if one.own], cost_of, error_above(bound_m))
+    lines = ladders([one for one in curves(rows) if one.own], cost_of, partial(error_of, bound_m=bound_m))
     coarse = [one for one in lines if one.family != Family.MANY_DIGITS] or lines
     families = [family for family in Family if any(one.family == family for one in coarse)]
     if not families:
@@ -158,7 +218,10 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
     with sheet((9.5, 5.2)) as figure:
         axes = figure.subplots()
         logarithmic(axes, "y", *limits([cpu for line in lines for cpu in line.y], 0.4, 3.0), 12)
-        _digits(axes, *limits([digits for line in lines for digits in line.x], 0.8, 1.4))
+        low, high = limits([digits for line in lines for digits in line.x], 0.8, 1.4)
+        logarithmic(axes, "x", low, high)
+        ticks = [tick for tick in _TICKS if low < tick < high]
+        axes.set_xticks(ticks, list(map(str, ticks)))
         _known(axes, bound_m)
         draw(axes, lines)
         for law in laws.values():
@@ -167,14 +230,6 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
         axes.set(xlabel="digits achieved, −log₁₀ of the largest error in m", ylabel=CPU)
         legend(axes, lines, inside=True)
         return svg_text(figure, "precision", "CPU seconds against digits achieved, log-log, with fitted power laws.")
-
-
-def _digits(axes: Any, low: float, high: float) -> None:
-    from matplotlib.ticker import FixedLocator, FuncFormatter
-
-    logarithmic(axes, "x", low, high)
-    axes.xaxis.set_major_locator(FixedLocator([tick for tick in _TICKS if low < tick < high]))
-    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
 
 
 def _known(axes: Any, bound_m: float) -> None:
@@ -191,7 +246,7 @@ def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str |
     """Draw error against evaluations of the right-hand side, for methods that count them; None if there are none."""
     own = [one for one in curves(rows) if one.own]
     return _single(
-        ladders(own, lambda row: whole_evaluations(row, t_end), error_above(bound_m)),
+        ladders(own, lambda row: whole_evaluations(row, t_end), partial(error_of, bound_m=bound_m)),
         bound_m,
         ("evaluations", "evaluations of the right-hand side", "Error against evaluations of the right-hand side"),
     )
@@ -202,7 +257,7 @@ def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
     own = [one for one in curves(rows) if one.own and one.kind == "tolerance"]
     coarse = [one for one in own if family_of(one.method) != Family.MANY_DIGITS]
     words = ("tolerance", "relative tolerance asked for", "Error achieved against the tolerance asked for")
-    lines = ladders(coarse, attrgetter("setting"), error_above(bound_m))
+    lines = ladders(coarse, attrgetter("setting"), partial(error_of, bound_m=bound_m))
     return _single(lines, bound_m, words, diagonal="error in m = tolerance")
 
 
@@ -210,30 +265,30 @@ def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw error against CPU seconds of formulations of the same equations with one method; None without such rows."""
     every = curves(rows)
     compared = {one.method for one in every if not one.own}
-    ladders_of_all = ladders(
-        [one for one in every if one.method in compared], cost_of, error_above(bound_m), attrgetter("formulation")
-    )
+    curves_compared = [one for one in every if one.method in compared]
+    lines = ladders(curves_compared, cost_of, partial(error_of, bound_m=bound_m), attrgetter("formulation"))
     words = ("formulations", CPU, "Error against CPU seconds of formulations of the same equations")
-    lines = [replace(one, style=line_style(COLOURS[i % 6], i)) for i, one in enumerate(ladders_of_all)]
+    lines = [replace(line, style=line_style(COLOURS[i % 6], i)) for i, line in enumerate(lines)]
     return _single(lines, bound_m, words)
 
 
 def _single(lines: Sequence[Line], bound_m: float, words: tuple[str, str, str], diagonal: str = "") -> str | None:
-    """Draw one panel; `words` are the picture's name, the label of the horizontal axis and the description."""
+    """Draw one panel; `words` are the picture's name, the label of the horizontal axis and the description.
+
+    A diagonal is a guide line with this name, on which both coordinates are equal.
+    """
     if not lines:
         return None
+    description = f"{words[2]}, log-log: {', '.join(line.name for line in lines)}."
     with sheet((9.5, 5.6)) as figure:
         axes = figure.subplots()
         logarithmic(axes, "x", *limits([x for one in lines for x in one.x], 0.4, 3.0), 12)
         logarithmic(axes, "y", *limits([y for one in lines for y in one.y], 0.2, 5.0), 16)
         axes.set(xlabel=words[1], ylabel=ERROR)
         band(axes, bound_m)
-        draw(axes, lines)
-        others = []
         if diagonal:
-            low, high = axes.get_xlim()
-            ends = np.geomspace(low, high, 9).tolist()
-            others.append(Line(diagonal, ends, ends, GUIDE))
-            draw(axes, others)
-        legend(axes, [*lines, *others])
-        return svg_text(figure, words[0], f"{words[2]}, log-log: {', '.join(one.name for one in lines)}.")
+            ends = axes.get_xlim()
+            lines = [*lines, Line(diagonal, ends, ends, GUIDE)]
+        draw(axes, lines)
+        legend(axes, lines)
+        return svg_text(figure, words[0], description)

@@ -1,0 +1,179 @@
+"""Charts of stability: the digits that each method kept on each scene, and the growth of errors over long runs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from operator import itemgetter
+from typing import Any
+
+import numpy as np
+
+from reference.errors import shortened
+from reference.status import Status
+
+from ...observed.power_law import largest_so_far
+from ...studies.long_runs import LongRun
+from ...studies.stability import Cell
+from ...studies.users_program import NUMBER
+from .drawing import (
+    BAND,
+    COLOURS,
+    FAINT,
+    GUIDE,
+    INK,
+    PAPER,
+    Line,
+    band,
+    draw,
+    legend,
+    line_style,
+    logarithmic,
+    name_ends,
+    sheet,
+    svg_text,
+)
+
+LETTERS = {
+    Status.SILENTLY_WRONG: "W",
+    Status.ILL_CONDITIONED: "I",
+    Status.NOT_FINITE: "N",
+    Status.GAVE_UP: "G",
+    Status.CRASHED: "C",
+    Status.OUT_OF_TIME: "T",
+    Status.MISSED_TRANSITS: "M",
+    Status.REFUSED: "R",
+    Status.UNREACHABLE: "U",
+    Status.NOT_INSTALLED: "–",
+}
+_LOUD = Status.SILENTLY_WRONG  # the status that stands out by its colour
+_LOUD_COLOUR, _QUIET_COLOUR = "#D55E00", "#F2C9A8"
+_STEPS = (3, 6, 9, 12, 15)  # digits at which the colour changes
+_BLUES = ("#dbe9f4", "#b3d1e8", "#7fb3d9", "#4292c6", "#1f6aa8", "#0b4477")  # few to many digits, in grey as well
+_DARK_FROM = 3  # index of the first blue with white text
+_SQUARE = 0.27  # side of a square of the map in inches
+_MARGINS = (2.3, 1.9)  # width and height for the names, in inches
+_LONGEST_NAME = 30  # characters of a scene's name, which may be the path of a file
+_CHARACTER = 0.27  # width of a character in squares
+_LEAST_COLUMNS, _KEY_ROWS = 15, 5.5  # squares that the key needs
+
+SLOPES = ((1.0, "t"), (1.5, "t^1.5"), (2.0, "t²"))
+_POINTS = 240  # points of a line
+_APART = 1e6  # lines whose errors are closer than this factor where guide lines begin share one fan of them
+_FAN, _BEFORE = 50.0, 5.0  # length of the guide lines, and how far before the line's end they end, as factors of time
+_ABOVE = 0.045  # distance of the fan from the lines, as a power of the span of errors: room for its names
+_OVER = 20.0  # room above the lines, as a factor of error
+_BELOW = 1e3  # room below the bound of the reference, for its name, as a factor of error
+
+
+def heat_map(cells: Sequence[Cell]) -> str:
+    """Draw a map of scenes by methods, in order of appearance: digits kept, rounded down, or a letter for a failure."""
+    columns = list(dict.fromkeys(map(_column, cells)))
+    scenes = list(dict.fromkeys(cell.scene for cell in cells))
+    wide = max(len(columns), _LEAST_COLUMNS)
+    with sheet((_MARGINS[0] + _SQUARE * wide, _MARGINS[1] + _SQUARE * (len(scenes) + _KEY_ROWS))) as figure:
+        axes = figure.subplots()
+        axes.set(xlim=(0, wide), ylim=(len(scenes) + _KEY_ROWS, 0), aspect="equal")
+        for cell in cells:
+            _square(axes, columns.index(_column(cell)), scenes.index(cell.scene), cell.status, cell.digits)
+        _key(axes, len(scenes) + 0.7, wide, {cell.status for cell in cells})
+        axes.set_xticks(
+            [i + 0.5 for i in range(len(columns))], columns, rotation=55, rotation_mode="anchor", ha="left", fontsize=8
+        )
+        names = [shortened(scene, _LONGEST_NAME) for scene in scenes]
+        axes.set_yticks([i + 0.5 for i in range(len(scenes))], names, fontsize=8)
+        axes.tick_params(length=0, top=False, labeltop=True, labelbottom=False, bottom=False, pad=2)
+        axes.spines[:].set_visible(False)
+        wrong = sum(cell.status == _LOUD for cell in cells)
+        description = f"{len(scenes)} scenes by {len(columns)} methods; silently wrong: {wrong}."
+        return svg_text(figure, "map", description, "map")
+
+
+def _column(cell: Cell) -> str:
+    """Return a cell's method, with its number type and formulation where these are not double and a program's own."""
+    number, _, formulation = cell.precision.partition(", ")
+    words = {NUMBER: "", "double": formulation}.get(number, f"{number} {formulation}")
+    return f"{cell.method} {words}".strip()
+
+
+def _square(axes: Any, x: float, y: float, status: Status, digits: float | None = None) -> None:
+    """Draw a square with its mark: digits kept, rounded down, or the letter of a status."""
+    shade = sum((digits or 0.0) >= step for step in _STEPS)
+    if status == Status.OK:
+        colour, ink = _BLUES[shade], PAPER if shade >= _DARK_FROM else "#10202c"
+    elif status == Status.NOT_INSTALLED:
+        colour, ink = BAND, FAINT
+    else:
+        colour, ink = (_LOUD_COLOUR, "#000000") if status == _LOUD else (_QUIET_COLOUR, "#3a1c05")
+    mark = LETTERS.get(status) or ("?" if digits is None else f"{int(max(0.0, digits))}")
+    axes.fill([x, x + 0.94, x + 0.94, x], [y, y, y + 0.94, y + 0.94], color=colour, linewidth=0)
+    weight = "bold" if status == _LOUD else "normal"
+    axes.text(x + 0.47, y + 0.5, mark, ha="center", va="center_baseline", fontsize=7.5, color=ink, weight=weight)
+
+
+def _key(axes: Any, y: float, wide: float, present: set[Status]) -> None:
+    """Draw the key below the map."""
+    for i, digits in enumerate([0.0, *_STEPS]):
+        _square(axes, i, y, Status.OK, digits)
+    axes.text(len(_STEPS) + 1.3, y + 0.5, "digits kept, at least", fontsize=8, va="center_baseline", color=INK)
+    x = 0.0
+    for status in [one for one in LETTERS if one in present]:
+        needs = 1.7 + _CHARACTER * len(status.words)
+        if x == 0.0 or x + needs > wide:
+            x, y = 0.0, y + 1.2
+        _square(axes, x, y, status)
+        axes.text(x + 1.2, y + 0.5, status.words, fontsize=8, va="center_baseline", color=INK)
+        x += needs
+
+
+def error_growth(runs: Sequence[LongRun]) -> str:
+    """Draw the largest error so far of each run over time, log-log, with the exponent that was fitted to it.
+
+    Guide lines have the slopes t, t^1.5 (Brouwer's law) and t², and a band is the bound of the reference.
+    """
+    lines = [_line(run, i) for i, run in enumerate(runs)]
+    guides = _guides(lines)
+    bound_m = max(run.bound_m for run in runs)
+    with sheet((9.5, 6.0)) as figure:
+        axes = figure.subplots()
+        logarithmic(axes, "x", min(line.x[0] for line in lines), max(line.x[-1] for line in lines))
+        lowest = min(line.y[0] for line in lines) / 5
+        lowest = min(lowest, bound_m / _BELOW) if bound_m > lowest else lowest
+        logarithmic(axes, "y", lowest, _OVER * max(line.y[-1] for line in (*lines, *guides)), 16)
+        band(axes, bound_m)
+        draw(axes, [*lines, *guides])
+        axes.set(xlabel="time in s", ylabel="largest error of position so far in m")
+        legend(axes, sorted(lines, key=lambda line: -line.y[-1]))
+        name_ends(axes, guides)
+        names = ", ".join(f"{run.method}, {run.formulation}" for run in runs)
+        return svg_text(figure, "growth", f"Error over time, log-log: {names}.")
+
+
+def _line(run: LongRun, place: int) -> Line:
+    """Return the largest error so far of a run as a line, with the exponent in its name."""
+    t, error = np.array(run.t), np.array(run.error_m)
+    positive = (t > 0) & (np.maximum.accumulate(error) > 0)
+    t, largest = largest_so_far(t[positive], error[positive], _POINTS)
+    name = f"{run.method}, {run.formulation}, t^{run.exponent:.2f}"
+    return Line(name, t.tolist(), largest.tolist(), line_style(COLOURS[place % len(COLOURS)], place))
+
+
+def _guides(lines: Sequence[Line]) -> list[Line]:
+    """Return fans of guide lines, one fan above each group of lines that have similar errors where the fan begins."""
+    groups: list[list[tuple[float, Line]]] = []
+    for low, line in sorted(((_error_at(one, one.x[-1]), one) for one in lines), key=itemgetter(0)):
+        if groups and low < groups[-1][-1][0] * _APART:
+            groups[-1].append((low, line))
+        else:
+            groups.append([(low, line)])
+    guides = []
+    above = max(4.0, (max(one.y[-1] for one in lines) / min(one.y[0] for one in lines)) ** _ABOVE)
+    for group in groups:
+        last = max(line.x[-1] for _, line in group)
+        end, low = last / _BEFORE, above * max(_error_at(line, last) for _, line in group)
+        guides += [Line(name, [end / _FAN, end], [low, low * _FAN**slope], GUIDE) for slope, name in SLOPES]
+    return guides
+
+
+def _error_at(line: Line, last: float) -> float:
+    """Return a line's error where the guide lines begin that belong to lines with this last time."""
+    return float(np.interp(last / _BEFORE / _FAN, line.x, line.y))
