@@ -18,7 +18,7 @@ import subprocess
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, BinaryIO
 
@@ -241,20 +241,13 @@ def _tail(errors: BinaryIO) -> str:
     return f"It said: {text}" if text else "It said nothing on stderr."
 
 
-def timed(
-    words: list[str],
-    timeout_s: float = TIMEOUT_S,
-    repeats: int = REPEATS,
-    report: Callable[[int], None] | None = None,
-) -> tuple[BinaryIO, Timing]:
+def timed(words: list[str], timeout_s: float = TIMEOUT_S, repeats: int = REPEATS) -> tuple[BinaryIO, Timing]:
     """Run a program once as a warm-up, whose output is returned, and `repeats` more times to measure its run time."""
     output, cpu, wall = run_program(words, timeout_s)
     if wall > LONG_S or repeats == 0:
         return output, Timing(cpu, wall, 1, 0.0, warm=False)
     runs = []
-    for i in range(repeats):
-        if report is not None:
-            report(i)
+    for _ in range(repeats):
         repeated, *seconds = run_program(words, timeout_s)
         repeated.close()
         runs.append(seconds)

@@ -13,9 +13,8 @@ from reference import InputError
 from reference.numbers.precision import Array
 
 from .candidate import COLUMNS, Deviation
-from .names import Meaning, meaning, unquoted
+from .names import Meaning, defaults, meaning, multiplied, unquoted
 from .spelling import Spelling, words
-from .units import defaults, multiplied
 
 SKIPPED = ("-", "_", "")  # words for a column that is not read
 FOUCPEND = 10  # columns of the paper's program: t x y z X Y Z φ λ speed

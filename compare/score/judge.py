@@ -18,10 +18,12 @@ import numpy as np
 from reference import Golden, InputError, Scene, UnreachableError, load_scene
 from reference.dataset.dense import WITHIN
 from reference.model.constants import constants_in_double
+from reference.model.start import Start
 from reference.numbers.precision import Array
 
-from ..candidates.against_scene import beyond_the_cord, check_times
-from ..candidates.candidate import Candidate
+from ..candidates.candidate import Candidate, Deviation
+from ..candidates.external import PLACEHOLDER_BITS
+from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
@@ -31,6 +33,10 @@ from .scored import Score
 from .transit_matching import TransitErrors, transit_errors
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
+FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
+BEYOND = 1.01  # times the cord: farther out, no rounding and no stretching puts the bob
+FAR = 10  # times the scene's span: a run that ends later is rather in another unit than longer
+SAME = 1e-3  # relative difference of ratios that count as one scale
 
 
 def judge(
@@ -81,8 +87,8 @@ def judge(
     if t_end is not None:
         candidate = _up_to(candidate, t_end)
         times = None if times is None else times[times <= t_end]
-    check_times(candidate, scene)
-    scale = beyond_the_cord(candidate, scene) if candidate.positions else None
+    _check_times(candidate, scene)
+    scale = _beyond_the_cord(candidate, scene) if candidate.positions else None
     if scale is not None:
         candidate = replace(candidate, conventions=(*candidate.conventions, scale))
     problem, why = _reading(candidate, scene, inputs)
@@ -123,6 +129,56 @@ def _up_to(candidate: Candidate, end: float) -> Candidate:
     ignored = int((~kept).sum())
     note = f"{ignored} {'row' if ignored == 1 else 'rows'} after t = {end:g} s ignored"
     return replace(candidate, t=candidate.t[kept], columns=columns, low=low, notes=(*candidate.notes, note))
+
+
+def _check_times(candidate: Candidate, scene: Scene) -> None:
+    """Refuse times beyond the scene's span, and say what they may be.
+
+    Raises:
+        InputError: the last time is more than a grid step beyond the scene's end.
+    """
+    last, end = float(candidate.t[-1]), float(scene.exact.t_end)
+    if last <= end + float(scene.exact.grid_step):
+        return
+    unit = next((word for word in FINER if last * float(TIMES[word]) <= end * (1 + SAME)), None)
+    longer = f"--t-end {scene.run.t_end} leaves out later rows, --set run.t_end={last:.10g} makes the scene longer."
+    if unit is not None and last > FAR * end:
+        seconds = last * float(TIMES[unit])
+        longer = f"They look like {LONG_NAMES[unit]}: --units {unit} reads them so, and they end at {seconds:.10g} s."
+    expected = f"times from 0 to {scene.run.t_end} s"
+    raise InputError(f"{candidate.name}: t", f"{last:.10g} at the end", expected, longer)
+
+
+def _beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
+    """Return what positions that no cord lets the bob reach may be: another unit of length, or pixels; or None."""
+    reach = float(np.hypot(candidate.columns["x"], candidate.columns["y"]).max())
+    length = float(scene.exact.length)
+    if reach <= BEYOND * length:
+        return None
+    found = f"x and y reach {reach:.4g} and the cord is {scene.pendulum.length} m long"
+    scale = _scale(candidate, scene)
+    if scale is None:
+        return Deviation("beyond_the_cord", f"{found}: pixels, or another unit? Metres are wanted")
+    unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
+    times = f"the first row is {scale:.6g} times the release"
+    if unit is None:
+        return Deviation(
+            "scale", f"{found}: {times}; are {scale:.6g} pixels, or of another unit, a metre? Divide by it"
+        )
+    return Deviation("scale", f"{found}: {times}, so they are {LONG_NAMES[unit]}; --units {unit} reads them so")
+
+
+def _scale(candidate: Candidate, scene: Scene) -> float | None:
+    """Return how many times the release the first row is, if it is at t = 0 and in the release's direction."""
+    if candidate.t[0] != 0:
+        return None
+    x, y, _ = (float(part) for part in Start.of(scene.exact, PLACEHOLDER_BITS).position)
+    at = complex(candidate.columns["x"][0], candidate.columns["y"][0])
+    release = complex(x, y)
+    if not release or not at:
+        return None
+    ratio = at / release
+    return abs(ratio) if abs(ratio - abs(ratio)) < SAME * abs(ratio) else None
 
 
 def _reading(candidate: Candidate, scene: Scene, inputs: str) -> tuple[Scene, str]:

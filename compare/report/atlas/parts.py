@@ -18,7 +18,7 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 from reference.status import Status
 
-from ...candidates import names, units
+from ...candidates import names
 from ...observed.position_error import distance
 from ...score.errors import swing_rate
 from ...score.judge import unjudged_transits
@@ -166,14 +166,14 @@ def _vocabulary() -> dict[str, Any]:
     return {
         "position": names.POSITION.pattern,
         "velocity": names.VELOCITY.pattern,
-        "time": sorted(names.TIME),
+        "time": sorted(names.TIME_WORDS),
         "timeUnits": names.TIME_UNITS.pattern,
         "axes": {word: list(axis) for word, axis in names.AXES.items()},
         "directions": {word: list(axis) for word, axis in names.DIRECTIONS.items()},
-        "times": _ratios(units.TIMES),
-        "lengths": _ratios(units.LENGTHS),
-        "words": units.OTHER_WORDS,
-        "speeds": units.SHORT_SPEEDS,
+        "times": _ratios(names.TIMES),
+        "lengths": _ratios(names.LENGTHS),
+        "words": names.OTHER_WORDS,
+        "speeds": names.SHORT_SPEEDS,
     }
 
 

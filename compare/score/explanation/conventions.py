@@ -16,6 +16,7 @@ import numpy as np
 from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
+from ...candidates.names import LENGTHS, LONG_NAMES, TIMES
 from .phasors import as_angles, fit_phasors, sinc
 from .unexplained import NEAR, Rows, is_release, largest
 
@@ -25,11 +26,6 @@ OFF = 1e-7  # of the cord: a distance from the suspension that changes by more i
 SLIGHT = 1e-9  # and by more than this, heights are left out
 ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
 ROUGHLY = 0.03  # of the distance from the vertical: a release in another unit may be off by this
-LENGTHS = (
-    (100.0, "centimetres"), (1000.0, "millimetres"), (1e-3, "kilometres"), (1 / 0.3048, "feet"),
-    (1 / 0.0254, "inches"),
-)  # fmt: skip
-TIMES = ((60.0, "minutes"), (3600.0, "hours"), (1e-3, "milliseconds"), (86400.0, "days"))
 SHIFTS = 3  # rows by which a clock may be off
 PARTS = 4  # of a row: programs that write every second or fourth step are off by that
 
@@ -134,7 +130,7 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
         return rows
     units = [
         (1.0, ""),
-        *((scale, f"is in {unit}") for scale, unit in LENGTHS),
+        *((1 / float(LENGTHS[unit]), f"is in {LONG_NAMES[unit]}") for unit in ("cm", "mm", "km", "ft", "in")),
         (1 / length, "is in cord lengths (x/l)"),
     ]
     ways = [*itertools.product(((0, 1), (1, 0)), ((1, 1), (-1, 1), (1, -1), (-1, -1)))]
@@ -232,10 +228,11 @@ def unit_of_time(rows: Rows, frequency: float) -> Rows:
     as_printed = ratio(1.0)
     if as_printed is not None and 0.5 < as_printed < 2:
         return rows
-    for scale, unit in TIMES:
+    for unit in ("min", "h", "ms", "d"):
+        scale = float(TIMES[unit])
         scaled = ratio(scale)
         if scaled is not None and abs(scaled - 1) < 0.1:
-            convention = Deviation("unit_of_time", f"counts time in {unit}", size)
+            convention = Deviation("unit_of_time", f"counts time in {LONG_NAMES[unit]}", size)
             return rows.changed(convention, times=rows.times * scale)
     return rows
 

@@ -10,9 +10,8 @@ import numpy as np
 import pytest
 
 from compare.candidates.layout import Naming
-from compare.candidates.names import meaning
+from compare.candidates.names import defaults, meaning, size_of
 from compare.candidates.read import read, read_stream
-from compare.candidates.units import defaults, size_of
 from reference import InputError, load
 
 

@@ -14,8 +14,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from places import ROOT
 
-from compare.candidates.archive import MAX_UNPACKED
-from compare.candidates.read import read, read_stream, read_transits
+from compare.candidates.read import MAX_UNPACKED, read, read_stream, read_transits
 from compare.candidates.text import MAX_ROWS
 from reference import InputError
 
@@ -418,7 +417,7 @@ def test_a_damaged_archive_is_read_or_explained(data):
 
 FLOOD = """
 import itertools, resource, sys
-from compare.candidates.read import read_stream
+from compare.candidates.read import MAX_UNPACKED, read_stream
 from reference import InputError
 
 class Flood:
