@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -146,9 +146,7 @@ def command(
     repeats: Annotated[
         int | None,
         typer.Option(
-            "--repeats",
-            metavar="N",
-            help=f"Time the program of --run this often after a warm-up (default: {REPEATS}).",
+            "--repeats", metavar="N", help=f"Time the program of --run this often after a warm-up (default: {REPEATS})."
         ),
     ] = None,
     as_model: Annotated[
@@ -216,18 +214,20 @@ def command(
     from .judging import Judging
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
-    judging = Judging(naming, tolerance, covers or 0.0, inputs, not no_diagnosis, as_model)
+    end = None if t_end is None else float(scene.exact.t_end)
+    limits: dict[str, Any] = {"tolerance": tolerance, "covers": covers or 0.0, "t_end": end}
+    judging = Judging(naming, limits | {"inputs": inputs, "as_model": as_model, "explain": not no_diagnosis})
     if suite is not None:
         outcomes = judging.suite(suite, out)
     else:
-        end = None if t_end is None else float(scene.exact.t_end)
-        outcomes = judging.files(scene, candidates or (), transits, end)
+        times = judging.times(transits) if candidates else None
+        outcomes = [judging.file(scene, file, times) for file in candidates or ()]
         if run is not None:
-            outcomes.append(judging.program(scene, run, name or "the program", transits, end, timeout, repeats))
+            outcomes.append(judging.program(scene, run, name or "the program", transits, timeout, repeats))
         if approximation is not None:
-            outcomes.append(judging.approximation(scene, approximation, transits, end))
+            outcomes.append(judging.approximation(scene, approximation, transits))
         if not outcomes and transits is not None:
-            outcomes.append(judging.transits(scene, transits, end))
+            outcomes.append(judging.transits(scene, transits))
         if not outcomes:
             expected = "a file, - for stdin, --run, --transits or --approximation"
             raise InputError("CANDIDATE", "nothing", expected, "Name what is to be scored.")
@@ -236,7 +236,7 @@ def command(
     _show(outcomes, as_json, plot, junit, github)
     if out is not None and not as_json:
         typer.echo(f"{out / 'index.html'}: the page; badge.svg is beside it")
-    status = max(one.exit_status for one in outcomes)
+    status = max(outcome.exit_status for outcome in outcomes)
     if status:
         raise typer.Exit(status)
 
@@ -245,7 +245,7 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
     """Print and write outcomes in the forms that were asked for."""
     from ..report.suite.outcome_forms import annotation, append_summary, junit_text, suite_document, summary
 
-    scores = [one.score for one in outcomes if one.score is not None]
+    scores = [outcome.score for outcome in outcomes if outcome.score is not None]
     if plot is not None and scores:
         from ..report.charts.score_chart import error_picture
 
@@ -257,10 +257,10 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
     if as_json:
         emit(outcomes[0].document() if len(outcomes) == 1 else suite_document(outcomes))
         return
-    for one in outcomes:
-        for line in one.lines:
+    for outcome in outcomes:
+        for line in outcome.lines:
             typer.echo(line)
     if github:
-        for one in outcomes:
-            typer.echo(annotation(one))
+        for outcome in outcomes:
+            typer.echo(annotation(outcome))
         append_summary(summary(outcomes))

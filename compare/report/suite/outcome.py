@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from reference import FoucaultError, InputError
-from reference.errors import Stopped
 from reference.status import Status
 
 from ...score.scored import Score
@@ -115,14 +113,3 @@ class Outcome:
         if self.score is not None:
             return document(self.score)
         return {"scene": self.scene, "candidate": self.name, "verdict": REFUSED, "error": str(self.error)}
-
-
-def outcome(name: str, scene: str, judged: Callable[[], Score]) -> Outcome:
-    """Judge a candidate; an error in it becomes the outcome and does not stop others, an interruption ends all."""
-    try:
-        score = judged()
-    except Stopped:
-        raise
-    except FoucaultError as error:
-        return Outcome(name, scene, error=error)
-    return Outcome(score.candidate.name, score.scene.id, score)
