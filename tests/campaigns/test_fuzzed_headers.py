@@ -110,27 +110,7 @@ def test_a_damaged_header_is_read_or_explained(size, tally):
         text = bytearray(drawn(random)[0])
         for _ in range(random.randint(1, 4)):
             at = random.randrange(len(text))
-            put = random.choice(
-                [
-                    b"",
-                    b",",
-                    b";",
-                    b" ",
-                    b"\t",
-                    b"\n",
-                    b"x",
-                    b"t",
-                    b"-",
-                    b".",
-                    b"(",
-                    b"#",
-                    b'"',
-                    b"0",
-                    b"D",
-                    b"\xff",
-                    b"\0",
-                ]
-            )
+            put = random.choice([b"", *(bytes([byte]) for byte in b',; \t\nxt-.(#"0D\xff\0')])
             text[at : at + random.randint(0, 2)] = put
         try:
             read_stream(io.BytesIO(bytes(text)), "run")

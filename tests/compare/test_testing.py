@@ -41,10 +41,6 @@ def test_what_nobody_asks_for_is_not_computed(monkeypatch):
     assert (made.input_floor_m, made.input_floor_m, asked) == (5e-13, 5e-13, [60.0])
 
 
-def test_lists_will_do():
-    assert_agrees("paris", *TWO_ROWS, tolerance=1e-9)
-
-
 def test_a_scene_of_ones_own_will_do(golden, states):
     assert_agrees(load_scene("paris"), golden.t[:10], states[:10, :2], tolerance=1e-13)
 

@@ -46,11 +46,6 @@ def swap(a: Path, b: Path) -> None:
     a.with_name("other").rename(b)
 
 
-def flipped(data: bytes) -> bytes:
-    middle = len(data) // 2
-    return data[:middle] + bytes([data[middle] ^ 1]) + data[middle + 1 :]
-
-
 @pytest.mark.parametrize(("inputs", "folder"), [("decimal", "paris"), ("binary64", "paris.binary64")])
 def test_a_shipped_dataset_is_taken_in_the_reading_asked(inputs, folder, own_cache):
     golden = golden_of(load_scene("paris", [f"inputs={inputs}"]))
@@ -186,18 +181,6 @@ def test_the_truth_is_evaluated_once_for_the_same_times(monkeypatch):
     for name in ("t", "states", "low"):
         assert np.array_equal(getattr(first, name), getattr(again, name))
     assert (first.bound_m, first.number) == (again.bound_m, again.number)
-
-
-@pytest.mark.parametrize("damage", [lambda data: b"PK junk", lambda data: b"", lambda data: data[:-40], flipped])
-def test_a_damaged_evaluation_is_made_again(damage, own_cache):
-    golden = load("paris")
-    times = np.linspace(0, 90, 7)
-    first = truth_at(golden, times)
-    (path,) = (own_cache / "dense").iterdir()
-    whole = path.read_bytes()
-    path.write_bytes(damage(whole))
-    assert np.array_equal(truth_at(golden, times).states, first.states)
-    assert len(path.read_bytes()) == len(whole)
 
 
 def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):

@@ -5,17 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-static double l, g, omega, s, c, R, cor = 1.0, hor = 1.0, cen = 1.0;
+static double l, g, omega, s, c, R, hor = 1.0;
 static int linear = 0;
 
 static void rates(const double *u, double *du)
 {
     const double *r = u, *v = u + 3;
-    double q = R - s * r[1] + c * r[2], w = 2 * omega * cor, f[3], pull;
+    double q = R - s * r[1] + c * r[2], w = 2 * omega, f[3], pull;
     int i;
-    f[0] = cen * omega * omega * r[0] - w * (hor * c * v[2] - s * v[1]);
-    f[1] = -cen * omega * omega * s * q - w * s * v[0];
-    f[2] = -g + cen * omega * omega * c * q + w * hor * c * v[0];
+    f[0] = omega * omega * r[0] - w * (hor * c * v[2] - s * v[1]);
+    f[1] = -omega * omega * s * q - w * s * v[0];
+    f[2] = -g + omega * omega * c * q + w * hor * c * v[0];
     pull = (v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + r[0] * f[0] + r[1] * f[1] + r[2] * f[2]) / (l * l);
     for (i = 0; i < 3; i++) {
         du[i] = v[i];
@@ -52,21 +52,16 @@ int main(int argc, char **argv)
 #define IS(name) (strcmp(fault, name) == 0)
     if (IS("gravity")) g += 2e-5;
     if (IS("solar_day")) omega = 2 * M_PI / 86400;
-    if (IS("sphere")) f = 0;
     if (IS("mean_sphere")) f = 0, R = 6371000;
     if (IS("length")) l += 1e-3;
     if (IS("release")) u[0] += 1e-3;
     if (IS("swapped")) u[0] = a[3], u[1] = a[2];
-    if (IS("coriolis_sign")) cor = -1;
-    if (IS("coriolis_half")) cor = 0.5;
     if (IS("vertical_only")) hor = 0;
-    if (IS("no_centrifugal")) cen = 0;
     if (IS("linear")) linear = 1;
-    lat = IS("radians") ? lat : lat * M_PI / 180;
+    lat *= M_PI / 180;
     if (IS("geocentric")) lat = atan((1 - f) * (1 - f) * tan(lat));
     s = sin(lat), c = cos(lat), e2 = f * (2 - f), R = R * c / sqrt(1 - e2 * s * s);
     u[2] = -sqrt(l * l - u[0] * u[0] - u[1] * u[1]);
-    if (IS("inertial_rest")) u[3] = omega * s * u[1], u[4] = -omega * s * u[0];
     steps = lround(a[10] / h), every = lround(a[12]);
     printf("t,x,y,z,vx,vy,vz\n");
     for (n = 0; n <= steps; n++) {

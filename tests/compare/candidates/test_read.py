@@ -56,8 +56,14 @@ def assert_read(found):
     assert not found.extended
 
 
-def test_csv_is_read():
+def test_csv_is_read_from_a_stream_a_path_and_standard_input(tmp_path, monkeypatch):
     assert_read(read_stream(csv(), "run"))
+    path = tmp_path / "a.csv"
+    path.write_bytes(csv().getvalue())
+    assert_read(read(path))
+    assert read(str(path)).name == str(path)
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(csv()))
+    assert_read(read("-"))
 
 
 def test_columns_may_come_in_any_order_and_others_are_passed_over():
@@ -137,18 +143,6 @@ def test_an_archive_is_read_with_its_transits():
     found = read_stream(archive(**arrays, transits=np.array([8.2, 16.4]), other=np.array(["a"])), "run")
     assert_read(found)
     assert found.transits.tolist() == [8.2, 16.4]
-
-
-def test_standard_input_is_read(monkeypatch):
-    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(csv()))
-    assert_read(read("-"))
-
-
-def test_a_file_is_read_by_its_path(tmp_path):
-    path = tmp_path / "a.csv"
-    path.write_bytes(csv().getvalue())
-    assert_read(read(path))
-    assert read(str(path)).name == str(path)
 
 
 def test_digits_beyond_a_double_are_kept():

@@ -81,13 +81,9 @@ def test_the_growth_of_an_error_is_its_power_of_time(golden, truth, power):
     assert made.growth_exponent == pytest.approx(power, abs=0.1)
 
 
-def test_few_rows_have_no_growth(golden):
-    for times in ([0.0], [0.0, 1.0], [100.0, 101.0, 102.0, 103.0]):
-        truth = dense(golden, times)
-        assert trajectory_errors(candidate(truth, x=1.0), truth, golden).growth_exponent is None
-
-
-@pytest.mark.parametrize(("times", "found"), [([1, 2, 3, 4], True), ([1, 2, 3, 3.9], False), ([0, 1, 2, 4], False)])
+@pytest.mark.parametrize(
+    ("times", "found"), [([1, 2, 3, 4], True), ([1, 2, 3, 3.9], False), ([0, 1, 2, 4], False), ([0], False)]
+)
 def test_growth_needs_four_rows_after_the_release_and_four_times_the_first(golden, times, found):
     truth = dense(golden, [float(t) for t in times])
     made = trajectory_errors(candidate(truth, x=1.0), truth, golden)

@@ -58,12 +58,3 @@ def test_inputs_that_are_doubles_have_no_floor():
     site = {"latitude": "45", "gravity": "9.75", "rotation_rate": "0.0001220703125", "equatorial_radius": "6378137",
             "inverse_flattening": "256"}  # fmt: skip
     assert input_floor(make_scene("exact", site=site, release=release, run={"t_end": "20"}), 20.0) == 0
-
-
-def test_a_damaged_entry_is_made_again(own_cache):
-    paris = load_scene("paris")
-    first = input_floor(paris, 600.0)
-    (entry,) = own_cache.iterdir()
-    for junk in ("[1.0]", "half"):
-        entry.write_text(junk)
-        assert input_floor(paris, 600.0) == first

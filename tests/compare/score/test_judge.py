@@ -45,6 +45,11 @@ def own_cache(tmp_path_factory):
         yield
 
 
+def write_times(path, times):
+    path.write_text("t\n" + "".join(f"{t!r}\n" for t in np.asarray(times).tolist()))
+    return path
+
+
 def write_csv(path, t, states, columns=COLUMNS, digits=17):
     lines = [",".join(("t", *columns))]
     lines += [f"{a:.{digits}g}," + ",".join(f"{v:.{digits}g}" for v in row) for a, row in zip(t, states, strict=True)]
@@ -101,21 +106,10 @@ def test_what_is_allowed_is_allowed_to_the_last_bit(good, golden):
     assert not replace(score, tolerance_m=score.errors.max_m / 2 - score.errors.bound_m).agrees
 
 
-def test_the_table_says_the_same_in_words(foucault, good):
+def test_people_are_told_in_words(foucault, good):
     status, out, _ = foucault("score", "paris", good)
     assert status == 0
     assert "good.csv agrees with paris (1441 rows, t = 0 to 86400 of 86400 s: 100 %)" in out
-    for word in (
-        "largest error",
-        "digits",
-        "scd, mescd",
-        "worst",
-        "swing plane",
-        "drifts",
-        "inputs read as",
-        "reference",
-    ):
-        assert word in out
 
 
 def test_a_wrong_run_disagrees_with_exit_status_1(foucault, tmp_path, golden, states):
@@ -216,8 +210,7 @@ def test_a_program_is_run_and_timed(foucault, good):
 
 def test_missed_and_extra_transits_disagree_and_are_named(foucault, good, golden, tmp_path):
     zeros = np.sort([*np.delete(golden.transits["t"], 100), 1234.5])
-    path = tmp_path / "zeros.csv"
-    path.write_text("t\n" + "\n".join(map(repr, zeros.tolist())) + "\n")
+    path = write_times(tmp_path / "zeros.csv", zeros)
     status, out, _ = foucault("score", "paris", good, "--transits", path)
     assert status == 1
     assert "10513 matched, 1 missed, 1 extra" in out
@@ -230,8 +223,7 @@ def test_one_shifted_transit_decides_about_a_perfect_run(foucault, good, golden,
     zeros, tolerance_m, omega = golden.transits["t"].copy(), 1e-5, 2 * np.pi / 16.4
     by = weighted * tolerance_m * omega / abs(golden.transits["ax"][100])
     zeros[100] += by
-    path = tmp_path / "zeros.csv"
-    path.write_text("t\n" + "\n".join(map(repr, zeros.tolist())) + "\n")
+    path = write_times(tmp_path / "zeros.csv", zeros)
     done, out, _ = foucault("score", "paris", good, "--transits", path, "--tolerance", tolerance_m)
     assert done == status
     assert "10514 matched, 0 missed, 0 extra" in out
@@ -239,8 +231,7 @@ def test_one_shifted_transit_decides_about_a_perfect_run(foucault, good, golden,
 
 
 def test_a_release_at_rest_and_what_lies_beyond_the_end_are_no_extra_transits(foucault, good, golden, tmp_path):
-    path = tmp_path / "zeros.csv"
-    path.write_text("t\n" + "\n".join(map(repr, [0.0, *golden.transits["t"].tolist(), 86400.5])) + "\n")
+    path = write_times(tmp_path / "zeros.csv", [0.0, *golden.transits["t"], 86400.5])
     assert foucault("score", "paris", good, "--transits", path)[0] == 0
 
 
@@ -288,16 +279,17 @@ def test_rows_and_transits_after_the_end_asked_for_are_ignored(good, golden):
     assert (len(whole.candidate.t), whole.notes) == (1441, ())
 
 
-def test_an_end_before_the_first_row_is_refused(tmp_path, golden, states):
-    late = write_csv(tmp_path / "late.csv", golden.t[5:9], states[5:9])
-    with pytest.raises(InputError, match=r"t_end: got '1', expected a time from the first row on, .* t = 300 s"):
-        judge(late, "paris", t_end=1)
-
-
-@pytest.mark.parametrize("tolerance", [0.0, -1.0, float("inf"), float("nan")])
-def test_a_tolerance_is_above_zero_and_finite(good, tolerance):
-    with pytest.raises(InputError, match="a positive number of metres"):
-        judge(good, "paris", tolerance=tolerance)
+@pytest.mark.parametrize(
+    ("option", "values", "words"),
+    [
+        ("tolerance", [0.0, -1.0, float("inf"), float("nan")], "a positive number of metres"),
+        ("covers", [-0.01, 1.01], "from 0 to 1"),
+    ],
+)
+def test_a_tolerance_is_above_zero_and_finite_and_a_share_at_most_the_whole(good, option, values, words):
+    for value in values:
+        with pytest.raises(InputError, match=words):
+            judge(good, "paris", **{option: value})
 
 
 def test_the_tolerance_is_a_millionth_of_the_amplitude_and_the_bound_is_added(good, golden):
@@ -337,19 +329,12 @@ def test_inputs_that_the_scene_says_are_doubles_are_read_so_whatever_the_candida
     assert _reading(SimpleNamespace(extended=extended), scene, "auto") == (scene, "as the scene says")
 
 
-@pytest.mark.parametrize("share", [-0.01, 1.01])
-def test_a_share_is_at_most_the_whole(good, share):
-    with pytest.raises(InputError, match="from 0 to 1"):
-        judge(good, "paris", covers=share, explain=False)
-
-
 def test_transits_alone_are_a_candidate(foucault, tmp_path, golden):
     zeros = golden.transits["t"]
     path = tmp_path / "zeros.csv"
 
     def score(times, *words):
-        path.write_text("t\n" + "".join(f"{t!r}\n" for t in np.asarray(times).tolist()))
-        status, out, _ = foucault("score", "paris", "--transits", path, "--json", *words)
+        status, out, _ = foucault("score", "paris", "--transits", write_times(path, times), "--json", *words)
         return status, json.loads(out)
 
     status, said = score([0.0, *zeros, 86400.5], "--covers", 1)
@@ -370,9 +355,7 @@ def test_transits_alone_are_a_candidate(foucault, tmp_path, golden):
 
 
 def test_a_doubled_transit_is_an_extra_one(foucault, good, golden, tmp_path):
-    path = tmp_path / "zeros.csv"
-    times = np.repeat(golden.transits["t"], [1] * 99 + [2] + [1] * 10414).tolist()
-    path.write_text("t\n" + "\n".join(map(repr, times)) + "\n")
+    path = write_times(tmp_path / "zeros.csv", np.repeat(golden.transits["t"], [1] * 99 + [2] + [1] * 10414))
     status, out, _ = foucault("score", "paris", good, "--transits", path)
     assert status == 1
     assert "10514 matched, 0 missed, 1 extra" in out
@@ -458,8 +441,7 @@ def test_a_scene_of_the_users_own_is_judged(foucault, tmp_path, changes):
 
 def test_transits_that_the_scene_does_not_ask_for_are_not_judged(foucault, tmp_path):
     path = own_scene(tmp_path, transits="false")
-    zeros = tmp_path / "zeros.csv"
-    zeros.write_text("t\n1\n2\n3\n")
+    zeros = write_times(tmp_path / "zeros.csv", [1, 2, 3])
     scene = load_scene(path, ["inputs=binary64"])
     rows = write_csv(tmp_path / "run.csv", np.linspace(0, 60, 5), trajectory(scene, np.linspace(0, 60, 5)))
     status, out, _ = foucault("score", path, rows, "--transits", zeros)
@@ -472,17 +454,10 @@ def test_transits_of_a_motion_that_is_in_one_plane_are_not_judged(foucault, tmp_
     changes = ["site.rotation_rate=0", "inputs=binary64"]
     times = np.linspace(0, 60, 5)
     rows = write_csv(tmp_path / "run.csv", times, trajectory(load_scene(path, changes), times))
-    zeros = tmp_path / "zeros.csv"
-    zeros.write_text("t\n1\n2\n")
+    zeros = write_times(tmp_path / "zeros.csv", [1, 2])
     status, out, _ = foucault("score", path, rows, "--transits", zeros, "--set", changes[0])
     assert status == 0
     assert "xdot is identically zero: the candidate's transits were not judged" in out
-
-
-def test_rows_a_little_beyond_the_end_are_judged(foucault, tmp_path, golden, states):
-    t = np.append(golden.t[-3:-1], 86400.00000000003)
-    path = write_csv(tmp_path / "late.csv", t, states[-3:])
-    assert foucault("score", "paris", path)[0] == 0
 
 
 @pytest.mark.parametrize("columns", [("x", "y"), ("y", "x", "vz")])
@@ -575,8 +550,10 @@ def test_without_any_force_there_is_none_larger_than_g():
     assert _flung_off(load_scene("paris", ["site.gravity=0", "site.rotation_rate=0"])) == ()
 
 
-@pytest.mark.parametrize(("early", "whole"), [(1e-13, True), (0.9e-6, True), (1e-6, True), (1.1e-6, False)])
-def test_a_file_that_ends_a_rounding_before_the_end_covers_all_of_it(tmp_path, golden, states, early, whole):
+@pytest.mark.parametrize(
+    ("early", "whole"), [(-3e-16, True), (1e-13, True), (0.9e-6, True), (1e-6, True), (1.1e-6, False)]
+)
+def test_a_file_that_ends_a_rounding_off_the_end_covers_all_of_it(tmp_path, golden, states, early, whole):
     path = write_csv(tmp_path / "short.csv", np.append(golden.t[-3:-1], 86400 * (1 - early)), states[-3:])
     assert (judge(path, "paris", explain=False).covered == 1.0) is whole
 
