@@ -30,11 +30,11 @@ def commands() -> typer.Typer:
     app.add_typer(computing)
     app.add_typer(comparing)
 
-    asked = typer.Option(
+    version_option = typer.Option(
         False, "--version", callback=_version, is_eager=True, help="Print the versions of code and data and exit."
     )
 
-    def front(_: bool = asked) -> None:
+    def front(_: bool = version_option) -> None:
         """Compute reference solutions of the Foucault pendulum, and judge other programs by them.
 
         A scene is a pendulum, its site and its release. `foucault scenes` lists those that come with the project;
@@ -46,11 +46,11 @@ def commands() -> typer.Typer:
     return app
 
 
-def _version(asked: bool) -> None:
+def _version(wanted: bool) -> None:
     """Print the versions of the code and of the data, if asked for them, and end."""
     import typer
 
-    if asked:
+    if wanted:
         from importlib.metadata import PackageNotFoundError, version
 
         from reference.scenes.shipped import DATA_VERSION

@@ -70,9 +70,9 @@ def chosen(option: str, word: str, names: Iterable[str]) -> str:
     Raises:
         InputError: it is none of them.
     """
-    known = list(names)
-    if word not in known:
-        raise InputError(option, word, in_words(known), did_you_mean(word, known, ""))
+    choices = list(names)
+    if word not in choices:
+        raise InputError(option, word, in_words(choices), did_you_mean(word, choices, ""))
     return word
 
 

@@ -37,11 +37,11 @@ def command(
     rows = []
     for folder in folders:
         with progress() as show:
-            found = verify(folder, show(folder.name))
-            problems, notes = found.problems, found.notes
+            outcome = verify(folder, show(folder.name))
+            problems, notes = outcome.problems, outcome.notes
             if recompute and not problems:
                 problems, measured = recomputed(folder, show(folder.name))
-                notes = [*found.foreign, *measured]
+                notes = [*outcome.foreign, *measured]
         rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": notes})
         if not as_json:
             typer.echo(f"{folder}: {'ok' if not problems else 'WRONG'}")

@@ -54,8 +54,9 @@ def changes_in(name: str) -> list[str]:
 def is_of_shipped_scene(scene: Scene, name: str) -> bool:
     """Return whether a dataset is that of a scene that comes with the project, unchanged but for its reading."""
     shipped = shipped_scene(scene)
-    own = shipped is not scene and name == dataset_id(shipped.model_copy(update={"inputs": scene.inputs}))
-    return own and scene.run == shipped.run
+    if shipped is scene or scene.run != shipped.run:
+        return False
+    return name == dataset_id(shipped.model_copy(update={"inputs": scene.inputs}))
 
 
 def default_folder(scene: Scene, name: str) -> Path:

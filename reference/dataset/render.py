@@ -107,8 +107,8 @@ def _accuracy(manifest: Manifest, transits: Sheet | None) -> list[str]:
     if count and all(check.transit_s is None for check in manifest.cross_checks):
         lines += ["  the proof alone confirms them"]
     return lines + [
-        f"  possible transit in [{one.from_s}, {one.to_s}] s ({one.parity} number of zeros): not decided"
-        for one in manifest.possible
+        f"  possible transit in [{interval.from_s}, {interval.to_s}] s ({interval.parity} number of zeros): not decided"
+        for interval in manifest.possible
     ]
 
 

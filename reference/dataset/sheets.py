@@ -38,10 +38,8 @@ class Sheet:
         places = [self.header.index(name) for name in columns]
         parted = [[row[i].partition(".") for row in self.rows] for i in places]
         most = max((len(part) for column in parted for _, _, part in column), default=0)
-        found = [
-            integers(int(whole + part) * 10 ** (most - len(part)) for whole, _, part in column) for column in parted
-        ]
-        return found, 10**most
+        scaled = ((int(whole + part) * 10 ** (most - len(part)) for whole, _, part in column) for column in parted)
+        return [integers(column) for column in scaled], 10**most
 
     def csv(self) -> str:
         """Return the text of the file: one header line, commas, LF."""
@@ -93,14 +91,14 @@ def nearest_doubles(table: Table, sheet: Sheet) -> dict[str, list[float]]:
 
     A number smaller than its error bound is noise about zero, and gets the double of the printed decimal.
     """
-    unit, found = 1 << table.bits, {}
+    unit, doubles = 1 << table.bits, {}
     for i, name in enumerate(table.columns):
         place, column = sheet.header.index(name), []
         for value, error, row in zip(table.values, table.errors, sheet.rows, strict=True):
-            known = abs(value[i]) > error[i]
-            column.append(value[i] / unit if known else float(Fraction(row[place])))
-        found[name] = column
-    return found
+            is_noise = abs(value[i]) <= error[i]
+            column.append(float(Fraction(row[place])) if is_noise else value[i] / unit)
+        doubles[name] = column
+    return doubles
 
 
 def column_bounds(table: Table, decimals: Mapping[str, int]) -> dict[str, str]:

@@ -104,8 +104,8 @@ def seal_problems(files: Files) -> Iterator[str]:
     if seal in (None, manifest.seal):
         return
     if in_place or _is_copy(manifest, ships):
-        own, other = manifest.seal[:12], seal[:12]
-        yield f"{MANIFEST}: its seal {own}… is not that of the dataset that ships, {other}… (index.json)"
+        ours, theirs = manifest.seal[:12], seal[:12]
+        yield f"{MANIFEST}: its seal {ours}… is not that of the dataset that ships, {theirs}… (index.json)"
 
 
 def _is_copy(manifest: Manifest, ships: Path) -> bool:
@@ -134,17 +134,16 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     manifest, end = files.manifest, float(files.scene.exact.t_end)
     solution = solved(files.scene, Making.of(manifest.command), report and (lambda t: report(t, end)))
     texts = render(solution, manifest.id)
-    made = Manifest.model_validate_json(texts.pop(MANIFEST))
-    fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), made.model_dump(exclude={*FOLLOWS}))]
+    again = Manifest.model_validate_json(texts.pop(MANIFEST))
+    fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))]
     lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
     wrong = [line for name, text in texts.items() if (line := _first_line(name, files.texts.get(name), text))]
     if wrong or not fields:
         return [*wrong, *lines], []
-    runs = [manifest.run, made.run, *manifest.cross_checks, *made.cross_checks]
-    excused = manifest.generator != made.generator or any(run.number in HARDWARE for run in runs)
+    runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]
+    excused = manifest.generator != again.generator or any(run.number in HARDWARE for run in runs)
     if excused and all(place.startswith(MEASURED) for place, *_ in fields):
-        said = f"every digit and bound is the same; {_differ(len(fields), 'measured figure')}"
-        return [], [said, *lines]
+        return [], [f"every digit and bound is the same; {_differ(len(fields), 'measured figure')}", *lines]
     return lines, []
 
 
@@ -153,11 +152,11 @@ def _first_line(name: str, old: str | None, new: str) -> str:
     if old is None:
         return f"{name}: recomputing gives this file too"
     pairs = enumerate(zip_longest(old.splitlines(), new.splitlines(), fillvalue="nothing"), 1)
-    other = [(number, one, two) for number, (one, two) in pairs if one != two]
-    if not other:
+    differing = [(number, *lines) for number, lines in pairs if lines[0] != lines[1]]
+    if not differing:
         return ""
-    number, one, two = other[0]
-    return f"{name}: {_differ(len(other), 'line')}; line {number} is {one}, recomputed {two}"
+    number, before, after = differing[0]
+    return f"{name}: {_differ(len(differing), 'line')}; line {number} is {before}, recomputed {after}"
 
 
 def _differ(count: int, what: str) -> str:

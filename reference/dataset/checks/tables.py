@@ -117,9 +117,9 @@ def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
     """Check each bound on a time: at least its rounding, at most what the runs or the proof leave open."""
     manifest = files.manifest
     half_unit = Fraction(1, 2 * 10 ** manifest.decimals["transits"]["t"])
-    known = [check.transit_s for check in manifest.cross_checks]
-    known += [manifest.enclosure.transit_radius_s] if manifest.enclosure else []
-    apart = 2 * max((Fraction(text) for text in known if text is not None), default=Fraction(0))
+    gaps = [check.transit_s for check in manifest.cross_checks]
+    gaps += [manifest.enclosure.transit_radius_s] if manifest.enclosure else []
+    apart = 2 * max((Fraction(gap) for gap in gaps if gap is not None), default=Fraction(0))
     error = 2 * manifest.bound("grid", "vx")  # of xdot, and over ax that of the time
     grazing = error * _largest_jerk(files)
     for k, (bound, ax) in enumerate(transits.numbers(("bound", "ax")), 1):
