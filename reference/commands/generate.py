@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
 from pathlib import Path
@@ -162,7 +162,7 @@ def command(
 
 
 def _generate_all(
-    replaced: Iterable[str], out: Path | None, workers: int | None, cluster: str | None, as_json: bool
+    replaced: Sequence[str], out: Path | None, workers: int | None, cluster: str | None, as_json: bool
 ) -> None:
     """Make what is missing or not sealed, each in a process of its own; a scene that fails costs only itself.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -32,24 +32,19 @@ BINARY64 = ".binary64"
 
 @dataclass(frozen=True)
 class Job:
-    """A dataset to be made: its scene with replaced fields, its id and its folder."""
+    """A dataset to be made: its scene, its id and its folder."""
 
-    scene: str
-    replaced: tuple[str, ...]
+    scene: Scene
     name: str
     folder: Path
 
-    def load(self) -> Scene:
-        """Return the scene."""
-        return load_scene(self.scene, list(self.replaced))
-
     def row(self, status: Status, reason: str | None = None) -> Row:
         """Return what `generate --all --json` says of the dataset, but for what was measured."""
-        identity = {"dataset": self.name, "scene": self.scene, "out": str(self.folder)}
+        identity = {"dataset": self.name, "scene": self.scene.id, "out": str(self.folder)}
         return {**identity, "status": status.value, "reason": reason}
 
 
-def jobs(replaced: Iterable[str], out: Path | None) -> list[Job]:
+def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
     """Return all datasets that ship, those of the longest spans first: of each scene, and of sealed other readings.
 
     Args:
@@ -60,16 +55,13 @@ def jobs(replaced: Iterable[str], out: Path | None) -> list[Job]:
         InputError: a replaced field is wrong.
     """
     readings = [name.removesuffix(BINARY64) for name in seals() if name.endswith(BINARY64)]
-    wanted = [(name, ()) for name in scene_ids()] + [(name, ("inputs=binary64",)) for name in readings]
-    spans, every = {}, []
-    for word, reading in wanted:
-        fields = (*reading, *replaced)
-        scene = load_scene(word, list(fields))
+    scenes = [load_scene(name, replaced) for name in scene_ids()]
+    scenes += [load_scene(name, ["inputs=binary64", *replaced]) for name in readings]
+    every = []
+    for scene in scenes:
         name = dataset_id(scene)
-        folder = out / name if out is not None else default_folder(scene, name)
-        spans[name] = scene.exact.t_end
-        every.append(Job(word, fields, name, folder))
-    return sorted(every, key=lambda job: (-spans[job.name], job.name))
+        every.append(Job(scene, name, out / name if out is not None else default_folder(scene, name)))
+    return sorted(every, key=lambda job: (-job.scene.exact.t_end, job.name))
 
 
 def is_done(job: Job) -> bool:
@@ -79,16 +71,14 @@ def is_done(job: Job) -> bool:
     except FoucaultError:
         return False
     sealed = not ships(job.folder) or seals().get(job.name) == files.manifest.seal
-    scene = job.load()
-    same = scene_inputs(files.scene) == scene_inputs(scene) and files.scene.inputs == scene.inputs
+    same = scene_inputs(files.scene) == scene_inputs(job.scene) and files.scene.inputs == job.scene.inputs
     return sealed and same and files.manifest.id == job.name
 
 
 def made(job: Job) -> tuple[Row, dict[str, str]]:
     """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
     try:
-        scene = job.load()
-        solution = solved(scene, making_of(scene, job.name, job.folder))
+        solution = solved(job.scene, making_of(job.scene, job.name, job.folder))
         return job.row(Status.OK) | summary(solution, job.folder), render(solution, job.name)
     except UnreachableError as error:
         status = Status.GAVE_UP if isinstance(error, IntegrationError) else Status.UNREACHABLE

@@ -49,7 +49,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_all_that_ships_is_asked_for(tmp_path):
     names = {job.name for job in jobs((), tmp_path)}
     assert names == {*scene_ids(), *seals()}
-    spans = [job.load().exact.t_end for job in jobs((), None)]
+    spans = [job.scene.exact.t_end for job in jobs((), None)]
     assert spans == sorted(spans, reverse=True)
 
 

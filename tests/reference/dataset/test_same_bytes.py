@@ -119,7 +119,7 @@ def test_the_commands_of_what_ships_make_what_ships():
     for name, entry in index().items():
         manifest = reference.load(name).manifest
         for job in (everything[name], elsewhere[name]):
-            scene = job.load()
+            scene = job.scene
             making = making_of(scene, name, job.folder)
             assert command(scene, name, making) == manifest.command
             assert making.options == entry["options"]
