@@ -18,8 +18,8 @@ from ...model.force import acceleration, invariant
 from ...numbers.columns import STATE
 from ...numbers.fixed_point import FixedPoint, Integers, integers
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
-from ...numbers.table import bits_in
 from ..golden import Files
+from ..manifest import Kind
 from ..record import INVARIANT_BITS
 from ..sheets import Sheet
 
@@ -33,35 +33,45 @@ Quantity = Callable[[list[Any], Constants], Any]
 
 def problems(files: Files) -> Iterator[str]:
     """Yield every row that breaks a law which holds at each moment."""
-    grid = _on_grid(files)
+    grid = _moments(files, "grid")
     yield from grid.off_the_sphere()
     yield from grid.not_along_the_sphere()
     constant = files.scene.exact.drag == 0
     if constant:
         yield from grid.with_another_invariant(grid.first())
     if files.manifest.counts.transits and "transits.csv" in files.tables:
-        transits = _at_transits(files)
+        transits = _moments(files, "transits")
         yield from transits.off_the_sphere()
         if constant:
             yield from transits.with_another_invariant(grid.first())
         yield from transits.with_another_acceleration()
 
 
-def _on_grid(files: Files) -> _Moments:
-    sheet = files.tables["grid.csv"]
-    names = [f"grid.csv: t = {row[0]}" for row in sheet.rows]
-    return _Moments.of(files, names, *sheet.integers(STATE), [files.manifest.bound("grid", name) for name in STATE])
+def _moments(files: Files, kind: Kind) -> _Moments:
+    """Return the states of a table, over a unit that holds the bounds and the length as well.
 
-
-def _at_transits(files: Files) -> _Moments:
-    """Return the states at the transits, where the velocity is (0, vy, -y vy / z)."""
-    sheet = files.tables["transits.csv"]
-    names = [f"transits.csv: transit {row[0]}" for row in sheet.rows]
-    (x, y, z, vy), unit = sheet.integers(("x", "y", "z", "vy"))
-    bounds = [files.manifest.bound("transits", name) for name in ("x", "y", "z", "vy")]
-    zero, exact = integers([0] * len(names)), Fraction(0)  # xdot is zero by definition, and zdot follows
-    columns, bounds = [x, y, z, zero, vy, zero], [*bounds[:3], exact, bounds[3], exact]
-    return _Moments.of(files, names, columns, unit, bounds, sheet)
+    At a transit the velocity is (0, vy, -y vy / z).
+    """
+    sheet = files.tables[f"{kind}.csv"]
+    printed = STATE if kind == "grid" else ("x", "y", "z", "vy")
+    columns, unit = sheet.integers(printed)
+    bounds = [files.manifest.bound(kind, name) for name in printed]
+    if kind == "transits":  # xdot is zero by definition, and zdot follows
+        zero, exact = integers([0] * len(sheet.rows)), Fraction(0)
+        columns, bounds = [*columns[:3], zero, columns[3], zero], [*bounds[:3], exact, bounds[3], exact]
+    numbers = [number * unit for number in (files.scene.exact.length, *bounds)]
+    finer = math.lcm(*(number.denominator for number in numbers))
+    length, *whole = (int(number * finer) for number in numbers)
+    word = "t =" if kind == "grid" else "transit"
+    return _Moments(
+        files=files,
+        names=[f"{kind}.csv: {word} {row[0]}" for row in sheet.rows],
+        columns=[column * finer for column in columns],
+        unit=unit * finer,
+        bounds=whole,
+        length=length,
+        transits=sheet if kind == "transits" else None,
+    )
 
 
 @dataclass(frozen=True)
@@ -85,22 +95,6 @@ class _Moments:
     bounds: list[int]
     length: int
     transits: Sheet | None
-
-    @classmethod
-    def of(
-        cls,
-        files: Files,
-        names: list[str],
-        columns: list[Integers],
-        unit: int,
-        bounds: list[Fraction],
-        transits: Sheet | None = None,
-    ) -> _Moments:
-        """Return states that are given over a unit, over one that holds the bounds and the length as well."""
-        numbers = [number * unit for number in (files.scene.exact.length, *bounds)]
-        finer = math.lcm(*(number.denominator for number in numbers))
-        length, *whole = (int(number * finer) for number in numbers)
-        return cls(files, names, [column * finer for column in columns], unit * finer, whole, length, transits)
 
     def off_the_sphere(self) -> Iterator[str]:
         """Check |r| = l."""
@@ -141,13 +135,13 @@ class _Moments:
 
     def values(self, quantity: Quantity) -> list[Fraction]:
         """Return a quantity of each state."""
-        bits = self._bits
+        bits = 2 * bits_of(self.files.manifest.digits) + INVARIANT_BITS
         k = constants(self.files.scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
         columns = [FixedPoint.column(column, self.unit, bits) for column in self.columns]
-        rows = self._deep
-        side = np.where(self.columns[2][rows] > 0, 1, -1)
-        x, y = (column[rows] for column in columns[:2])
-        columns[2].values[rows] = _depth(x, y, k.length, side, FixedPoint.sqrt).values
+        deep = self._deep
+        side = np.where(self.columns[2][deep] > 0, 1, -1)
+        x, y = (column[deep] for column in columns[:2])
+        columns[2].values[deep] = _depth(x, y, k.length, side, FixedPoint.sqrt).values
         follows = self._follows & np.asarray(columns[2].values != 0, dtype=bool)  # beyond the sphere, z comes out 0
         x, y, z, vx, vy = (column[follows] for column in columns[:5])
         columns[5].values[follows] = _vertical_velocity(x, y, z, vx, vy).values
@@ -185,13 +179,6 @@ class _Moments:
                 raise OverflowError
             total += slopes * float(bound / largest)
         return [Fraction(part) * largest * SLACK for part in total]
-
-    @property
-    def _bits(self) -> int:
-        """Bits that the smallest bound needs, up to twice the digits if it is absurdly small, and room for rounding."""
-        smallest = min((bound for bound in self.bounds if bound), default=self.unit)
-        digits = bits_of(self.files.manifest.digits)
-        return max(0, min(bits_in(Fraction(self.unit, smallest)), digits)) + digits + INVARIANT_BITS
 
     @property
     def _deep(self) -> Array:

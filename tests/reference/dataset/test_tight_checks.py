@@ -209,7 +209,7 @@ def test_a_column_has_its_digits_if_its_largest_number_is_more_than_eight_bounds
 
 
 def test_the_states_at_transits_are_those_printed_with_no_speed_to_the_east_and_none_given_upwards(files):
-    made = physics._at_transits(files)
+    made = physics._moments(files, "transits")
     assert not made.columns[3].any() and not made.columns[5].any()
     bounds = [files.manifest.bound("transits", name) for name in ("x", "y", "z", "vy")]
     assert [Fraction(bound, made.unit) for bound in made.bounds] == [*bounds[:3], 0, bounds[3], 0]
