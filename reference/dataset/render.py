@@ -43,9 +43,7 @@ def render(solution: Solution, name: str | None = None) -> dict[str, str]:
         check_grid(texts["grid.csv"], proved.times, proved.states, record.bounds.grid)
         if "transits.csv" in texts:
             check_transits(texts["transits.csv"], proved.transits or (), record.bounds.transits)
-    manifest = Manifest.model_validate(
-        {**dict(record), "files": {file: FileRecord.of(text) for file, text in texts.items()}}
-    )
+    manifest = record.model_copy(update={"files": {file: FileRecord.of(text) for file, text in texts.items()}})
     return {MANIFEST: manifest.sealed().text(), **texts}
 
 
