@@ -121,40 +121,22 @@ def main(count: int = 181, pairs: int = 5) -> None:
     for wanted in (bare, transits, whole, MOVED):
         HEYOKA.solve(rows[:8], wanted)
         OCTET.solve(rows[:8], wanted)
-    show(
-        "heyoka's scalar loop with events / octet, all transits",
-        lambda: located.solve(rows),
-        octet(transits),
-        pairs,
-        ">= 9.5",
-    )
-    show(
-        "heyoka's scalar loop with events / octet, with precession",
-        lambda: located.solve(rows),
-        octet(whole),
-        pairs,
-        ">= 6.5",
-    )
+
+    def with_events() -> None:
+        located.solve(rows)
+
+    show("heyoka's scalar loop with events / octet, all transits", with_events, octet(transits), pairs, ">= 9.5")
+    show("heyoka's scalar loop with events / octet, with precession", with_events, octet(whole), pairs, ">= 6.5")
     show("heyoka's scalar loop / octet, no events", lambda: silent.solve(rows), octet(bare), pairs, ">= 6.5")
     show("the engine heyoka / octet, no events", heyoka(bare), octet(bare), pairs, "")
     show("the engine heyoka / octet, all transits", heyoka(transits), octet(transits), pairs, "")
     show("the engine heyoka / octet, with precession", heyoka(whole), octet(whole), pairs, "")
     show("octet, default row (with its error) / bare row", default(OCTET), octet(whole), pairs, "<= 1.7")
-    many = (
-        [
-            request(
-                load_scene("paris", [f"run.t_end={SPAN}"]), [f"site.latitude=-90:90:{180 / (count - 1)}"], engine=name
-            )
-            for name in ("heyoka", "octet")
-        ]
-        if 180 % (count - 1) == 0
-        else []
-    )
-    if many:
-        sides = [lambda one=one: solve_part(one, range(count)) for one in many]
+    if 180 % (count - 1) == 0:
+        scene, over = load_scene("paris", [f"run.t_end={SPAN}"]), [f"site.latitude=-90:90:{180 // (count - 1)}"]
+        sweeps = [request(scene, over, engine=name) for name in ("heyoka", "octet")]
+        sides = [lambda sweep=sweep: solve_part(sweep, range(count)) for sweep in sweeps]
         show("sweep in one process, default rows: heyoka / octet", *sides, pairs, ">= 3")
-    else:
-        show("default rows: the engine heyoka / octet", default(HEYOKA), default(OCTET), pairs, ">= 3")
     print(f"{'all but the integration of a default row':66} {not_integration(8192):7.2f} us a row   <= 10")
 
 

@@ -18,6 +18,12 @@ REFUSED = [
     ((*STUDY, "--approximations", "--limit", "5"), "--limit", "together with --approximations"),
     ((*STUDY, "--approximations", "--no-formulations"), "--no-formulations", "together with --approximations"),
     ((*STUDY, "--approximations", "--set", "run.grid_step=7"), "--set", "at set times"),
+    ((*STUDY, "--methods", "rk5"), "method", "Did you mean rkng56 or rk4?"),
+    ((*STUDY, "--limit", "0"), "--limit", "a positive number of seconds"),
+    ((*STUDY, "--precisions", "12"), "--precisions", "bits from 53 to 4096"),
+    ((*STUDY, "--precisions", "x"), "--precisions", "bits from 53 to 4096"),
+    ((*STUDY, "--t-end", "-1"), "run.t_end", "a number above 0"),
+    ((*STUDY, "--cpu", "1"), "--cpu", "without --candidates"),
     ((*STUDY, "--settings", "0.1"), "--settings", "without --run"),
     ((*STUDY, "--settings", "0.1", "--run", "./p"), "--settings", "with a --run that has no {setting}"),
     ((*STUDY, "--name", "mine"), "--name", "without --run"),
@@ -62,6 +68,10 @@ REFUSED = [
     (("score", "paris", "--approximation", "conic"), "approximation", "Did you mean conical?"),
     (("score", "paris", "--approximation", "precession_sine"), "--approximation", "a number, not a motion"),
     (("stability", "--methods", "nothing_like_it"), "method", "`foucault methods` lists them"),
+    (("stability", "--methods", "rk4,rkng56"), "methods", "expected methods that declare runs in `stability`"),
+    (("stability", "--name", "mine"), "--name", "without --run"),
+    (("stability", "--run", "./p {nonsense}"), "--run", "{x0}"),
+    (("stability", "--run", "./p 'x"), "--run", "a command with balanced quotes"),
     (("stability", "--scenes", "harrd"), "SCENE", "Did you mean hard?"),
 ]
 

@@ -132,17 +132,16 @@ def test_dop853_needs_about_the_same_calls_in_scipy_and_compiled(installed):
     assert abs(first - second) < 0.3 * first
 
 
+IDS = """
+rk4 rkng56 rkng67 rkmk4 gauss_legendre limbs heyoka_double heyoka_long_double heyoka_real128 heyoka_real mpmath_odefun
+scipy_rk45 scipy_dop853 scipy_radau scipy_bdf scipy_lsoda numbalsoda_dop853 numbalsoda_lsoda cvode_adams cvode_bdf
+rebound_bs rebound_ias15 diffrax_dopri8 odeint_rkf78 odeint_bulirsch_stoer gsl_rk8pd cvode_c_adams cvode_c_bdf
+arkode_erk8
+"""
+
+
 def test_the_registry_knows_every_id_of_the_issue():
-    assert {"rk4", "rkng56", "rkng67", "heyoka_double", "heyoka_long_double", "heyoka_real128", "heyoka_real"} <= set(
-        METHODS
-    )
-    assert {"scipy_rk45", "scipy_dop853", "scipy_radau", "scipy_bdf", "scipy_lsoda", "mpmath_odefun"} <= set(METHODS)
-    assert {"numbalsoda_dop853", "numbalsoda_lsoda", "cvode_adams", "cvode_bdf", "rebound_bs"} <= set(METHODS)
-    assert {"odeint_rkf78", "odeint_bulirsch_stoer", "gsl_rk8pd", "cvode_c_adams", "cvode_c_bdf", "arkode_erk8"} <= set(
-        METHODS
-    )
-    assert {"rebound_ias15", "diffrax_dopri8", "gauss_legendre", "rkmk4", "limbs"} <= set(METHODS)
-    assert len(METHODS) == len(list(METHODS))
+    assert {*IDS.split()} <= {*METHODS}
 
 
 def test_an_unknown_method_is_refused_by_name():

@@ -10,18 +10,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
-from compare.methods import METHODS, Problem, gauss_legendre, rk4, rkng56, rkng67
-from compare.methods.runge_kutta.tableau import TableauError
+from compare.methods import METHODS, Problem
 from compare.report.stability_page import document_of, headlines, page_text, text_table
 from compare.rhs.problem import suited
 from compare.studies.character import Character, character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.row import Row
 from compare.studies.stability import Cell, _judged, cut, default_scenes, digits_asked, stability
-from foucault import commands
-from reference import InputError, load_scene, trajectory
+from reference import load_scene, trajectory
 from reference.scenes.shipped import data_root
 from reference.status import Status
 
@@ -66,19 +63,6 @@ def test_there_are_thirty_extreme_scenes_and_each_says_what_it_catches() -> None
         scene = load_scene(name)
         assert scene.title and scene.source
         assert float(cut(scene).exact.t_end) <= float(scene.exact.t_end)
-
-
-def test_every_method_of_fixed_step_declares_the_order_that_its_tableau_proves_and_its_title_names() -> None:
-    tableaux = {"rk4": rk4.TABLEAU, "rkng56": rkng56.TABLEAU, "rkng67": rkng67.TABLEAU, "rkmk4": rk4.TABLEAU}
-    proved = {name: tableau.order for name, tableau in tableaux.items()}
-    for tableau in tableaux.values():  # checked up to its order when it was created, and has no higher one
-        with pytest.raises(TableauError) as caught:
-            replace(tableau, order=tableau.order + 1)
-        assert caught.value.order == tableau.order + 1
-    gauss_legendre.gauss(gauss_legendre.STAGES)  # raises unless its quadrature has order 2 stages
-    steps = {name: method for name, method in METHODS.items() if method.setting == "step"}
-    assert proved | {"gauss_legendre": 2 * gauss_legendre.STAGES} == {name: one.order for name, one in steps.items()}
-    assert all(f"order {method.order}" in method.title for method in steps.values())
 
 
 def test_a_fixed_step_is_asked_for_as_many_digits_as_its_order_gives() -> None:
@@ -163,11 +147,8 @@ def test_the_headline_counts_the_methods_own_failures_only() -> None:
     assert "1e-9" in page_text(document).partition("What each run was asked for")[2].partition("</table>")[0]
 
 
-def test_a_method_that_is_asked_for_nothing_unusual_is_ill_conditioned_where_the_flow_is(tmp_path: Path) -> None:
-    text = (data_root() / "scenes" / "separatrix.toml").read_text()
-    own = tmp_path / "separatrix.toml"
-    own.write_text(text)
-    (cell,) = stability([str(own)], ["gauss_legendre"])
+def test_a_method_that_is_asked_for_nothing_unusual_is_ill_conditioned_where_the_flow_is() -> None:
+    (cell,) = stability(["separatrix"], ["gauss_legendre"])
     assert cell.status == "ill_conditioned", cell
     assert cell.digits is not None and cell.digits < cell.asked - 3
 
@@ -204,19 +185,13 @@ def test_the_law_of_a_known_exponent_of_time_is_named() -> None:
     assert "grows like t^1.5" in next(laws([run]))
 
 
-def test_the_command_reports_rows_and_a_page(tmp_path: Path) -> None:
-    words = ["stability", "--scenes", "hard,two_radians", "--methods", "rkmk4,scipy_dop853", "--json"]
-    result = CliRunner().invoke(commands(), [*words, "--out", str(tmp_path)])
-    assert result.exit_code == 0, result.output
-    rows = json.loads(result.stdout)["rows"]
+def test_the_command_reports_rows_and_a_page(foucault, tmp_path: Path) -> None:
+    words = ("stability", "--scenes", "hard,two_radians", "--methods", "rkmk4,scipy_dop853", "--json")
+    status, out, _ = foucault(*words, "--out", tmp_path)
+    assert status == 0
+    rows = json.loads(out)["rows"]
     assert {"scene", "method", "precision", "status", "digits", "cpu_s", "reason"} <= rows[0].keys()
     page = (tmp_path / "index.html").read_text()
     assert "<svg" in page
     wrong = any(row["status"] == Status.SILENTLY_WRONG for row in rows)
     assert ("<p>None.</p>" in page.partition("<h2>Silently wrong</h2>")[2].partition("</section>")[0]) is not wrong
-
-
-def test_a_method_without_declared_runs_is_refused() -> None:
-    result = CliRunner().invoke(commands(), ["stability", "--scenes", "hard", "--methods", "rk4,rkng56"])
-    assert isinstance(result.exception, InputError)
-    assert "rkng56" in str(result.exception) and "gauss_legendre" in str(result.exception)

@@ -12,7 +12,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from sampled import one_in
-from typer.testing import CliRunner
 
 import compare.studies.measure as measure
 from compare.methods import METHODS, Problem
@@ -25,10 +24,8 @@ from compare.studies.row import Row
 from compare.studies.study import plan, study
 from compare.studies.study_plan import bits_of, precision_items, precision_scene
 from compare.truth import golden_of
-from foucault import commands
 from reference import InputError, Scene, load_scene, trajectory
 from reference.engines.registry import engines
-from reference.errors import Stopped
 
 T_END = "600"
 
@@ -128,11 +125,11 @@ def no_such_number(word: str) -> float:
     raise AssertionError(f"{word} in JSON")
 
 
-def test_json_of_the_shortest_span_has_no_nan() -> None:
-    words = ["study", "paris", "--t-end", "10", "--methods", "rk4", "--no-formulations", "--json"]
-    result = CliRunner().invoke(commands(), words)
-    assert result.exit_code == 0, result.output
-    rows = json.loads(result.stdout, parse_constant=no_such_number)["rows"]
+def test_json_of_the_shortest_span_has_no_nan(foucault) -> None:
+    words = ("study", "paris", "--t-end", "10", "--methods", "rk4", "--no-formulations", "--json")
+    status, out, _ = foucault(*words)
+    assert status == 0
+    rows = json.loads(out, parse_constant=no_such_number)["rows"]
     assert all(row["error_m"] > 0 and row["cpu_s"] > 0 for row in rows)
 
 
@@ -163,48 +160,36 @@ def test_a_study_goes_on_where_it_stopped_and_gives_the_same_rows(tmp_path: Path
     assert Row.parsed(json.loads(json.dumps(vars(again.rows[0])))) == again.rows[0]
 
 
-def test_the_command_writes_a_report_and_one_json_document(tmp_path: Path) -> None:
-    words = ["study", "paris", "--methods", "heyoka_double", "--no-formulations", "--t-end", T_END, "--json"]
-    result = CliRunner().invoke(commands(), [*words, "--out", str(tmp_path / "out")])
-    assert result.exit_code == 0, result.output
-    document = json.loads(result.stdout)
+def test_the_command_writes_a_report_and_one_json_document(foucault, tmp_path: Path) -> None:
+    words = ("study", "paris", "--methods", "heyoka_double", "--no-formulations", "--t-end", T_END, "--json")
+    status, out, _ = foucault(*words, "--out", tmp_path / "out")
+    assert status == 0
+    document = json.loads(out)
     assert {"scene", "t_end", "reference", "rows"} <= document.keys()
     keys = {"method", "setting", "inputs", "status", "error_m", "end_error_m", "transit_error_s", "h_drift", "cpu_s"}
     assert keys | {"compile_s", "rhs_evaluations", "steps"} <= document["rows"][0].keys()
     assert (tmp_path / "out" / "index.html").read_text().startswith("<!doctype html>")
 
 
-@pytest.mark.parametrize(
-    "options",
-    [["--methods", "rk5"], ["--limit", "0"], ["--precisions", "12"], ["--precisions", "x"], ["--t-end", "-1"]],
-)
-def test_wrong_options_are_refused(options: list[str]) -> None:
-    result = CliRunner().invoke(commands(), ["study", "paris", *options])
-    assert isinstance(result.exception, InputError)
-    assert result.exception.exit_status == 2
-
-
-def test_a_study_of_approximations_that_is_stopped_says_that_nothing_was_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_study_of_approximations_that_is_stopped_says_that_nothing_was_kept(foucault, monkeypatch) -> None:
     def interrupted(scene: Scene, show: object) -> None:
         raise KeyboardInterrupt
 
     monkeypatch.setattr("compare.report.approximations.document_of", interrupted)
-    result = CliRunner().invoke(commands(), ["study", "paris", "--approximations", "--t-end", "60"])
-    assert isinstance(result.exception, Stopped)
-    assert "nothing was kept" in str(result.exception)
+    status, _, err = foucault("study", "paris", "--approximations", "--t-end", "60")
+    assert (status, "nothing was kept" in err) == (130, True)
 
 
-def test_somebody_elses_program_is_a_row_of_the_study(tmp_path: Path) -> None:
+def test_somebody_elses_program_is_a_row_of_the_study(foucault, tmp_path: Path) -> None:
     script = tmp_path / "still.py"
     script.write_text(
         "import sys\nend, step = float(sys.argv[1]), float(sys.argv[2])\nprint('t,x,y')\n"
         "for i in range(round(end / step) + 1):\n    print(f'{i * step!r},0.3,0.4')\n"
     )
     command = f"python3 {script} {{t_end}} {{grid_step}}"
-    words = ["study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--json"]
-    result = CliRunner().invoke(commands(), words)
-    assert result.exit_code == 0, result.output
-    (row,) = (row for row in json.loads(result.stdout)["rows"] if row["method"] != "rkmk4")  # it has no {setting}
+    status, out, _ = foucault("study", "paris", "--methods", "rkmk4", "--t-end", "300", "--run", command, "--json")
+    assert status == 0
+    (row,) = (row for row in json.loads(out)["rows"] if row["method"] != "rkmk4")  # it has no {setting}
     assert row["method"] == "still.py"
     assert row["error_m"] > 0.5
 
@@ -222,15 +207,13 @@ def files(tmp_path: Path) -> tuple[Path, Path]:
     return good, still
 
 
-def test_somebodys_files_are_rows_of_the_study_with_the_time_that_is_stated(
-    files: tuple[Path, Path], tmp_path: Path
-) -> None:
+def test_somebodys_files_are_rows_of_the_study_with_the_time_that_is_stated(foucault, files, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    words = ["study", "paris", "--methods", "rkmk4", "--t-end", "120", "--out", str(out), "--cpu", "0.25,-"]
-    result = CliRunner().invoke(commands(), [*words, *(word for file in files for word in ("--candidates", str(file)))])
-    assert result.exit_code == 0, result.output
-    (good,) = (line for line in result.stdout.splitlines() if "good.csv" in line)
-    (still,) = (line for line in result.stdout.splitlines() if "still.csv" in line)
+    words = ("study", "paris", "--methods", "rkmk4", "--t-end", "120", "--out", out, "--cpu", "0.25,-")
+    status, text, _ = foucault(*words, *(word for file in files for word in ("--candidates", file)))
+    assert status == 0
+    (good,) = (line for line in text.splitlines() if "good.csv" in line)
+    (still,) = (line for line in text.splitlines() if "still.csv" in line)
     assert re.search(r"good\.csv +– +1\.41e-09 +0\.250", good)
     assert re.search(r"still\.csv +– +\d\.\d\de-01$", still.rstrip())
     document = json.loads((out / "study.json").read_text())
@@ -266,19 +249,12 @@ def test_a_file_that_ends_early_or_has_nothing_after_the_start_is_a_row_with_its
         (["--approximations"], "--approximations"),
     ],
 )
-def test_files_that_cannot_be_rows_are_refused_before_any_work(
-    files: tuple[Path, Path], more: list[str], message: str
-) -> None:
+def test_files_that_cannot_be_rows_are_refused_before_any_work(foucault, files, more: list[str], message: str) -> None:
     good, still = map(str, files)
     more = [word.replace("GOOD", good) for word in more]
-    result = CliRunner().invoke(commands(), ["study", "paris", "--candidates", good, "--candidates", still, *more])
-    assert isinstance(result.exception, InputError)
-    assert message in str(result.exception)
-
-
-def test_the_seconds_of_files_need_files() -> None:
-    result = CliRunner().invoke(commands(), ["study", "paris", "--cpu", "1"])
-    assert isinstance(result.exception, InputError)
+    status, out, err = foucault("study", "paris", "--candidates", good, "--candidates", still, *more)
+    assert (status, out) == (2, "")
+    assert message in err
 
 
 def test_a_truth_that_has_to_be_solved_for_tells_how_far_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -113,8 +113,3 @@ def test_the_study_says_from_when_on_a_program_is_wrong_and_its_page_stays_whole
     assert drifting["reason"].startswith("From t = 5.25 s on it is wrong.")
     page = (out / "index.html").read_text()
     assert "x" * 500 not in page and "&lt;drifting&gt;" in page and "<drifting>" not in page
-
-
-def test_what_cannot_be_run_is_refused_before_any_work(foucault):
-    assert foucault("stability", "--name", "mine")[0] == 2
-    assert foucault("stability", "--run", "./p {nonsense}")[0] == 2

@@ -46,9 +46,8 @@ def test_any_wrong_coefficient_is_refused_even_where_row_sums_hide_it(name):
                 replace(tableau, **{table: tuple(weights)})
 
 
-@pytest.mark.parametrize("name", NYSTROM)
-def test_a_nystrom_tableau_has_no_higher_order_than_it_claims(name):
-    tableau = NYSTROM[name].TABLEAU
+@pytest.mark.parametrize("tableau", [rk4.TABLEAU, rkng56.TABLEAU, rkng67.TABLEAU])
+def test_a_tableau_has_no_higher_order_than_it_claims(tableau):
     with pytest.raises(TableauError) as caught:
         replace(tableau, order=tableau.order + 1)
     assert caught.value.order == tableau.order + 1
@@ -58,8 +57,6 @@ def test_a_runge_kutta_tableau_is_checked_by_the_same_trees():
     replace(rk4.TABLEAU, b=fractions("1/6 1/3 1/3 1/6"))
     with pytest.raises(TableauError):
         replace(rk4.TABLEAU, b=fractions("1/6 1/6 1/2 1/6"))
-    with pytest.raises(TableauError):
-        replace(rk4.TABLEAU, order=5)
     with pytest.raises(TableauError):
         Tableau(
             "3/8 rule with a sign lost",
