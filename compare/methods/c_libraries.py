@@ -75,8 +75,7 @@ def prepare(
         size, offset = len(problem.start), HEAD * numbers.itemsize
         states = np.frombuffer(answer, count=int(rows) * size, offset=offset).reshape(-1, size).copy()
         reason = answer[offset + states.nbytes :].decode(errors="replace")
-        result = outcome(problem, states, steps=int(steps), rhs_evaluations=int(calls), reason=reason)
-        return replace(result, cpu_s=cpu_s)
+        return outcome(problem, states, steps=int(steps), rhs_evaluations=int(calls), reason=reason, cpu_s=cpu_s)
 
     return work
 

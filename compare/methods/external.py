@@ -73,12 +73,10 @@ def _prepare(problem: Problem, value: float, command: str) -> Work:
             return failed(problem, "the output does not begin at t = 0")
         whole = len(states) == len(problem.times)
         return Outcome(
-            status=Status.OK if whole else Status.GAVE_UP,
+            Status.OK if whole else Status.GAVE_UP,
+            float(problem.times[len(states) - 1]),
+            lambda: states,
             reason="" if whole else "the output lacks a grid time",
-            reached_t=float(problem.times[len(states) - 1]),
-            steps=None,
-            rhs_evaluations=None,
-            cartesian=lambda: states,
             cpu_s=cpu_s,
         )
 

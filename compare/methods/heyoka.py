@@ -56,12 +56,10 @@ def prepare_in(problem: Problem, number: NumberType, tolerance: float | None) ->
             return model.table(states, number.prec + SPARE_BITS).only(STATE)
 
         return Outcome(
-            status=Status.OK,
-            reason="",
-            reached_t=float(problem.times[-1]),
+            Status.OK,
+            float(problem.times[-1]),
+            lambda: model.doubles(states),
             steps=propagator.steps - before,
-            rhs_evaluations=None,
-            cartesian=lambda: model.doubles(states),
             finer=None if number == DOUBLE else finer,
         )
 

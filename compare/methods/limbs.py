@@ -33,7 +33,7 @@ def prepare(problem: Problem, setting: float) -> Work:
         def cartesian() -> Array:
             return np.column_stack([run.grid[name] for name in STATE])
 
-        return Outcome(Status.OK, "", float(times[-1]), run.steps, None, cartesian, lambda: run.grid.only(STATE))
+        return Outcome(Status.OK, float(times[-1]), cartesian, steps=run.steps, finer=lambda: run.grid.only(STATE))
 
     return work
 

@@ -50,21 +50,21 @@ class Outcome:
 
     Attributes:
         status: OK; GAVE_UP if the method stopped by itself; NOT_FINITE if it continued to NaN or infinity.
-        reason: why it is not ok, in the library's words if it has any; or its warning.
         reached_t: last output time that was reached, in s.
+        cartesian: computes `states`; called at most once, so that the conversion is not timed with the run.
+        reason: why it is not ok, in the library's words if it has any; or its warning.
         steps: number of steps, None if the method does not report it.
         rhs_evaluations: number of evaluations of the right-hand side (None for Taylor methods, which make none).
-        cartesian: computes `states`; called at most once, so that the conversion is not timed with the run.
         finer: computes `exact`, for number types finer than binary64.
         cpu_s: CPU seconds as measured by the run itself, if another process did the work.
     """
 
     status: Status
-    reason: str
     reached_t: float
-    steps: int | None
-    rhs_evaluations: int | None
     cartesian: Callable[[], Array] = field(repr=False)
+    reason: str = ""
+    steps: int | None = None
+    rhs_evaluations: int | None = None
     finer: Callable[[], Table] | None = field(default=None, repr=False)
     cpu_s: float | None = None
 
@@ -160,7 +160,13 @@ def available(method: Method) -> str | None:
 
 
 def outcome(
-    problem: Problem, states: Array, *, steps: int | None, rhs_evaluations: int | None, reason: str = ""
+    problem: Problem,
+    states: Array,
+    *,
+    steps: int | None = None,
+    rhs_evaluations: int | None = None,
+    reason: str = "",
+    cpu_s: float | None = None,
 ) -> Outcome:
     """Return the outcome of a run in binary64.
 
@@ -171,6 +177,7 @@ def outcome(
         steps: number of steps.
         rhs_evaluations: number of evaluations of the right-hand side.
         reason: the library's own, if it gave one.
+        cpu_s: as in `Outcome`.
     """
     finite = np.isfinite(states).all(axis=1)
     rows = len(states) if finite.all() else int(np.argmin(finite))
@@ -181,15 +188,16 @@ def outcome(
     elif rows < len(problem.times):
         status, reason = Status.GAVE_UP, reason or f"stopped after t = {reached_t:g} s without giving a reason"
     return Outcome(
-        status=status,
-        reason=reason,
-        reached_t=reached_t,
-        steps=steps,
-        rhs_evaluations=rhs_evaluations,
-        cartesian=lambda: problem.cartesian(states[:rows]),
+        status,
+        reached_t,
+        lambda: problem.cartesian(states[:rows]),
+        reason,
+        steps,
+        rhs_evaluations,
+        cpu_s=cpu_s,
     )
 
 
 def failed(problem: Problem, reason: str) -> Outcome:
     """Return the outcome of a run that gave up and produced no state after the first."""
-    return outcome(problem, problem.start[None, :], steps=None, rhs_evaluations=None, reason=reason)
+    return outcome(problem, problem.start[None, :], reason=reason)

@@ -52,7 +52,7 @@ def prepare(problem: Problem, setting: float) -> Work:
             bits = prec + SPARE_BITS
             return Table(STATE, bits, [tuple(int(to_fraction(value) * 2**bits) for value in row) for row in rows()])
 
-        return Outcome(Status.OK, "", float(problem.times[-1]), None, calls, cartesian, fixed)
+        return Outcome(Status.OK, float(problem.times[-1]), cartesian, rhs_evaluations=calls, finer=fixed)
 
     return work
 

@@ -56,11 +56,11 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
             )  # fmt: skip
         calls = int(data[-1])
         if success == 1:
-            return outcome(problem, states, steps=None, rhs_evaluations=calls, reason=output.words())
+            return outcome(problem, states, rhs_evaluations=calls, reason=output.words())
         finite = np.isfinite(states).all(axis=1)
         reached = rows if finite.all() else int(np.argmin(finite))
         reason = output.words() or f"numbalsoda's {code} stopped without a message"
-        return outcome(problem, states[:reached], steps=None, rhs_evaluations=calls, reason=reason)
+        return outcome(problem, states[:reached], rhs_evaluations=calls, reason=reason)
 
     return work
 

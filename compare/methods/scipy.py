@@ -38,7 +38,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
             solution = solve_ivp(rhs, (0.0, end), problem.start, t_eval=problem.times, **keywords)
         words = [str(solution.message)] if solution.status < 0 else []
         reason = "; ".join(dict.fromkeys([*words, *(str(entry.message) for entry in caught)]))
-        return outcome(problem, solution.y.T.copy(), steps=None, rhs_evaluations=int(solution.nfev), reason=reason)
+        return outcome(problem, solution.y.T.copy(), rhs_evaluations=int(solution.nfev), reason=reason)
 
     return work
 

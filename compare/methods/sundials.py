@@ -43,7 +43,7 @@ def prepare(problem: Problem, setting: float, code: str) -> Work:
             solution = solver.solve(output_times, problem.start)
         states = np.array(solution.y)[np.isin(solution.t, times)]
         reason = "" if solution.success else str(solution.message)
-        return outcome(problem, states, steps=None, rhs_evaluations=int(solution.nfev), reason=reason)
+        return outcome(problem, states, rhs_evaluations=int(solution.nfev), reason=reason)
 
     return work
 

@@ -27,10 +27,7 @@ def costing(start_s: float, s_per_s: float, ends: list[float]) -> Method:
         def work() -> Outcome:
             states = np.tile(problem.start, (len(problem.times), 1))
             ends.append(float(problem.times[-1]))
-            made = outcome(problem, states, steps=1, rhs_evaluations=1)
-            return Outcome(
-                made.status, "", made.reached_t, 1, 1, made.cartesian, cpu_s=start_s + s_per_s * problem.times[-1]
-            )
+            return outcome(problem, states, cpu_s=start_s + s_per_s * problem.times[-1])
 
         return work
 
