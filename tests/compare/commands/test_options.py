@@ -5,8 +5,6 @@ from __future__ import annotations
 import pytest
 
 from compare.methods import METHODS
-from compare.studies.study_plan import precision_items
-from reference import InputError
 
 STUDY, SCORE, GENERATE = ("study", "paris"), ("score", "paris", "-"), ("generate", "paris")
 LATE = ("--t-end", "10", "--set", "run.t_end=20")
@@ -98,15 +96,6 @@ def test_methods_of_which_none_is_installed_are_refused_with_the_command_that_in
     assert (status, out) == (2, "")
     assert "rk4: not installed (numba): pip install 'foucault-reference[methods]'" in err
     assert list(tmp_path.iterdir()) == []
-
-
-def test_precisions_of_some_methods_are_those_of_all_methods_chosen_from():
-    whole = precision_items([113, 160])
-    assert precision_items([113, 160], ["heyoka_real", "limbs"]) == [
-        one for one in whole if one[0] in ("limbs", "heyoka_real")
-    ]
-    with pytest.raises(InputError, match=r"These have: .*limbs"):
-        precision_items([113, 160], ["rk4"])
 
 
 def test_every_method_and_approximation_is_listed_with_what_it_lacks(foucault):

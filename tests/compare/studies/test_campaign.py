@@ -12,7 +12,6 @@ from answering import Answer, Answers
 
 import compare.studies.campaign as module
 from compare.studies.campaign import Counted, campaign
-from compare.studies.study_plan import declared
 from reference import InputError
 
 
@@ -121,15 +120,6 @@ def test_a_journal_that_cannot_be_written_says_so(tmp_path: Path, place: str) ->
     (tmp_path / "folder").mkdir()
     with pytest.raises(InputError, match="--out"):
         run([("m", "a")], journal_path=tmp_path / place)
-
-
-def test_the_runs_of_a_study_are_those_that_methods_declare() -> None:
-    assert declared(["rk4"], "long_runs") == [("rk4", "plane", 0.05)]
-    assert {name for name, _, _ in declared(None, "stability")} > {"rk4", "limbs", "heyoka_double"}
-    with pytest.raises(InputError, match="got 'rkng56', expected methods that declare runs"):
-        declared(["rk4", "rkng56"], "stability")
-    with pytest.raises(InputError, match="rk5"):
-        declared(["rk5"], "stability")
 
 
 def test_methods_none_of_which_can_run_are_refused_before_anything_is_solved(foucault, monkeypatch):

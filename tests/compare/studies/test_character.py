@@ -1,13 +1,16 @@
-"""Reasons of failures: the strongest cause that the numbers point to, in a sentence."""
+"""How hard a scene is, and the reason of a failure: the strongest cause that the numbers point to, in a sentence."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
-from compare.studies.character import Character, reason_of
+from compare.studies.character import Character, character, reason_of
 from compare.studies.row import Row
+from reference import load_scene, trajectory
 from reference.status import Status
 
 CALM = Character(0.4, 0.0, 1.0, 2.0, 9.0, 0.001, 0.01, 600.0)
@@ -61,3 +64,36 @@ def test_each_cause_is_named(status: Status, row: Row, traits: Character, words:
 
 def test_what_is_right_needs_no_reason() -> None:
     assert reason_of(ROW, Status.OK, CALM, 9.0, 9.0, 3.0) == ""
+
+
+def character_of(scene_id: str, *changes: str):  # type: ignore[no-untyped-def]
+    scene = load_scene(scene_id, changes)
+    times = np.linspace(0, float(scene.exact.t_end), 200)
+    return character(scene, times, trajectory(scene, times))
+
+
+def test_the_rates_of_a_small_swing_are_those_of_the_linear_pendulum() -> None:
+    traits = character_of("paris", "run.t_end=600", "site.rotation_rate=0", "release.x=1e-4", "release.y=0")
+    assert traits.fastest == pytest.approx(math.sqrt(9.80665 / 67), rel=1e-5)
+    assert traits.ratio == pytest.approx(1, abs=1e-3)
+    assert traits.magnified == pytest.approx(1, rel=0.01)
+    assert not traits.stiff
+
+
+def test_the_rates_of_a_creeping_bob_are_its_drag_and_gravity_over_drag() -> None:
+    traits = character_of("creeping", "run.t_end=1", "run.grid_step=0.01")
+    assert traits.damping == pytest.approx(4000, rel=1e-3)
+    assert traits.ratio > 1e6
+    assert traits.stiff
+
+
+def test_near_the_top_the_flow_magnifies_and_the_rod_is_pushed() -> None:
+    traits = character_of("near_inverted", "run.t_end=5", "run.grid_step=0.1")
+    assert traits.least_tension < 0
+    assert traits.magnified > 100  # exp(t sqrt(g/l)) while it lingers there
+
+
+def test_on_the_separatrix_all_that_a_double_holds_is_not_all_that_is_magnified() -> None:
+    """An error grows like exp(3 t) to t = 20 s: by 26 digits, more than a trajectory in double can show."""
+    traits = character_of("separatrix")
+    assert traits.digits_lost == pytest.approx(60 / math.log(10), abs=1)

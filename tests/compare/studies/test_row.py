@@ -1,4 +1,4 @@
-"""Outcomes: one enumeration for all of compare, each with its letter, its meaning and what to do."""
+"""The status of a row: one enumeration for all of compare; of a run that raised, who stopped it decides."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import pytest
 from places import ROOT
 
 from compare.report.charts.stability_charts import LETTERS
-from compare.studies.row import Row
+from compare.studies.row import FAILURES, Row, failure
+from reference import InputError, IntegrationError, UnreachableError
 from reference.status import Status
 
 FILES = sorted((ROOT / "compare").rglob("*.py"))
@@ -38,3 +39,17 @@ def test_a_status_goes_through_json_and_comes_back(status: Status) -> None:
 def test_what_can_go_wrong_says_what_to_do_and_has_a_letter_of_its_own() -> None:
     assert all(status.advice for status in LETTERS)
     assert len(set(LETTERS.values())) == len(LETTERS)
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "reason"),
+    [
+        (IntegrationError("heyoka stopped at t = 9.8 s."), Status.GAVE_UP, "heyoka stopped at t = 9.8 s."),
+        (UnreachableError("no circle.", "Take another."), Status.REFUSED, "no circle. Take another."),
+        (InputError("t_end", "0", "a time above 0"), Status.REFUSED, "t_end: got '0', expected a time above 0."),
+        (ZeroDivisionError("division by zero"), Status.GAVE_UP, "ZeroDivisionError: division by zero"),
+    ],
+)
+def test_an_integrator_gives_up_and_a_method_refuses(error, status, reason):
+    assert isinstance(error, FAILURES)
+    assert failure(error) == (status, reason)

@@ -1,0 +1,44 @@
+"""The runs that a study makes, and grids whose times are doubles."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from compare.studies.stability import cut
+from compare.studies.study_plan import declared, on_doubles, precision_items
+from reference import InputError, load_scene, scene_ids
+
+
+def test_a_grid_of_doubles_stays_as_it_is():
+    scene = load_scene("paris", ["inputs=binary64"])
+    assert on_doubles(scene) == scene
+
+
+@pytest.mark.parametrize("name", scene_ids())
+def test_every_scene_gets_times_that_are_doubles_and_about_as_many(name: str) -> None:
+    scene = load_scene(name, ["inputs=binary64"])
+    moved = on_doubles(scene)
+    assert all(Fraction(float(t)) == t for t in moved.exact.grid)
+    assert float(moved.exact.t_end) == pytest.approx(float(scene.exact.t_end), rel=0.01)
+    assert len(moved.exact.grid) == pytest.approx(len(scene.exact.grid), rel=0.01, abs=1)
+    assert cut(load_scene(name)).exact.t_end <= moved.exact.t_end
+
+
+def test_the_runs_of_a_study_are_those_that_methods_declare() -> None:
+    assert declared(["rk4"], "long_runs") == [("rk4", "plane", 0.05)]
+    assert {name for name, _, _ in declared(None, "stability")} > {"rk4", "limbs", "heyoka_double"}
+    with pytest.raises(InputError, match="got 'rkng56', expected methods that declare runs"):
+        declared(["rk4", "rkng56"], "stability")
+    with pytest.raises(InputError, match="rk5"):
+        declared(["rk5"], "stability")
+
+
+def test_precisions_of_some_methods_are_those_of_all_methods_chosen_from():
+    whole = precision_items([113, 160])
+    assert precision_items([113, 160], ["heyoka_real", "limbs"]) == [
+        one for one in whole if one[0] in ("limbs", "heyoka_real")
+    ]
+    with pytest.raises(InputError, match=r"These have: .*limbs"):
+        precision_items([113, 160], ["rk4"])
