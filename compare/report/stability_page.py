@@ -12,8 +12,8 @@ from reference import load_scene
 from reference.errors import shortened
 from reference.status import Status
 
+from ..studies.campaign import machine
 from ..studies.long_runs import LongRun, laws
-from ..studies.machine import machine
 from ..studies.stability import WRONG, Cell
 from ..studies.users_program import NUMBER
 from .busy import busy

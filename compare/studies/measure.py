@@ -24,8 +24,7 @@ from reference.numbers.precision import Array
 from reference.status import Status
 
 from ..methods import Method, Outcome, Problem, Work, available, suited
-from .campaign import Item, Measurement, Result
-from .machine import load_per_core
+from .campaign import Item, Measurement, Result, load_per_core
 from .method_errors import GridTruth, h_drift
 from .row import FAILURES, Row, failure
 

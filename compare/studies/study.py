@@ -19,8 +19,7 @@ from ..candidates.candidate import Candidate
 from ..methods import METHODS, external
 from ..observed.position_error import LEAST_POINTS, PowerLaw, power_law
 from ..truth import Report, golden_of
-from .campaign import Counted, campaign
-from .machine import machine
+from .campaign import Counted, campaign, machine
 from .measure import Bench, OnScene
 from .row import Row
 from .study_plan import Item, on_doubles, plan

@@ -24,7 +24,7 @@ from ..methods import METHODS
 from ..methods.external import LONGEST_NAME, SETTING
 from ..observed.position_error import difference, distance
 from ..truth import truth_at
-from .machine import load_per_core
+from .campaign import load_per_core
 from .row import Row
 
 STEPS = 200  # in a period of the fastest rate of the scene, that {setting} asks a program for

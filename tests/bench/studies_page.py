@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from itertools import combinations
 from textwrap import wrap
 from typing import Any
+
+from scipy.stats import kendalltau
 
 from compare.methods import METHODS
 from compare.report.busy import busy
@@ -111,9 +112,7 @@ def cells(document: Document) -> list[Cell]:
 def _paris(kept: Documents) -> Iterator[str]:
     document = kept["paris"]
     ladders = _ladders(document)
-    yield "## Error against run time: Paris, 24 h"
-    yield ""
-    yield from _command("paris")
+    yield from _section("## Error against run time: Paris, 24 h", "paris")
     yield from _table(document)
     momentum, space = ladders["heyoka_double (momentum)"], ladders["heyoka_double"]
     ratio = _cost(ladders["rk4"], 1e-9) / _cost(momentum, 1e-9)
@@ -126,13 +125,11 @@ def _paris(kept: Documents) -> Iterator[str]:
         all(_cost(momentum, at) <= _cost(one, at) for one in others for at in coarse)
         and _best(space) < _best(momentum)
         and min(angles) > 3,
-        "- The equations matter as much as the method. `momentum` is the cheapest form at 1e-3, 1e-6 and "
-        "1e-9 m; where the "
-        f"last digit counts `space` is better in double ({_best(space):.1e} m against {_best(momentum):.1e} "
-        f"m), because it "
-        "corrects what rounding does to |n|. The angles of the paper's Lagrangian cost "
-        f"{min(angles):.0f} to {max(angles):.0f} times more: the path passes near the vertical, where they "
-        f"are singular.",
+        "- The equations matter as much as the method. `momentum` is the cheapest form at 1e-3, 1e-6 and 1e-9 m; "
+        f"where the last digit counts `space` is better in double ({_best(space):.1e} m against {_best(momentum):.1e} "
+        "m), because it corrects what rounding does to |n|. The angles of the paper's Lagrangian cost "
+        f"{min(angles):.0f} to {max(angles):.0f} times more: the path passes near the vertical, where they are "
+        "singular.",
     )
     gauss = min(ladders["gauss_legendre"].measured, key=lambda row: row.error_m or 1.0)
     swing = 2 * document["t_end"] / document["reference"]["transits"]
@@ -168,40 +165,28 @@ def _table(document: Document) -> Iterator[str]:
 
 
 def _again(kept: Documents) -> Iterator[str]:
-    yield "### The same again"
-    yield ""
-    yield from _command("paris_again")
+    yield from _section("### The same again", "paris_again")
     first, second = (
         {row.key: row.cpu_s or 0.0 for row in rows_of(kept[name]) if row.status == Status.OK}
         for name in ("paris", "paris_again")
     )
     both = [key for key in first if key in second]
-    tau = kendall([first[key] for key in both], [second[key] for key in both])
+    tau = kendalltau([first[key] for key in both], [second[key] for key in both]).statistic
     ratios = sorted(second[key] / first[key] for key in both)
     quarter = len(ratios) // 4
     yield so(
         tau > SAME_ORDER,
-        f"{len(both)} of the runs once more, under another load: their ranking by cost is nearly the same "
-        f"(Kendall's tau "
-        f"{tau:.2f}), although single costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times what they were, and "
-        f"half of them "
-        f"{ratios[quarter]:.2f} to {ratios[-1 - quarter]:.2f} times. Ratios of costs hold to about that.",
+        f"{len(both)} of the runs once more, under another load: their ranking by cost is nearly the same (Kendall's "
+        f"tau {tau:.2f}), although single costs are {ratios[0]:.2f} to {ratios[-1]:.2f} times what they were, and "
+        f"half of them {ratios[quarter]:.2f} to {ratios[-1 - quarter]:.2f} times. Ratios of costs hold to about that.",
     )
     yield ""
-
-
-def kendall(a: Sequence[float], b: Sequence[float]) -> float:
-    """Return Kendall's tau of two rankings without ties: 1 for the same order, -1 for the reverse."""
-    signs = [(a[i] - a[j]) * (b[i] - b[j]) for i, j in combinations(range(len(a)), 2)]
-    return (sum(one > 0 for one in signs) - sum(one < 0 for one in signs)) / len(signs)
 
 
 def _hard(kept: Documents) -> Iterator[str]:
     document = kept["hard"]
     swing = 2 * document["t_end"] / document["reference"]["transits"]
-    yield f"### {document['title'].partition(':')[0]}"
-    yield ""
-    yield from _command("hard")
+    yield from _section(f"### {document['title'].partition(':')[0]}", "hard")
     yield from _table(document)
     yield f"A swing takes {swing:.3g} s. Runs fail here:"
     yield ""
@@ -224,18 +209,14 @@ def _grouped(rows: Sequence[Row]) -> list[tuple[Row, list[Row]]]:
 
 def _pantheon(kept: Documents) -> Iterator[str]:
     document = kept["pantheon"]
-    yield f"### {document['title']}, {document['t_end'] / 3600:g} h"
-    yield ""
-    yield from _command("pantheon")
+    yield from _section(f"### {document['title']}, {document['t_end'] / 3600:g} h", "pantheon")
     yield from _table(document)
 
 
 def _precisions(kept: Documents) -> Iterator[str]:
     document = kept["precisions"]
     costs_s = {(row.method, row.setting): row.cpu_s or 0.0 for row in rows_of(document)}
-    yield f"## What a digit costs: Paris, {document['t_end']:g} s"
-    yield ""
-    yield from _command("precisions")
+    yield from _section(f"## What a digit costs: Paris, {document['t_end']:g} s", "precisions")
     yield from (f"- {sentence}" for sentence in sentences(document))
     bits = [setting for method, setting in costs_s if method == "limbs"]
     ratios = {prec: costs_s["heyoka_real", prec] / costs_s["limbs", prec] for prec in bits}
@@ -250,16 +231,12 @@ def _precisions(kept: Documents) -> Iterator[str]:
 
 def _stability(kept: Documents) -> Iterator[str]:
     found = cells(kept["stability"])
-    yield f"## Stiff and extreme: {len({cell.scene for cell in found})} scenes"
-    yield ""
-    yield from _command("stability")
+    yield from _section(f"## Stiff and extreme: {len({cell.scene for cell in found})} scenes", "stability")
     yield (
-        f"Every method is asked for the same on every scene, and at most {SWINGS} small swings are run. A run "
-        f"is silently "
-        f"wrong if it reports success with an error above {WRONG} times what was asked for, and above what the motion "
-        "itself makes of such an error at the release; where the motion magnifies it by more, the run is "
-        "ill-conditioned, "
-        "and nobody's fault. A step is given as a part of 2π over the fastest rate of the scene."
+        f"Every method is asked for the same on every scene, and at most {SWINGS} small swings are run. A run is "
+        f"silently wrong if it reports success with an error above {WRONG} times what was asked for, and above what "
+        "the motion itself makes of such an error at the release; where the motion magnifies it by more, the run is "
+        "ill-conditioned, and nobody's fault. A step is given as a part of 2π over the fastest rate of the scene."
     )
     yield ""
     yield from (f"- {sentence}" for sentence in headlines(found))
@@ -306,9 +283,8 @@ def _what_breaks(found: Sequence[Cell]) -> Iterator[str]:
     kept = {cell.method for cell in found if cell.scene == "separatrix" and cell.status == Status.OK}
     yield so(
         not kept,
-        "- `separatrix`, which ends on top of the rod, defeats all of them: the motion magnifies an error "
-        "more than anybody "
-        "allows for.",
+        "- `separatrix`, which ends on top of the rod, defeats all of them: the motion magnifies an error more than "
+        "anybody allows for.",
     )
     stiff = [name for name in dict.fromkeys(cell.scene for cell in found) if "stiff" in load_scene(name).flags]
     yield so(
@@ -324,9 +300,7 @@ def _long(kept: Documents) -> Iterator[str]:
         name for name, method in METHODS.items() if method.long_runs and name not in {run["method"] for run in runs}
     ]
     left_out = ", ".join(f"`{name}`" for name in others)
-    yield "## Thirty days"
-    yield ""
-    yield from _command("long")
+    yield from _section("## Thirty days", "long")
     yield (
         "Largest position error after 30 days of Paris, and the exponent p of error ∝ t^p, fitted from 18 hours on. "
         f"The truth is from limbs. Left out, because it takes longer than all others: {left_out}."
@@ -343,13 +317,15 @@ def _long(kept: Documents) -> Iterator[str]:
         power["heyoka_double", "momentum"] > 1.7
         and abs(power["numbalsoda_dop853", "space"] - 2) < 0.1
         and abs(power["rk4", "plane"] - 1) < 0.1,
-        "A drift of the energy or of the length that keeps its sign gives t² (DOP853; `momentum` in double, "
-        "where nothing corrects what rounding does to |n|, comes near it); a constant error of the frequency (RK4) "
-        "gives t.",
+        "A drift of the energy or of the length that keeps its sign gives t² (DOP853; `momentum` in double, where "
+        "nothing corrects what rounding does to |n|, comes near it); a constant error of the frequency (RK4) gives t.",
     )
 
 
-def _command(name: str) -> Iterator[str]:
+def _section(heading: str, name: str) -> Iterator[str]:
+    """Yield a heading, and the command whose results follow."""
+    yield heading
+    yield ""
     yield "```sh"
     yield from _folded(COMMANDS[name])
     yield "```"

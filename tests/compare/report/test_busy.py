@@ -8,7 +8,7 @@ import pytest
 
 from compare.report.busy import busy
 from compare.report.study_tables import text_table
-from compare.studies.machine import load_per_core
+from compare.studies.campaign import load_per_core
 from compare.studies.row import Row
 from reference.status import Status
 

@@ -91,12 +91,6 @@ def test_statuses_that_are_others_are_refused_or_counted(kept: dict[str, Any]) -
         studies_page.page(others)
 
 
-def test_two_rankings_are_compared_by_kendalls_tau() -> None:
-    assert studies_page.kendall([1, 2, 3], [10, 20, 30]) == 1
-    assert studies_page.kendall([1, 2, 3], [3, 2, 1]) == -1
-    assert studies_page.kendall([1, 2, 3, 4], [1, 2, 4, 3]) == pytest.approx(4 / 6)
-
-
 def test_the_kept_results_are_small() -> None:
     sizes = [path.stat().st_size for path in studies.KEPT.iterdir()]
     assert len(sizes) == len(studies_page.COMMANDS)
