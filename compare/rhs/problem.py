@@ -95,16 +95,14 @@ class Swing:
     position c/|c| never exceeds the one where v would vanish, nor the speed its value at the bottom.
 
     Attributes:
-        cosine: of that largest angle; at most 1, -1 or less where the bob can go over the top.
+        below: True if the bob stays below the horizontal, where the cord always pulls.
+        reach: bound on the distance from the vertical, as a part of l.
         fastest: speed over l, in 1/s.
-        aside: distance of the rest position from the vertical, as a part of l.
-        spread: largest energy that the centrifugal gradient may add, as a part of the pull.
     """
 
-    cosine: float
+    below: bool
+    reach: float
     fastest: float
-    aside: float
-    spread: float
 
     @classmethod
     def of(cls, start: Start) -> Swing:
@@ -119,26 +117,17 @@ class Swing:
             raise BeyondDoublesError
         strength = float(np.linalg.norm(pull))
         if strength == 0:
-            return cls(-1.0, float(np.linalg.norm(v)), 1.0, 1.0)
+            return cls(False, 1.0, float(np.linalg.norm(v)))
         energy = float(v @ v / 2 - n @ pull)
-        fastest = math.sqrt(max(2 * (energy + strength), 0.0))
-        return cls(
-            min(-energy / strength, 1.0),
-            fastest,
-            float(np.hypot(*pull[:2])) / strength,
-            rate * rate / strength,
-        )
-
-    @property
-    def below(self) -> bool:
-        """True if the bob stays below the horizontal, where the cord always pulls."""
-        return self.cosine > self.aside + self.spread
+        cosine = min(-energy / strength, 1.0)  # of the largest angle; -1 or less where the bob can go over the top
+        aside = float(np.hypot(*pull[:2])) / strength  # distance of the rest position from the vertical
+        spread = rate * rate / strength  # largest energy that the centrifugal gradient may add, as a part of the pull
+        reach = math.sqrt(1 - cosine**2) if cosine > 0 else 1.0
+        return cls(cosine > aside + spread, min(reach + aside, 1.0), math.sqrt(max(2 * (energy + strength), 0.0)))
 
     def sizes(self, variables: int) -> Array:
         """Return bounds on positions (radians, or n) and rates (1/s), in the order of a state's variables."""
-        reach = math.sqrt(1 - self.cosine**2) if self.cosine > 0 else 1.0
-        half = variables // 2
-        sizes: Array = np.array([min(reach + self.aside, 1.0)] * half + [self.fastest] * half)
+        sizes: Array = np.repeat([self.reach, self.fastest], variables // 2)
         return np.maximum(sizes, SMALLEST_SIZE)
 
 

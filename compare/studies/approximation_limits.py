@@ -176,34 +176,28 @@ def varied(scene: Scene, over: str, value: float | str) -> Scene:
 
 
 def _lengthened(scene: Scene, text: str) -> Scene:
+    if scene.exact.position is None:
+        return scene.with_values([f"pendulum.length={text}"])
     case = Case.of_scene(scene)
-    if scene.exact.position is not None:
-        ratio = case.ctx.mpf(text) / case.length
-        place, speed = (tuple(part * ratio for part in v) for v in (case.position, case.velocity))
-        document = scene.model_dump(exclude_none=True) | {"release": _release(case, place, speed)}
-        document["pendulum"]["length"] = text
-        return parse_scene(document)
-    return scene.with_values([f"pendulum.length={text}"])
+    document = scene.model_dump(exclude_none=True) | {"release": _release(case, case.ctx.mpf(text) / case.length, 0)}
+    document["pendulum"]["length"] = text
+    return parse_scene(document)
 
 
 def _displaced(scene: Scene, text: str) -> Scene:
     case = Case.of_scene(scene)
     rest_y = case.ctx.mpf(case.rest[1]) * case.length
-    east, north = case.position[0], case.position[1] - rest_y
-    amplitude = case.ctx.hypot(east, north)
+    amplitude = case.ctx.hypot(case.position[0], case.position[1] - rest_y)
     if not amplitude:
         raise InputError(
             "release", f"x = {scene.release.x}, y = {scene.release.y}", "a release away from the rest position"
         )
-    ratio = case.ctx.mpf(text) / amplitude
-    velocity = tuple(part * ratio for part in case.velocity)
-    return _with_release(scene, _release(case, (east * ratio, rest_y + north * ratio), velocity))
-
-
-def _with_release(scene: Scene, release: dict[str, str]) -> Scene:
+    release = _release(case, case.ctx.mpf(text) / amplitude, rest_y)
     return parse_scene(scene.model_dump(exclude_none=True) | {"release": release})
 
 
-def _release(case: Case, place: Any, velocity: Any) -> dict[str, str]:
-    values = {"x": place[0], "y": place[1], "vx": velocity[0], "vy": velocity[1]}
-    return {name: str(case.ctx.nstr(case.ctx.mpf(value), _DIGITS)) for name, value in values.items()}
+def _release(case: Case, ratio: Any, rest_y: Any) -> dict[str, str]:
+    """Return the release with its distance from the point x = 0, y = rest_y, and its velocity, times a ratio."""
+    (x, y), (vx, vy) = case.position[:2], case.velocity[:2]
+    values = {"x": x * ratio, "y": rest_y + (y - rest_y) * ratio, "vx": vx * ratio, "vy": vy * ratio}
+    return {name: str(case.ctx.nstr(value, _DIGITS)) for name, value in values.items()}

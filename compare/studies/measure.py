@@ -160,14 +160,14 @@ class Bench:
         outcome = work()
         if outcome.status != Status.OK:
             return row
-        errors_s = self.truth.transit_errors(self.scene, outcome)
+        errors_s, floor_s = self.truth.transit_errors(self.scene, outcome)
         gaps = np.diff(np.concatenate([[0.0], transits, [np.inf]]))
         missed = errors_s > MISSED * np.minimum(gaps[1:], gaps[:-1])
         if missed.any():
             first = float(transits[np.argmax(missed)])
             text = f"{int(missed.sum())} of {len(transits)} transits are missed, the first at t = {first:.6f} s"
             return replace(row, status=Status.MISSED_TRANSITS, reason=text)
-        floor_s, largest = self.truth.transit_floor(self.scene, outcome), float(errors_s.max())
+        largest = float(errors_s.max())
         return replace(row, transit_error_s=largest if largest > floor_s else None, transit_floor_s=floor_s)
 
 

@@ -70,8 +70,11 @@ class GridTruth:
         columns = [_column(outcome, name) for name in "xyz"]
         return distance(difference(one, true[: len(one)]) for one, true in zip(columns, self.exact, strict=True))
 
-    def transit_errors(self, scene: Scene, outcome: Outcome) -> Array:
-        """Return the error of each transit's time in s, in any number type, by one Newton step from the true time.
+    def transit_errors(self, scene: Scene, outcome: Outcome) -> tuple[Array, float]:
+        """Return the error of each transit's time in s, in any number type, and what is resolved of it in s.
+
+        The error is that of one Newton step from the state at the true time. What is resolved is limited by the
+        rounding of its terms, and by what Newton's step leaves out.
 
         Args:
             scene: its inputs read as the method read them.
@@ -79,27 +82,18 @@ class GridTruth:
         """
         states, vx = outcome.states[1:], np.array([float(part) for part in _column(outcome, "vx")[1:]])
         k = constants_in_double(scene.exact)
-        n, v = (tuple(states[:, part] / k.length for part in parts) for parts in ((0, 1, 2), (3, 4, 5)))
-        ax = np.asarray(acceleration(n, v, k)[0] * k.length)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            errors_s = np.abs(self.transits_rounded_by - vx / ax)
-        return np.where(np.isfinite(errors_s), errors_s, np.inf)
-
-    def transit_floor(self, scene: Scene, outcome: Outcome) -> float:
-        """Return what `transit_errors` resolves, in s: the rounding of its terms, and what Newton's step leaves out."""
-        states = outcome.states[1:]
-        k = constants_in_double(scene.exact)
         n, v = (states[:, parts] / k.length for parts in (slice(0, 3), slice(3, 6)))
         a = np.array(np.broadcast_arrays(*acceleration(tuple(n.T), tuple(v.T), k))).T
         nudge = _NUDGE / (1 + np.abs(v).max() + np.abs(a).max())  # s, in which little changes
         ahead, behind = (
             np.asarray(acceleration(tuple((n + dt * v).T), tuple((v + dt * a).T), k)[0]) for dt in (nudge, -nudge)
         )
-        away = np.abs(self.transits_rounded_by)
+        away = self.transits_rounded_by
         with np.errstate(divide="ignore", invalid="ignore"):
+            errors_s = np.abs(away - vx / (a[:, 0] * k.length))
             curved = away**2 * np.abs((ahead - behind) / (2 * nudge) / (2 * a[:, 0]))
-        floors = _ROUNDINGS * np.finfo(float).eps * away + np.where(np.isfinite(curved), curved, 0.0)
-        return float(floors.max())
+        floors = _ROUNDINGS * np.finfo(float).eps * np.abs(away) + np.where(np.isfinite(curved), curved, 0.0)
+        return np.where(np.isfinite(errors_s), errors_s, np.inf), float(floors.max())
 
 
 def h_drift(scene: Scene, outcome: Outcome) -> float | None:

@@ -36,11 +36,6 @@ def arguments(problem):
     return [*(repr(float(value)) for value in values), str(ROWS), "6000"]
 
 
-def test_generated_code_is_machine_code_that_calls_no_python():
-    twice = compiled(SOURCE).twice
-    assert len(twice.nopython_signatures) == len(twice.signatures) == 1
-
-
 @pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
 def test_rk4_finds_the_same_as_the_same_program_in_c(tmp_path, tally):
     source, program = Path(__file__).with_name("rk4_plane.c"), tmp_path / "rk4"
