@@ -45,9 +45,9 @@ def parts(value: Value) -> Vector:
     return tuple(value) if isinstance(value, tuple) else (value,)
 
 
-def distance(one: Value, other: Value) -> Any:
+def distance(value: Value, other: Value) -> Any:
     """Return the largest difference of two values' components."""
-    return max(abs(p - q) for p, q in zip(parts(one), parts(other), strict=True))
+    return max(abs(p - q) for p, q in zip(parts(value), parts(other), strict=True))
 
 
 def size(value: Value) -> Any:

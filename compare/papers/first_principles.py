@@ -158,6 +158,12 @@ def turning(p: Point) -> Vector:
     return (MP.zero, p.rate * cos(p.phi), rate_up(p))
 
 
+def forces(p: Point) -> Vector:
+    """Return m g + T + 2 m v × Ω, with gravity alone and the tension of the reference's model."""
+    weight, cord = (MP.zero, MP.zero, -p.mass * p.gravity), scale(-p.mass * pull(p), p.case.n)
+    return add(weight, cord, scale(2 * p.mass, cross(p.velocity, turning(p))))
+
+
 def linearised(p: Point) -> Vector:
     """Return x'', y'' of the reference's model without centrifugal force, linear about straight down."""
     return vector_derivative(lambda s: uniform_acceleration(p.swinging(s)))

@@ -29,6 +29,7 @@ from .first_principles import (
     acceleration_of,
     coupled,
     coupled_at,
+    forces,
     linearised,
     motion,
     rate_up,
@@ -106,13 +107,6 @@ def _away_from_axis() -> Finding:
 def _rising(s: Any) -> Point:
     """Return the first random point, its amplitude times s."""
     return points()[0].swinging(s)
-
-
-def _cord(p: Point) -> Vector:
-    """Return T along the cord, of the size that r·r'' = -v² requires."""
-    free = add((MP.zero, MP.zero, -p.gravity), scale(-2, cross(turning(p), p.velocity)))
-    pull = (dot(p.velocity, p.velocity) + dot(free, p.position)) / p.length**2
-    return scale(-p.mass * pull, p.position)
 
 
 def _horizontal(s: Any) -> Point:
@@ -202,7 +196,6 @@ def _moved_acceleration(p: Point) -> Vector:
     """Return the acceleration of the linear motion, seen from axes that turn at ω_p and coincide at t = 0."""
     rate = axes_rate(p)
     start = (p.x, p.y, p.vx - rate * p.y, p.vy + rate * p.x)
-
     return vector_derivative(primed(lambda t: motion(p, start, t)[:2], -rate), MP.zero, 2)
 
 
@@ -241,8 +234,7 @@ def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return section("methods_", "Three methods",
         Identity("newton", "", "T - mgk - 2m ω × v = m a",
-            lambda p: add(_cord(p), scale(p.mass, (MP.zero, MP.zero, -p.gravity)), scale(-2 * p.mass,
-                cross(turning(p), p.velocity))), lambda p: scale(p.mass, acceleration_of(p)),
+            forces, lambda p: scale(p.mass, acceleration_of(p)),
             remark="truth: reference.model.force with gravity alone; T along the cord"),
         Identity("centrifugal", "", "|ω × (ω × r)| = ω² r cosα", lambda p: p.rate**2 * p.radius * cos(p.phi),
             lambda p: norm(cross(turning(p), cross(turning(p), (MP.zero, MP.zero, p.radius))))),

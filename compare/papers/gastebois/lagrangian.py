@@ -16,6 +16,7 @@ from ..first_principles import (
     coupled,
     coupled_at,
     euler_lagrange,
+    forces,
     lagrangian,
     linearised,
     moving_velocity,
@@ -23,7 +24,6 @@ from ..first_principles import (
     turning,
 )
 from ..points import Point, points
-from .small import forces
 
 
 def speeds(p: Point) -> Vector:

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from reference.model.algebra import cross, dot
+from reference.model.algebra import dot
 
 from ...approximations.gastebois import constants_of
 from ..checks import Approximate, Check, Finding, Identity, Statement, component, section
-from ..digits import MP, Vector, add, cos, j, mpf, scale, shown, sin
+from ..digits import MP, Vector, cos, j, mpf, scale, shown, sin
 from ..first_principles import (
     acceleration_of,
     coupled_at,
+    forces,
     linearised,
     motion,
     pull,
     rate_up,
     swing_rate,
-    turning,
     turning_rates,
     uniform_acceleration,
 )
@@ -55,12 +55,6 @@ def _with_tension(p: Point) -> Vector:
     """Return -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, and the line for y''."""
     up, north, stiff = rate_up(p), p.rate * cos(p.phi), pull(p) / p.length
     return -stiff * p.x + 2 * p.vy * up - 2 * p.vz * north, -stiff * p.y - 2 * p.vx * up
-
-
-def forces(p: Point) -> Vector:
-    """Return m g_a + T + 2 m v × Ω."""
-    weight, tension = (MP.zero, MP.zero, -p.mass * p.gravity), scale(-p.mass * pull(p), p.case.n)
-    return add(weight, tension, scale(2 * p.mass, cross(p.velocity, turning(p))))
 
 
 def _constants(p: Point) -> Vector:

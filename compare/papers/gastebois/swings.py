@@ -21,7 +21,7 @@ from .rotation import (
 )
 from .small import fitted_constants
 
-OWN_LAMBDA = mpf("48.97")
+APPARENT_LATITUDE = mpf("48.97")  # λ_a, as he rounds it
 
 
 def simple(p: Point, t: Any) -> Vector:
@@ -62,16 +62,16 @@ def _axes_turn(p: Point) -> Any:
     return y * vx - x * vy
 
 
-def _own_square(p: Point) -> Any:
+def _half_square(p: Point) -> Any:
     return rate_up(p) ** 2 / (2 * p.gravity / p.length)
 
 
 def _expanded(p: Point) -> Any:
-    return sqrt(p.gravity / p.length) * (1 + _own_square(p))
+    return sqrt(p.gravity / p.length) * (1 + _half_square(p))
 
 
 def _expanded_period(p: Point) -> Any:
-    return 2 * pi / sqrt(p.gravity / p.length) * (1 - _own_square(p))
+    return 2 * pi / sqrt(p.gravity / p.length) * (1 - _half_square(p))
 
 
 def at_rest(p: Point, t: Any) -> Vector:
@@ -112,7 +112,7 @@ def checks() -> list[Check]:
     up = RATE * sin(radians(PANTHEON_LATITUDE))
     w = sqrt(GRAVITY / PANTHEON_LENGTH)
     spread = 1 + mpf("0.375") * (PANTHEON_RELEASE / PANTHEON_LENGTH) ** 2
-    own, rising = sin(radians(OWN_LAMBDA)), sin(radians(PANTHEON_LATITUDE))
+    tilted, geodetic = sin(radians(APPARENT_LATITUDE)), sin(radians(PANTHEON_LATITUDE))
     return section("gastebois_", "Gastebois",
         Identity("6_2_xy", "6.2", "x = r0 cosΩ_z t cosωt, y = -r0 sinΩ_z t cosωt",
             lambda p: simple(p, p.t)[:2], lambda p: motion(p, _start_simple(p), p.t)[:2]),
@@ -170,13 +170,14 @@ def checks() -> list[Check]:
         PrintedNumber("6_3_small", "6.3", "0,93 mm at the middle", "0.93", lambda: 1000 * PANTHEON_RELEASE * up / w),
         PrintedNumber("6_3_step", "6.3", "5,88 mm after one swing",
             "5.88", lambda: 2000 * pi * PANTHEON_RELEASE * up / w,
-            from_inputs=lambda: 2000 * pi * PANTHEON_RELEASE * mpf("7.297e-5") * rising / mpf("0.382"),
+            from_inputs=lambda: 2000 * pi * PANTHEON_RELEASE * mpf("7.297e-5") * geodetic / mpf("0.382"),
             inputs="Ω = 7,297 · 10⁻⁵ and ω = 0,382"),
         PrintedNumber("6_3_apparent", "6.3", "with the centrifugal force T_f = 31,74 h",
-            "31.74", lambda: SIDEREAL_DAY / own, from_inputs=lambda: mpf("23.92") / own, inputs="T_p = 23,92 h",
+            "31.74", lambda: SIDEREAL_DAY / tilted, from_inputs=lambda: mpf("23.92") / tilted, inputs="T_p = 23,92 h",
             remark="at λ_a = 48,97°; T_p = 23,92 h gives "
-                f"{shown(mpf('23.92') / own, 6)}, 23,93 h {shown(mpf('23.93') / own, 6)}"),
+                f"{shown(mpf('23.92') / tilted, 6)}, 23,93 h {shown(mpf('23.93') / tilted, 6)}"),
         PrintedNumber("6_3_precession", "6.3", "31,74 (1 + 3/8 r0²/L0²) = 31,85 h",
-            "31.85", lambda: SIDEREAL_DAY / own * spread, from_inputs=lambda: mpf("31.74") * spread, inputs="31,74 h"),
-        PrintedNumber("6_3_rounded", "6.3", "one may take 31,8 h", "31.8", lambda: SIDEREAL_DAY / own * spread),
+            "31.85", lambda: SIDEREAL_DAY / tilted * spread,
+            from_inputs=lambda: mpf("31.74") * spread, inputs="31,74 h"),
+        PrintedNumber("6_3_rounded", "6.3", "one may take 31,8 h", "31.8", lambda: SIDEREAL_DAY / tilted * spread),
     )  # fmt: skip
