@@ -4,9 +4,8 @@ from fractions import Fraction
 from itertools import pairwise
 from random import Random
 
-import mpmath as mp
 import pytest
-from enclosure_oracle import acceleration, constants, scene, truth, unit_step
+from enclosure_oracle import scene, truth, unit_step
 from enclosure_recurrence import prove
 from flint import arb, ctx, fmpq, fmpq_poly
 
@@ -152,13 +151,3 @@ def test_sides_that_contradict_each_other_are_refused():
     scan.left = -1
     with pytest.raises(ArithmeticError, match="contradict"):
         scan._close(1)
-
-
-def test_the_acceleration_at_a_transit_is_that_of_the_equations():
-    inputs = scene(length="2", rotation_rate="0.3", equatorial_radius="5")
-    (hit, *_) = prove(inputs, [Fraction(4)], Fraction(1, 10**30)).transits
-    with mp.workprec(300):
-        (state,) = truth(inputs, [(hit.t.low + hit.t.high) / 2], 300)
-        ax = acceleration(constants(inputs), [mp.mpf(q.numerator) / q.denominator for q in state])[0]
-        low, high = (mp.mpf(q.numerator) / q.denominator for q in (hit.ax.low, hit.ax.high))
-        assert low - mp.mpf(10) ** -25 <= ax <= high + mp.mpf(10) ** -25

@@ -311,13 +311,3 @@ def test_steps_that_do_not_join_or_overreach_are_refused():
         last_state(PARIS, [rows[0], *rows[2:]])
     with pytest.raises(ArithmeticError):
         last_state(PARIS, [rows[0]._replace(high=Fraction(3, 2))])
-
-
-def test_two_orders_and_methods_overlap():
-    end, inputs = Fraction(30), scene(length="5", angles=("60", "10", "3", "2"))
-    rows = [
-        last_state(inputs, steps(inputs, end, bits, order), columns)
-        for bits, order, columns in ((128, 64, False), (128, 40, True), (192, 90, True), (256, 100, False))
-    ]
-    for parts in zip(*rows, strict=True):
-        assert max(i.low for i in parts) <= min(i.high for i in parts)
