@@ -1,6 +1,7 @@
-"""Frequency of the swing in Hz, Mathar VII, and precession period T_f of its plane in s, Gastebois 4.1, 4.2, 6.3.
+"""Numbers of the swing: apparent gravity in m/s², frequency in Hz, and precession period T_f of its plane in s.
 
-T_p is 2π/Ω.
+Gravity is that of Gastebois 4.2 and Mathar (48), the frequencies are those of Mathar VII, and the precession is that
+of Gastebois 4.1, 4.2, 6.3, where T_p is 2π/Ω.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from reference import Scene
 
 from ..observed.swing_plane import frequency, precession_period
 from .approximation import Order, Printed, Quantity
-from .case import Case, at_rest, released_at_rest, swinging
+from .case import Case, at_rest, released_at_rest, swinging, under_gravity
 from .gastebois import small_angles
 from .mathar import slow_down
 
@@ -24,6 +25,11 @@ _CENTRIFUGAL = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4), (), 1e-2)
 _AT_POLE = ("site.latitude=90", "site.rotation_rate=2e-3")
 _SMALL = 1e-2
 _SQUARE_AT_POLE = Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE)
+
+
+def _apparent_gravity_as_printed(case: Case) -> Any:
+    """Return (g² + Ω² R_p cos λ - 2 g Ω² R_p cos² λ)^(1/2)."""
+    return case.ctx.sqrt(case.gravity**2 + case.outward - 2 * case.gravity * case.outward * case.cos)
 
 
 def harmonic(case: Case) -> Any:
@@ -90,6 +96,23 @@ _precession = partial(
 )
 
 APPROXIMATIONS = (
+    Quantity(
+        id="apparent_gravity",
+        title="gravity and centrifugal force at the suspension",
+        where="Gastebois 4.2; Mathar (48)",
+        domain="any latitude",
+        drops="the cord: the bob is nearer to the axis than the suspension",
+        orders=(Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4)), Order("length", 1, (10, 20, 40, 80))),
+        refuses=under_gravity,
+        printed=Printed(
+            "g_a² = g² + Ω² R_p cos λ - 2 g Ω² R_p cos² λ",
+            "g_a² = g² + Ω⁴ R_p² cos² λ - 2 g Ω² R_p cos² λ: the term a_e² lost its square in print",
+            _apparent_gravity_as_printed,
+        ),
+        formula=lambda case: case.apparent_gravity,
+        truth=lambda scene: Case.of_scene(scene).pull_at_rest,
+        unit="m/s²",
+    ),
     _frequency(
         id="frequency_harmonic",
         title="harmonic frequency sqrt(g/l)/2π",
