@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Any
 
-from reference import InputError
 from reference.status import Status
 
 from ..observed.position_error import LEAST_POINTS, PowerLaw, power_law
@@ -97,10 +96,8 @@ def curves(rows: Sequence[Row]) -> list[Curve]:
 
 
 def error_of(row: Row, bound_m: float) -> float:
-    """Return the row's largest position error in m, but at least the bound of the reference."""
-    if row.error_m is None:
-        raise InputError("row", f"{row.method} at {row.setting:g}: {row.status}", "a row with an error")
-    return max(row.error_m, bound_m)
+    """Return the row's largest position error in m, at least the bound of the reference; infinity if it has none."""
+    return math.inf if row.error_m is None else max(row.error_m, bound_m)
 
 
 def cost_of(row: Row) -> float:
@@ -179,17 +176,17 @@ def sentences(document: dict[str, Any]) -> list[str]:
 
 def _prices(curve: Curve, bound_m: float) -> str:
     """Return what each number of digits costs with a method, and a further digit between the last two of them."""
-    measured = [row for row in _measured(curve.rows) if row.error_m is not None and row.error_m < 1 and row.cpu_s]
-    known = sorted(measured, key=lambda row: digits_of(row, bound_m))
-    if not known:
+    measured = [row for row in _measured(curve.rows) if error_of(row, 0.0) < 1 and row.cpu_s]
+    costs = sorted((digits_of(row, bound_m), cost_of(row)) for row in measured)
+    if not costs:
         return ""
-    costs = [f"{digits_of(row, bound_m):.0f} digits cost {seconds(cost_of(row))}" for row in known]
-    text = f"{curve.label}: {costs[0]}" + "".join(f", {cost.replace(' digits cost', ' digits')}" for cost in costs[1:])
-    if len(known) > 1:
-        further = digits_of(known[-1], bound_m) - digits_of(known[-2], bound_m)
-        if further > 1:
-            price = (cost_of(known[-1]) - cost_of(known[-2])) / further
-            text += f"; a further digit costs {seconds(price)} there"
+    (least, cost), *others = costs
+    text = f"{curve.label}: {least:.0f} digits cost {seconds(cost)}"
+    text += "".join(f", {digits:.0f} digits {seconds(cpu_s)}" for digits, cpu_s in others)
+    if others:
+        (fewer, less), (more, dearer) = costs[-2:]
+        if more - fewer > 1:
+            text += f"; a further digit costs {seconds((dearer - less) / (more - fewer))} there"
     return f"{text}."
 
 
@@ -278,4 +275,4 @@ def _metres(error_m: float) -> str:
 
 def _measured(rows: Sequence[Row]) -> list[Row]:
     """Return rows with a finite cost and error; a NaN must not reach the front because its comparisons are false."""
-    return [row for row in rows if row.measured and math.isfinite((row.error_m or 0.0) + cost_of(row))]
+    return [row for row in rows if row.measured and math.isfinite(error_of(row, 0.0) + cost_of(row))]

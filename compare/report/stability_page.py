@@ -16,14 +16,15 @@ from ..studies.campaign import machine
 from ..studies.long_runs import LongRun, laws
 from ..studies.stability import WRONG, Cell
 from ..studies.users_program import NUMBER
-from .busy import busy
 from .charts.stability_charts import LETTERS, error_growth, heat_map
 from .folder import Report
 from .page import Html, Table, facts, figure, findings, page, paragraph, section
-from .study_tables import LONGEST_COMMAND, advice, cpu, setting, tidy, words
+from .study_tables import LONGEST_COMMAND, advice, busy, cpu, setting, tidy, words
 
 COUNTED = (Status.SILENTLY_WRONG, Status.ILL_CONDITIONED)
+_RUN = ("scene", "method", "precision", "setting")
 NOT_TRIED = (Status.NOT_INSTALLED, Status.REFUSED, Status.UNREACHABLE)
+_LEAD_OF_PROGRAMS = "; a program of --run for a millionth of the amplitude, as `foucault score` asks for"
 PAIRS = (("scipy_radau", "scipy_dop853"), ("scipy_bdf", "scipy_rk45"), ("cvode_bdf", "cvode_adams"))
 
 
@@ -73,32 +74,30 @@ def _named(cells: Sequence[Cell]) -> Callable[[Cell], str]:
 def _programs_broken(cells: Sequence[Cell]) -> Iterator[str]:
     """Yield for each program of the user's a sentence: on which scenes it breaks, and how."""
     for name in dict.fromkeys(cell.method for cell in cells if cell.precision == NUMBER):
-        own = [cell for cell in cells if cell.method == name and cell.status not in NOT_TRIED]
-        broken = [cell for cell in own if cell.status != Status.OK]
-        told = (
+        tried = [cell for cell in cells if cell.method == name and cell.status not in NOT_TRIED]
+        breaks = [
             f"{cell.scene} ({cell.status.words})"
             if cell.wrong_from_s is None
             else f"{cell.scene} (wrong from t = {cell.wrong_from_s:g} s on)"
-            for cell in broken
-        )
-        yield f"{name} breaks on {len(broken)} of {len(own)} scenes{': ' if broken else ''}{', '.join(told)}."
+            for cell in tried
+            if cell.status != Status.OK
+        ]
+        yield f"{name} breaks on {len(breaks)} of {len(tried)} scenes{': ' if breaks else ''}{', '.join(breaks)}."
 
 
 def _stiffness(cells: Sequence[Cell]) -> Iterator[str]:
     """Yield for each pair a sentence: is the implicit method cheaper on stiff scenes, and more expensive on others?"""
-    by_key = {(cell.scene, cell.method): cell for cell in cells if cell.cpu_s is not None}
+    costs = {(cell.scene, cell.method): cell.cpu_s for cell in cells if cell.cpu_s}
     stiff = {scene for scene in {cell.scene for cell in cells} if "stiff" in load_scene(scene).flags}
     for implicit, explicit in PAIRS:
         ratios: dict[bool, list[float]] = {True: [], False: []}
-        for (scene, method), cell in by_key.items():
-            other = by_key.get((scene, explicit))
-            if method == implicit and other is not None and cell.cpu_s and other.cpu_s:
-                ratios[scene in stiff].append(other.cpu_s / cell.cpu_s)
+        for (scene, method), cpu_s in costs.items():
+            if method == implicit and (scene, explicit) in costs:
+                ratios[scene in stiff].append(costs[scene, explicit] / cpu_s)
         if ratios[True] and ratios[False]:
-            wins, loses = median(ratios[True]), 1 / median(ratios[False])
             yield (
-                f"{implicit} compared with {explicit}, median CPU time: {_times(wins)} on stiff scenes "
-                f"({len(ratios[True])} of them), {_times(1 / loses)} on the others ({len(ratios[False])})."
+                f"{implicit} compared with {explicit}, median CPU time: {_times(median(ratios[True]))} on stiff scenes "
+                f"({len(ratios[True])} of them), {_times(median(ratios[False]))} on the others ({len(ratios[False])})."
             )
 
 
@@ -147,10 +146,7 @@ def page_text(document: dict[str, Any]) -> str:
         parts,
         lead=paragraph(
             "Each method was asked for the same number of digits on every scene, and its result was compared with the "
-            "reference solution; a program of --run for a millionth of the amplitude, as `foucault score` asks for."
-            if programs
-            else "Each method was asked for the same number of digits on every scene, and its result was compared with "
-            "the reference solution."
+            f"reference solution{_LEAD_OF_PROGRAMS if programs else ''}."
         ),
     )
 
@@ -158,28 +154,27 @@ def page_text(document: dict[str, Any]) -> str:
 def _reasons(cells: Sequence[Cell]) -> Html:
     if not cells:
         return paragraph("None.")
-    columns = {**dict.fromkeys(("scene", "method", "precision", "setting", "status"), ""), "digits": "number"}
-    rows = [
-        (
-            cell.scene, cell.method, cell.precision, setting(cell), cell.status.words,
-            "" if cell.digits is None else f"{max(cell.digits, 0):.1f}", f"{cell.asked:.1f}", cell.reason,
-        )
-        for cell in cells
-    ]  # fmt: skip
-    return Table({**columns, "asked for": "number", "reason": "prose"}, rows).html()
+    columns = {**dict.fromkeys((*_RUN, "status"), ""), "digits": "number", "asked for": "number", "reason": "prose"}
+    rows = []
+    for cell in cells:
+        digits = "" if cell.digits is None else f"{max(cell.digits, 0):.1f}"
+        rows.append((*_run(cell), cell.status.words, digits, f"{cell.asked:.1f}", cell.reason))
+    return Table(columns, rows).html()
 
 
 def _asked(cells: Sequence[Cell]) -> Html:
     """Return each cell's setting, the digits that it was asked for, and those that it kept."""
-    texts, numbers = ("scene", "method", "precision", "setting"), ("asked for", "kept", "CPU s")
-    rows = [
-        (
-            cell.scene, cell.method, cell.precision, setting(cell), f"{cell.asked:.1f}",
-            "" if cell.digits is None else f"{cell.digits:.1f}", cpu(cell.cpu_s), cell.status.words,
-        )
-        for cell in cells
-    ]  # fmt: skip
-    return Table({**dict.fromkeys(texts, ""), **dict.fromkeys(numbers, "number"), "status": ""}, rows).html()
+    columns = {**dict.fromkeys(_RUN, ""), **dict.fromkeys(("asked for", "kept", "CPU s"), "number"), "status": ""}
+    rows = []
+    for cell in cells:
+        kept = "" if cell.digits is None else f"{cell.digits:.1f}"
+        rows.append((*_run(cell), f"{cell.asked:.1f}", kept, cpu(cell.cpu_s), cell.status.words))
+    return Table(columns, rows).html()
+
+
+def _run(cell: Cell) -> tuple[str, ...]:
+    """Return what was run, for the columns `_RUN`."""
+    return cell.scene, cell.method, cell.precision, setting(cell)
 
 
 def _programs(programs: Mapping[str, str]) -> Html:

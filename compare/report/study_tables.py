@@ -1,10 +1,14 @@
-"""Tables of a study, as HTML for its page and as text for a terminal; numbers and settings in short form."""
+"""Tables of a study, as HTML for its page and as text for a terminal.
+
+Besides, in short form for all reports of studies: numbers, settings, outcomes, and how busy the machine was.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
 from operator import itemgetter
+from statistics import median
 from textwrap import wrap
 from typing import Any
 
@@ -16,14 +20,36 @@ from ..studies.row import Row
 from ..studies.stability import Cell
 from ..studies.study import Order, orders
 from ..studies.users_program import FILE
-from . import explanations
-from .busy import busy
 from .page import Html, Table, strong
 from .pareto import TARGETS_M, CostAtError, cost_at, costs_at, curves, front, rows_of, sentences
 
 FRONT_MARK, PART_MARK, ABSENT = "●", "~", "–"
 LONGEST_COMMAND = 400  # characters of a command that a page repeats
 SMALL = 1.5e-3  # settings below this are written with an exponent
+BUSY = 1.0  # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
+SPREAD = 0.2  # difference of repeated costs over their median; with more, ratios of costs are doubtful
+
+_COSTS = (
+    "CPU seconds that a method needs to reach an error over the whole span. Between two settings the cost is "
+    "interpolated in logarithms; it is never extrapolated beyond the settings that were run. If even the loosest "
+    "setting of a method is more accurate, the cost of that setting is given. Bold: the cheapest method. ~: the cost "
+    "is based on a run over a part of the span. Empty: not reached. The methods are sorted by their cost at the "
+    "smallest error that they reach."
+)
+_FRONT = "No other row is both cheaper and more accurate than one of these. Cheapest first."
+_ROWS = (
+    "● and shaded: on the Pareto front. ~: the cost is extrapolated from a part of the span; counts and errors are "
+    "those of that part. Spread: the difference between the largest and the smallest CPU time of the repeats, divided "
+    "by their median. Compile: CPU seconds of imports and compilation, which are not part of the cost. <: the error "
+    "of transits is not resolved, because it is measured from the doubles next to their true times; it is below this."
+)
+_FAILED = "Failed rows keep their place in the tables: nothing is left out. A failed row is never on the Pareto front."
+_ORDERS = (
+    "Order: as the method declares it; – where it chooses its order itself. Observed: the power with which its error "
+    "falls as it takes more steps (evaluations where it does not tell steps), fitted to at least three settings, with "
+    "the standard error of the fit; – where that is above 0.25, because too few settings lie between a step that is "
+    "too long and rounding."
+)
 
 
 def costs(rows: Sequence[Row], bound_m: float) -> Html:
@@ -37,7 +63,7 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
             cells = [_cost_cell(one, best) for one, best in zip(reached, least, strict=True)]
             placed.append((order, [curve.label, *cells]))
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
-    return Table(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(explanations.COSTS)
+    return Table(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(_COSTS)
 
 
 def _cost_cell(one: CostAtError | None, least: float | None) -> str:
@@ -54,7 +80,7 @@ def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
         (labels[row.key], setting(row), number(row.error_m), cost(row), row.reason) for row in front(rows, bound_m)
     ]
     columns = {"method": "", "setting": "", "error m": "number", "CPU s": "number", "": ""}
-    return Table(columns, cells).html(explanations.FRONT)
+    return Table(columns, cells).html(_FRONT)
 
 
 def every_row(rows: Sequence[Row], bound_m: float) -> Html:
@@ -79,7 +105,7 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
                 cpu(row.compile_s), count(row.rhs_evaluations), count(row.steps),
                 "" if row.reached_t is None else f"{row.reached_t:g}", row.reason,
             ))  # fmt: skip
-    return Table(columns, cells, kinds).html(explanations.ROWS)
+    return Table(columns, cells, kinds).html(_ROWS)
 
 
 def failures(rows: Sequence[Row]) -> Html | None:
@@ -97,7 +123,7 @@ def failures(rows: Sequence[Row]) -> Html | None:
         settings = ", ".join(setting(row) for row in group)
         cells.append((label, settings, status.words, ", ".join(sorted(reached)), reason))
     columns = {"method": "", "settings": "prose", "status": "", "last t, s": "", "reason": "prose"}
-    return Table(columns, cells, ["failed"] * len(cells)).html(explanations.FAILED)
+    return Table(columns, cells, ["failed"] * len(cells)).html(_FAILED)
 
 
 def words(statuses: Collection[Status]) -> Html:
@@ -125,7 +151,7 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], fi
     yours |= dict.fromkeys(files, ("", "--candidates"))
     rest = [(name, command, "", "", source, "", "") for name, (command, source) in yours.items()]
     columns = {"method": "", "": "prose", "order": "", "observed": "", "source": "prose", "licence": "", "extra": ""}
-    return Table(columns, [*body, *rest]).html(explanations.ORDERS)
+    return Table(columns, [*body, *rest]).html(_ORDERS)
 
 
 def observed(order: Order | None) -> str:
@@ -230,3 +256,26 @@ def cost(row: Row) -> str:
 def count(value: int | None) -> str:
     """Return a count with thin spaces between thousands; empty for None."""
     return "" if value is None else f"{value:,}".replace(",", "\u202f")
+
+
+def busy(rows: Sequence[Row | Cell]) -> str:
+    """Return the load while rows were measured, and the spread of repeats; and that the machine was busy if it was.
+
+    Rows that were measured earlier, and taken from a journal, count with the load of their time.
+    """
+    loads = [row.load for row in rows if row.load is not None]
+    spreads = [row.cpu_spread for row in rows if isinstance(row, Row) and row.cpu_spread is not None]
+    parts = []
+    if loads:
+        parts.append(f"{median(loads):.1f} processes for each core (median), {max(loads):.1f} at most")
+    if spreads:
+        parts.append(f"repeats of a run differ by {100 * median(spreads):.0f} % (median), {100 * max(spreads):.0f} %")
+        parts[-1] += " at most"
+    if not parts:
+        return "not known"
+    text = "; ".join(parts)
+    crowded, uneven = bool(loads) and median(loads) > BUSY, bool(spreads) and median(spreads) > SPREAD
+    if not (crowded or uneven):
+        return text
+    doubt = "ratios of costs drift too, most where vectors are wide (AVX-512)"
+    return f"{text}. The machine was busy: {doubt}" if crowded else f"{text}. Costs were uneven: {doubt}"

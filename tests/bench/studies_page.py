@@ -13,10 +13,9 @@ from typing import Any
 from scipy.stats import kendalltau
 
 from compare.methods import METHODS
-from compare.report.busy import busy
 from compare.report.pareto import Curve, cost_at, curves, rows_of, sentences
 from compare.report.stability_page import headlines
-from compare.report.study_tables import setting, tidy
+from compare.report.study_tables import busy, setting, tidy
 from compare.studies.row import Row
 from compare.studies.stability import SWINGS, WRONG, Cell
 from reference import load_scene

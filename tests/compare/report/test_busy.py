@@ -6,8 +6,7 @@ import os
 
 import pytest
 
-from compare.report.busy import busy
-from compare.report.study_tables import text_table
+from compare.report.study_tables import busy, text_table
 from compare.studies.campaign import load_per_core
 from compare.studies.row import Row
 from reference.status import Status
