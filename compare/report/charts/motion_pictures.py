@@ -43,10 +43,9 @@ def path(axes: Any, motion: Motion) -> None:
         _dots(axes, rows[:, 0], rows[:, 1], BLUE)
     _begin(axes, *rows[0, :2])
     edge = 1.08 * size * scale
-    axes.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal")
+    axes.set(xlim=(-edge, edge), ylim=(-edge, edge), aspect="equal", title=f"Path from above: {_shown(motion)}")
     axes.set(xlabel=f"x in {unit}, east", ylabel=f"y in {unit}, north")
     axes.grid(True)
-    axes.set_title(f"Path from above: {_shown(motion)}")
 
 
 def sphere(axes: Any, motion: Motion) -> None:
@@ -62,29 +61,26 @@ def sphere(axes: Any, motion: Motion) -> None:
         axes.plot(right * near, up * near, color=BLUE, linewidth=0.9 if front else 0.5, alpha=1.0 if front else 0.5)
     _begin(axes, right[0], up[0])
     axes.plot([0], [0], marker="+", color=INK, markersize=6)
-    axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), aspect="equal")
+    axes.set(xlim=(-1.08, 1.08), ylim=(-1.08, 1.08), aspect="equal", title=f"On the sphere: {_shown(motion)}")
     axes.set_axis_off()
-    axes.set_title(f"On the sphere: {_shown(motion)}")
 
 
 def plane(axes: Any, motion: Motion) -> None:
-    """Draw the azimuth of the swing plane against time."""
-    t, angle = _few(motion.plane_t, DOTS), motion.plane
-    steps = (np.diff(angle) + 90) % 180 - 90
-    smooth = len(steps) == 0 or np.abs(steps).max() < 60
-    if smooth:  # without the leaps of 180 degrees
-        angle = angle[0] + np.concatenate([[0.0], np.cumsum(steps)]) if len(angle) else angle
-    angle = _few(angle, DOTS)
+    """Draw the azimuth of the swing plane against time; where it turns little by little, it does not leap."""
+    steps = (np.diff(motion.plane) + 90) % 180 - 90
+    smooth = np.abs(steps).max() < 60
+    angle = np.unwrap(motion.plane, period=180) if smooth else motion.plane
+    t, angle = _few(motion.plane_t, DOTS), _few(angle, DOTS)
     seconds, word = time_unit(float(motion.t[-1]))
     _dots(axes, t * seconds, angle, BLUE)
-    if len(angle) and np.ptp(angle) < _SMALL:
+    if np.ptp(angle) < _SMALL:
         axes.set_ylim(float(np.mean(angle)) - _SMALL, float(np.mean(angle)) + _SMALL)
     if not smooth:
         axes.set(ylim=(-90, 90), yticks=(-90, -45, 0, 45, 90))
     axes.ticklabel_format(axis="y", useOffset=False)
     axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel="degrees, from east to north")
+    axes.set(title="Azimuth of the swing plane")
     axes.grid(True)
-    axes.set_title("Azimuth of the swing plane")
 
 
 def transits(axes: Any, motion: Motion) -> None:
@@ -95,22 +91,21 @@ def transits(axes: Any, motion: Motion) -> None:
         mine = motion.directions == direction
         t, x = _few(motion.transit_t[mine], DOTS // 2), _few(motion.transit_x[mine], DOTS // 2)
         _dots(axes, t * seconds, x * scale, colour)
-    axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
-    axes.grid(True)
     count = len(motion.transit_t)
-    axes.set_title(f"Where the bob turns in x: {count} transit{'' if count == 1 else 's'}")
+    axes.set(xlim=(0, motion.t[-1] * seconds), xlabel=f"t in {word}", ylabel=f"x in {unit}")
+    axes.set(title=f"Where the bob turns in x: {count} transit{'' if count == 1 else 's'}")
+    axes.grid(True)
 
 
 def panels(motion: Motion) -> dict[str, Callable[[Any, Motion], None]]:
     """Return the pictures that there are of a motion, by name."""
-    found: dict[str, Callable[[Any, Motion], None]] = {"path": path}
-    if motion.wide:
-        found["sphere"] = sphere
-    if len(motion.plane_t) > 1:
-        found["plane"] = plane
-    if len(motion.transit_t):
-        found["transits"] = transits
-    return found
+    pictures = {
+        "path": (path, True),
+        "sphere": (sphere, motion.wide),
+        "plane": (plane, len(motion.plane_t) > 1),
+        "transits": (transits, len(motion.transit_t) > 0),
+    }
+    return {name: draw for name, (draw, shown) in pictures.items() if shown}
 
 
 def motion_picture(motion: Motion, names: Sequence[str], target: Path) -> bytes:
