@@ -13,7 +13,7 @@ from reference.engines.batch_interface import Rows
 from reference.numbers.double_double import DoubleDouble
 from reference.scenes.inputs import Inputs
 from reference.scenes.scene import load_scene
-from reference.sweeps.row_constants import ANGLES, POSITION, SITE, row_constants
+from reference.sweeps.row_constants import columns_of, row_constants
 
 KINDS = ("small", "wide", "meridian", "planet", "over")
 SPAN = Fraction(600)
@@ -68,18 +68,12 @@ def random_kinds(seed: int, count: int, span: Fraction = SPAN, kinds: tuple[str,
 
 def columns_of_many(many: list[Inputs]) -> dict[str, DoubleDouble]:
     """Return scenes of one release form and one gravity as columns."""
-    columns = {name: DoubleDouble.of([getattr(inputs, name) for inputs in many]) for name in (*SITE, "t_end")}
-    names = POSITION if many[0].position is not None else ANGLES
-    for i, name in enumerate(names):
-        columns[name] = DoubleDouble.of([(inputs.position or inputs.angles)[i] for inputs in many])
-    return columns
+    columns = [columns_of(inputs) for inputs in many]
+    return {
+        name: DoubleDouble.from_pairs(np.concatenate([each[name].pairs for each in columns])) for name in columns[0]
+    }
 
 
 def rows_of(many: list[Inputs]) -> Rows:
     """Return scenes of any release form and gravity as rows, in order."""
-    groups: dict[tuple[bool, str], list[int]] = {}
-    for i, inputs in enumerate(many):
-        groups.setdefault((inputs.position is None, inputs.gravity_is), []).append(i)
-    blocks = [row_constants(columns_of_many([many[i] for i in own]), key[1], len(own)) for key, own in groups.items()]
-    order = [i for own in groups.values() for i in own]
-    return Rows.joined(blocks)[np.argsort(order)]
+    return Rows.joined([row_constants(columns_of(inputs), inputs.gravity_is, 1) for inputs in many])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import errno
-import os
 import signal
 import subprocess
 import sys
@@ -40,13 +39,6 @@ def test_the_folder_is_there_for_the_work_and_gone_after_it(tmp_path):
     assert left(tmp_path) == []
 
 
-def test_a_folder_with_the_number_of_this_very_process_is_in_nobodys_way(tmp_path):
-    (tmp_path / f".pp.partial-{os.getpid()}").mkdir()
-    with workspace(tmp_path, "pp") as work:
-        assert left(tmp_path) == [work.name]
-    assert left(tmp_path) == []
-
-
 def test_a_living_process_keeps_its_folder_and_a_killed_one_does_not(tmp_path):
     with subprocess.Popen([sys.executable, "-c", HOLDER, str(tmp_path)], stdout=subprocess.PIPE) as process:
         assert process.stdout is not None
@@ -59,40 +51,26 @@ def test_a_living_process_keeps_its_folder_and_a_killed_one_does_not(tmp_path):
         assert not held.exists()
 
 
-def test_folders_of_other_names_stay(tmp_path):
-    for name in (".other.partial-1", ".pp.backup", "pp.partial-1"):
-        (tmp_path / name).mkdir()
-    with workspace(tmp_path, "pp"):
+@pytest.mark.parametrize("name", ["pp", "a[b]*?", "-x", "ü ü"])
+def test_those_of_the_name_go_and_folders_of_other_names_stay(tmp_path, name):
+    for other in (f".{name}.partial-1", ".other.partial-1", f".{name}.backup", f"{name}.partial-1"):
+        (tmp_path / other).mkdir()
+    with workspace(tmp_path, name):
         pass
-    assert left(tmp_path) == [".other.partial-1", ".pp.backup", "pp.partial-1"]
+    assert left(tmp_path) == sorted([".other.partial-1", f".{name}.backup", f"{name}.partial-1"])
 
 
-def test_a_name_may_hold_any_letters(tmp_path):
-    for name in ("a[b]*?", "-x", "ü ü"):
-        (tmp_path / f".{name}.partial-1").mkdir()
-        with workspace(tmp_path, name):
-            pass
-    assert left(tmp_path) == []
-
-
-def test_what_was_moved_away_by_a_killed_process_comes_back(tmp_path):
+@pytest.mark.parametrize("replaced", [False, True])
+def test_what_was_moved_away_by_a_killed_process_comes_back_unless_it_was_replaced(tmp_path, replaced):
     stale = tmp_path / ".pp.partial-1"
     (stale / OLD).mkdir(parents=True)
     (stale / OLD / "grid.csv").write_text("years of work")
-    with workspace(tmp_path, "pp"):
-        pass
-    assert (tmp_path / "pp" / "grid.csv").read_text() == "years of work"
-    assert left(tmp_path) == ["pp"]
-
-
-def test_what_was_replaced_does_not_come_back(tmp_path):
-    stale = tmp_path / ".pp.partial-1"
-    (stale / OLD).mkdir(parents=True)
-    (tmp_path / "pp").mkdir()
+    if replaced:
+        (tmp_path / "pp").mkdir()
     with workspace(tmp_path, "pp"):
         pass
     assert left(tmp_path) == ["pp"]
-    assert left(tmp_path / "pp") == []
+    assert left(tmp_path / "pp") == ([] if replaced else ["grid.csv"])
 
 
 def test_on_a_disk_without_locks_none_is_cleared_away(tmp_path, monkeypatch):
