@@ -121,8 +121,8 @@ PUBLIC = {
     "reference": "DatasetError FoucaultError Golden InputError IntegrationError Scene Solution Swept UnreachableError "
     "integrate load load_scene parse_scene scene_ids solve trajectory write",
     "reference.commands.progress": "progress",
-    "reference.commands.terminal": "AsJson Assignments Cluster EndTime SceneWord Workers chosen completion emit "
-    "refuse replacements stoppable",
+    "reference.commands.terminal": "AsJson Assignments Cluster EndTime SceneWord Workers check_workers chosen "
+    "completion emit refuse replacements stoppable",
     "reference.dataset.render": "MEANING",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.dataset.manifest": "MANIFEST",

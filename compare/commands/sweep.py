@@ -15,6 +15,7 @@ from reference.commands.terminal import (
     Cluster,
     EndTime,
     Workers,
+    check_workers,
     completion,
     emit,
     refuse,
@@ -124,10 +125,7 @@ def command(
         {"--over": over, "--rows": rows, "--set": set_, "--t-end": t_end, "--want": want, "--level": level,
          "--digits": digits, "--tolerance": tolerance, "--engine": engine, "--audit": audit},
     )  # fmt: skip
-    if workers is not None and cluster is not None:
-        refuse({"--workers": workers}, "together with --cluster")
-    if workers is not None and workers < 1:
-        raise InputError("--workers", workers, "a whole number from 1")
+    check_workers(workers, cluster)
     if plot is not None:
         from ..report.charts.sweep_chart import check
 

@@ -22,6 +22,7 @@ from .terminal import (
     Cluster,
     EndTime,
     Workers,
+    check_workers,
     chosen,
     completion,
     emit,
@@ -173,10 +174,7 @@ def _generate_all(
     from ..dataset.shipping import is_done, jobs
     from ..dataset.write import check_target
 
-    if workers is not None and cluster is not None:
-        refuse({"--workers": workers}, "together with --cluster")
-    if workers is not None and workers < 1:
-        raise InputError("--workers", workers, "a whole number from 1")
+    check_workers(workers, cluster)
     every = jobs(replaced, out)
     with stoppable("what is done stays, and the same command goes on"), progress() as show:
         undone = [job for job in every if not is_done(job)]

@@ -119,3 +119,15 @@ def refuse(options: Mapping[str, object], why: str) -> None:
         if value is not None and value is not False and value != []:  # 0 was given
             got = " ".join(map(str, value)) if isinstance(value, list) else "set" if value is True else str(value)
             raise InputError(option, got, f"no such option {why}", "It would have no effect.")
+
+
+def check_workers(workers: int | None, cluster: str | None) -> None:
+    """Refuse a wrong number of workers, or one beside a cluster.
+
+    Raises:
+        InputError: one of the two.
+    """
+    if cluster is not None:
+        refuse({"--workers": workers}, "together with --cluster")
+    if workers is not None and workers < 1:
+        raise InputError("--workers", workers, "a whole number from 1")
