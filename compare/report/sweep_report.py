@@ -37,11 +37,10 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
     from reference.system.workers import usable_cores
 
     request, tally = swept.request, swept.tally
-    plan, counts = request.document(), swept.counts
     printed = out is None or len(swept) <= ROWS_OF_JSON
     return {
         "scene": request.scene.id,
-        "over": plan["over"],
+        "over": request.table.typed,
         "t_end": request.scene.run.t_end,
         "out": str(out) if out else None,
         "level": request.level,
@@ -51,7 +50,7 @@ def document(swept: Swept, out: Path | None, workers: int | None, cluster: str |
         "cluster": cluster,
         "rows_total": len(swept),
         "rows_done": sum(tally.counts.values()),
-        "counts": counts,
+        "counts": swept.counts,
         "audit": asdict(swept.audit) if swept.audit else None,
         "cpu_s": tally.cpu_s + tally.store_s,
         "compile_s": swept.compile_s,

@@ -16,8 +16,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ..engines.registry import batches
 from ..status import Status
 from ..system.workers import Pool, WorkerDied, as_done
@@ -102,11 +100,8 @@ def drive(
 def _crashed(request: Request, rows: range, reason: str) -> Part:
     """Return rows that no process survived."""
     part = Part.unsolved(request, rows)
-    part.columns["status"][:] = Status.CRASHED.value
-    part.columns["reason"][:] = reason
-    for key, numbers in request.table.numbers(np.array(rows), request.scene.inputs).items():
-        part.columns[key][:] = numbers.high
-    part.tally.counts[Status.CRASHED.value] = len(rows)
+    part.fill(part.unknown, {"status": Status.CRASHED.value, "reason": reason})
+    part.tally.counts.update(part.columns["status"].tolist())
     return part
 
 

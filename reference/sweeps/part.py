@@ -70,12 +70,19 @@ class Part:
 
     @classmethod
     def unsolved(cls, request: Request, numbers: range) -> Part:
-        """Return rows of which nothing is known but their numbers and the words among their values."""
+        """Return rows of which nothing is known but their values; those with a wrong value have failed."""
+        table, inputs = request.table, request.scene.inputs
         part = cls({column.name: column.empty(len(numbers)) for column in request.columns})
-        part.columns["row"][:] = numbers
-        part.columns["level"][:] = "computed"
-        for key, words in request.table.words(numbers).items():
-            part.columns[key][:] = words
+        part.fill(slice(None), {"row": numbers, "level": "computed", **table.words(numbers)})
+        for row, reason in table.wrong(numbers, inputs).items():
+            part.fail(row - numbers.start, Status.INVALID, reason)
+            for key, text in table.texts(row).items():
+                if key not in TEXTS:
+                    with suppress(ValueError):
+                        part.columns[key][row - numbers.start] = float(text)
+        places = part.unknown
+        for key, values in table.numbers(part.columns["row"][places], inputs).items():
+            part.columns[key][places] = values.high
         if request.wanted.times:
             part.transits = {column.name: column.empty(0) for column in TRANSIT_COLUMNS}
         return part
@@ -88,6 +95,11 @@ class Part:
             {name: np.concatenate([piece.transits[name] for piece in pieces]) for name in pieces[0].transits},
             sum((piece.tally for piece in pieces), Tally()),
         )
+
+    @property
+    def unknown(self) -> Any:
+        """The places of rows that have no status yet."""
+        return np.array([place for place, status in enumerate(self.columns["status"]) if status is None], np.int64)
 
     def fill(self, places: Any, values: dict[str, Any]) -> None:
         """Put values into those columns that there are, at one place or several."""
@@ -121,22 +133,13 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
         promote: solves a row by itself, as `promoted` does, which is not made for several threads.
     """
     started = time.thread_time()
-    part, inputs = Part.unsolved(request, numbers), request.scene.inputs
-    wrong = request.table.wrong(numbers, inputs)
-    for row, reason in wrong.items():
-        part.fail(row - numbers.start, Status.INVALID, reason)
-        for key, text in request.table.texts(row).items():
-            if key not in TEXTS:
-                with suppress(ValueError):
-                    part.columns[key][row - numbers.start] = float(text)
-    good = np.array([row for row in numbers if row not in wrong], np.int64)
-    if len(good):
+    part = Part.unsolved(request, numbers)
+    places = part.unknown
+    if len(places):
         before = time.thread_time()
-        for key, values in request.table.numbers(good, inputs).items():
-            part.columns[key][good - numbers.start] = values.high
-        rows = engine_rows(request.scene, request.table, good)
+        rows = engine_rows(request.scene, request.table, part.columns["row"][places])
         part.tally.fold_s = time.thread_time() - before
-        _solve(request, part, good - numbers.start, rows, promote)
+        _solve(request, part, places, rows, promote)
     part.tally.counts.update(part.columns["status"].tolist())
     part.tally.cpu_s += time.thread_time() - started
     return part
@@ -144,11 +147,11 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
 
 def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promote) -> None:
     """Solve rows whose values are right one by one."""
-    numbers, sound = part.columns["row"], _finite(rows)
+    sound = _finite(rows)
     more: dict[int, str] = {}  # places of rows that the solver has to solve, and why
     for place in places[~sound].tolist():
         try:
-            request.scene_of(int(numbers[place]))
+            request.scene_of(int(part.columns["row"][place]))
             more[place] = "A number of the scene is beyond the range of binary64."
         except InputError as error:
             part.fail(place, Status.INVALID, str(error))

@@ -101,7 +101,8 @@ def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, num
     stopped = getattr(signal, number)
     assert process.returncode == (-stopped if stopped == signal.SIGKILL else 128 + stopped), err
     told = f"foucault: stopped; what is done is in {folder}: `foucault sweep --out {folder}` goes on"
-    assert err.splitlines() == ([told] if stopped == signal.SIGINT else [])
+    said = [line for line in err.splitlines() if " rows after " not in line]  # which tells of a busy machine
+    assert said == ([told] if stopped == signal.SIGINT else [])
     done = contents(folder)
     assert done and done.items() <= contents(whole).items()
     assert not (folder / "summary.json").exists()

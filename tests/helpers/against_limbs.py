@@ -11,6 +11,7 @@ from random_rows import rows_of
 
 from reference.engines.batch_interface import OK, Batch, Outcomes, Rows, Wanted
 from reference.engines.registry import engines
+from reference.model.algebra import add, cross, dot, scale, subtract
 from reference.scenes.inputs import Inputs
 from reference.sweeps.estimate import DEGREES_PER_HOUR, Errors, judged
 
@@ -122,36 +123,24 @@ def _highest(rows: Rows, i: int, inputs: Inputs, exact: Any, place: int) -> tupl
     """Return time, azimuth and angle of the highest point next to a time of the grid: one step of Newton's method."""
     grid, length = exact.grid, inputs.length
     n, velocity = (
-        [grid.exact(name)[place] / length for name in names] for names in (("x", "y", "z"), ("vx", "vy", "vz"))
+        tuple(grid.exact(name)[place] / length for name in names) for names in (("x", "y", "z"), ("vx", "vy", "vz"))
     )
     pull, turn = _exact(rows.pull[i]), _exact(rows.turn[i])
-    inertial = _add(velocity, _cross(turn, n))
-    tension = _dot(inertial, inertial) + _dot(n, pull)
-    rate = [c - w - tension * x for c, w, x in zip(pull, _cross(turn, inertial), n, strict=True)]
-    bend = _dot([a - b for a, b in zip(rate, _cross(turn, velocity), strict=True)], pull)
-    late = -_dot(velocity, pull) / bend
-    at = [x + v * late for x, v in zip(n, velocity, strict=True)]
+    inertial = add(velocity, cross(turn, n))
+    tension = dot(inertial, inertial) + dot(n, pull)
+    rate = subtract(subtract(pull, cross(turn, inertial)), scale(tension, n))
+    bend = dot(subtract(rate, cross(turn, velocity)), pull)
+    late = -dot(velocity, pull) / bend
+    at = add(n, scale(late, velocity))
     size = np.hypot(float(pull[1]), float(pull[2]))
     meridian = float(-at[1] * pull[2] + at[2] * pull[1]) / size
     return exact.plan.times[place] + late, float(np.arctan2(meridian, float(at[0]))), _angle(at, pull)
 
 
-def _exact(pairs: Any) -> list[Fraction]:
-    return [Fraction(high) + Fraction(low) for high, low in pairs]
+def _exact(pairs: Any) -> tuple[Fraction, ...]:
+    return tuple(Fraction(high) + Fraction(low) for high, low in pairs)
 
 
-def _angle(n: list[Fraction], pull: list[Fraction]) -> float:
+def _angle(n: Any, pull: Any) -> float:
     """Return the angle from the plumb line."""
-    return float(np.arctan2(np.linalg.norm([float(x) for x in _cross(n, pull)]), float(_dot(n, pull))))
-
-
-def _dot(a: list[Fraction], b: list[Fraction]) -> Fraction:
-    return sum((x * y for x, y in zip(a, b, strict=True)), Fraction(0))
-
-
-def _add(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
-    return [x + y for x, y in zip(a, b, strict=True)]
-
-
-def _cross(a: list[Fraction], b: list[Fraction]) -> list[Fraction]:
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    return float(np.arctan2(np.linalg.norm(np.array(cross(n, pull), float)), float(dot(n, pull))))
