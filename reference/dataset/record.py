@@ -12,8 +12,8 @@ from ..engines.equations import lines_and_left_out
 from ..model.constants import constants
 from ..model.force import invariant
 from ..numbers.columns import POSITION, STATE, UNITS, VELOCITY
-from ..numbers.fixed_point import FixedPoint
 from ..numbers.precision import bits_of, context, fixed_decimal, outward, rounded_up
+from ..numbers.table import FixedPoint
 from ..scenes.scene import Scene
 from ..scenes.shipped import DATA_VERSION, flag_meanings, scene_ids
 from ..solver.solution import Proof, Solution

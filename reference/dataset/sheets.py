@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from ..numbers.columns import GRID, TRANSITS
-from ..numbers.fixed_point import Integers, integers
 from ..numbers.precision import fixed_decimal, rounded_up
-from ..numbers.table import Table
+from ..numbers.table import Integers, Table, integers
 from ..scenes.scene import Scene
 from ..solver.rounding import exact_decimals, grid_decimals, transit_decimals
 from ..solver.solution import Solution

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
-from ..numbers.packing import DIGIT_BITS, Digits
-from ..numbers.taylor_step import TaylorStep
+from ..numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, demand, dot, fixed, interval, norm, size, times, upper
 from .shapes import Covered, Interval, Sizes, Tube
 

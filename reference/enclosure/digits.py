@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from flint import arb, fmpz, fmpz_poly
 
-from ..numbers.packing import DIGIT_BITS
+from ..numbers.taylor_step import DIGIT_BITS
 from ..system.machine_code import kept
 from .balls import demand
 

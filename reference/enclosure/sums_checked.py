@@ -7,7 +7,7 @@ from typing import Any
 
 from flint import arb, fmpz
 
-from ..numbers.packing import Digits
+from ..numbers.taylor_step import Digits
 
 
 def check_sums(piece: Any) -> None:

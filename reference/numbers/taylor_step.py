@@ -1,4 +1,4 @@
-"""The Taylor step: the polynomials of one step of an integrator, as integers over a power of two. It only declares."""
+"""The Taylor step: the polynomials of one step of an integrator, as integers over a power of two, or their digits."""
 
 from __future__ import annotations
 
@@ -6,8 +6,34 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 LOCAL = ("x", "y", "z")  # n east, north and up
 EARTH = ("x", "m", "w", "tension")  # n in the axes of the proof (`SceneBalls` in enclosure/bound.py), and h² λ
+DIGIT_BITS = 22  # what limbs are, and what a proof sums
+
+
+class Digits(Sequence[list[int]]):
+    """Rows of integers as digits of radix 2^22, to hand on without making them.
+
+    Attributes:
+        table: shape (rows, digits, length of a row), highest digit first; digits may be negative.
+    """
+
+    def __init__(self, table: npt.NDArray[np.int32]) -> None:
+        self.table = table
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.table)
+
+    def __getitem__(self, row: Any) -> Any:
+        """Return the integers of a row."""
+        high, *low = self.table[row].astype(object)
+        for digit in low:
+            high = (high << DIGIT_BITS) + digit
+        return high.tolist()
 
 
 class TaylorStep(NamedTuple):
@@ -34,5 +60,5 @@ class TaylorStep(NamedTuple):
 
     @property
     def coefficients(self) -> Sequence[Any]:
-        """The rows: lists of integers, `packing.Digits`, or FLINT's polynomials; a function is called now."""
+        """The rows: lists of integers, `Digits`, or FLINT's polynomials; a function is called now."""
         return self.rows() if callable(self.rows) else self.rows

@@ -7,10 +7,10 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from reference.engines.limbs.integration import Integration
 from reference.engines.limbs.lanes import LANES
 from reference.engines.limbs.limb import RADIX, UNIT, Array
 from reference.engines.limbs.problem import limb_problem
+from reference.engines.limbs.run import Integration
 from reference.engines.limbs.size import LIMB_BITS
 from reference.errors import InputError
 from reference.scenes.inputs import Inputs

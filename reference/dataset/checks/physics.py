@@ -16,8 +16,8 @@ import numpy as np
 from ...model.constants import Constants, constants
 from ...model.force import acceleration, invariant
 from ...numbers.columns import STATE
-from ...numbers.fixed_point import FixedPoint, Integers, integers
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
+from ...numbers.table import FixedPoint, Integers, integers
 from ..golden import Files
 from ..manifest import Kind
 from ..record import INVARIANT_BITS

@@ -4,11 +4,10 @@ A number is held in limbs of radix 2**22 (GMP's word), each an integer in a doub
 fiftieth of the time of heyoka in MPFR (docs/architecture.md), and the bits are the same on every machine.
 
 - `engine`: its declaration; `size`: limbs for a precision.
-- `run`: a plan integrated, and the polynomials of each step for a proof; `integration`, in progress.
+- `run`: a plan integrated, and the polynomials of each step for a proof.
 - `problem`: a scene in limbs.
 - `march`, `step`: the loop of steps with what is carried from one to the next, and one of them.
-- `recurrence`, `series`, `unrolled`: the Taylor coefficients of a step, their arrays, the innermost sums written out.
-- `dense_output`: the state inside it; `zeros`, `polish`, `polynomial`, `xdot`: the zeros of xdot on it.
-- `limb`, `lanes`: numbers of limbs, eight side by side.
-- `compiling`: how functions are compiled that compiled functions call.
+- `recurrence`, `series`: the Taylor coefficients of a step; their arrays, the innermost sums written out.
+- `dense_output`: the state inside it; `zeros`, `polynomial`: the zeros of xdot on it.
+- `limb`, `lanes`: numbers of limbs, eight side by side, and how functions of them are compiled.
 """

@@ -1,13 +1,25 @@
-"""Dense output in limbs: the Taylor series at a place in its step, then x, y, z, vx, vy, vz, ax."""
+"""The state inside a step: all lanes at a place, then x, y, z, vx, vy, vz, ax; and xdot alone, with its sign."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from .compiling import compiled
-from .lanes import LANES, load, occupied, plus_product, shuffled, spread, store
-from .limb import DOUBLED, RADIX, UNIT, Array, add_product, carry, carry_scalar, clear, divide
-from .series import LinearTerms, Series, partner, positions, to_positions, to_speeds
+from .lanes import LANES, compiled, load, merged, occupied, plus_product, shuffled, spread, store
+from .limb import (
+    DOUBLED,
+    RADIX,
+    UNIT,
+    Array,
+    add_product,
+    carry,
+    carry_scalar,
+    clear,
+    divide,
+    double_of,
+    double_of_lane,
+    sign_of,
+)
+from .series import TENSION, VM, VX, LinearTerms, M, Series, X, partner, positions, to_positions, to_speeds
 from .step import GRAINS, Model, lane_products
 
 _turning = shuffled((0, 1, -1, -1, -1, -1, -1, -1), "_turning")
@@ -94,7 +106,7 @@ def to_cartesian(to: Array, start: int, rows: Array, s: Series, terms: LinearTer
         store(to, start + LANES * r, load(total, LANES * r))
 
 
-@compiled
+@merged
 def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
     """Write xddot = ω Vm - λ x - γ xdot + ω mdot to `scalar`, which holds ω Vm; the rates are in `partners`."""
     limb_count, total, rate, other = model.limb_count, s.total, s.partners, s.other
@@ -117,3 +129,62 @@ def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
         for r in range(limb_count + 1):
             s.scalar[r] += total[LANES * r + 3]
     carry_scalar(s.scalar, limb_count)
+
+
+@compiled
+def xdot_of(rows: Array, s: Series, terms: LinearTerms, limb_count: int) -> None:
+    """Write xdot times h, from all lanes at some place of the step, to `scalar`, as carried limbs."""
+    for r in range(limb_count):
+        s.scalar[r] = rows[LANES * r + VX]
+    s.scalar[limb_count] = 0.0
+    for p in range(limb_count):
+        factor = terms.turn[LANES * p]
+        for q in range(limb_count - p):
+            s.scalar[p + q + 1] += factor * rows[LANES * q + M]
+    carry_scalar(s.scalar, limb_count)
+
+
+@compiled
+def sign_of_xdot(now: Array, turn: Array, s: Series, limb_count: int) -> int:
+    """Return the sign of xdot = Vx + ω m for a state; `turn` as in the model's linear terms, not doubled."""
+    for r in range(limb_count):
+        s.scalar[r] = now[LANES * r + VX]
+    s.scalar[limb_count] = 0.0
+    for p in range(limb_count):
+        factor = DOUBLED * turn[LANES * p]
+        for q in range(limb_count - p):
+            s.scalar[p + q + 1] += factor * now[LANES * q + M]
+    carry_scalar(s.scalar, limb_count)
+    return sign_of(s.scalar, limb_count)
+
+
+@compiled
+def sign_after_release(s: Series, multiplicity: int, limb_count: int) -> int:
+    """Return the sign of xdot just after a release at which it has a zero of this multiplicity."""
+    block = (multiplicity + 1) * limb_count * LANES
+    for q in range(limb_count):
+        limb = s.c[block + LANES * q + X]
+        if limb != 0.0:
+            return 1 if limb > 0.0 else -1
+    return 0
+
+
+@compiled
+def xdot_at(place: Array, s: Series, terms: LinearTerms, rows: Array, model: Model) -> float:
+    """Return xdot times h at a place of the step, as a double with the sign of its limbs; write all lanes to `rows`."""
+    evaluate(rows, s, place, model.order, model.limb_count)
+    xdot_of(rows, s, terms, model.limb_count)
+    return double_of(s.scalar, model.limb_count)
+
+
+@compiled
+def xddot_of(rows: Array, xdot: float, terms: LinearTerms, model: Model) -> float:
+    """Return xddot times h² from all lanes and xdot times h, as a double."""
+    limb_count = model.limb_count
+    turn = double_of_lane(terms.turn, 0, 0, limb_count) / DOUBLED
+    x, vm = double_of_lane(rows, 0, X, limb_count), double_of_lane(rows, 0, VM, limb_count)
+    tension = double_of_lane(rows, 0, TENSION, limb_count)
+    value = turn * (2.0 * vm - turn * x) - tension * x
+    if model.drag:
+        value += double_of_lane(terms.drag, 0, VX, limb_count) / DOUBLED * xdot
+    return value

@@ -18,8 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...numbers.precision import to_fraction
-from .compiling import compiled, inlined
-from .lanes import LANES, load, nearest, plus_product, spread, store
+from .lanes import LANES, compiled, inlined, load, nearest, plus_product, spread, store
 from .size import LIMB_BITS, fraction_bits
 
 Array = npt.NDArray[np.float64]

@@ -8,11 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ...system.machine_code import kept
-from .compiling import OPTIONS, compiled
-from .dense_output import divide_place, evaluate, to_cartesian
-from .lanes import LANES, load, store
+from .dense_output import divide_place, evaluate, sign_after_release, sign_of_xdot, to_cartesian
+from .lanes import LANES, OPTIONS, load, merged, store
 from .limb import Array, aligned
-from .polish import polish
 from .recurrence import taylor_coefficients
 from .series import Counts, LinearTerms, Series, empty_series
 from .step import (
@@ -26,8 +24,7 @@ from .step import (
     step_size_factor,
     sum_series,
 )
-from .xdot import sign_after_release, sign_of_xdot
-from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search
+from .zeros import GRAZING, MOST_ZEROS, Search, bracket_zeros, empty_search, polish
 
 COLUMNS = 7  # x, y, z, vx, vy, vz, ax
 TIME, LENGTH, MULTIPLICITY, SIGN, STEPS, ROWS, ZEROS, SCALED, NEXT = range(9)  # in `MarchState.counts`
@@ -93,16 +90,7 @@ def state_at_release(start: Array, first: int, multiplicity: int, model: Model) 
     return MarchState(now, counts, series, terms, rows, np.zeros(limb_count + 2), search)
 
 
-@compiled
-def write_outputs(state: MarchState, model: Model, out: Outputs, seek: bool) -> bool:
-    """Write what the present step passes, zeros of xdot if they are sought; return false if they stay in doubt."""
-    if seek and not _write_zeros(state, model, out):
-        return False
-    _write_states(state, model, out)
-    return True
-
-
-@compiled
+@merged
 def _write_states(state: MarchState, model: Model, out: Outputs) -> None:
     """Write the states at the output times that the step passes."""
     counts, limb_count = state.counts, model.limb_count
@@ -118,7 +106,7 @@ def _write_states(state: MarchState, model: Model, out: Outputs) -> None:
         counts[ROWS] += 1
 
 
-@compiled
+@merged
 def _write_zeros(state: MarchState, model: Model, out: Outputs) -> bool:
     """Write the zeros of xdot on the step; return false if they stay in doubt."""
     counts, limb_count, z, m = state.counts, model.limb_count, state.search, state.counts[LENGTH]
@@ -153,8 +141,9 @@ def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int,
         if seek and counts[STEPS] == 0:
             counts[SIGN] = _first_sign(state, model)
         project(state.now, state.rows, s, m, limb_count)
-        if not write_outputs(state, model, out, seek):
+        if seek and not _write_zeros(state, model, out):
             return DOUBTFUL
+        _write_states(state, model, out)
         if 2 * i < len(out.steps):
             out.steps[2 * i], out.steps[2 * i + 1] = counts[TIME], m
             size = (order + 1) * limb_count * LANES
@@ -169,7 +158,7 @@ def march(state: MarchState, model: Model, out: Outputs, until: int, steps: int,
     return FULL
 
 
-@compiled
+@merged
 def _first_sign(state: MarchState, model: Model) -> int:
     """Return the sign of xdot at release, or just after it."""
     if state.counts[MULTIPLICITY] > 0:
@@ -177,7 +166,7 @@ def _first_sign(state: MarchState, model: Model) -> int:
     return sign_of_xdot(state.now, model.terms.turn, state.s, model.limb_count)
 
 
-@compiled
+@merged
 def _step_coefficients(state: MarchState, model: Model) -> bool:
     """Compute the coefficients of the next step, shortened until they decay enough; false if no length will do."""
     counts = state.counts

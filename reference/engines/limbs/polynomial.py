@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .compiling import compiled
+from .lanes import compiled
 from .limb import Array
 
 HALVINGS = 60  # more than a double has bits

@@ -15,11 +15,29 @@ lack its products with order 0, which the recurrence adds itself, as it needs th
 
 from __future__ import annotations
 
-from .compiling import compiled, inlined
-from .lanes import LANES, load, occupied, plus_product, shuffled, spread, store, within
+from .lanes import LANES, compiled, inlined, load, merged, occupied, plus_product, shuffled, spread, store, within
 from .limb import DOUBLED, LARGEST, Array, carry, carry_scalar, divide
-from .series import AXIAL_SQUARE, SPIN, TENSION, Counts, LinearTerms, M, Series, W, X, partner, to_positions, to_speeds
-from .unrolled import MOST_ROWS, PLANES, TURNED, WIDTH, add_convolved, add_linear, column
+from .series import (
+    AXIAL_SQUARE,
+    MOST_ROWS,
+    PLANES,
+    SPIN,
+    TENSION,
+    TURNED,
+    WIDTH,
+    Counts,
+    LinearTerms,
+    M,
+    Series,
+    W,
+    X,
+    add_convolved,
+    add_linear,
+    column,
+    partner,
+    to_positions,
+    to_speeds,
+)
 
 _turned = shuffled(TURNED[0], "_turned")
 _tension_axial = shuffled(TURNED[1], "_tension_axial")
@@ -30,7 +48,7 @@ _tension_across = shuffled((-1, -1, -1, -1, -1, -1, 1, -1), "_tension_across")
 _tension_spin = shuffled((-1, -1, -1, -1, -1, -1, 7, -1), "_tension_spin")
 
 
-@inlined
+@merged
 def clear_sums(s: Series, order: int, limb_count: int, drag: bool) -> None:
     """Set the sums and the planes to zero, as far as a series of this order uses them."""
     zero = spread(0.0)
@@ -45,7 +63,7 @@ def clear_sums(s: Series, order: int, limb_count: int, drag: bool) -> None:
         s.used[q] = 0
 
 
-@inlined
+@merged
 def add_squares(s: Series, k: int, first: int, limb_count: int, drag: bool) -> None:
     """Add the products of a coefficient with itself, or of λ and n of one order, to the sums of order 2 k."""
     c, sums, block = s.c, s.sums, k * limb_count * LANES
@@ -64,7 +82,7 @@ def add_squares(s: Series, k: int, first: int, limb_count: int, drag: bool) -> N
         sums[at + 3 * WIDTH] += DOUBLED * square
 
 
-@inlined
+@merged
 def add_products(s: Series, k: int, order: int, limb_count: int, drag: bool) -> None:
     """Add to the sums all products of order k with lower orders."""
     c, planes, sums, factors, first, stride = s.c, s.planes, s.sums, s.factors, s.first[k], PLANES * WIDTH
@@ -145,7 +163,7 @@ def _add_axial_squares(
         store(sums, row, square)
 
 
-@inlined
+@merged
 def copy_to_planes(s: Series, k: int, first: int, limb_count: int) -> None:
     """Copy x, m, w, λ of order k to the planes, for the products with higher orders."""
     c, planes = s.c, s.planes
@@ -202,7 +220,7 @@ def _note_first_limb(c: Array, firsts: Counts, k: int, low: int, limb_count: int
     return first > 0 or within(load(c, block), LARGEST)
 
 
-@inlined
+@merged
 def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
     """Write the derivative's coefficient of order k, drag left out, to `total`; not carried."""
     c, block, turn, total = s.c, k * limb_count * LANES, terms.turn, s.total
@@ -231,7 +249,7 @@ def _set_derivative(s: Series, terms: LinearTerms, k: int, first: int, limb_coun
     add_linear(rows, c, block + LANES * first, zeroth, 0, turn, 0, total, LANES * (first + 1))
 
 
-@compiled
+@merged
 def _add_drag(s: Series, terms: LinearTerms, k: int, first: int, limb_count: int) -> None:
     """Add the terms of drag to `total`."""
     c, block, start, stride = s.c, k * limb_count * LANES, AXIAL_SQUARE * WIDTH + k, PLANES * WIDTH

@@ -1,32 +1,178 @@
-"""Run a plan in limbs: states and transits in SI units as a `Run`; for a proof the polynomials of each Taylor step."""
+"""Run a plan in limbs: states and transits in SI units as a `Run`; for a proof the polynomials of each Taylor step.
+
+Output times are counted in grains, a power of two in s: an integer, and limbs for the remaining part of a grain.
+"""
 
 from __future__ import annotations
 
 import time
 from bisect import bisect_right
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
 from fractions import Fraction
 from functools import partial
 from typing import Any
 
 import numpy as np
 
+from ...errors import InputError, IntegrationError
+from ...model.start import xdot_vanishes, zero_at_release
 from ...numbers.columns import RUN
-from ...numbers.packing import Digits
 from ...numbers.table import Table
-from ...numbers.taylor_step import TaylorStep
-from ..plan import Pace, Plan, Report, Run
-from .integration import Integration, integration_of
+from ...numbers.taylor_step import Digits, TaylorStep
+from ...system.machine_code import prepare
+from ..plan import AT_REST, Pace, Plan, Report, Run
 from .lanes import LANES
-from .limb import Array
-from .march import STEPS
-from .series import TENSION, M, W, X
-from .size import fraction_bits
+from .limb import Array, aligned, joined
+from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Outputs, march, state_at_release
+from .problem import LimbProblem, limb_problem
+from .series import TENSION, Counts, M, W, X
+from .size import LIMB_BITS, MOST_PREC, fraction_bits
+from .zeros import MOST_ZEROS
 
+STEPS_PER_CALL = 1024
+COMPILE_S = 20  # what compiling takes, about, of which users are told
 ROWS = np.array((X, M, W, TENSION))
 ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since every step must be proved
 POLYNOMIALS_PER_CALL = 64
 FOR_EVER = 1 << 62  # in grains
+SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
+PRODUCTS, PRODUCTS_WITH_DRAG = 9, 25  # per coefficient: three or four convolutions, the others by constants
+
+
+def limbs_of_fractions(times: Sequence[Fraction], grain: Fraction, limb_count: int) -> tuple[Counts, Array]:
+    """Return exact times in s as whole grains and the limbs of the remainders, cut after the last limb.
+
+    Shapes (times,) and (times * limb_count,).
+    """
+    bits = fraction_bits(limb_count)
+    parts = [divmod(t.numerator * grain.denominator, t.denominator * grain.numerator) for t in times]
+    whole = np.array([top for top, _ in parts], dtype=np.int64)
+    limbs = np.zeros((len(times), limb_count))
+    broken = [i for i, (_, remainder) in enumerate(parts) if remainder]
+    if broken:
+        left = np.array([(parts[i][1] << bits) // (times[i].denominator * grain.numerator) for i in broken])
+        left = left.astype(object)
+        half, mask = 1 << (LIMB_BITS - 1), (1 << LIMB_BITS) - 1
+        for q in range(limb_count - 1, 0, -1):
+            limb = ((left + half) & mask) - half
+            limbs[broken, q] = limb.astype(np.float64)
+            left = (left - limb) >> LIMB_BITS
+        limbs[broken, 0] = left.astype(np.float64)
+    return whole, limbs.ravel()
+
+
+class Integration:
+    """An integration in progress: problem, state and output arrays.
+
+    Args:
+        problem: what to integrate.
+        whole, remainders: output times in whole grains, and the limbs of the remainders.
+        seek: whether zeros of xdot are looked for.
+        polynomials: for how many steps of each call of `advance` the coefficients are kept.
+    """
+
+    def __init__(
+        self,
+        problem: LimbProblem,
+        whole: Counts,
+        remainders: Array,
+        seek: bool,
+        polynomials: int = 0,
+    ) -> None:
+        self.problem, self.seek = problem, seek
+        limb_count, model = problem.model.limb_count, problem.model
+        multiplicity = zero_at_release(problem.start) if seek else 0
+        self.state = state_at_release(problem.state, problem.first, multiplicity, model)
+        room = STEPS_PER_CALL + MOST_ZEROS if seek else 0
+        self.out = Outputs(
+            whole,
+            remainders,
+            aligned(len(whole) * limb_count * LANES),
+            np.zeros(3 * room, dtype=np.int64),
+            np.zeros(room * limb_count),
+            aligned(room * limb_count * LANES),
+            np.zeros(2 * polynomials, dtype=np.int64),
+            aligned(polynomials * (model.order + 1) * limb_count * LANES),
+        )
+        self.until = int(whole[-1]) + 1
+        self._zeros: list[tuple[Any, Any, Any]] = []
+        cpu_start = time.process_time()
+        prepare(march, "limbs", COMPILE_S, *self._arguments(0))
+        self.compile_s = time.process_time() - cpu_start
+
+    def finish(self, report: Report | None, pace: Pace | None = None) -> None:
+        """Advance to the last output time.
+
+        Raises:
+            IntegrationError: zeros of xdot stay in doubt, or no step is short enough.
+        """
+        while not self.advance(STEPS_PER_CALL):
+            if pace is not None:
+                pace(int(self.state.counts[STEPS]), self.time)
+            if report is not None:
+                report(self.time)
+
+    @property
+    def time(self) -> float:
+        """Time reached, in s."""
+        return float(int(self.state.counts[TIME]) * self.problem.grain)
+
+    def advance(self, steps: int) -> bool:
+        """Take at most `steps` steps; return true when the last output time is passed."""
+        outcome = march(*self._arguments(steps))
+        self._keep_zeros()
+        if outcome == STUCK:
+            raise IntegrationError(f"no step is short enough at t = {self.time} s.")
+        if outcome == DOUBTFUL:
+            raise IntegrationError(
+                f"zeros of xdot near t = {self.time} s: xdot touches zero within the precision.", AT_REST
+            )
+        return bool(outcome == GOOD)
+
+    def _arguments(self, steps: int) -> tuple[Any, ...]:
+        """Return the arguments of `march`."""
+        return self.state, self.problem.model, self.out, self.until, steps, self.seek
+
+    def _keep_zeros(self) -> None:
+        n, limb_count = int(self.state.counts[ZEROS]), self.problem.model.limb_count
+        if n:
+            moments = self.out.moments[: 3 * n].reshape(n, 3).copy()
+            places = joined(self.out.places[: n * limb_count].reshape(n, limb_count))
+            self._zeros.append((moments, places, self.table(self.out.zero_states, n)))
+            self.state.counts[ZEROS] = 0
+
+    def table(self, rows: Array, count: int) -> Any:
+        """Return rows of limbs as integers over 2**fraction_bits, shape (count, COLUMNS)."""
+        limb_count = self.problem.model.limb_count
+        limbs = np.moveaxis(rows[: count * limb_count * LANES].reshape(count, limb_count, LANES), 1, 2)
+        return joined(limbs[:, :COLUMNS])
+
+    def zeros(self) -> tuple[Any, Any, list[int]]:
+        """Return the zeros of xdot: times in grains and states, over 2**fraction_bits; signs of the crossings."""
+        bits = fraction_bits(self.problem.model.limb_count)
+        times, tables, signs = [np.zeros(0, dtype=object)], [np.zeros((0, COLUMNS), dtype=object)], []
+        for moments, places, rows in self._zeros:
+            starts, lengths = moments[:, 0].astype(object), moments[:, 1].astype(object)
+            times.append((starts << bits) + lengths * places)
+            tables.append(rows)
+            signs += moments[:, 2].tolist()
+        return np.concatenate(times), np.concatenate(tables), signs
+
+
+def integration_of(plan: Plan, polynomials: int = 0, order: int | None = None) -> Integration:
+    """Return the integration of a plan, at its release.
+
+    Raises:
+        InputError: more bits than limbs can hold.
+    """
+    if plan.number.prec > MOST_PREC:
+        raise InputError(
+            "precision", plan.number.prec, f"at most {MOST_PREC} bits", "Use the engine heyoka for more digits."
+        )
+    problem = limb_problem(plan.inputs, plan.number.prec, order, plan.other_steps)
+    whole, remainders = limbs_of_fractions(plan.times, problem.grain, problem.model.limb_count)
+    seek = plan.transits and not xdot_vanishes(problem.start)
+    return Integration(problem, whole, remainders, seek, polynomials)
 
 
 def taylor_steps(plan: Plan, coefficient_bits: int) -> Generator[TaylorStep, None, Run]:
@@ -59,10 +205,6 @@ def _digits(series: Array, limb_count: int) -> Digits:
     """Return the rows x, m, w and h² λ of a step, lowest order first."""
     limbs = series.reshape(-1, limb_count, LANES)[:, :, ROWS]
     return Digits(np.ascontiguousarray(limbs.transpose(2, 1, 0), dtype=np.int32))
-
-
-SPARE_BITS = 32  # SI values carry this much below the last limb: l need not be a short binary fraction
-PRODUCTS, PRODUCTS_WITH_DRAG = 9, 25  # per coefficient: three or four convolutions, the others by constants
 
 
 def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> Run:

@@ -11,8 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiling import compiled
-from .lanes import LANES, at_least, load, plus_product, shuffled, spread, store
+from .lanes import LANES, at_least, compiled, load, plus_product, shuffled, spread, store
 from .limb import DOUBLED, INVERSE, RADIX, UNIT, Array, carry, carry_scalar, clear, divide, double_of_lane
 from .series import SPIN, TENSION, LinearTerms, Series, positions
 from .size import LIMB_BITS

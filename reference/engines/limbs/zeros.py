@@ -1,4 +1,4 @@
-"""The zeros of xdot on a step, each in an interval of its own: bracketed in double precision, signs decided in limbs.
+"""The zeros of xdot on a step: each bracketed in double precision, signs decided in limbs; then refined in limbs.
 
 An interval needs no further cut if the polynomial about its middle cannot vanish on it, is monotone there, or is
 convex or concave (a dip: the close pair near the north-south passage); else it is halved. Where a sign hangs on the
@@ -12,14 +12,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .compiling import compiled
-from .lanes import LANES
-from .limb import Array, add_double, double_of_lane, set_double
+from .dense_output import evaluate, xddot_of, xdot_at, xdot_of
+from .lanes import LANES, compiled, load, merged, store
+from .limb import Array, add_double, carry_scalar, double_of, double_of_lane, set_double
 from .polynomial import CONVEX, FREE, UNDECIDED, classify, crossing, extremum, recentre, value_at
+from .recurrence import taylor_coefficients
 from .series import Counts, LinearTerms, Series, X, empty_series
 from .size import LIMB_BITS
 from .step import Model
-from .xdot import xddot_of, xdot_at
 
 MOST_ZEROS = 24  # of one step
 GRAZING = -1  # returned when a grazing zero cannot be resolved
@@ -29,6 +29,7 @@ NEGLIGIBLE = 2.0**-60  # the series is cut where two coefficients in a row are s
 NOISE_BITS = 12  # last bits of a number in limbs that rounding may have spoilt: they do not decide a sign
 NARROWEST = 2.0**-40  # half of the shortest interval that is cut
 NEWTON_STEPS = 30
+DERIVATIVE_BITS = 44  # correct bits of the derivative, a double, that Newton's method divides by
 NEAR_BITS = 46
 NEAR = 2.0**-NEAR_BITS  # of a step: the error of a guess in double, unless two zeros all but meet
 EDGE = 2.0**-30  # of a step: a zero may lie this far outside its interval
@@ -145,7 +146,7 @@ def _polynomial(z: Search, s: Series, multiplicity: int, model: Model) -> int:
     return model.order - multiplicity
 
 
-@compiled
+@merged
 def _sign_at(
     z: Search, place: float, value: float, noise: float, s: Series, terms: LinearTerms, rows: Array, model: Model
 ) -> int:
@@ -163,7 +164,7 @@ def _record(z: Search, count: int, low: float, high: float, guess: float, direct
     return count + 1
 
 
-@compiled
+@merged
 def _dip(
     z: Search,
     count: int,
@@ -210,3 +211,56 @@ def _dip(
     first, second = crossing(g, size, -1.0, u, side), crossing(g, size, u, 1.0, -side)
     count = _record(z, count, low, flat, middle + half * first, -side)
     return _record(z, count, flat, high, middle + half * second, side)
+
+
+@merged
+def polish(z: Search, i: int, s: Series, terms: LinearTerms, rows: Array, model: Model) -> bool:
+    """Write the place of zero i to `place`, all lanes there to `rows`; false if Newton's method leaves its interval.
+
+    The guess is so good that a series about it needs few orders: the step's own is evaluated just once.
+    """
+    limb_count, short, previous = model.limb_count, z.near, 1.0
+    set_double(z.place, z.guess[i], limb_count)
+    for _ in range(NEWTON_STEPS):
+        evaluate(rows, s, z.place, model.order, limb_count)
+        for r in range(limb_count):
+            store(short.c, LANES * r, load(rows, LANES * r))
+        if not taylor_coefficients(short, terms, near_order(limb_count), limb_count, model.drag):
+            return False
+        if not _newton(z, terms, rows, model):
+            return False
+        for q in range(limb_count):
+            z.place[q] += z.aside[q]
+        carry_scalar(z.place, limb_count - 1)
+        # where xdot is small against its last limb, rounding ends convergence before the shift is small enough
+        shift = abs(double_of(z.aside, limb_count))
+        stalled, previous = shift > 0.25 * previous and previous < EDGE, shift
+        if stalled and shift >= NEAR:
+            evaluate(rows, s, z.place, model.order, limb_count)
+        if stalled or shift < NEAR:
+            place = double_of(z.place, limb_count)
+            return bool(z.low[i] - EDGE <= place <= z.high[i] + EDGE)
+    return False
+
+
+@merged
+def _newton(z: Search, terms: LinearTerms, rows: Array, model: Model) -> bool:
+    """Apply Newton's method to the short series, from its centre: the place to `aside`, all lanes there to `rows`."""
+    limb_count, short, order = model.limb_count, z.near, near_order(model.limb_count)
+    enough, previous = 2.0 ** min(DERIVATIVE_BITS - (LIMB_BITS * limb_count - 1), -20), 1.0
+    z.aside[:] = 0.0
+    for _ in range(NEWTON_STEPS):
+        xdot_of(rows, short, terms, limb_count)
+        xdot = double_of(short.scalar, limb_count)
+        xddot = xddot_of(rows, xdot, terms, model)
+        if xddot == 0.0:
+            return False
+        shift = -xdot / xddot
+        if not abs(shift) < 1.0:
+            return False
+        add_double(z.aside, shift, limb_count)
+        evaluate(rows, short, z.aside, order, limb_count)
+        stalled, previous = abs(shift) > 0.25 * previous and previous < EDGE, abs(shift)
+        if stalled or abs(shift) < enough or not abs(double_of(z.aside, limb_count)) < NEAR:
+            return True
+    return False

@@ -2,8 +2,8 @@
 
 - `rows`: constants and releases in the axes of the plumb line, and what comes out, as flat arrays.
 - `series`: the Taylor coefficients of a step, and the state at its end.
-- `lane_zeros`: the zeros of xdot on a step, on all lanes at once, and those of u', the highest points.
-- `bisection`: zeros of one lane by halving, where the lanes at once cannot tell.
+- `lane_zeros`: the zeros of xdot on a step, on all lanes at once, or of one lane by halving; those of u', the highest
+  points.
 - `march`: the compiled loop of steps; a lane whose row is done takes the next one.
 - `batch`: the kernel as an engine of many rows.
 """

@@ -12,12 +12,24 @@ import numpy.typing as npt
 
 from ...system.machine_code import kept
 from ..batch_interface import DOUBTFUL, STOPPED
-from ..limbs.compiling import OPTIONS, compiled
-from ..limbs.lanes import LANES, at_least, load, occupied, spread, store, where
+from ..limbs.lanes import LANES, OPTIONS, at_least, compiled, load, occupied, spread, store, where
 from ..limbs.limb import Array, aligned
 from . import rows
-from .bisection import DOUBT, MOST_ZEROS, Bisection, all_zeros, empty_bisection
-from .lane_zeros import CONVERGED, TURNED, Zeros, empty_zeros, place_highest, refine, seek, seek_highest
+from .lane_zeros import (
+    CONVERGED,
+    DOUBT,
+    MOST_ZEROS,
+    TURNED,
+    Bisection,
+    Zeros,
+    all_zeros,
+    empty_bisection,
+    empty_zeros,
+    place_highest,
+    refine,
+    seek,
+    seek_highest,
+)
 from .series import Series, empty_series, step_length, sum_series, taylor_coefficients, udot_of, xdot_of
 
 SHORTEST = 2.0**-40  # of a row's unit of time: a step that is shorter stops the row

@@ -15,8 +15,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from ..limbs.compiling import compiled, inlined
-from ..limbs.lanes import LANES, exp2_of, fma, larger, load, log2_of, magnitude, spread, store
+from ..limbs.lanes import LANES, compiled, exp2_of, fma, inlined, larger, load, log2_of, magnitude, spread, store
 from ..limbs.limb import Array, aligned
 from .rows import PULL, TOLERANCE, TURN_P, TURN_U, P, S, U, V, W, X
 

@@ -18,9 +18,8 @@ from reference.dataset.sheets import Sheet
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
 from reference.numbers.columns import GRID
-from reference.numbers.fixed_point import integers
 from reference.numbers.precision import context, fixed_decimal
-from reference.numbers.table import Table
+from reference.numbers.table import Table, integers
 
 ROW, WIDER = 3, 10**9  # bounds so wide that rounding, of which they consist, is nothing beside them
 

@@ -14,7 +14,7 @@ pytest.importorskip("numba")
 from reference.enclosure.bound import Piece, SceneBalls, polynomials
 from reference.enclosure.digits import check, norms, split
 from reference.enclosure.sums_checked import compare
-from reference.numbers.packing import DIGIT_BITS, Digits
+from reference.numbers.taylor_step import DIGIT_BITS, Digits
 
 MOST = 1 << (DIGIT_BITS - 1)
 WORLDS = [SceneBalls(PARIS, 400), SceneBalls(scene(drag="0.3", rotation_rate="-0.7", equatorial_radius="5"), 400)]

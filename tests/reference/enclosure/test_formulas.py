@@ -13,7 +13,7 @@ from flint import arb, arb_mat, arb_poly, ctx, fmpz_poly
 from reference.enclosure.bound import Piece, Radius, Scaled, SceneBalls
 from reference.enclosure.shapes import Sizes
 from reference.enclosure.six_columns import CUT, FINE, Columns, cut, residuals
-from reference.numbers.packing import DIGIT_BITS, Digits
+from reference.numbers.taylor_step import DIGIT_BITS, Digits
 
 
 def exact(x):

@@ -23,8 +23,8 @@ from reference.enclosure.six_columns import Columns
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.numbers.columns import TRANSITS
-from reference.numbers.packing import DIGIT_BITS, Digits
 from reference.numbers.precision import real
+from reference.numbers.taylor_step import DIGIT_BITS, Digits
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth

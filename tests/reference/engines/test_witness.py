@@ -20,7 +20,7 @@ SWINGS = {
 @pytest.mark.parametrize("swing", SWINGS.values(), ids=SWINGS.keys())
 def test_the_witness_of_limbs_has_fewer_limbs_and_every_step_is_another(swing):
     pytest.importorskip("numba")
-    from reference.engines.limbs.integration import integration_of
+    from reference.engines.limbs.run import integration_of
 
     limbs, steps = engines()["limbs"], 16
     scene = make_scene(site={"rotation_rate": "0"}, release={"x": "0.3", "y": "0.4", **swing})

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from reference.numbers.fixed_point import FixedPoint, integers
+from reference.numbers.table import FixedPoint, integers
 
 BITS = 120
 UNIT = Fraction(1, 1 << BITS)

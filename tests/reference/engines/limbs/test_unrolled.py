@@ -12,9 +12,8 @@ pytest.importorskip("numba")
 import numba
 
 from reference.engines.limbs.lanes import LANES
-from reference.engines.limbs.series import empty_series
+from reference.engines.limbs.series import MOST_ORDER, MOST_ROWS, PLANES, WIDTH, add_convolved, empty_series
 from reference.engines.limbs.size import LIMB_BITS
-from reference.engines.limbs.unrolled import MOST_ORDER, MOST_ROWS, PLANES, WIDTH, add_convolved
 
 LARGEST = 2 ** (LIMB_BITS - 1)
 

@@ -15,8 +15,7 @@ import flint
 import numba
 
 from reference.engines.limbs.lanes import LANES
-from reference.engines.octet.bisection import all_zeros
-from reference.engines.octet.lane_zeros import CONVERGED, refine, seek
+from reference.engines.octet.lane_zeros import CONVERGED, all_zeros, refine, seek
 from reference.engines.octet.march import empty_march
 
 ORDER = 24
