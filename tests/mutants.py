@@ -45,8 +45,8 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "compare/score: errors": f"{SCORE}errors.py",
     "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py",
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
-    "reference/solver: rounding": f"{SOLVER}rounding.py {FILES} {SOLVER}solve.py",
-    "reference/solver: agreement transit_errors": f"{SOLVER}agreement.py {SOLVER}solve.py",
+    "reference/solver: solution": f"{SOLVER}solution.py {FILES} {SOLVER}solve.py",
+    "reference/solver: agreement": f"{SOLVER}agreement.py {SOLVER}solve.py",
     "reference/solver: solve": f"{BITS} {SOLVER}solve.py {SOLVER}pilot.py",
 }
 SLOW = "ships few_digits killed two_processes script same_command ten_times picture collinear 1000000 recomputing "

@@ -32,10 +32,10 @@ FLOORS = {
     ],
     "reference/engines": [
         ["background"],
-        ["registry", "trajectory", "equations"],
+        ["registry", "trajectory"],
         ["octet"],
         [*engine_names()],
-        ["interface", "plumb_axes"],
+        ["interface"],
         ["plan", "batch_interface"],
     ],
     "compare": [
@@ -127,8 +127,7 @@ PUBLIC = {
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.dataset.manifest": "MANIFEST",
     "reference.dataset.place": "changes golden_folder",
-    "reference.engines.heyoka.model": "RoundedModel",
-    "reference.engines.heyoka.numbers": "Numbers",
+    "reference.engines.heyoka.model": "Numbers RoundedModel",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "Variants",
     "reference.errors": "BeyondDoublesError Stopped did_you_mean finite in_words plain plain_json plain_lines "

@@ -77,7 +77,7 @@ def _compiled(scene: Scene) -> dict[str, Any]:
     Raises:
         UnreachableError: `generate` refuses the scene.
     """
-    from ..engines.equations import lines_and_left_out
+    from ..engines.heyoka.system import lines_and_left_out
     from ..solver.choice import first_plan, pilot_for
 
     times = tuple(scene.exact.grid)

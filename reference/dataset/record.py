@@ -8,7 +8,7 @@ from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-from ..engines.equations import lines_and_left_out
+from ..engines.heyoka.system import lines_and_left_out
 from ..model.constants import constants
 from ..model.force import invariant
 from ..numbers.columns import POSITION, STATE, UNITS, VELOCITY

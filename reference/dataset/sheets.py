@@ -10,8 +10,7 @@ from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import fixed_decimal, rounded_up
 from ..numbers.table import Integers, Table, integers
 from ..scenes.scene import Scene
-from ..solver.rounding import exact_decimals, grid_decimals, transit_decimals
-from ..solver.solution import Solution
+from ..solver.solution import Solution, exact_decimals, grid_decimals, transit_decimals
 
 GRID_HEADER = ("t", *GRID)
 TRANSITS_HEADER = ("k", "t", "direction", *TRANSITS[1:], "bound")

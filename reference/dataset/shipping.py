@@ -14,8 +14,7 @@ from ..errors import FoucaultError, IntegrationError, UnreachableError
 from ..numbers.columns import POSITION
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import index, scene_ids, seals
-from ..solver.rounding import grid_decimals
-from ..solver.solution import Solution
+from ..solver.solution import Solution, grid_decimals
 from ..solver.solve import solve
 from ..status import Status
 from ..system.workers import Pool

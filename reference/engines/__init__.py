@@ -1,10 +1,9 @@
 """The engines, integrators of the model, each in a folder; one run of a scene with its transits, and two at a time.
 
-- `batch_interface`: many scenes in double, what goes in and what comes out; `plumb_axes`: turned into the plumb line's.
+- `batch_interface`: many scenes in double, what goes in and what comes out.
 - `plan`: the input of an engine, `Plan`, and its output, `Run`; `interface`: what an engine declares.
 - `registry`: the engines by name, which of them a run takes, and the run itself.
 - `background`: a run, or other work, at the same time as this process works.
-- `equations`: the compiled equations of a scene, as text.
 - `trajectory`: single unconfirmed runs as binary64, of any system and with changed constants.
 - `heyoka/`: everything that uses heyoka, in any number type.
 - `limbs/`: an integrator in machine code for many digits; needs numba.

@@ -1,4 +1,4 @@
-"""Many scenes solved in double: what goes in, `Rows` and `Wanted`, what comes out, `Outcomes`.
+"""Many scenes solved in double: what goes in, `Rows` and `Wanted`, what comes out, `Outcomes`; rows in plumb axes.
 
 An engine that can do this declares a `Batch` as `BATCH` in the file `batch.py` of its folder. A row comes out the same,
 bit for bit, whatever rows stand beside it.
@@ -10,17 +10,20 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from operator import itemgetter
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from ..model.constants import Constants
+from ..numbers.double_double import DoubleDouble, square_root
 from ..numbers.precision import Array
 from ..system.imports import missing, switched_off
 
 OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
 CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
 LEAST_BEND = 1e-6
+_SAME = 2.0**-94  # of a row's velocities: u' that is less at the release is zero
 
 
 @dataclass(frozen=True)
@@ -151,36 +154,19 @@ class Outcomes:
     @classmethod
     def empty(cls, count: int) -> Self:
         """Return the outcomes of `count` rows, to be filled in: nothing found, nothing known."""
-
-        def unknown() -> Array:
-            return np.full(count, np.nan)
-
-        def none() -> Any:
-            return np.zeros(count, np.int32)
-
+        unknown = {field.name: np.full(count, np.nan) for field in fields(cls)}
+        none = {name: np.zeros(count, np.int32) for name in ("steps", "transits", "close_pairs", "apsides")}
+        listed = {"transit_row": np.int64, "transit_t": np.float64, "transit_direction": np.int8}
         return cls(
-            fate=np.zeros(count, np.int8),
-            state=np.full((count, 6), np.nan),
-            steps=none(),
-            transits=none(),
-            t_first=unknown(),
-            t_last=unknown(),
-            close_pairs=none(),
-            least_ax=unknown(),
-            apsides=none(),
-            apsis_first=unknown(),
-            apsis_last=unknown(),
-            turn=unknown(),
-            least_bend=unknown(),
-            largest_angle=unknown(),
-            transit_row=np.zeros(0, np.int64),
-            transit_t=np.zeros(0),
-            transit_direction=np.zeros(0, np.int8),
+            **unknown
+            | none
+            | {name: np.zeros(0, kind) for name, kind in listed.items()}
+            | {"fate": np.zeros(count, np.int8), "state": np.full((count, 6), np.nan)}
         )
 
     def with_transits(self, found: Iterable[tuple[int, Array, Array]]) -> Self:
         """Return the same with the transits found: of each row its number, their times and their directions."""
-        ordered = sorted(found, key=lambda one: one[0])
+        ordered = sorted(found, key=itemgetter(0))
         if not ordered:
             return self
         return replace(
@@ -235,3 +221,59 @@ class Batch(ABC):
     def saved_s(self) -> float:
         """Of `expected_s` what compiling does not take here, as its outcome is kept on disk."""
         return 0.0
+
+
+@dataclass(frozen=True)
+class PlumbAxes:
+    """Constants and releases of n rows in the axes of the plumb line, each number of shape (n,).
+
+    x points east, p lies in the meridian, u up along -c: there a small swing loses no digits.
+
+    Attributes:
+        size: |c|, in 1/s²; c points down.
+        sin, cos: the direction up, north and up.
+        turn: Ω without its part to the east, which is 0.
+        n, V: as in `Rows`.
+        udot: u', the rate at which the bob rises at the release, over l.
+        speed: a bound of the velocities over l.
+        level: whether u' is exactly zero at the release.
+    """
+
+    size: DoubleDouble
+    sin: DoubleDouble
+    cos: DoubleDouble
+    turn: tuple[DoubleDouble, DoubleDouble]
+    n: tuple[DoubleDouble, DoubleDouble, DoubleDouble]
+    V: tuple[DoubleDouble, DoubleDouble, DoubleDouble]
+    udot: DoubleDouble
+    speed: Array
+    level: Any
+
+    @classmethod
+    def of(cls, rows: Rows) -> Self:
+        """Turn rows into these axes."""
+        of = DoubleDouble.from_pairs
+        north, up = of(rows.pull[:, 1]), of(rows.pull[:, 2])
+        size = square_root(north * north + up * up)
+        sin, cos = plumb_line(north, up, size, np.where(size.vanishes, 1.0, 0.0))
+        turn = turned(of(rows.turn[:, 1]), of(rows.turn[:, 2]), sin, cos)
+        n, V = ((of(part[:, 0]), *turned(of(part[:, 1]), of(part[:, 2]), sin, cos)) for part in (rows.n, rows.V))
+        udot = V[2] + turn[0] * n[0]
+        speed = np.abs(rows.V[:, :, 0]).sum(1) + np.abs(rows.turn[:, :, 0]).sum(1)
+        return cls(size, sin, cos, turn, n, V, udot, speed, np.abs(udot.high) <= _SAME * speed)
+
+
+def moved(numbers: Array, way: int) -> Array:
+    """Return numbers one ulp further from zero, or nearer to it where `way` is -1; as they are where it is 0."""
+    beyond = np.copysign(np.inf, numbers) if way > 0 else 0.0
+    return np.where(numbers == 0, 0.0, np.nextafter(numbers, beyond)) if way else numbers
+
+
+def plumb_line(north: Any, up: Any, size: Any, none: Array) -> tuple[Any, Any]:
+    """Return the unit vector up along -c; the vertical where there is no force, `none` 1 instead of 0."""
+    return -north / (size + none), (none - up) / (size + none)
+
+
+def turned(north: Any, up: Any, sin: Any, cos: Any) -> tuple[Any, Any]:
+    """Return a vector's parts in the meridian and along the plumb line, which leans by (sin, cos) from the vertical."""
+    return cos * north - sin * up, sin * north + cos * up

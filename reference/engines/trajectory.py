@@ -156,8 +156,7 @@ def trajectory(
     """
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
-    from .heyoka.model import RoundedModel
-    from .heyoka.numbers import Numbers
+    from .heyoka.model import Numbers, RoundedModel
 
     try:
         model = RoundedModel(carried(FORMULATIONS[formulation], start, Numbers(number).of), start.k, number)

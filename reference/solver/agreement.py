@@ -1,20 +1,38 @@
-"""How far a published run and its witness are apart: the bits that they lack to agree, and the errors that follow."""
+"""How far a published run and its witness are apart: the bits that they lack to agree, and the errors that follow.
+
+The errors of transits are those of the time, where xdot's error moves the zero, and of the state, taken at that time.
+A run takes the state at the zero that it found. So a column there is off by the run's own error, and by the time's
+error times the column's rate. With Δ for errors, λ = v·v + n·F for the tension over l, and n_x = x/l, the acceleration
+ax = F_x - n_x λ changes with the state by at most
+
+    |Δax| <= λ |Δx| + (Ω² + |n_x| (|F| + Ω²)) |Δr| + (w + |n_x| (2 |v| + w)) |Δv|,   w = 2 |Ω| + γ,
+
+to first order; with the rates in the place of the errors the same sum bounds the rate of ax.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
+
+import numpy as np
 
 from ..engines.plan import Run
 from ..errors import IntegrationError
+from ..model.algebra import dot
+from ..model.constants import Vector
+from ..model.force import acceleration, force
 from ..model.start import Start
 from ..numbers.columns import GRID, POSITION, TRANSITS, VELOCITY
-from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, to_fraction
+from ..numbers.precision import DOUBLE_BITS, GUARD_BITS, Array, to_fraction
 from ..numbers.table import Table, bits_in, decimals_of, resolved
 from .pilot import MARGIN_BITS
 
 AGREEMENT = Fraction(1, 4)  # largest disagreement of two runs, in units of the last printed digit
+UNKNOWN = 10**9  # the error stated, in SI units, where xdot only grazes zero: as good as unknown
+ROUNDED_UP = 1 + 2.0**-40  # far more than the rounding of the binary64 arithmetic here
 
 
 @dataclass(frozen=True)
@@ -93,3 +111,80 @@ def bits_lacking(gaps: Mapping[str, Fraction], decimals: Mapping[str, int]) -> i
         if ratio > AGREEMENT:
             lacking = max(lacking, bits_in(ratio) + MARGIN_BITS)
     return lacking
+
+
+def with_transit_errors(run: Run, errors: Mapping[str, Fraction], apart: Table | None) -> Table:
+    """Return `columns.TRANSITS` of a run, which has transits, with the errors of each number.
+
+    Args:
+        run: the run.
+        errors: those of its columns on the grid.
+        apart: differences of its transits from another run's: no error is less than twice that.
+    """
+    assert run.transits is not None
+    power = bits_in(max(errors.values()))
+    parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
+    found = _errors(run, parts, power)
+    if apart is not None:
+        for i, name in enumerate(TRANSITS):
+            found[name] = np.maximum(found[name], _in_units([2 * row[i] for row in apart.values], apart.bits + power))
+    table = run.transits.only(TRANSITS)
+    columns = [_fixed(found[name] * ROUNDED_UP, power, table.bits) for name in TRANSITS]
+    return Table(TRANSITS, table.bits, table.values, list(zip(*columns, strict=True)))
+
+
+def _errors(run: Run, errors: Mapping[str, float], power: int) -> dict[str, Array]:
+    """Return the errors of each transit in units of 2**power, from those of the grid in the same units."""
+    table, plan = run.transits, run.plan
+    assert table is not None
+    k = Start.of(plan.inputs, DOUBLE_BITS + GUARD_BITS).k.converted(float)
+    n, v = (_vector(table[name] / k.length for name in kind) for kind in (POSITION, VELOCITY))
+    pulled, a = (_vector(np.broadcast_arrays(*of(n, v, k), n[0])[:3]) for of in (force, acceleration))
+    square, loss, aside = k.rate**2, 2 * abs(k.rate) + k.drag, abs(n[0])
+    of_x = abs(dot(v, v) + dot(n, pulled))
+    of_position = square + aside * (_norm(pulled) + square)
+    of_velocity = loss + aside * (2 * _norm(v) + loss)
+
+    ax = abs(a[0]) * k.length
+    ax_error = of_x * errors["x"]
+    ax_error += of_position * sum(errors[name] for name in POSITION)
+    ax_error += of_velocity * sum(errors[name] for name in VELOCITY)
+    jerk = (of_x * abs(v[0]) + of_position * _norm(v) + of_velocity * _norm(a)) * k.length
+
+    # at the zero xdot's error e is at most (slope - jerk late) late: the smaller root, if there is one
+    slope = ax - np.ldexp(ax_error, power)
+    room = slope**2 - 4 * jerk * np.ldexp(errors["vx"], power)
+    known = (slope > 0) & (room >= 0)
+    late = np.zeros(len(table))
+    late[known] = 2 * errors["vx"] / (slope[known] + np.sqrt(room[known]))
+    late += np.ldexp(table["t"], -plan.number.prec - power)
+    found = {"t": late, "x": errors["x"] + ax * np.ldexp(late, power) * late, "ax": ax_error + jerk * late}
+    for name, rate in (("y", v[1]), ("z", v[2]), ("vy", a[1])):
+        found[name] = errors[name] + abs(rate) * k.length * late
+    return {name: np.where(known, column, np.inf) for name, column in found.items()}
+
+
+def _in_units(values: list[int], bits: int) -> Array:
+    """Return integers over 2**bits as doubles."""
+    top, bottom = max(0, -bits), 1 << max(0, bits)
+    return np.array([(value << top) / bottom for value in values], dtype=np.float64)
+
+
+def _vector(parts: Iterable[Array]) -> tuple[Array, Array, Array]:
+    x, y, z = parts
+    return x, y, z
+
+
+def _norm(vector: Vector) -> Any:
+    return np.sqrt(dot(vector, vector))
+
+
+def _fixed(column: Array, power: int, bits: int) -> list[int]:
+    """Return numbers in units of 2**power as integers over 2**bits, rounded up; what is not finite is `UNKNOWN`."""
+    mantissas, exponents = np.frexp(np.where(np.isfinite(column), column, 0.0))
+    wholes = np.ldexp(mantissas, DOUBLE_BITS).astype(np.int64).tolist()
+    shifts = (exponents + (power + bits - DOUBLE_BITS)).tolist()
+    return [
+        (whole << shift if shift >= 0 else -(-whole >> -shift)) if finite else UNKNOWN << bits
+        for whole, shift, finite in zip(wholes, shifts, np.isfinite(column).tolist(), strict=True)
+    ]

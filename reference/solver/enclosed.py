@@ -20,11 +20,9 @@ from ..system.workers import Emit
 from .agreement import bits_lacking
 from .choice import confirming_plan, first_prec, rounded_prec
 from .pilot import run_pilot
-from .proof_checks import guarded
-from .proving import Problem, proved
+from .proving import Problem, guarded, proved
 from .reach import MAX_RAISES, check_reach
-from .rounding import grid_decimals, transit_decimals
-from .solution import CrossCheck, Solution
+from .solution import CrossCheck, Solution, grid_decimals, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
 WITHOUT = "The proof does not rest on heyoka's confirmation: `--no-confirm` leaves it out."

@@ -1,33 +1,38 @@
-"""One proof: enclosing balls, made smaller until each printed digit is decided.
+"""One proof: enclosing balls, made smaller until each printed digit is decided, and the runs that may refuse it.
 
-The approximant is a run by heyoka or limbs, whose states must lie in the balls (`proof_checks`).
+Nothing that is proved rests on a run. One that contradicts the proof refuses it: the approximant, by heyoka or limbs,
+whose states must lie in the balls, and one with event detection, which must find the same transits.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from math import ceil
+from itertools import pairwise
 from typing import Any
 
-from ..engines.plan import Report, Run
-from ..errors import UnreachableError
+from ..engines.plan import Plan, Report, Run
+from ..engines.registry import run
+from ..errors import IntegrationError, UnreachableError
 from ..numbers.columns import GRID, POSITION, TRANSITS
-from ..numbers.precision import rounded_up
+from ..numbers.precision import cheapest_type, rounded_up
 from ..numbers.table import Table, bits_in
 from ..scenes.scene import Scene
 from .choice import first_radius, late_radius
-from .pilot import Pilot
-from .proof_checks import checked_states
+from .pilot import ESTIMATE_FACTOR, Pilot
 from .proof_steps import COEFFICIENT_BITS, EngineChanged, Feed
-from .rounding import UndecidedRounding, check_decided
-from .solution import CrossCheck, Proof, Solution, Source
+from .solution import CrossCheck, Proof, Solution, Source, UndecidedRounding, check_decided
 
 ROUNDING_TRIES = 8  # radii that are tried before giving up
 FINER = 2**16  # the next radius is smaller by this factor at least,
 SPARE = 2**20  # and at least so small that the widest undecided number is known to this part of its last digit
 TIE = Fraction(1, 2**40)  # of the last digit: a number that lies so near to the middle of two decimals is a tie
 TABLE_BITS = 64  # the tables' integers carry this many bits more than the proof, so that rounding costs nothing
+USUAL_DIGITS, FINER_DIGITS = 9, 27  # of the run with event detection, at first and on a second try
+EVALUATION_BITS = 12  # bits that a run may lose when its polynomial is evaluated, so that it misses its ball
+MOST_CHECK_PREC = 1024  # bits of a run with event detection; one that would need more is not made
+SEEN_BITS = 12  # xdot has this many bits beside a transit in such a run
 
 
 @dataclass(frozen=True)
@@ -82,7 +87,7 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
                 if undecided.width < TIE:
                     advice = "It lies between two decimals as nearly as can be told: ask for one digit more."
                     break
-                radius = radius / max(FINER, ceil(SPARE * undecided.width))
+                radius = radius / max(FINER, math.ceil(SPARE * undecided.width))
                 if undecided.column == "t":
                     radius = min(radius, late_radius(first, scene.exact))
             else:
@@ -122,3 +127,96 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)
     source = Source.of(approximant)
     return Solution(scene, times, grid, transits, directions, source, (check,), pilot.cpu_s, proof, possible)
+
+
+def checked_states(grid: Table, times: tuple[Fraction, ...], approximant: Run) -> Table:
+    """Return how far the run's states are from the middles of the balls.
+
+    Raises:
+        IntegrationError: one lies outside its ball by more than the rounding of its evaluation.
+    """
+    rounding = max(grid.largest().values()) / 2 ** (approximant.plan.number.prec - EVALUATION_BITS)
+    gaps = grid.distance(approximant.grid)
+    for name in grid.columns:
+        for t, gap, radius in zip(times, gaps.exact(name), grid.bound(name), strict=True):
+            if gap > radius + rounding:
+                raise IntegrationError(f"the run is outside the enclosure at t = {float(t)} s in {name}.")
+    return gaps
+
+
+def guarded(solution: Solution, pilot: Pilot) -> Solution:
+    """Have a run with event detection, in the cheapest type that serves, see the transits of a proved solution.
+
+    What it measures is not the same on every machine, and goes into no dataset.
+
+    Returns:
+        The solution with that run as its `guard`, or with the reason why it could not be made.
+
+    Raises:
+        IntegrationError: the run finds other transits; names the first that differs.
+    """
+    scene, times, transits = solution.scene, solution.times, solution.transits
+    if transits is None:
+        return solution
+    usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
+    least = _bits_to_see(transits, times[-1], pilot)
+    contradiction: IntegrationError | None = None
+    units = {name: Fraction(1, 10**places) for name, places in pilot.decimals(USUAL_DIGITS).items()}
+    for prec in (max(usual, least), max(finer, least + finer - usual)):
+        if prec > MOST_CHECK_PREC:
+            reason: Exception = UnreachableError(f"A run would take {prec} bits to see transits so flat.")
+            break
+        try:
+            event_run = run(Plan(scene.exact, "momentum", cheapest_type(prec), times, transits=True))
+        except (UnreachableError, OverflowError) as error:
+            reason = error
+            break
+        gaps = solution.grid.distance(event_run.grid).largest()
+        try:
+            if any(gaps[name] > unit for name, unit in units.items()):
+                raise IntegrationError(f"heyoka's states are {float(max(gaps.values())):.1e} from the enclosure.")
+            apart = _transit_gap(event_run, solution, ESTIMATE_FACTOR * gaps["vx"])
+        except IntegrationError as error:  # the motion may amplify errors too much for so few digits
+            contradiction = reason = error
+        else:
+            return replace(solution, guard=CrossCheck.of(event_run, gaps, apart))
+    if contradiction is not None:
+        raise contradiction
+    return replace(solution, not_checked=str(reason))
+
+
+def _bits_to_see(transits: Table, end: Fraction, pilot: Pilot) -> int:
+    """Return the bits at which xdot between any two transits is far above a run's rounding errors."""
+    if not len(transits):
+        return 0
+    unit = 1 << transits.bits
+    times = [0, *transits.whole("t", transits.bits), math.floor(end * unit)]
+    apart = min((b - a for a, b in pairwise(times) if b > a), default=times[-1])
+    least = Fraction(min(map(abs, transits.whole("ax", transits.bits))) * apart, unit**2)
+    return pilot.prec + bits_in(pilot.cautious["vx"] / least) + SEEN_BITS if least else MOST_CHECK_PREC + 1
+
+
+def _transit_gap(event_run: Run, solution: Solution, xdot_error: Fraction) -> Fraction:
+    """Return how far the transits that a run found are from the enclosed ones, at most, in s.
+
+    `xdot_error` is how far its xdot may be from the truth, in m/s.
+    """
+    transits, directions = solution.transits, solution.directions
+    assert transits is not None
+    seen = event_run.transits or Table(transits.columns, 0, [])
+    if len(seen) != len(directions) and not solution.possible:
+        raise IntegrationError(f"heyoka finds {len(seen)} transits, the enclosure {len(directions)}.")
+    prec, bits = event_run.plan.number.prec, max(seen.bits, transits.bits)
+    remaining = iter(zip(seen.whole("t", bits), event_run.directions, strict=True))
+    # in integers over 2**bits, as there may be many
+    rounding = math.ceil(event_run.plan.times[-1] * Fraction(2) ** (bits + EVALUATION_BITS - prec))
+    off, largest = math.ceil(xdot_error * (1 << 2 * bits)), 0
+    bounds = (math.ceil(bound * (1 << bits)) for bound in transits.bound("t"))
+    rows = zip(*(transits.whole(name, bits) for name in ("t", "ax")), bounds, directions, strict=True)
+    for k, (t, ax, bound, direction) in enumerate(rows, 1):
+        allowed = bound + off // abs(ax) + rounding
+        gap = next((abs(t - time) for time, sign in remaining if sign == direction and abs(t - time) <= allowed), None)
+        if gap is None:
+            raise IntegrationError(f"heyoka does not find transit {k} of the enclosure, at t = {t / (1 << bits)} s.")
+        largest = max(largest, gap)
+    return Fraction(largest, 1 << bits)

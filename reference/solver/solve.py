@@ -19,12 +19,11 @@ from ..numbers.columns import GRID
 from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
 from ..scenes.scene import Scene
-from .agreement import Agreement
+from .agreement import Agreement, with_transit_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
 from .pilot import Pilot
 from .reach import MAX_PREC, MAX_RAISES, check_reach, out_of_reach
 from .solution import CrossCheck, Solution, Source
-from .transit_errors import with_transit_errors
 
 
 def solve(

@@ -9,7 +9,7 @@ from itertools import pairwise
 from ...model.start import Start
 from ...numbers.columns import GRID, STATE
 from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
-from ...solver.rounding import exact_decimals
+from ...solver.solution import exact_decimals
 from ..golden import Files
 from ..manifest import MANIFEST
 from ..sheets import NUMBERS, Sheet, exact

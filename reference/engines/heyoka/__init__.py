@@ -6,9 +6,9 @@ custom memory handler; the disk cache never hits beyond 128 bits and is switched
 
 - `engine`: its declaration; `run`: a plan integrated, and the polynomials of each step for a proof.
 - `batch`, `loop`: many scenes, one after the other; `row_zeros`: what the zeros in a row say, guarded.
-- `numbers`: its number types, and exact conversions.
-- `system`: a formulation as its expressions; its cache on disk.
-- `model`: any system without events, in one call; a formulation with a scene's constants in a number type.
+- `system`: a formulation as its expressions and as text; its cache on disk.
+- `model`: its number types, with exact conversions; any system without events, in one call; a formulation with a
+  scene's constants in a number type.
 - `stepper`: one scene, step by step, with events, dense output and Taylor coefficients.
 - `events`: guards around its event detection.
 """

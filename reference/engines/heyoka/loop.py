@@ -12,8 +12,7 @@ import numpy as np
 
 from ...model.constants import Constants
 from ...numbers.precision import DOUBLE, Array
-from ..batch_interface import STOPPED, Outcomes, Rows, Wanted
-from ..plumb_axes import PlumbAxes, moved, turned
+from ..batch_interface import STOPPED, Outcomes, PlumbAxes, Rows, Wanted, moved, turned
 from .row_zeros import (
     HEIGHT,
     MODEL,

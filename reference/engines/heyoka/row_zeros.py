@@ -16,8 +16,7 @@ from ...model.algebra import add, cross, subtract
 from ...model.constants import Constants
 from ...model.formulations import FORMULATIONS
 from ...numbers.precision import Array
-from ..batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, Rows
-from ..plumb_axes import PlumbAxes
+from ..batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAxes, Rows
 
 MODEL = FORMULATIONS["momentum"]
 TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot, and of the rate of the height over the plumb line

@@ -23,7 +23,7 @@ from ...numbers.taylor_step import LOCAL, TaylorStep
 from ...scenes.inputs import Inputs
 from ..plan import MOST_TURN, Pace, Plan, Report, Run
 from .events import march, quiet_start
-from .numbers import Numbers
+from .model import Numbers
 from .stepper import Stepper, Zero
 
 SHRINK = 0.995  # of the step size that heyoka would take, before it is cut to few bits

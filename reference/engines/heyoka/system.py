@@ -1,4 +1,7 @@
-"""A formulation as heyoka expressions, ready to be compiled, and as text; heyoka's cache of machine code on disk."""
+"""A formulation as heyoka expressions, ready to be compiled, and as text, with the terms that a scene does not need.
+
+heyoka's cache of machine code on disk is set here too.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +17,14 @@ from ...model.algebra import minus, product
 from ...model.carried import constant_variables
 from ...model.constants import Constants
 from ...model.force import acceleration
-from ...model.formulations import Formulation, Lagrangian
-from ...numbers.precision import NumberType
+from ...model.formulations import FORMULATIONS, Formulation, Lagrangian
+from ...model.start import Start, xdot_vanishes
+from ...numbers.precision import DOUBLE, LONG_DOUBLE, NumberType
+from ...scenes.scene import Scene
 
 FOLDER = "foucault"  # in heyoka's own: opening a cache takes the longer the more it holds, of whatever program
 MOST_BYTES = 1 << 25
+EQUATIONS_PREC = 128  # bits; of the constants where exact zeros alone matter
 
 
 def keep_on_disk(number: NumberType) -> None:
@@ -100,3 +106,39 @@ def equations_text(formulation: Formulation, constants: Constants) -> list[str]:
     constant = constant_variables(formulation, constants)
     pairs = zip(formulation.variables, System.build(formulation, named).equations, strict=True)
     return [f"{name}' = {rate}" for name, (_, rate) in pairs if name not in constant]
+
+
+def lines_and_left_out(scene: Scene, formulation: str, number: str) -> tuple[list[str], list[str]]:
+    """Return the compiled lines "name' = …", and a sentence for each group of terms that the scene does not need.
+
+    Args:
+        scene: the scene.
+        formulation: that the run integrates.
+        number: its number type, in words.
+    """
+    inputs, system, left_out = scene.exact, FORMULATIONS[formulation], []
+    start = Start.of(inputs, EQUATIONS_PREC)
+    if inputs.rotation_rate == 0:
+        left_out.append("Coriolis and centrifugal terms: rotation_rate is 0.")
+    elif abs(inputs.latitude) == 90:
+        left_out.append("the distance R from the axis and the terms with Omega_y: the latitude is a pole.")
+    elif inputs.latitude == 0:
+        left_out.append("the terms with Omega_z and c_y: the latitude is 0.")
+    if inputs.gravity_is == "effective":
+        left_out.append("the centrifugal force at the pivot: gravity is effective and contains it.")
+    if inputs.drag == 0:
+        left_out.append("drag: it is 0.")
+    left_out += [f"the rate of {name}: it is constant." for name in constant_variables(system, start.k)]
+    if inputs.gravity == 0:
+        left_out.append("gravity: it is 0.")
+    if not scene.run.transits:
+        left_out.append("event detection: transits are off.")
+    elif xdot_vanishes(start):
+        left_out.append("event detection: xdot is identically zero.")
+    if number == str(DOUBLE):
+        left_out.append(f"extended precision: double serves {scene.run.digits} digits.")
+    elif number == str(LONG_DOUBLE):
+        left_out.append(f"precision beyond long double: it serves {scene.run.digits} digits.")
+    if scene.run.level != "enclosed":
+        left_out.append("the enclosure: the level does not ask for it.")
+    return equations_text(system, start.k), left_out

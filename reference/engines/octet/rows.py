@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ...numbers.precision import Array
-from ..batch_interface import CLOSE_PAIR, OK, Outcomes, Rows, Wanted
+from ..batch_interface import CLOSE_PAIR, OK, Outcomes, PlumbAxes, Rows, Wanted, moved, plumb_line, turned
 from ..batch_interface import LEAST_BEND as LEAST
-from ..plumb_axes import PlumbAxes, moved, plumb_line, turned
 
 # of a row's numbers: state and constants in its unit of time, unit and span in s, multiplicities of zeros at release
 X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, CLOSE_S, SEEKS_X, SEEKS_U = range(17)

@@ -17,7 +17,7 @@ from compare.candidates.read import read
 from compare.score.explanation.findings import Explanation, Model
 from compare.score.judge import _flung_off, _reading, _transits, judge
 from reference import InputError, load, load_scene, solve, trajectory
-from reference.engines.heyoka.numbers import Numbers
+from reference.engines.heyoka.model import Numbers
 from reference.engines.trajectory import Variants
 from reference.errors import plain
 

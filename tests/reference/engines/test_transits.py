@@ -10,7 +10,7 @@ import pytest
 from small_scenes import make_scene, start_for, stepper_of
 
 from reference.engines.heyoka.events import march, quiet_start
-from reference.engines.heyoka.numbers import Numbers
+from reference.engines.heyoka.model import Numbers
 from reference.engines.heyoka.stepper import Stepper
 from reference.engines.heyoka.system import System
 from reference.engines.plan import Plan

@@ -1,29 +1,26 @@
-"""The fixed-point table against exact fractions: rounding, distance, decimals, and what bounds decide."""
+"""The fixed-point table against exact fractions: rounding, distance, decimals, decided digits; columns in formulas."""
 
 from __future__ import annotations
 
+import math
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
 
+import mpmath
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from reference.enclosure.shapes import Interval
 from reference.numbers.columns import GRID, KINDS, RUN, TRANSITS, UNITS
-from reference.numbers.precision import rounded
-from reference.numbers.table import Table, decimals_of, resolved
+from reference.numbers.table import FixedPoint, Table, decimals_of, integers, resolved
 
 numbers = st.integers(min_value=-(2**80), max_value=2**80)
 
 
 def table(rows, bits=8, errors=(), columns=("x", "y")):
     return Table(columns, bits, [tuple(row) for row in rows], [tuple(row) for row in errors])
-
-
-@given(numbers, st.integers(min_value=1, max_value=2**70))
-def test_a_quotient_is_rounded_to_nearest_with_ties_to_even(numerator, denominator):
-    assert rounded(numerator, denominator) == round(Fraction(numerator, denominator))
 
 
 @given(numbers, st.integers(min_value=0, max_value=40), st.integers(min_value=0, max_value=25))
@@ -102,3 +99,44 @@ def test_every_column_has_a_kind_and_a_unit():
     for name in {*RUN, *GRID, *TRANSITS}:
         assert name in KINDS[name]
         assert UNITS[KINDS[name]]
+
+
+BITS = 120
+UNIT = Fraction(1, 1 << BITS)
+FRACTIONS = st.fractions(-1000, 1000, max_denominator=10**30)
+
+
+def column(*numbers):
+    return FixedPoint(integers(math.floor(number / UNIT) for number in numbers), BITS)
+
+
+@given(FRACTIONS, FRACTIONS)
+def test_operations_round_down_to_the_unit(p, q):
+    a, b = column(p, q), FixedPoint.of(q, BITS)
+    (x, _), (y,) = a.fractions(), column(q).fractions()
+    assert (a + b).fractions()[0] == x + y
+    assert (a - b).fractions()[0] == x - y
+    assert (-a).fractions()[0] == -x
+    assert (3 * a).fractions()[0] == 3 * x
+    assert 0 <= x * y - (a * b).fractions()[0] < UNIT
+    assert 0 <= x / 2 - (a / 2).fractions()[0] < UNIT
+    if y:
+        assert 0 <= x / y - (a / b).fractions()[0] < UNIT
+    (root,) = column(abs(p)).sqrt().fractions()
+    assert root * root <= abs(p) < (root + UNIT) ** 2 + UNIT
+
+
+def test_the_root_of_what_is_below_zero_is_zero():
+    assert column(Fraction(-1), Fraction(4)).sqrt().fractions() == [0, 2]
+
+
+def test_columns_come_from_any_unit_and_rows_can_be_chosen():
+    whole = FixedPoint.column(integers([1, -2, 3 * 10**50]), 10**50, BITS)
+    for exact, found in zip((Fraction(1, 10**50), Fraction(-2, 10**50), Fraction(3)), whole.fractions(), strict=True):
+        assert 0 <= exact - found < UNIT
+    assert whole[np.array([False, True, True])].fractions() == whole.fractions()[1:]
+
+
+@pytest.mark.parametrize("number", [Fraction(1, 3), mpmath.mpf("0.1"), 0.1, 7])
+def test_a_constant_may_be_of_any_type(number):
+    assert abs(FixedPoint.of(number, BITS).values / 2**BITS - float(number)) < 1e-15

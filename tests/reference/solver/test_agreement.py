@@ -20,9 +20,8 @@ from reference.numbers.columns import GRID, TRANSITS
 from reference.numbers.precision import DOUBLE, real
 from reference.numbers.table import Table
 from reference.solver import solve as solver
-from reference.solver.agreement import Agreement, bits_lacking
+from reference.solver.agreement import Agreement, bits_lacking, with_transit_errors
 from reference.solver.pilot import MARGIN_BITS
-from reference.solver.transit_errors import with_transit_errors
 
 # in both runs these two once had the same number of limbs and, as steps were at their longest, the same steps
 ONE_RUN_TWICE = make_scene(
@@ -181,7 +180,7 @@ def test_no_error_of_a_transit_is_below_twice_the_difference_of_two_runs(error, 
 def test_the_errors_of_transits_are_rounded_up_by_far_more_than_a_double_rounds(monkeypatch):
     rough, on_grid, _ = transits_in_double("short cord")
     table = with_transit_errors(rough, on_grid, None)
-    monkeypatch.setattr("reference.solver.transit_errors.ROUNDED_UP", 1.0)
+    monkeypatch.setattr("reference.solver.agreement.ROUNDED_UP", 1.0)
     plain = with_transit_errors(rough, on_grid, None)
     for name in TRANSITS:
         for bound, alone in zip(table.bound(name), plain.bound(name), strict=True):

@@ -7,7 +7,7 @@ import pytest
 
 from reference.errors import IntegrationError
 from reference.numbers.table import Table
-from reference.solver.proof_checks import EVALUATION_BITS, SEEN_BITS, _bits_to_see, _transit_gap
+from reference.solver.proving import EVALUATION_BITS, SEEN_BITS, _bits_to_see, _transit_gap
 
 BITS, PREC, END = 150, 64, Fraction(100)
 XDOT_ERROR = Fraction(1, 10**12)  # m/s

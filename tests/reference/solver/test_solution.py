@@ -9,7 +9,7 @@ import pytest
 
 import reference
 from reference.numbers.columns import GRID, TRANSITS
-from reference.solver.rounding import (
+from reference.solver.solution import (
     UndecidedRounding,
     check_decided,
     exact_decimals,
