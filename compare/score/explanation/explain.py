@@ -62,17 +62,17 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
         return _of_case(Case(rows, truth, right, pendulum, frequency, allowed_m), scene)
 
     rows = made_right(times, columns, start, right.length, frequency)
-    found = of_rows(rows)
+    best = of_rows(rows)
     if any(convention.id in RENAMED for convention in rows.conventions):
         # the release may be at fault, and not the names of the columns
         other = of_rows(made_right(times, columns, start, right.length, frequency, rename=False))
-        found = min(found, other, key=lambda explanation: explanation.score)
-    unknown = not found.causes and found.corrected_m > max(allowed_m, 1.5 * rows.noise)
-    if not found.slip and (unknown or any(cause.id == "integrator_loose" for cause in found.causes)):
+        best = min(best, other, key=lambda explanation: explanation.score)
+    unknown = not best.causes and best.corrected_m > max(allowed_m, 1.5 * rows.noise)
+    if not best.slip and (unknown or any(cause.id == "integrator_loose" for cause in best.causes)):
         wrong_term = slip(rows.times, rows.positions, scene)
         if wrong_term:  # one term of a formula, as no integrator changes it
-            return Explanation(found.conventions, slip=wrong_term)
-    return found
+            return Explanation(best.conventions, slip=wrong_term)
+    return best
 
 
 def _of_case(case: Case, scene: Scene) -> Explanation:
@@ -82,12 +82,12 @@ def _of_case(case: Case, scene: Scene) -> Explanation:
     named = of_causes(case)
     if named is not None and named.corrected_m <= case.enough:
         return named
-    found = None
+    second = None
     if named is None or any(cause.stage == "integrator" for cause in named.causes):
         linear = named is not None and any(cause.id in dict(MODELS.values()) for cause in named.causes)
-        found = None if linear and case.rows.cord is None else of_steps(case)
-        found = found or of_formula(case)
-    return found or _of_approximation(case, scene, named) or named or _plain(case)
+        second = None if linear and case.rows.cord is None else of_steps(case)
+        second = second or of_formula(case)
+    return second or _of_approximation(case, scene, named) or named or _plain(case)
 
 
 def _plain(case: Case) -> Explanation:

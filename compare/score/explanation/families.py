@@ -112,7 +112,7 @@ def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Progr
         for side in (1, -1):
             other = theta.copy()
             other[i] += side * nudge
-            moved.append(phasors_of(other).at(times))
+            moved.append(phasors_of(other, -other[5], complex(other[7], other[8])).at(times))
         slope = (moved[0] - moved[1]) / (2 * nudge)
         columns.append(np.column_stack([slope.real, slope.imag]).ravel())
     slopes = np.column_stack(columns) / math.sqrt(len(times))
@@ -151,15 +151,15 @@ def fit_pendulum(
     first, *longer = windows(times, WINDOWS, 16, 24)
     small = np.full(len(NAMES), 1e-6)
     fits = [_in_window(pendulum, times[:first], rows[:first], guess, guess, scales, noise, small) for guess in guesses]
-    found, guess = min(zip(fits, guesses, strict=True), key=lambda pair: pair[0].rest)
+    best, guess = min(zip(fits, guesses, strict=True), key=lambda pair: pair[0].rest)
     size = float(np.abs(rows[:, :2]).max())
     for count in longer:
-        if not found.rest <= HOPELESS * float(np.abs(rows[:count, :2]).max()):
+        if not best.rest <= HOPELESS * float(np.abs(rows[:count, :2]).max()):
             return None
-        answers = np.linalg.norm(found.slopes * scales, axis=0) * WINDOWS
+        answers = np.linalg.norm(best.slopes * scales, axis=0) * WINDOWS
         nudges = np.clip(SEEN * size / np.maximum(answers, 1e-300), 1e-13, 1e-2)
-        found = _in_window(pendulum, times[:count], rows[:count], found.theta, guess, scales, noise, nudges)
-    return found if found.rest <= HOPELESS * float(np.abs(rows[:, :2]).max()) else None
+        best = _in_window(pendulum, times[:count], rows[:count], best.theta, guess, scales, noise, nudges)
+    return best if best.rest <= HOPELESS * float(np.abs(rows[:, :2]).max()) else None
 
 
 def _in_window(

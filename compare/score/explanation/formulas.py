@@ -84,14 +84,14 @@ class Formula:
         def number(value: float) -> str:
             return f"{value:.6g}" if abs(value) > SAME * size else "0"
 
-        told = []
+        sentences = []
         for i, name in enumerate("xy"):
             for product, value, part in zip(PRODUCTS, self.coefficients[:, i], parts, strict=True):
                 right = (part.real, part.imag)[i]
                 if abs(value - right) > same:
                     where = f"in the formula of {name}, {product} has {number(value)} m"
-                    told.append(f"{where} where the model has {number(right)} m")
-        return told
+                    sentences.append(f"{where} where the model has {number(right)} m")
+        return sentences
 
 
 def of_formula(case: Case) -> Explanation | None:

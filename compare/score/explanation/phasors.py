@@ -101,17 +101,17 @@ def fit_phasors(times: Array, rows: ComplexArray, near: float) -> tuple[Phasors,
         return None
     best: tuple[Phasors, float] | None = None
     for guess in _guesses(times, rows, near):
-        found = _refined(times, rows, guess)
-        if found is not None and (best is None or _better(found, best, near * near, float(np.abs(rows).max()))):
-            best = found
+        fit = _refined(times, rows, guess)
+        if fit is not None and (best is None or _better(fit, best, near * near, float(np.abs(rows).max()))):
+            best = fit
     return best
 
 
-def _better(one: tuple[Phasors, float], other: tuple[Phasors, float], square: float, size: float) -> bool:
+def _better(fit: tuple[Phasors, float], best: tuple[Phasors, float], square: float, size: float) -> bool:
     """Return whether a fit is better; of two aliases that fit as well, the one nearer to the scene's ω²."""
-    (found, rest), (before, least) = one, other
+    (phasors, rest), (before, least) = fit, best
     if max(rest, least) < 1e-9 * size or 0.5 < rest / least < 2:
-        return abs(found.square - square) < 0.99 * abs(before.square - square)
+        return abs(phasors.square - square) < 0.99 * abs(before.square - square)
     return rest < least
 
 
@@ -138,11 +138,11 @@ def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[comple
     if run[1] - run[0] >= 8:
         part, step = rows[run[0] : run[1] + 1], float(np.median(np.diff(times[run[0] : run[1] + 1])))
         for skip in (1, max(1, int(0.7 / (near * step))) if near else 1):
-            one, two, three = part[: -2 * skip], part[skip:-skip], part[2 * skip :]
-            if len(one) < 6:
+            before, here, after = part[: -2 * skip], part[skip:-skip], part[2 * skip :]
+            if len(before) < 6:
                 continue
-            matrix = np.column_stack([two, one, np.ones_like(one)])
-            p, q, _ = np.linalg.lstsq(matrix, three, rcond=None)[0]
+            matrix = np.column_stack([here, before, np.ones_like(before)])
+            p, q, _ = np.linalg.lstsq(matrix, after, rcond=None)[0]
             roots = np.roots([1, -p, -q])
             if (np.abs(roots) == 0).any() or not np.isfinite(roots).all():
                 continue

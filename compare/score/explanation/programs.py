@@ -156,18 +156,15 @@ class Program:
         return computed
 
     def _computed(self, theta: Array) -> Phasors:
-        theta = theta.copy()
-        if self.turned_plane:
-            theta[5] += theta[2] ** 2
+        square = -theta[5] - (theta[2] ** 2 if self.turned_plane else 0.0)
         if self.kind != "sphere" and theta[12]:  # the mean of x and y: what it does to each is no matter of phasors
             xx, yy, *_ = self.gradient_square
-            theta[5] += (xx + yy) / 2
+            square -= (xx + yy) / 2
         start = complex(theta[7], theta[8])
         if self.kind == "angle" and start:
             out = abs(start) / self.length
             start = start * math.asin(min(out, 1.0)) / out
-            theta[7:9] = start.real, start.imag
-        phasors = phasors_of(theta)
+        phasors = phasors_of(theta, square, start)
         if self.method is not None and self.step > 0:
             phasors = self.method.computed(phasors, self.step)
         return phasors.later(self.late) if self.late else phasors
@@ -192,11 +189,10 @@ class Program:
         return replace(self, **{name: value})  # type: ignore[arg-type]
 
 
-def phasors_of(theta: Array) -> Phasors:
-    """Return the two phasors of a linear model with the numbers of theta."""
-    square = -theta[5]
+def phasors_of(theta: Array, square: float, start: complex) -> Phasors:
+    """Return the two phasors of a linear model with the numbers of theta, but for ω² and the position at t = 0."""
     centre = complex(theta[3], theta[4]) / square if square else 0j
-    return Phasors.of(theta[2], square, theta[6], centre, complex(theta[7], theta[8]), complex(theta[9], theta[10]))
+    return Phasors.of(theta[2], square, theta[6], centre, start, complex(theta[9], theta[10]))
 
 
 def theta_of(phasors: Phasors, theta: Array) -> Array:
@@ -236,19 +232,18 @@ class Pendulum:
             states = self.model.run(self.start(theta).tolist(), span, self.constants(theta))
         except (FoucaultError, ValueError, ArithmeticError):
             return np.full((len(times), columns), np.nan)
-        found: Array = states[int(lead) :, :columns]
-        return found
+        return np.asarray(states[int(lead) :, :columns])
 
     def constants(self, theta: Array) -> Constants:
         """Return the constants of the force."""
         length, gradient, point = theta[11:14]
         pointing = point * abs(theta[5]) * length / self.radius if self.radius else 0.0
-        own = [gradient * part for part in self.square]
+        xx, yy, yz, zz = (gradient * part for part in self.square)
         return Constants(
             length=float(length),
             turn=(float(theta[0]), float(theta[1]), float(theta[2])),
             pull=(float(theta[3]), float(theta[4]), float(theta[5])),
-            centrifugal=(own[0] - pointing, own[1] - pointing, own[2], own[3] + 2 * pointing),
+            centrifugal=(xx - pointing, yy - pointing, yz, zz + 2 * pointing),
             drag=float(theta[6]),
         )
 
@@ -261,9 +256,9 @@ class Pendulum:
     def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:
         """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * columns, 14)."""
         base = self.rows(theta, times, columns)
-        found = []
+        slopes = []
         for i in range(len(NAMES)):
             ahead = theta.copy()
             ahead[i] += nudges[i] * scales[i]
-            found.append(((self.rows(ahead, times, columns) - base) / nudges[i]).ravel())
-        return np.column_stack(found)
+            slopes.append(((self.rows(ahead, times, columns) - base) / nudges[i]).ravel())
+        return np.column_stack(slopes)

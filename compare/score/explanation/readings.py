@@ -92,10 +92,10 @@ class Reader:
                         break
                     if cause.stage != "integrator":  # whose first step depends on the program before it
                         seen.add(key)
-                    found = None if _clash(reading.causes, cause) else self._with(reading, cause)
-                    if found is not None:
-                        longer.append(found)
-                        least = min(least, found.score)
+                    extended = None if _clash(reading.causes, cause) else self._with(reading, cause)
+                    if extended is not None:
+                        longer.append(extended)
+                        least = min(least, extended.score)
             longer.sort(key=lambda reading: reading.score)
             best += longer[:BEAM]
             # of two mistakes as large as each other, neither lowers what is left by much: those that lower it at all
@@ -132,21 +132,21 @@ class Reader:
         if len(free) > 3:
             return None
         if program.method is not None and not program.step:
-            own = reading.program.theta()
-            omega = math.sqrt(abs(own[5])) or 1.0
+            theta = reading.program.theta()
+            omega = math.sqrt(abs(theta[5])) or 1.0
             square, drag = self._shown(reading.program)
-            guesses = (program.method.first_step(-own[5], square, own[6], drag), *(q / omega for q in PHASES))
+            guesses = (program.method.first_step(-theta[5], square, theta[6], drag), *(q / omega for q in PHASES))
             tried = [self._judged(together, program.with_input("step", step)) for step in guesses if step > 0]
             program = min(tried, key=lambda reading: reading.rest).program
         return self._fitted(together, program, free)
 
     def _shown(self, program: Program) -> tuple[float, float]:
         """Return ω² and the drag that the rows ask of a program, its release free: other numbers may stand for them."""
-        own, free = program.theta(), list(self.fit.free)
+        theta, free = program.theta(), list(self.fit.free)
         columns = [free.index(i) for i in (5, 6, 9, 10) if i in free]
         slopes = self._triangle[:, columns]
         change = best_change(slopes, self._off(program))
-        return -float(own[5] + change[0]), float(own[6] + change[1])
+        return -float(theta[5] + change[0]), float(theta[6] + change[1])
 
     def _fitted(self, together: tuple[Cause, ...], program: Program, free: list[str]) -> Reading:
         """Fit the free numbers by Gauss-Newton."""
@@ -172,9 +172,9 @@ class Reader:
         least = {True: math.inf, False: math.inf}
         for cause in known:
             if cause.group not in groups and not _clash(reading.causes, cause):
-                found = self._with(reading, cause)
+                extended = self._with(reading, cause)
                 kind = cause.stage == "integrator" or cause.free == "drag"
-                least[kind] = min(least[kind], math.inf if found is None else found.rest)
+                least[kind] = min(least[kind], math.inf if extended is None else extended.rest)
         return least[True] < min(HALVED * reading.rest, least[False])
 
     def uncertainty(self, reading: Reading, cause: Cause) -> float:

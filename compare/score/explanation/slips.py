@@ -8,7 +8,7 @@ enough to be differentiated twice.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -32,15 +32,6 @@ TERMS = {"1": "m/s²", "x": "1/s²", "y": "1/s²", "vx": "1/s", "vy": "1/s"}
 NUDGE = 1e-6
 
 
-@dataclass(frozen=True)
-class _Motion:
-    """Rows that were differentiated: x, y, vx, vy, ax, ay, shape (rows,), and the error of ax and ay in m/s²."""
-
-    state: Array
-    rates: Array
-    error: float
-
-
 def slip(times: Array, positions: Array, scene: Scene) -> str:
     """Return which part of the force is off, as a sentence; empty if the rows do not tell.
 
@@ -52,34 +43,38 @@ def slip(times: Array, positions: Array, scene: Scene) -> str:
     k = constants_in_double(scene.exact)
     rate = float(np.linalg.norm([float(part) for part in k.pull])) ** 0.5
     motion = _differentiated(times, positions[:, :2], rate)
-    if motion is None or not float(np.abs(motion.state[:2]).max()) < LOW * k.length:
+    if motion is None:
+        return ""
+    state, rates, error = motion
+    if not float(np.abs(state[:2]).max()) < LOW * k.length:
         return ""
     # whatever g is taken for, a slip is what is off beside it
     effective = replace(k, pull=(0, 0, -k.gravity), centrifugal=(0, 0, 0, 0))
-    k = min(k, effective, key=lambda one: _size(motion.rates - _model(motion.state, one)))
-    off = motion.rates - _model(motion.state, k)
+    k = min(k, effective, key=lambda constants: _size(rates - _model(state, constants)))
+    off = rates - _model(state, k)
     size = _size(off)
-    if not size > CLEAR * motion.error:
+    if not size > CLEAR * error:
         return ""
-    found = list(_terms(motion.state, off, k))
-    if not found or _alike([(*term[:2], term[2] - term[3]) for term in found]):
+    terms = list(_terms(state, off, k))
+    if not terms or _alike([(*term[:2], term[2] - term[3]) for term in terms]):
         return ""
-    told = "; ".join(_sentence(*term) for term in found)
-    power = np.mean(np.sum(off * motion.state[2:], axis=0))
-    speed = float(np.sqrt(np.mean(motion.state[2:] ** 2)))
+    sentences = "; ".join(_sentence(*term) for term in terms)
+    power = np.mean(np.sum(off * state[2:], axis=0))
+    speed = float(np.sqrt(np.mean(state[2:] ** 2)))
     work = " The difference does work, as no Coriolis force does." if abs(power) > WORK * 2 * size * speed else ""
     taken = "" if k.pull[1] or not k.rate else ", with g as the effective gravity,"
-    return f"Its accelerations differ from the model's{taken} by {size:.2g} m/s²: {told}.{work}"
+    return f"Its accelerations differ from the model's{taken} by {size:.2g} m/s²: {sentences}.{work}"
 
 
 def _size(rates: Array) -> float:
     return float(np.sqrt(np.mean(rates**2)))
 
 
-def _differentiated(times: Array, plane: Array, rate: float) -> _Motion | None:
-    """Return rows with equal steps differentiated; None if they are too few or too far apart, or steps differ.
+def _differentiated(times: Array, plane: Array, rate: float) -> tuple[Array, Array, float] | None:
+    """Return x, y, vx, vy, and ax, ay of rows with equal steps, differentiated, and the error of the last in m/s².
 
-    Of rows that are close to each other only some are taken: their rounding would be magnified most.
+    None if rows are too few or too far apart, or steps differ. Of rows that are close to each other only some are
+    taken: their rounding would be magnified most.
     """
     steps = np.diff(times)
     if len(times) < LEAST or not np.ptp(steps) < 1e-6 * steps[0] or not steps[0] * rate < FARTHEST:
@@ -88,7 +83,7 @@ def _differentiated(times: Array, plane: Array, rate: float) -> _Motion | None:
     h, plane = float(steps[0]) * stride, plane[::stride]
     parts = [np.array([np.convolve(q, stencil[::-1], "valid") for q in plane.T]) for stencil in (FIRST, SECOND, COARSE)]
     speeds, rates, coarse = parts[0] / h, parts[1] / h**2, parts[2][:, 1:-1] / h**2
-    return _Motion(np.vstack([plane[3:-3].T, speeds]), rates, _size(rates - coarse))
+    return np.vstack([plane[3:-3].T, speeds]), rates, _size(rates - coarse)
 
 
 def _model(state: Array, k: Constants) -> Array:
@@ -101,45 +96,42 @@ def _model(state: Array, k: Constants) -> Array:
 
 def _terms(state: Array, off: Array, k: Constants) -> Iterator[tuple[str, str, float, float]]:
     """Yield equation, term, its coefficient in the rows and in the model: the fewest that leave next to nothing."""
-    count = state.shape[1]
-    basis = np.vstack([np.ones(count), state])
+    basis = np.vstack([np.ones(state.shape[1]), state])
     scale = np.sqrt(np.mean(basis**2, axis=1))
     scale[scale == 0] = 1.0
+    basis /= scale[:, None]
     places = [(i, j) for i in range(2) for j in range(len(TERMS))]
     chosen: list[tuple[int, int]] = []
     whole = float(np.sum(off**2))
     for _ in range(MOST):
-        tried = [(_left(basis / scale[:, None], off, [*chosen, place])[0], place) for place in places]
-        rest, place = min(one for one in tried if one[1] not in chosen)
+        rest, place = min((_left(basis, off, [*chosen, place])[0], place) for place in places if place not in chosen)
         chosen.append(place)
         if rest < EXPLAINED * whole:
             break
     else:
         return
-    fitted = _left(basis / scale[:, None], off, chosen)[1]
+    fitted = _left(basis, off, chosen)[1]
     origin = np.zeros((4, 1))
-    for (i, j), value in zip(chosen, fitted, strict=True):
+    for i, j in chosen:
         if j:
             nudge = np.zeros((4, 1))
             nudge[j - 1] = NUDGE
             right = float((_model(origin + nudge, k) - _model(origin - nudge, k))[i, 0]) / (2 * NUDGE)
         else:
             right = float(_model(origin, k)[i, 0])
-        yield "xy"[i], list(TERMS)[j], right + value / float(scale[j]), right
+        yield "xy"[i], list(TERMS)[j], right + fitted[i, j] / float(scale[j]), right
 
 
-def _left(basis: Array, off: Array, places: list[tuple[int, int]]) -> tuple[float, list[float]]:
+def _left(basis: Array, off: Array, places: list[tuple[int, int]]) -> tuple[float, dict[tuple[int, int], float]]:
     """Return the sum of squares that some terms leave, and their coefficients."""
-    rest, fitted = 0.0, dict.fromkeys(places, 0.0)
-    for i in range(2):
-        own = [j for equation, j in places if equation == i]
-        if own:
-            solution = np.linalg.lstsq(basis[own].T, off[i], rcond=None)[0]
-            fitted |= {(i, j): float(value) for j, value in zip(own, solution, strict=True)}
-            rest += float(np.sum((off[i] - solution @ basis[own]) ** 2))
-        else:
-            rest += float(np.sum(off[i] ** 2))
-    return rest, list(fitted.values())
+    rest = 0.0
+    fitted: dict[tuple[int, int], float] = {}
+    for i, accelerations in enumerate(off):
+        terms = [j for equation, j in places if equation == i]
+        solution = np.linalg.lstsq(basis[terms].T, accelerations, rcond=None)[0]
+        fitted |= {(i, j): float(value) for j, value in zip(terms, solution, strict=True)}
+        rest += float(np.sum((accelerations - solution @ basis[terms]) ** 2))
+    return rest, fitted
 
 
 def _alike(off: list[tuple[str, str, float]]) -> bool:

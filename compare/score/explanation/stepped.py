@@ -92,7 +92,7 @@ def likely_steps(case: Case) -> list[Steps]:
     most = min(int(spacing * frequency / FINEST), int(LONGEST / last))
     if not even or most < 1 or len(rows.times) <= count or abs(rows.times[count] / spacing - count) > 1e-6:
         return []
-    found: list[tuple[float, Steps]] = []
+    likely: list[tuple[float, Steps]] = []
     plain: list[float] = []
     first = replace(rows, times=rows.times[: count + 1], positions=rows.positions[: count + 1])
     swing = replace(case, rows=first)
@@ -105,9 +105,9 @@ def likely_steps(case: Case) -> list[Steps]:
             apart = np.linalg.norm(moved - first.positions[:, :, None], axis=(0, 1))
             best = int(np.argmin(np.where(np.isfinite(apart), apart, np.inf)))
             near = every[max(best - 1, 0) : best + 2]
-            found += [(float(apart[i - 1]), Steps(method, int(i), program)) for i in near if np.isfinite(apart[i - 1])]
-    found.sort(key=lambda pair: pair[0])
-    return [steps for apart, steps in found[:LIKELY] if apart < PLAIN * min(plain)]
+            likely += [(float(apart[i - 1]), Steps(method, int(i), program)) for i in near if np.isfinite(apart[i - 1])]
+    likely.sort(key=lambda pair: pair[0])
+    return [steps for apart, steps in likely[:LIKELY] if apart < PLAIN * min(plain)]
 
 
 def stepped(case: Case, program: Program, steps: Steps) -> Array:
@@ -116,8 +116,7 @@ def stepped(case: Case, program: Program, steps: Steps) -> Array:
     at = np.round(case.rows.times / spacing).astype(int)
     every = np.array([steps.every], dtype=np.int64)
     whole = _rows(case, program, steps.method, spacing, every, int(at[-1]))
-    found: Array = whole[at, :, 0]
-    return found
+    return np.asarray(whole[at, :, 0])
 
 
 def _rows(case: Case, program: Program, method: str, spacing: float, every: IntArray, count: int) -> Array:
@@ -127,8 +126,8 @@ def _rows(case: Case, program: Program, method: str, spacing: float, every: IntA
     length, start = float(theta[11]), pendulum.start(theta)
     h = spacing / every if len(every) > 1 else float(spacing / every[0])  # a single one is faster without an array
     place, speed = ([value + 0 * h for value in part] for part in (start[:3], start[3:]))
-    found = np.full((count + 1, 2, len(every)), np.nan)
-    found[0] = np.reshape(place[:2], (2, -1))
+    rows = np.full((count + 1, 2, len(every)), np.nan)
+    rows[0] = np.reshape(place[:2], (2, -1))
     for done in range(1, count * int(every.max()) + 1):
         if method == "semi_implicit_euler_drift":
             place = [p + h * v for p, v in zip(place, speed, strict=True)]
@@ -140,5 +139,5 @@ def _rows(case: Case, program: Program, method: str, spacing: float, every: IntA
             place = [p + h * v for p, v in zip(place, moved, strict=True)]
         row = np.flatnonzero((done % every == 0) & (done // every <= count))
         if len(row):
-            found[done // every[row], :, row] = np.reshape(place[:2], (2, -1)).T[row]
-    return found * length
+            rows[done // every[row], :, row] = np.reshape(place[:2], (2, -1)).T[row]
+    return rows * length
