@@ -19,33 +19,33 @@ def lines(score: Score) -> Iterator[str]:
     errors = score.errors
     yield f"{score.candidate.name} {_verdict(score)} ({_span(score)})"
     if not score.covered:
-        yield from _row("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
+        yield _row("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
     elif score.falls_short:
-        yield from _row("covers too little", percent(score.covered), f"{percent(score.covers)} demanded")
-    yield from _row("largest error", f"{errors.max_m:.3g} m", _largest(score))
-    yield from _row("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth_exponent))
+        yield _row("covers too little", percent(score.covered), f"{percent(score.covers)} demanded")
+    yield _row("largest error", f"{errors.max_m:.3g} m", _largest(score))
+    yield _row("rms, at the end", f"{errors.rms_m:.3g} m, {errors.end_m:.3g} m", _growth(errors.growth_exponent))
     scale = f"largest error over the amplitude {errors.amplitude_m:.4g} m"
-    yield from _row("digits", _one_decimal(errors.digits), scale)
+    yield _row("digits", _one_decimal(errors.digits), scale)
     mixed = f"relative to the truth; to {errors.amplitude_m:.4g} m, {errors.speed_m_s:.4g} m/s + |truth|"
-    yield from _row("scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed)
+    yield _row("scd, mescd at end", f"{_one_decimal(errors.scd)}, {_one_decimal(errors.mescd)}", mixed)
     worst = score.worst
     numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
-    yield from _row("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
+    yield _row("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
     each = (f"{name} {abs(one.difference):.2g} {_unit(name)}" for name, one in score.worst_of_each.items())
-    yield from _row("worst of each", ", ".join(each))
+    yield _row("worst of each", ", ".join(each))
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:
-        yield from _row("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
+        yield _row("swing plane, phase", f"{math.degrees(turn):.3g} degrees, {delay:.3g} s", "fitted")
     if score.drifts:
         words = {"h_m2_s2": "h by {:.3g} m²/s²", "length_m": "|r| - l by {:.3g} m"}
-        yield from _row("drifts", ", ".join(words[name].format(value) for name, value in score.drifts.items()))
+        yield _row("drifts", ", ".join(words[name].format(value) for name, value in score.drifts.items()))
     yield from _transit_lines(score)
     if score.timing is not None:
         timing = score.timing
         how = f"median of {timing.runs} after a warm-up" if timing.warm else "one run, no warm-up"
-        yield from _row("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
-    yield from _row("inputs read as", score.scene.inputs, score.why_inputs)
-    yield from _row("reference", f"{score.golden.manifest.level}", f"within {errors.bound_m:.2g} m at these times")
+        yield _row("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
+    yield _row("inputs read as", score.scene.inputs, score.why_inputs)
+    yield _row("reference", f"{score.golden.manifest.level}", f"within {errors.bound_m:.2g} m at these times")
     if score.explanation is not None:
         yield from score.explanation.lines()
     for convention in score.candidate.conventions:
@@ -61,8 +61,8 @@ def _verdict(score: Score) -> str:
     return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}"
 
 
-def _row(name: str, value: str, remark: str = "") -> Iterator[str]:
-    yield f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
+def _row(name: str, value: str, remark: str = "") -> str:
+    return f"  {name:19} {value}{f'  ({remark})' if remark else ''}"
 
 
 def _unit(component: str) -> str:
@@ -109,19 +109,19 @@ def _transit_lines(score: Score) -> Iterator[str]:
     if transits is None:
         return
     worst = f"largest error {transits.max_error_s:.3g} s, weighted by |ax|: {transits.max_conditioned_m:.3g} m"
-    yield from _row(
+    yield _row(
         "transits", f"{transits.matched} matched, {len(transits.missed)} missed, {len(transits.extra)} extra", worst
     )
     for word, times in (("missed", transits.missed), ("extra", transits.extra)):
         if times:
-            yield from _row(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s")
+            yield _row(f"  {word} at", _listed(f"{t:.6f}" for t in times) + " s")
     if transits.undecided:
         text = _listed(f"{t:.6f}" for t in transits.undecided)
-        yield from _row("  undecided at", f"{text} s", "a motion within the tolerance may or may not have them")
+        yield _row("  undecided at", f"{text} s", "a motion within the tolerance may or may not have them")
     shifted = transits.shifted(score.allowed_m)
     if shifted:
         text = _listed(f"{t:.6f} s by {error:.2g} s" for t, error in shifted)
-        yield from _row("  shifted", text, f"{len(shifted)} in all")
+        yield _row("  shifted", text, f"{len(shifted)} in all")
 
 
 def _listed(texts: Iterable[str]) -> str:

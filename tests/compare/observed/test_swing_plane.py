@@ -133,14 +133,16 @@ def late(model, scene, delay):
     return both[np.searchsorted(grid, times)], both[np.searchsorted(grid, times - delay)]
 
 
+def turned(u, turn):
+    """The vectors x, y, shape (rows, 2), turned from east to north by an angle in radians."""
+    return u @ np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+
+
 @pytest.mark.parametrize("turn", [1e-9, 1e-3, 0.4, -1.2])
 def test_a_turn_is_found(model, scene, turn):
     truth = model.states(scene.exact, TIMES)
     u = truth[:, :2] - REST
-    turned = np.column_stack(
-        [np.cos(turn) * u[:, 0] - np.sin(turn) * u[:, 1], np.sin(turn) * u[:, 0] + np.cos(turn) * u[:, 1]]
-    )
-    found = swing_errors(TIMES, truth, turned - u, REST)
+    found = swing_errors(TIMES, truth, turned(u, turn) - u, REST)
     assert np.allclose(found.turn, turn, rtol=1e-6, atol=1e-15)
     assert found.largest_turn == pytest.approx(abs(turn), rel=1e-6)
     assert found.largest_delay < 1e-6 * max(1.0, abs(turn)) + 1e-12
@@ -189,13 +191,9 @@ def test_thinning_a_part_changes_nothing(model, scene, monkeypatch):
 def test_a_turn_is_the_difference_of_two_swing_planes(model, turn):
     pole = make_scene(site={"latitude": "90"}, release={"x": "0.3", "y": "0.4"})
     truth, gauge = model.states(pole.exact, TIMES), Gauge.of(pole)
-    turned = truth.copy()
+    other = truth.copy()
     for i in (0, 3):  # position and velocity
-        east, north = truth[:, i], truth[:, i + 1]
-        turned[:, i], turned[:, i + 1] = (
-            np.cos(turn) * east - np.sin(turn) * north,
-            np.sin(turn) * east + np.cos(turn) * north,
-        )
-    fitted = swing_errors(TIMES, truth, (turned - truth)[:, :2], (0.0, 0.0)).turn
+        other[:, i : i + 2] = turned(truth[:, i : i + 2], turn)
+    fitted = swing_errors(TIMES, truth, (other - truth)[:, :2], (0.0, 0.0)).turn
     assert fitted == pytest.approx(turn, rel=1e-9)
-    assert gauge.swing_plane(turned) - gauge.swing_plane(truth) == pytest.approx(turn, rel=1e-9)
+    assert gauge.swing_plane(other) - gauge.swing_plane(truth) == pytest.approx(turn, rel=1e-9)
