@@ -65,7 +65,12 @@ def test_no_command_line_ends_in_a_traceback_or_moves_the_cursor(size, foucault,
     def stop(*_, **__):
         raise UnreachableError("Nothing is solved here.")
 
-    for place in ("compare.score.judge.golden_of", "compare.studies.study.golden_of", "reference.solver.solve.solve"):
+    # where each is called: a scene that is solved could be written over one that ships
+    for place in (
+        "compare.score.judge.golden_of",
+        "compare.studies.study.golden_of",
+        "reference.dataset.shipping.solve",
+    ):
         monkeypatch.setattr(place, stop)
     for i in range(size(40, 1000)):
         words = a_command_line(Chance(f"1 command line {i}"), tmp_path / "input")
