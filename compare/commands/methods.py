@@ -16,18 +16,20 @@ def command(as_json: AsJson = False) -> None:
         emit(
             {
                 "methods": [
-                    {"id": one.id, "title": one.title, "setting": one.setting, "missing": available(one)}
-                    for one in METHODS.values()
+                    {"id": method.id, "title": method.title, "setting": method.setting, "missing": available(method)}
+                    for method in METHODS.values()
                 ],
-                "approximations": [{"id": one.id, "title": one.title} for one in APPROXIMATIONS.values()],
+                "approximations": [
+                    {"id": approximation.id, "title": approximation.title} for approximation in APPROXIMATIONS.values()
+                ],
             }
         )
         return
     width = max(map(len, (*METHODS, *APPROXIMATIONS)))
     typer.echo("Methods (study, stability):")
-    for one in METHODS.values():
-        missing = available(one)
-        typer.echo(f"  {one.id:{width}}  {one.title}{f'  [{missing}]' if missing else ''}")
+    for method in METHODS.values():
+        missing = available(method)
+        typer.echo(f"  {method.id:{width}}  {method.title}{f'  [{missing}]' if missing else ''}")
     typer.echo("Approximations (score --approximation, study --approximations):")
     for approximation in APPROXIMATIONS.values():
         typer.echo(f"  {approximation.id:{width}}  {approximation.title}")

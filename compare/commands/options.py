@@ -103,11 +103,6 @@ def programs_of(run: Sequence[str] | None, names: Sequence[str] | None, scene: S
     return named_programs(run or (), names or ())
 
 
-def inside(folder: Path | None, name: str) -> Path | None:
-    """Return the path of a file in a folder of results; None if there is no folder."""
-    return None if folder is None else folder / name
-
-
 def resumes(folder: Path | None) -> str:
     """Return what becomes of a campaign that is stopped, whose results go into a folder (None: nowhere)."""
     if folder is None:

@@ -18,7 +18,6 @@ from .options import (
     Scenes,
     check_limit,
     finish,
-    inside,
     listed,
     programs_of,
     resumes,
@@ -62,13 +61,13 @@ def command(
             requested,
             programs=programs,
             limit_s=limit,
-            journal_path=inside(out, "cells.jsonl"),
+            journal_path=out and out / "cells.jsonl",
             solving=show("the truth", unit="scenes"),
             report=show("stability", unit="runs"),
         )
         runs = []
         if items:
             solving, report = show("the truth over 30 days", unit="days"), show("30 days", unit="runs")
-            runs = long_runs(items, journal_path=inside(out, "long.jsonl"), solving=solving, report=report)
+            runs = long_runs(items, journal_path=out and out / "long.jsonl", solving=solving, report=report)
     document = document_of(cells, runs, programs)
     finish(document, REPORT.text, REPORT.write(document, out), as_json)

@@ -79,9 +79,9 @@ class FirstOrderSystem:
         count, names = len(self.variables), tuple(self.parameters)
 
         def flat(numbers: Sequence[Any], functions: Any) -> Sequence[Any]:
-            known = dict(zip(names, numbers[count : count + len(names)], strict=True))
+            parameters = dict(zip(names, numbers[count : count + len(names)], strict=True))
             return function(
-                numbers[:count], functions, known | dict(zip(more, numbers[len(self.inputs) :], strict=True))
+                numbers[:count], functions, parameters | dict(zip(more, numbers[len(self.inputs) :], strict=True))
             )
 
         return record(flat, (*self.inputs, *more))

@@ -138,12 +138,12 @@ class Tape:
 
     def multiply(self, a: Any, b: Any) -> Any:
         """Return a b; ±1 and an exact 0 need no multiplication."""
-        for one, other in ((a, b), (b, a)):
-            if _is(one, 0):
+        for factor, other in ((a, b), (b, a)):
+            if _is(factor, 0):
                 return 0
-            if _is(one, 1):
+            if _is(factor, 1):
                 return other
-            if _is(one, -1):
+            if _is(factor, -1):
                 return self.negate(other)
         return self.record("mul", a, b)
 

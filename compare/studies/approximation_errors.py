@@ -130,7 +130,7 @@ def _gauge(scene: Scene, rest: Any = None) -> Gauge | None:
 def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
     """Return approximations of the motion by their ids, all if None; InputError names those of a single number."""
     approximations = [APPROXIMATIONS[word] for word in (motions() if ids is None else ids)]
-    wrong = [one.id for one in approximations if not isinstance(one, Motion)]
+    wrong = [each.id for each in approximations if not isinstance(each, Motion)]
     if wrong:
         raise InputError(
             "approximations",
@@ -138,7 +138,7 @@ def chosen_motions(ids: Sequence[str] | None) -> list[Motion]:
             "approximations of the motion",
             "Single numbers stand in quantity_table.",
         )
-    return [one for one in approximations if isinstance(one, Motion)]
+    return [each for each in approximations if isinstance(each, Motion)]
 
 
 def error_table(
@@ -166,20 +166,20 @@ def error_table(
 
 def quantity_table(scene: Scene, ids: Sequence[str] | None = None) -> list[QuantityRow]:
     """Return approximate numbers (rest position, gravity, frequency, precession) beside the true ones, to 15 digits."""
-    rows, known = [], dict[Any, Any]()
+    rows, truths = [], dict[Any, Any]()
     for word in quantities() if ids is None else ids:
-        one = APPROXIMATIONS[word]
-        if not isinstance(one, Quantity):
+        approximation = APPROXIMATIONS[word]
+        if not isinstance(approximation, Quantity):
             raise InputError("approximations", word, "an approximation of a number", "Motions stand in error_table.")
         try:
-            value = one.value(scene)
-            if one.truth not in known:
-                known[one.truth] = one.truth(scene)
+            value = approximation.value(scene)
+            if approximation.truth not in truths:
+                truths[approximation.truth] = approximation.truth(scene)
         except FoucaultError as error:
-            rows.append(QuantityRow(word, None, None, one.unit, None, *failure(error)))
+            rows.append(QuantityRow(word, None, None, approximation.unit, None, *failure(error)))
         else:
-            truth = value.context.mpf(known[one.truth])
+            truth = value.context.mpf(truths[approximation.truth])
             relative = float(abs(value / truth - 1)) if truth else None
             printed, printed_truth = (str(value.context.nstr(number, 15)) for number in (value, truth))
-            rows.append(QuantityRow(word, printed, printed_truth, one.unit, relative))
+            rows.append(QuantityRow(word, printed, printed_truth, approximation.unit, relative))
     return rows

@@ -68,7 +68,9 @@ class GridTruth:
     def position_errors(self, outcome: Outcome) -> Array:
         """Return the distance from the truth at each row, in m, without cancellation in any number type."""
         columns = [_column(outcome, name) for name in "xyz"]
-        return distance(difference(one, true[: len(one)]) for one, true in zip(columns, self.exact, strict=True))
+        return distance(
+            difference(column, true[: len(column)]) for column, true in zip(columns, self.exact, strict=True)
+        )
 
     def transit_errors(self, scene: Scene, outcome: Outcome) -> tuple[Array, float]:
         """Return the error of each transit's time in s, in any number type, and what is resolved of it in s.

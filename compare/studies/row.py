@@ -27,7 +27,7 @@ class Record:
     @classmethod
     def parsed(cls, document: dict[str, Any]) -> Self:
         """Read a result from its JSON document; keys that it does not have are left out."""
-        values = {one.name: document[one.name] for one in fields(cls) if one.name in document}
+        values = {field.name: document[field.name] for field in fields(cls) if field.name in document}
         return cls(**values | {"status": Status(values["status"])})
 
 

@@ -76,7 +76,7 @@ class Study:
             "machine": self.machine,
             "programs": dict(self.programs),
             "candidates": list(self.candidates),
-            "orders": [asdict(one) for one in orders(self.rows, float(self.golden.manifest.bounds.position_m))],
+            "orders": [asdict(order) for order in orders(self.rows, float(self.golden.manifest.bounds.position_m))],
             "rows": [asdict(row) for row in self.rows],
         }
 
@@ -141,9 +141,9 @@ def study(
         InputError: an unknown scene or method.
         UnreachableError: the truth cannot be solved for.
     """
-    asked = load_scene(scene) if isinstance(scene, str) else scene
+    requested = load_scene(scene) if isinstance(scene, str) else scene
     span = [] if t_end is None else [f"run.t_end={t_end}"]
-    problem = on_doubles(asked.with_values(["inputs=binary64", *span]))
+    problem = on_doubles(requested.with_values(["inputs=binary64", *span]))
     golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)
     commands = programs or {}
     runs = _Runs(
@@ -154,7 +154,9 @@ def study(
         limit_s,
         commands,
     )
-    rows = campaign(runs, list(items or plan(asked, methods, formulations)), journal_path=journal_path, report=report)
+    rows = campaign(
+        runs, list(items or plan(requested, methods, formulations)), journal_path=journal_path, report=report
+    )
     files = [file_row(name, *file, problem, golden) for name, file in (candidates or {}).items()]
     names = tuple(candidates or ())
     return Study(problem, float(problem.exact.t_end), limit_s, golden, [*rows, *files], machine(), commands, names)
@@ -201,7 +203,7 @@ def _order(method: str, formulation: str, rows: Sequence[Row], bound_m: float) -
     laws = [law for law in _laws(rows, bound_m) if law.standard_error <= TOLD_APART]
     if not laws:
         return Order(method, formulation, declared)
-    law = max(laws, key=lambda one: (one.points, -one.standard_error))
+    law = max(laws, key=lambda law: (law.points, -law.standard_error))
     return Order(method, formulation, declared, -law.exponent, law.standard_error, law.points)
 
 

@@ -54,8 +54,8 @@ class Library:
         if self.folder is None:
             return None
         text = (self.folder / self.version_file).read_text(errors="replace")
-        found = re.search(rf'#\s*define\s+{self.version_word}\s+"([^"]+)"', text)
-        return found[1].replace("_", ".") if found else "unknown"
+        match = re.search(rf'#\s*define\s+{self.version_word}\s+"([^"]+)"', text)
+        return match[1].replace("_", ".") if match else "unknown"
 
 
 def compiler() -> list[str] | None:
@@ -67,8 +67,8 @@ def compiler() -> list[str] | None:
 def include_folders() -> list[Path]:
     """Return the folders in which headers are looked for."""
     named = [os.environ.get(name, "").split(os.pathsep) for name in ("CPATH", "CPLUS_INCLUDE_PATH")]
-    own = [Path(sys.prefix) / "include", Path(sysconfig.get_path("purelib")) / "libboost_headers" / "include"]
-    return [*(Path(word) for words in named for word in words if word), *own, *map(Path, SYSTEM)]
+    python = [Path(sys.prefix) / "include", Path(sysconfig.get_path("purelib")) / "libboost_headers" / "include"]
+    return [*(Path(word) for words in named for word in words if word), *python, *map(Path, SYSTEM)]
 
 
 def library_folders() -> list[Path]:

@@ -16,7 +16,7 @@ from reference.system.imports import Registry
 
 INTERFACES = {
     "compare.methods": ("METHODS", {"capture", "external", "method", "native", "runge_kutta"}),
-    "compare.approximations": ("APPROXIMATIONS", {"approximation", "case", "truncated"}),
+    "compare.approximations": ("APPROXIMATIONS", {"approximation", "case"}),
 }
 FILE = """
 from types import SimpleNamespace
