@@ -132,13 +132,16 @@ def _xddot(rows: Array, s: Series, terms: LinearTerms, model: Model) -> None:
 
 
 @compiled
-def xdot_of(rows: Array, s: Series, terms: LinearTerms, limb_count: int) -> None:
-    """Write xdot times h, from all lanes at some place of the step, to `scalar`, as carried limbs."""
+def xdot_of(rows: Array, s: Series, turn: Array, weight: float, limb_count: int) -> None:
+    """Write xdot = Vx + ω m of a state or of all lanes at some place of the step to `scalar`, as carried limbs.
+
+    `weight` is DOUBLED for the model's `turn` and 1 for a step's, which comes doubled; with this xdot is times h.
+    """
     for r in range(limb_count):
         s.scalar[r] = rows[LANES * r + VX]
     s.scalar[limb_count] = 0.0
     for p in range(limb_count):
-        factor = terms.turn[LANES * p]
+        factor = weight * turn[LANES * p]
         for q in range(limb_count - p):
             s.scalar[p + q + 1] += factor * rows[LANES * q + M]
     carry_scalar(s.scalar, limb_count)
@@ -146,15 +149,8 @@ def xdot_of(rows: Array, s: Series, terms: LinearTerms, limb_count: int) -> None
 
 @compiled
 def sign_of_xdot(now: Array, turn: Array, s: Series, limb_count: int) -> int:
-    """Return the sign of xdot = Vx + ω m for a state; `turn` as in the model's linear terms, not doubled."""
-    for r in range(limb_count):
-        s.scalar[r] = now[LANES * r + VX]
-    s.scalar[limb_count] = 0.0
-    for p in range(limb_count):
-        factor = DOUBLED * turn[LANES * p]
-        for q in range(limb_count - p):
-            s.scalar[p + q + 1] += factor * now[LANES * q + M]
-    carry_scalar(s.scalar, limb_count)
+    """Return the sign of xdot for a state; `turn` as in the model's linear terms, not doubled."""
+    xdot_of(now, s, turn, DOUBLED, limb_count)
     return sign_of(s.scalar, limb_count)
 
 
@@ -173,7 +169,7 @@ def sign_after_release(s: Series, multiplicity: int, limb_count: int) -> int:
 def xdot_at(place: Array, s: Series, terms: LinearTerms, rows: Array, model: Model) -> float:
     """Return xdot times h at a place of the step, as a double with the sign of its limbs; write all lanes to `rows`."""
     evaluate(rows, s, place, model.order, model.limb_count)
-    xdot_of(rows, s, terms, model.limb_count)
+    xdot_of(rows, s, terms.turn, 1.0, model.limb_count)
     return double_of(s.scalar, model.limb_count)
 
 

@@ -45,6 +45,7 @@ def merged(function: Function) -> Function:
 
 LANES = 8
 VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+ZERO = ir.Constant(VECTOR, [0.0] * LANES)
 FUSE = ("contract",)
 _extending: Any = numba.extending  # untyped
 _insert: Any = cgutils.get_or_insert_function
@@ -67,6 +68,21 @@ class _Model(_extending.models.PrimitiveModel):  # type: ignore[misc]
 def instruction(generator: Any) -> Any:
     """Register a generator of LLVM instructions as a compiled function; untyped for a type checker."""
     return _extending.intrinsic(generator)
+
+
+_BLANK, _FIRST = ir.Constant(VECTOR, ir.Undefined), ir.Constant(ir.IntType(32), 0)
+_EVERYWHERE = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
+
+
+def _spread(builder: Any, value: Any) -> Any:
+    """Return the same double in every lane."""
+    return builder.shuffle_vector(builder.insert_element(_BLANK, value, _FIRST), _BLANK, _EVERYWHERE)
+
+
+def _by_name(builder: Any, name: str, *vectors: Any) -> Any:
+    """Return what LLVM's function of this name makes of vectors."""
+    function = _insert(builder.module, ir.FunctionType(VECTOR, [VECTOR] * len(vectors)), f"llvm.{name}.v{LANES}f64")
+    return builder.call(function, vectors)
 
 
 def address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
@@ -104,10 +120,7 @@ def spread(_: Any, value: Any) -> Any:
     """Return the same double in every lane."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        first = builder.insert_element(ir.Constant(VECTOR, ir.Undefined), arguments[0], ir.Constant(ir.IntType(32), 0))
-        return builder.shuffle_vector(
-            first, ir.Constant(VECTOR, ir.Undefined), ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-        )
+        return _spread(builder, arguments[0])
 
     return Lanes(types.float64), generate
 
@@ -127,8 +140,7 @@ def fma(_: Any, total: Any, a: Any, b: Any) -> Any:
     """Return total + a b in each lane, rounded once, also where the processor has no such instruction."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        name, kind = f"llvm.fma.v{LANES}f64", ir.FunctionType(VECTOR, [VECTOR] * 3)
-        return builder.call(_insert(builder.module, kind, name), [*arguments[1:], arguments[0]])
+        return _by_name(builder, "fma", *arguments[1:], arguments[0])
 
     return Lanes(Lanes, Lanes, Lanes), generate
 
@@ -138,8 +150,7 @@ def nearest(_: Any, a: Any) -> Any:
     """Return each lane rounded to the nearest integer."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        name, kind = f"llvm.rint.v{LANES}f64", ir.FunctionType(VECTOR, [VECTOR])
-        return builder.call(_insert(builder.module, kind, name), arguments)
+        return _by_name(builder, "rint", *arguments)
 
     return Lanes(Lanes), generate
 
@@ -149,7 +160,7 @@ def occupied(_: Any, a: Any) -> Any:
     """Return true if any lane is not zero."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        bits = builder.fcmp_unordered("!=", arguments[0], ir.Constant(VECTOR, [0.0] * LANES))
+        bits = builder.fcmp_unordered("!=", arguments[0], ZERO)
         whole = builder.bitcast(bits, ir.IntType(LANES))
         return builder.icmp_unsigned("!=", whole, ir.Constant(ir.IntType(LANES), 0))
 
@@ -171,8 +182,7 @@ def magnitude(_: Any, a: Any) -> Any:
     """Return |a| in each lane."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        name, kind = f"llvm.fabs.v{LANES}f64", ir.FunctionType(VECTOR, [VECTOR])
-        return builder.call(_insert(builder.module, kind, name), arguments)
+        return _by_name(builder, "fabs", *arguments)
 
     return Lanes(Lanes), generate
 
@@ -192,8 +202,7 @@ def where(_: Any, truth: Any, a: Any, b: Any) -> Any:
     """Return a in each lane where `truth` is not zero, else b."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        zero = ir.Constant(VECTOR, [0.0] * LANES)
-        return builder.select(builder.fcmp_unordered("!=", arguments[0], zero), arguments[1], arguments[2])
+        return builder.select(builder.fcmp_unordered("!=", arguments[0], ZERO), arguments[1], arguments[2])
 
     return Lanes(Lanes, Lanes, Lanes), generate
 
@@ -231,10 +240,7 @@ def within(_: Any, a: Any, bound: Any) -> Any:
     """Return true if |a| <= bound in every lane; false if any lane is not a number."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES)
-        blank = ir.Constant(VECTOR, ir.Undefined)
-        first = builder.insert_element(blank, arguments[1], ir.Constant(ir.IntType(32), 0))
-        largest = builder.shuffle_vector(first, blank, places)
+        largest = _spread(builder, arguments[1])
         low = builder.fcmp_ordered(">=", arguments[0], builder.fneg(largest))
         high = builder.fcmp_ordered("<=", arguments[0], largest)
         whole = builder.bitcast(builder.and_(low, high), ir.IntType(LANES))
@@ -249,7 +255,7 @@ def shuffled(order: tuple[int, ...], name: str) -> Any:
 
     def shuffle(_: Any, a: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            return builder.shuffle_vector(arguments[0], ir.Constant(VECTOR, [0.0] * LANES), places)
+            return builder.shuffle_vector(arguments[0], ZERO, places)
 
         return Lanes(Lanes), generate
 

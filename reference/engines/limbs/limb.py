@@ -30,14 +30,16 @@ DOUBLED = 2.0  # the product of limbs p and q of two numbers counts twice in lim
 LARGEST = 2.0 ** (LIMB_BITS + 1)  # a first limb above this (the number 4) might spoil exactness
 
 
-def split(value: int, limb_count: int) -> list[float]:
-    """Return the limbs of an integer over 2**fraction_bits(limb_count), highest first."""
-    half, limbs = 1 << (LIMB_BITS - 1), []
-    for _ in range(limb_count - 1):
-        limb = ((value + half) & (2 * half - 1)) - half
-        limbs.append(float(limb))
-        value = (value - limb) >> LIMB_BITS
-    return [float(value), *limbs[::-1]]
+def split(values: Any, limb_count: int) -> Array:
+    """Return the limbs of integers over 2**fraction_bits(limb_count), highest first, shape (..., limb_count)."""
+    remainder, half = np.asarray(values, dtype=object), 1 << (LIMB_BITS - 1)
+    limbs = np.empty((*remainder.shape, limb_count))
+    for q in range(limb_count - 1, 0, -1):
+        limb = ((remainder + half) & (2 * half - 1)) - half
+        limbs[..., q] = limb
+        remainder = (remainder - limb) >> LIMB_BITS
+    limbs[..., 0] = remainder
+    return limbs
 
 
 def nearest_whole(value: Any, bits: int) -> int:
@@ -49,8 +51,7 @@ def nearest_whole(value: Any, bits: int) -> int:
 def rows_of(numbers: Sequence[Any], limb_count: int) -> Array:
     """Return up to eight mpf or rationals side by side, shape (limb_count * 8,)."""
     rows = np.zeros((limb_count, LANES))
-    for lane, number in enumerate(numbers):
-        rows[:, lane] = split(nearest_whole(number, fraction_bits(limb_count)), limb_count)
+    rows[:, : len(numbers)] = split([nearest_whole(x, fraction_bits(limb_count)) for x in numbers], limb_count).T
     return rows.ravel()
 
 

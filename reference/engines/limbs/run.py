@@ -22,15 +22,15 @@ from ...numbers.taylor_step import Digits, TaylorStep
 from ...system.machine_code import prepare
 from ..plan import AT_REST, Pace, Plan, Report, Run
 from .lanes import LANES
-from .limb import Array, aligned, joined
+from .limb import Array, aligned, joined, split
 from .march import COLUMNS, DOUBTFUL, GOOD, STEPS, STUCK, TIME, ZEROS, Outputs, march, state_at_release
 from .problem import LimbProblem, limb_problem
 from .series import TENSION, Counts, M, W, X
-from .size import LIMB_BITS, MOST_PREC, fraction_bits
+from .size import MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS
 
 STEPS_PER_CALL = 1024
-COMPILE_S = 20  # what compiling takes, about, of which users are told
+COMPILE_S = 16  # what compiling takes, about, of which users are told
 ROWS = np.array((X, M, W, TENSION))
 ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since every step must be proved
 POLYNOMIALS_PER_CALL = 64
@@ -50,14 +50,8 @@ def limbs_of_fractions(times: Sequence[Fraction], grain: Fraction, limb_count: i
     limbs = np.zeros((len(times), limb_count))
     broken = [i for i, (_, remainder) in enumerate(parts) if remainder]
     if broken:
-        left = np.array([(parts[i][1] << bits) // (times[i].denominator * grain.numerator) for i in broken])
-        left = left.astype(object)
-        half, mask = 1 << (LIMB_BITS - 1), (1 << LIMB_BITS) - 1
-        for q in range(limb_count - 1, 0, -1):
-            limb = ((left + half) & mask) - half
-            limbs[broken, q] = limb.astype(np.float64)
-            left = (left - limb) >> LIMB_BITS
-        limbs[broken, 0] = left.astype(np.float64)
+        remainders = [(parts[i][1] << bits) // (times[i].denominator * grain.numerator) for i in broken]
+        limbs[broken] = split(remainders, limb_count)
     return whole, limbs.ravel()
 
 

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from llvmlite import ir  # type: ignore[import-untyped]
 from numba import types
 
-from .lanes import FUSE, LANES, VECTOR, Lanes, address, instruction, shuffled
+from .lanes import FUSE, LANES, ZERO, Lanes, address, instruction, shuffled
 from .limb import Array, aligned
 
 X, M, W, VX, VM, VW, TENSION, SPIN = range(LANES)
@@ -106,7 +106,6 @@ def empty_series(order: int, limb_count: int) -> Series:
 
 _TENSION_LANE = (6,) * LANES
 _WHOLE = ir.IntType(64)
-_ZERO = ir.Constant(VECTOR, [0.0] * LANES)
 
 
 class _Code:
@@ -132,7 +131,7 @@ class _Code:
 
     def shuffled(self, vector: Any, order: Sequence[int]) -> Any:
         places = ir.Constant(ir.VectorType(ir.IntType(32), LANES), [i if i >= 0 else LANES for i in order])
-        return self.builder.shuffle_vector(vector, _ZERO, places)
+        return self.builder.shuffle_vector(vector, ZERO, places)
 
 
 def _by_rows(write: Callable[[_Code, int], None]) -> Any:
@@ -204,7 +203,7 @@ def _linear(code: _Code, rows: int) -> None:
     steady_tensions = [code.shuffled(v, _TENSION_LANE) for v in steady]
     values = []
     for r in range(rows):
-        turned = pulled = other = _ZERO
+        turned = pulled = other = ZERO
         for p in range(r + 1):
             turned = code.fused(turned, code.get(turn, p * LANES), partners[r - p])
             pulled = code.fused(pulled, tensions[r - p], steady[p])
@@ -223,7 +222,7 @@ def column(_: Any, sums: Any, index: Any) -> Any:
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
-        vector = _ZERO
+        vector = ZERO
         for i in range(TENSION_PLANE):
             place = builder.gep(data, [builder.add(arguments[1], ir.Constant(_WHOLE, i * WIDTH))])
             vector = builder.insert_element(vector, builder.load(place), ir.Constant(ir.IntType(32), TENSION_PLANE + i))

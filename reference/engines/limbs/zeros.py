@@ -250,7 +250,7 @@ def _newton(z: Search, terms: LinearTerms, rows: Array, model: Model) -> bool:
     enough, previous = 2.0 ** min(DERIVATIVE_BITS - (LIMB_BITS * limb_count - 1), -20), 1.0
     z.aside[:] = 0.0
     for _ in range(NEWTON_STEPS):
-        xdot_of(rows, short, terms, limb_count)
+        xdot_of(rows, short, terms.turn, 1.0, limb_count)
         xdot = double_of(short.scalar, limb_count)
         xddot = xddot_of(rows, xdot, terms, model)
         if xddot == 0.0:
