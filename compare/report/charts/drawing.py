@@ -161,27 +161,21 @@ def svg_text(figure: Any, name: str, description: str, kind: str = "lines") -> s
     return opening + text.strip() + "\n"
 
 
-def power_of_ten(value: float, _: Any = None) -> str:
+def power_of_ten(value: float) -> str:
     """Return a tick's label: 0.01, 1 or 100 near 1, and 10⁻⁹ farther away."""
-    if value <= 0:
-        return ""
     exponent = round(math.log10(value))
     return f"{value:g}" if -3 < exponent < 4 else "10" + str(exponent).translate(_RAISED)
 
 
 def logarithmic(axes: Any, which: str, low: float, high: float, labels: int = 8) -> None:
     """Make an axis logarithmic between limits, with at most about `labels` labels, at every decade or every n-th."""
-    from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
-
-    axis = getattr(axes, f"{which}axis")
     getattr(axes, f"set_{which}scale")("log")
     getattr(axes, f"set_{which}lim")(low, high)
     first, last = math.ceil(math.log10(low) - 1e-9), math.floor(math.log10(high) + 1e-9)
     each = max(1, math.ceil((last - first + 1) / labels))
-    axis.set_major_locator(FixedLocator([10.0**n for n in range(first, last + 1) if n % each == 0]))
-    axis.set_major_formatter(FuncFormatter(power_of_ten))
-    axis.set_minor_locator(NullLocator())
-    axis.set_minor_formatter(NullFormatter())
+    ticks = [10.0**n for n in range(first, last + 1) if n % each == 0]
+    getattr(axes, f"set_{which}ticks")(ticks, list(map(power_of_ten, ticks)))
+    axes.minorticks_off()
     axes.grid(True, axis=which)
 
 

@@ -82,12 +82,8 @@ def _draw(axes: Any, panel: Panel) -> None:
         logarithmic(axes, "y", *limits([y for one in panel.lines for y in one.y]), 8)
     else:
         axes.ticklabel_format(axis="y", useOffset=False)
-    for which in "xy":
-        ends, ticks = getattr(panel, f"{which}lim"), getattr(panel, f"{which}ticks")
-        if ends is not None:
-            getattr(axes, f"set_{which}lim")(*ends)
-        if ticks is not None:
-            getattr(axes, f"set_{which}ticks")(ticks)
+    given = {"xlim": panel.xlim, "xticks": panel.xticks, "ylim": panel.ylim, "yticks": panel.yticks}
+    axes.set(**{name: value for name, value in given.items() if value is not None})
     if panel.level:
         axes.set_aspect("equal")
     names = [one for one in panel.lines if one.name]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import importlib.util
 import json
+import os
 import re
 import subprocess
 import sys
@@ -18,9 +19,9 @@ from places import ROOT
 from compare.report import page as parts
 from compare.report import study_page
 from compare.report.page import Html, Table
-from compare.report.study_tables import cpu, setting, tidy
+from compare.report.study_tables import busy, cpu, setting, tidy
+from compare.studies.campaign import load_per_core
 from compare.studies.row import Row
-from reference import InputError
 from reference.status import Status
 
 VOID = {"meta", "br", "link", "path", "use"}
@@ -103,22 +104,15 @@ def table_of(read, *titles):
     return next(one for one in read.tables if set(titles) <= set(one[0][1]))
 
 
-def test_the_folder_holds_three_files_and_nothing_else(written):
+def test_the_folder_holds_the_document_and_its_rows_and_the_page(written):
     assert sorted(path.name for path in written.iterdir()) == ["index.html", "rows.csv", "study.json"]
-
-
-def test_the_csv_gives_every_row_back(written):
+    assert json.loads((written / "study.json").read_text()) == study_document()
     with (written / "rows.csv").open(newline="") as stream:
         back = list(csv.DictReader(stream))
     assert len(back) == 9
     assert list(back[0])[:4] == ["method", "formulation", "setting", "kind"]
     assert float(back[3]["setting"]) == 2.0**-52
-    assert back[6]["reason"] == NASTY
-    assert back[8]["error_m"] == ""
-
-
-def test_the_json_is_the_document(written):
-    assert json.loads((written / "study.json").read_text()) == study_document()
+    assert (back[6]["reason"], back[8]["error_m"]) == (NASTY, "")
 
 
 def test_the_page_has_every_row_with_its_marks(read):
@@ -139,14 +133,11 @@ def test_the_page_has_every_row_with_its_marks(read):
     assert cells[place["reason"]] == NASTY
 
 
-def test_failures_are_listed_with_their_reason_and_the_extra_that_is_missing(read):
+def test_failures_are_listed_with_their_reason_and_each_way_to_fail_with_what_to_do_about_it(read):
     rows = {cells[0]: cells for _, cells in table_of(read, "settings", "reason")[1:]}
     assert set(rows) == {"scipy_lsoda", "scipy_bdf", "mpmath_odefun"}
     assert "foucault-reference[methods]" in rows["mpmath_odefun"][-1]
     assert rows["scipy_bdf"][2] == "missed transits"
-
-
-def test_each_way_to_fail_stands_once_with_what_to_do_about_it(read):
     words = {cells[0]: cells[1:] for _, cells in table_of(read, "word", "what to do")[1:]}
     assert words.keys() == {"gave up", "missed transits", "not installed"}
     assert words["missed transits"] == [Status.MISSED_TRANSITS.meaning, Status.MISSED_TRANSITS.advice]
@@ -157,32 +148,16 @@ def test_the_front_is_a_table_of_its_own(read):
     assert [cells[:2] for _, cells in fronts[1:]] == [["heyoka_double", "1e-8"], ["heyoka_double", "2.22e-16"]]
 
 
-def test_what_was_said_by_others_is_escaped(written, read):
-    html = (written / "index.html").read_text()
-    assert "<script" not in html
-    assert NASTY in "".join(read.text)
-    assert "Some <CPU>" in "".join(read.text)
-
-
-def test_the_page_is_self_contained(written):
+def test_the_page_is_self_contained_and_escapes_what_was_said_by_others(written, read):
     html = (written / "index.html").read_text()
     assert not re.search(r"<(link|script|img|iframe)\b|@import|url\((?!#)", html)
     assert set(re.findall(r'(?:src|href)="([^#"][^"]*)"', html)) == set()
-
-
-def test_the_pictures_in_the_page_are_well_formed(written):
-    html = (written / "index.html").read_text()
-    pictures = re.findall(r"<svg.*?</svg>", html, flags=re.DOTALL)
-    assert len(pictures) == 5  # no precision ladder: heyoka_real is not among the rows
-    for svg in pictures:
-        ET.fromstring(svg)
-
-
-def test_ids_are_unique_and_links_lead_somewhere(written):
-    html = (written / "index.html").read_text()
     ids = re.findall(r' id="([^"]+)"', html)
     assert len(ids) == len(set(ids))
     assert set(re.findall(r'href="#([^"]+)"', html)) <= set(ids)
+    pictures = re.findall(r"<svg.*?</svg>", html, flags=re.DOTALL)
+    assert len(list(map(ET.fromstring, pictures))) == 5  # no precision ladder: heyoka_real is not among the rows
+    assert NASTY in "".join(read.text) and "Some <CPU>" in "".join(read.text)
 
 
 def test_the_page_says_where_and_how_it_was_measured(read):
@@ -219,25 +194,6 @@ def test_without_matplotlib_the_page_says_what_is_missing(monkeypatch):
     html = study_page.page_text(study_document())
     assert "<svg" not in html
     assert "foucault-reference[plot]" in html
-
-
-def test_an_interrupted_write_leaves_the_old_report(tmp_path, monkeypatch):
-    study_page.REPORT.write(study_document(), tmp_path)
-    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-
-    def interrupted(descriptor):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("os.fsync", interrupted)
-    with pytest.raises(KeyboardInterrupt):
-        study_page.REPORT.write(study_document(title="another"), tmp_path)
-    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
-
-
-def test_a_place_that_cannot_be_written_is_a_message(tmp_path):
-    (tmp_path / "file").write_text("in the way")
-    with pytest.raises(InputError, match="--out"):
-        study_page.REPORT.write(study_document(), tmp_path / "file")
 
 
 def test_the_text_table_has_every_row_and_the_sentences():
@@ -286,11 +242,6 @@ def test_a_table_says_the_same_as_html_as_text_and_as_csv():
     assert '<td>two &amp; more</td><td class="number"></td>' in table.html()
 
 
-def test_a_row_of_a_table_has_a_cell_for_every_column():
-    with pytest.raises(ValueError, match="zip"):
-        Table({"one": "", "two": ""}, [["1"]]).html()
-
-
 def test_neither_the_report_nor_its_parts_load_matplotlib():
     modules = "compare.report.study_page, compare.report.page, compare.report.charts"
     code = f"import {modules}, sys; print('matplotlib' in sys.modules)"
@@ -309,3 +260,29 @@ def test_the_declared_order_stands_beside_the_observed_one():
     found = {cells[0]: (cells[place["order"]], cells[place["observed"]]) for _, cells in body}
     assert found == {"rk4": ("4", "4.00 ± 0.00"), "scipy_dop853": ("8", "–"), "heyoka_double": ("–", "–")}
     assert "rk4 4: 4.00 ± 0.00; scipy_dop853 8: –" in study_page.REPORT.text(document)
+
+
+@pytest.mark.parametrize(
+    ("load", "spread", "words"),
+    [
+        (0.5, 0.05, "0.5 processes for each core (median), 0.5 at most; repeats of a run differ by 5 % (median)"),
+        (2.5, 0.05, "The machine was busy: ratios of costs drift too"),
+        (0.5, 0.9, "Costs were uneven: ratios of costs drift too"),
+        (None, None, "not known"),
+    ],
+)
+def test_a_busy_machine_is_said_to_be_so(load, spread, words):
+    rows = [row("rk4", 0.1, 1e-3, 1.0, kind="step", cpu_spread=spread, load=load)]
+    text = busy(rows)
+    assert words in text
+    assert f"load: {text}" in study_page.REPORT.text(study_document(rows))
+    assert ("busy" in text) == ((load or 0) > 1)
+
+
+@pytest.mark.skipif(not hasattr(os, "getloadavg"), reason="this system does not tell its load")
+def test_the_load_is_that_of_the_system_over_its_cores(monkeypatch):
+    monkeypatch.setattr(os, "getloadavg", lambda: (6.0, 1.0, 1.0))
+    monkeypatch.setattr(os, "cpu_count", lambda: 4)
+    assert load_per_core() == 1.5
+    monkeypatch.delattr(os, "getloadavg")
+    assert load_per_core() is None
