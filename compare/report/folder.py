@@ -59,7 +59,7 @@ def check_folder(folder: Path, names: Iterable[str]) -> None:
         reason = "It is not a folder" if existing is None else f"It has a {existing} of its own"
         expected = "a new folder, or one that an earlier run wrote"
         raise InputError("--out", str(folder), expected, f"{reason}: choose another name.")
-    with _writing(folder):
+    with writing("--out", folder):
         place = folder.absolute()
         while not place.exists():
             place = place.parent
@@ -76,12 +76,12 @@ def _is_ours(page: Path) -> bool:
 
 
 @contextmanager
-def _writing(folder: Path) -> Iterator[None]:
+def writing(field: str, path: Path, expected: str = "a folder that can be written to") -> Iterator[None]:
+    """Make an InputError of what the disk refuses; `field` is the option or variable that names the path."""
     try:
         yield
     except OSError as error:
-        advice = f"{error.strerror}."
-        raise InputError("--out", str(folder), "a folder that can be written to", advice) from None
+        raise InputError(field, str(path), expected, f"{error.strerror}.") from None
 
 
 def write_files(folder: Path, texts: Mapping[str, str]) -> None:
@@ -95,7 +95,7 @@ def write_files(folder: Path, texts: Mapping[str, str]) -> None:
         InputError: the folder cannot be written to, or `check_folder` refuses it.
     """
     check_folder(folder, texts)
-    with _writing(folder):
+    with writing("--out", folder):
         folder.mkdir(parents=True, exist_ok=True)
         for name in sorted(texts, key=lambda name: name != PAGE):  # a folder with a page of ours may be written again
             _replace(folder / name, texts[name])
@@ -107,10 +107,8 @@ def write_file(path: Path, content: str | bytes, field: str) -> None:
     Raises:
         InputError: it cannot be written; `field` is the option.
     """
-    try:
+    with writing(field, path, "a file that can be written"):
         _replace(path, content)
-    except OSError as error:
-        raise InputError(field, str(path), "a file that can be written", f"{error.strerror}.") from None
 
 
 def _replace(path: Path, content: str | bytes) -> None:

@@ -14,12 +14,11 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from reference import InputError
 from reference.errors import plain_lines
 from reference.scenes.shipped import DATA_VERSION
 
 from ...score.verdict import percent
-from ..folder import CSV, PAGE, check_folder, json_text, write_files
+from ..folder import CSV, PAGE, check_folder, json_text, write_files, writing
 from ..page import Html, Table, findings, page, paragraph, section, text
 from .outcome import ORDER, REFUSED, Outcome
 
@@ -168,14 +167,15 @@ def append_summary(text: str) -> None:
     Raises:
         InputError: the summary cannot be written.
     """
-    path = os.environ.get(SUMMARY)
-    if not path:
+    name = os.environ.get(SUMMARY)
+    if not name:
         return
-    try:
-        with Path(path).open("a", encoding="utf-8", errors="backslashreplace") as stream:
-            stream.write(text)
-    except OSError as error:
-        raise InputError(SUMMARY, path, "a file that can be written to", f"{error.strerror}.") from None
+    path = Path(name)
+    with (
+        writing(SUMMARY, path, "a file that can be written to"),
+        path.open("a", encoding="utf-8", errors="backslashreplace") as stream,
+    ):
+        stream.write(text)
 
 
 def junit_text(outcomes: Sequence[Outcome]) -> str:
