@@ -27,6 +27,7 @@ from .manifest import FORMAT, MANIFEST, Manifest
 from .place import golden_folder
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 
+MAX_MANIFEST = 1 << 20  # bytes
 HEADERS = {"grid": GRID_HEADER, "transits": TRANSITS_HEADER}
 _BOUND = "[0-9](?:[.][0-9])?e(?:[+][0-9]{2}|-[0-9]{2,4})|0"
 _PATTERNS = {"k": "[1-9][0-9]{0,9}", "direction": "[+]1|-1", "bound": _BOUND}
@@ -79,10 +80,12 @@ def read_files(folder: Path) -> Files:
     problems = []
     for name, record in manifest.files.items():
         try:
+            size = (folder / name).stat().st_size
+            if size != record.bytes:  # so that nothing larger is read
+                problems.append(f"{name}: {size} bytes, the manifest says {record.bytes}")
+                continue
             data = (folder / name).read_bytes()
-            if len(data) != record.bytes:
-                problems.append(f"{name}: {len(data)} bytes, the manifest says {record.bytes}")
-            elif hashlib.sha256(data).hexdigest() != record.sha256:
+            if hashlib.sha256(data).hexdigest() != record.sha256:
                 problems.append(f"{name}: a byte was changed (sha256 differs)")
             else:
                 texts[name] = data.decode()
@@ -119,6 +122,8 @@ def read_manifest(folder: Path) -> Manifest:
     except OSError as error:
         raise InputError("PATH", str(folder), "a readable folder", f"{error.strerror}.") from None
     try:
+        if (size := (folder / MANIFEST).stat().st_size) > MAX_MANIFEST:
+            raise refused(f"has {size} bytes, {MAX_MANIFEST} are the most")
         text = (folder / MANIFEST).read_bytes().decode()
         document = json.loads(text)
         manifest = Manifest.model_validate(document)

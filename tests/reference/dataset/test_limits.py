@@ -44,6 +44,19 @@ def test_twenty_foreign_files_are_named_and_the_others_counted(dataset, more):
     assert (notes[-1] == f"and {more} more") is (more > 0)
 
 
+def test_what_is_too_large_is_not_read(dataset, monkeypatch):
+    read, names = Path.read_bytes, []
+    monkeypatch.setattr(Path, "read_bytes", lambda path: names.append(path.name) or read(path))
+    with (dataset / "grid.csv").open("r+b") as stream:
+        stream.truncate(1 << 40)
+    assert f"grid.csv: {1 << 40} bytes, the manifest says" in problems(dataset)
+    with (dataset / MANIFEST).open("r+b") as stream:
+        stream.truncate((1 << 20) + 1)
+    names.clear()
+    assert "1048577 bytes, 1048576 are the most" in problems(dataset)
+    assert not {"grid.csv", MANIFEST} & {*names}
+
+
 def sealed(dataset, name, old, new):
     """Write a file with a text in it replaced, and a seal that fits."""
     files = read_files(dataset)
