@@ -55,7 +55,8 @@ class DoubleDouble:
 
     def __add__(self, other: Any) -> Self:
         if not isinstance(other, DoubleDouble):
-            return type(self)(*_quick(*_plus(self.high, self.low, other)))
+            total, error = _sum(self.high, other)
+            return type(self)(*_quick(total, error + self.low))
         total, error = _sum(self.high, other.high)
         below, rest = _sum(self.low, other.low)
         total, error = _quick(total, error + below)
@@ -156,11 +157,6 @@ def _quick(a: Any, b: Any) -> tuple[Any, Any]:
     """Return the sum and its error where |a| >= |b|."""
     total = a + b
     return total, b - (total - a)
-
-
-def _plus(high: Any, low: Any, other: Any) -> tuple[Any, Any]:
-    total, error = _sum(high, other)
-    return total, error + low
 
 
 def _halves(a: Any) -> tuple[Any, Any]:

@@ -83,6 +83,8 @@ class Numbers:
         Raises:
             IntegrationError: it stopped before the last time, or a state is not finite.
         """
+        if len(times) == 1:
+            return integrator.state.copy()[None, :], 0
         grid = np.array(times, dtype=self.dtype)
         outcome, _, _, steps, _, states = integrator.propagate_grid(grid, **options)
         if outcome == hy.taylor_outcome.err_nf_state or not np.isfinite(states.astype(float)).all():
@@ -162,8 +164,6 @@ class Propagator:
         ta.state[:] = start
         if len(parameters):
             ta.pars[:] = parameters
-        if len(times) == 1:
-            return ta.state.copy()[None, :]
         states, steps = self.numbers.propagated(ta, times, max_steps=max_steps)
         self.steps += steps
         return states

@@ -171,8 +171,6 @@ class Stepper:
 
     def propagate(self, times: Sequence[Any], report: Report | None = None, pace: Pace | None = None) -> Any:
         """Return the states at increasing times from the one reached, shape (times, variables); not with events."""
-        if len(times) == 1:
-            return self._ta.state.copy()[None, :]
         count = 0
 
         def progress(integrator: Any) -> bool:
