@@ -1,1 +1,1 @@
-"""Libraries of C and C++, used as their own users do: a program is written, compiled once, and run."""
+"""Libraries of C and C++: where they are here, and the parts in C++ of programs that use them as their users do."""
