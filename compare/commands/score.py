@@ -243,7 +243,7 @@ def command(
 
 def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path | None, github: bool) -> None:
     """Print and write outcomes in the forms that were asked for."""
-    from ..report.suite.outcome_forms import annotation, append_summary, junit_text, suite_document, summary
+    from ..report.suite.outcome_forms import annotation, append_summary, suite_document, summary, write_junit
 
     scores = [outcome.score for outcome in outcomes if outcome.score is not None]
     if plot is not None and scores:
@@ -251,9 +251,7 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
 
         error_picture(scores, plot)
     if junit is not None:
-        from ..report.folder import write_file
-
-        write_file(junit, junit_text(outcomes), "--junit")
+        write_junit(outcomes, junit)
     if as_json:
         emit(outcomes[0].document() if len(outcomes) == 1 else suite_document(outcomes))
         return

@@ -1,4 +1,4 @@
-"""Report of `foucault stability`: silently wrong runs first, a heat map, reasons of failures, and long runs."""
+"""Report of `foucault stability`: silently wrong runs first, its charts, reasons of failures, and long runs."""
 
 from __future__ import annotations
 

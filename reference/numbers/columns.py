@@ -1,4 +1,7 @@
-"""The columns of tables: their names, kinds and units, listed once."""
+"""The columns of tables: their names, kinds and units, listed once.
+
+CONTRIBUTING.md says what else one more column of `grid.csv` takes.
+"""
 
 from __future__ import annotations
 

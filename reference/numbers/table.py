@@ -1,7 +1,6 @@
-"""Exact numbers as integers over a power of two: the table, in named columns with bounds; whole columns in formulas.
+"""Tables of exact numbers: named columns with bounds, how far two are apart, and how they are rounded and printed.
 
-The table tells the largest number of each column, how far two tables are apart, the decimals that print it, and whether
-the bounds decide every printed digit.
+Numbers are integers over a power of two. Whole columns of them can be put into formulas (`FixedPoint`).
 """
 
 from __future__ import annotations

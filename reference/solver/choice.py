@@ -1,4 +1,4 @@
-"""The run that a scene's digits come from: how many bits they take, its engine, its form of the equations.
+"""The run that a scene's digits come from: its engine and its form of the equations, at the bits that `pilot` tells.
 
 `solve` begins with it, and `foucault show --equations` prints its equations.
 """

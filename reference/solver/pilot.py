@@ -1,4 +1,4 @@
-"""Pilot runs: how fast rounding errors grow on a scene, and the bits and steps a result will need.
+"""Pilot runs: how fast rounding errors grow on a scene, and from that the bits that the digits asked for will need.
 
 Two cheap runs that differ in precision show how many digits are lost between release and end. From them follow bits,
 number types and formulations, and so the bytes of a dataset. So they are made in arithmetic that is the same on every

@@ -1,6 +1,6 @@
-"""A solved scene: tables of exact numbers, each with a bound, and the runs or the proof that they come from.
+"""A solved scene: tables of numbers with bounds, the decimals to print of each column, the runs or proof behind them.
 
-From the bounds follow the decimals of every printed column, and whether a proof decides each digit.
+The decimals follow from the bounds, and so does whether a proof decides each digit; `Table` rounds.
 """
 
 from __future__ import annotations

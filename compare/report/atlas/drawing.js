@@ -1,5 +1,5 @@
-"use strict";
 // The picture of a verdict: the position error against time on a logarithmic scale, as SVG text.
+"use strict";
 
 const [TALL, LEFT, TOP, BOTTOM] = [260, 48, 12, 36];
 const MOST_POINTS = 800;

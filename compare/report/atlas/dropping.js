@@ -1,5 +1,5 @@
-"use strict";
 // The page of a scene: take files that are dropped or chosen, judge them, and show the verdict.
+"use strict";
 
 const page = JSON.parse(document.getElementById("truth").textContent);
 const truth = unpacked(page);

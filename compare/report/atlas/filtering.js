@@ -1,5 +1,5 @@
-"use strict";
 // Show the scenes that have the chosen flag and level.
+"use strict";
 
 const form = document.querySelector(".filters");
 const cards = [...document.querySelectorAll(".card")];

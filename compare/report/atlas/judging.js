@@ -1,6 +1,6 @@
-"use strict";
 // Judge a trajectory at the golden times as `foucault score` does (compare/score); pure functions, without the page.
 // `truth` is what parts.py embeds: columns as doubles in base64, bounds, scales and words. Needs reading.js.
+"use strict";
 
 const DEFAULT_TOLERANCE = 1e-6; // part of the amplitude
 const SAME_TIME = 1e-6; // rad of the swing: a row that is this near to a golden time is judged there

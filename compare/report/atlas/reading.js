@@ -1,6 +1,6 @@
-"use strict";
 // Read a trajectory, or times of xdot = 0, from text, as compare/candidates does: header, units, separators, comments.
-// `vocabulary` holds the words and patterns of names.py and units.py; what cannot be read throws Unreadable.
+// `vocabulary` holds the words and patterns of names.py; what cannot be read throws Unreadable.
+"use strict";
 
 class Unreadable extends Error {}
 

@@ -1,4 +1,4 @@
-"""Charts of stability: the digits that each method kept on each scene, and the growth of errors over long runs."""
+"""Charts of stability: the heat map of digits by scene and method, and the growth of errors over long runs."""
 
 from __future__ import annotations
 

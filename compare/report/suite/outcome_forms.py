@@ -18,7 +18,7 @@ from reference.errors import plain_lines
 from reference.scenes.shipped import DATA_VERSION
 
 from ...score.verdict import percent
-from ..folder import CSV, PAGE, check_folder, json_text, write_files, writing
+from ..folder import CSV, PAGE, check_folder, json_text, write_file, write_files, writing
 from ..page import Html, Table, findings, page, paragraph, section, text
 from .outcome import ORDER, REFUSED, Outcome
 
@@ -178,8 +178,12 @@ def append_summary(text: str) -> None:
         stream.write(text)
 
 
-def junit_text(outcomes: Sequence[Outcome]) -> str:
-    """Return a test for each candidate: a disagreement is a failure, a candidate that cannot be judged an error."""
+def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
+    """Write a test for each candidate as JUnit XML: a disagreement is a failure, a refused candidate an error.
+
+    Raises:
+        InputError: the file cannot be written.
+    """
     verdicts = [one.verdict for one in outcomes]
     counts = {
         "tests": str(len(outcomes)),
@@ -200,4 +204,5 @@ def junit_text(outcomes: Sequence[Outcome]) -> str:
             result = ElementTree.SubElement(case, word, {"message": lines[0]})
         result.text = "\n".join(lines)
     ElementTree.indent(root)
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'
+    document = f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'
+    write_file(path, document, "--junit")
