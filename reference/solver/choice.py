@@ -1,6 +1,6 @@
 """The run that a scene's digits come from: its engine and its form of the equations, at the bits that `pilot` tells.
 
-`solve` begins with it, and `foucault show --equations` prints its equations.
+`solve` and `foucault show --equations` both ask here.
 """
 
 from __future__ import annotations
