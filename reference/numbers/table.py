@@ -65,6 +65,10 @@ class Table:
 
     def __getitem__(self, name: str) -> Array:
         """Return a column as the nearest doubles, shape (rows,)."""
+        return self.array(name)
+
+    def array(self, name: str) -> Array:
+        """Return a column as the nearest doubles, shape (rows,)."""
         i, unit = self._place(name), 1 << self.bits
         return np.array([row[i] / unit for row in self.values], dtype=np.float64)
 
