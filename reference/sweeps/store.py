@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..engines.registry import batches
 from ..errors import InputError, plain_json
 from ..system.documents import json_document
 from ..system.workspace import replace_file
@@ -86,12 +85,13 @@ class Store:
             InputError: it differs from the plan.
         """
         there, here = self.request.document(), request.document()
-        differing = [key for key in sorted(here) if json.dumps(there.get(key)) != json.dumps(here[key])]
+        keys = sorted(here.keys() - {"identity"})  # which tells of versions, below
+        differing = [key for key in keys if json.dumps(there.get(key)) != json.dumps(here[key])]
         if differing:
             expected = f"the sweep that is there, which differs in {', '.join(differing)}"
             raise InputError("--out", str(self.folder), expected, "Take another folder.")
         versions = {
-            batches()[self.request.engine].identity: self.request.identity,
+            request.identity: self.request.identity,
             f"pyarrow {pyarrow_version()}": f"pyarrow {self.pyarrow}",
         }
         for got, expected in versions.items():

@@ -114,6 +114,10 @@ def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
     (folder / "plan.json").write_text(json.dumps(plan | {"pyarrow": "1.0"}))
     with pytest.raises(InputError, match=r"pyarrow 1\.0"):
         run(asked(folder), folder)
+    older = replace(asked(folder), identity="heyoka 1.0")
+    (folder / "plan.json").write_text(json.dumps({"hash": older.hash, "pyarrow": plan["pyarrow"], **older.document()}))
+    with pytest.raises(InputError, match=r"expected heyoka 1\.0, as in .* Install the versions"):
+        run(asked(folder), folder)
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"scene": []}'])
