@@ -164,9 +164,9 @@ class Outcomes:
             | {"fate": np.zeros(count, np.int8), "state": np.full((count, 6), np.nan)}
         )
 
-    def with_transits(self, found: Iterable[tuple[int, Array, Array]]) -> Self:
-        """Return the same with the transits found: of each row its number, their times and their directions."""
-        ordered = sorted(found, key=itemgetter(0))
+    def with_transits(self, transits: Iterable[tuple[int, Array, Array]]) -> Self:
+        """Return the same with transits: of each row its number, their times and their directions."""
+        ordered = sorted(transits, key=itemgetter(0))
         if not ordered:
             return self
         return replace(

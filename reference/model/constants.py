@@ -75,14 +75,14 @@ class Constants:
 
     def entries(self, *names: str) -> dict[str, Any]:
         """Return all numbers here that are not exactly zero, or those of some constants: "drag", "turn_1", "turn_2"."""
-        found: dict[str, Any] = {}
+        numbers: dict[str, Any] = {}
         for name in names or vars(self):
             value = getattr(self, name)
             if isinstance(value, tuple):
-                found |= {f"{name}_{i}": part for i, part in enumerate(value)}
+                numbers |= {f"{name}_{i}": part for i, part in enumerate(value)}
             else:
-                found[name] = value
-        return {name: value for name, value in found.items() if not is_zero(value)}
+                numbers[name] = value
+        return {name: value for name, value in numbers.items() if not is_zero(value)}
 
     def converted(self, convert: Callable[[Any], Any]) -> Self:
         """Return the same constants in another number type; exact zeros stay the int 0."""

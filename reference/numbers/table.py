@@ -154,7 +154,7 @@ def resolved(largest: Mapping[str, Fraction], errors: Mapping[str, Fraction]) ->
     A coordinate that vanishes by symmetry comes out of a run as rounding noise, and noise has no significant digits.
     """
     sizes = {name: size if size > NOISE * errors[name] else Fraction(0) for name, size in largest.items()}
-    return {name: size or max(sizes.get(one, Fraction(0)) for one in KINDS[name]) for name, size in sizes.items()}
+    return {name: size or max(sizes.get(column, Fraction(0)) for column in KINDS[name]) for name, size in sizes.items()}
 
 
 def decimals_of(sizes: Mapping[str, Fraction], digits: int) -> dict[str, int]:
@@ -237,7 +237,7 @@ class FixedPoint:
 
 def integers(values: Iterable[int]) -> Integers:
     """Return integers as an array."""
-    found = list(values)
-    array = np.empty(len(found), dtype=object)
-    array[:] = found
+    listed = list(values)
+    array = np.empty(len(listed), dtype=object)
+    array[:] = listed
     return array

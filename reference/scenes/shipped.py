@@ -66,5 +66,5 @@ def keep_seal(name: str, seal: str, options: str) -> None:
 
 def flag_meanings(flags: Iterable[str]) -> dict[str, str]:
     """Return why a scene with these flags is difficult: a sentence for each, from `data/flags.toml`."""
-    known = tomllib.loads((data_root() / "flags.toml").read_text("utf-8"))
-    return {flag: known.get(flag, "not a flag of the scenes that ship") for flag in flags}
+    meanings = tomllib.loads((data_root() / "flags.toml").read_text("utf-8"))
+    return {flag: meanings.get(flag, "not a flag of the scenes that ship") for flag in flags}

@@ -124,12 +124,13 @@ def with_transit_errors(run: Run, errors: Mapping[str, Fraction], apart: Table |
     assert run.transits is not None
     power = bits_in(max(errors.values()))
     parts = {name: float(size / Fraction(2) ** power) for name, size in errors.items()}
-    found = _errors(run, parts, power)
+    of_transits = _errors(run, parts, power)
     if apart is not None:
         for i, name in enumerate(TRANSITS):
-            found[name] = np.maximum(found[name], _in_units([2 * row[i] for row in apart.values], apart.bits + power))
+            least = _in_units([2 * row[i] for row in apart.values], apart.bits + power)
+            of_transits[name] = np.maximum(of_transits[name], least)
     table = run.transits.only(TRANSITS)
-    columns = [_fixed(found[name] * ROUNDED_UP, power, table.bits) for name in TRANSITS]
+    columns = [_fixed(of_transits[name] * ROUNDED_UP, power, table.bits) for name in TRANSITS]
     return Table(TRANSITS, table.bits, table.values, list(zip(*columns, strict=True)))
 
 
@@ -154,14 +155,14 @@ def _errors(run: Run, errors: Mapping[str, float], power: int) -> dict[str, Arra
     # at the zero xdot's error e is at most (slope - jerk late) late: the smaller root, if there is one
     slope = ax - np.ldexp(ax_error, power)
     room = slope**2 - 4 * jerk * np.ldexp(errors["vx"], power)
-    known = (slope > 0) & (room >= 0)
+    has_root = (slope > 0) & (room >= 0)
     late = np.zeros(len(table))
-    late[known] = 2 * errors["vx"] / (slope[known] + np.sqrt(room[known]))
+    late[has_root] = 2 * errors["vx"] / (slope[has_root] + np.sqrt(room[has_root]))
     late += np.ldexp(table["t"], -plan.number.prec - power)
-    found = {"t": late, "x": errors["x"] + ax * np.ldexp(late, power) * late, "ax": ax_error + jerk * late}
+    columns = {"t": late, "x": errors["x"] + ax * np.ldexp(late, power) * late, "ax": ax_error + jerk * late}
     for name, rate in (("y", v[1]), ("z", v[2]), ("vy", a[1])):
-        found[name] = errors[name] + abs(rate) * k.length * late
-    return {name: np.where(known, column, np.inf) for name, column in found.items()}
+        columns[name] = errors[name] + abs(rate) * k.length * late
+    return {name: np.where(has_root, column, np.inf) for name, column in columns.items()}
 
 
 def _in_units(values: list[int], bits: int) -> Array:

@@ -70,7 +70,7 @@ class Pilot:
             name: ESTIMATE_FACTOR * max(error, LEAST_ULPS * self.largest[name] / 2**self.prec)
             for name, error in self.errors.items()
         }
-        return {name: max(floored[one] for one in HORIZONTAL.get(name, (name,))) for name in floored}
+        return {name: max(floored[column] for column in HORIZONTAL.get(name, (name,))) for name in floored}
 
     def estimates(self, prec: int) -> dict[str, Fraction]:
         """Return the errors to state for a single run at a precision."""
@@ -137,12 +137,12 @@ def run_pilot(
         gaps, largest = grid.distance(coarse.grid), grid.largest()
         errors = gaps.largest()
         for i, other in enumerate(more, 1):
-            found = grid.distance(other.grid).largest()
-            errors = {name: max(error, found[name] * 2**i) for name, error in errors.items()}
+            apart = grid.distance(other.grid).largest()
+            errors = {name: max(error, apart[name] * 2**i) for name, error in errors.items()}
         if not _lost(errors, largest, inputs.length, prec):
             drifted = {name: largest[name] * steps / 2**prec for name in largest}
             errors = errors if hardware else {name: max(error, drifted[name]) for name, error in errors.items()}
-            cpu_s = sum(one.cpu_s for one in (coarse, fine, *more))
+            cpu_s = sum(each.cpu_s for each in (coarse, fine, *more))
             return Pilot(prec, errors, largest, tension, cpu_s, steps, coarse.plan.engine)
         last, good_until = (last_prec, good_until), _good_until(gaps, times, largest)
         next_prec = max(2 * LONG_DOUBLE.prec, 2 * prec, _extrapolated_prec(last, (prec, good_until), times[-1]))
@@ -186,7 +186,7 @@ def _extrapolated_prec(last: tuple[int, Fraction], now: tuple[int, Fraction], en
 
 def _good_until(gaps: Table, times: tuple[Fraction, ...], largest: dict[str, Fraction]) -> Fraction:
     """Return the time in s until which both position and velocity keep a digit."""
-    most = {name: LOST * max(largest[one] for one in kind) for kind in (POSITION, VELOCITY) for name in kind}
+    most = {name: LOST * max(largest[column] for column in kind) for kind in (POSITION, VELOCITY) for name in kind}
     columns = [(gaps.exact(name), limit) for name, limit in most.items()]
     lost = (i for i in range(len(times)) if any(column[i] > limit for column, limit in columns))
     first = next(lost, len(times))

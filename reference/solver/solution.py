@@ -141,7 +141,7 @@ class Solution:
         """Return a grid column by name."""
         if name in GRID:
             return self.grid[name]
-        raise no_attribute("a Solution", name, {*GRID, "t", *(one.name for one in fields(self))})
+        raise no_attribute("a Solution", name, {*GRID, "t", *(attribute.name for attribute in fields(self))})
 
     def __repr__(self) -> str:
         """Return scene, level, digits, and the numbers of rows and transits."""

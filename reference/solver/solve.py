@@ -64,8 +64,8 @@ def solve(
     scene = scene.with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
     settings, times = scene.run, tuple(scene.exact.grid)
     engine = checked(engine)
-    for wish, asked in (("audit", audit), ("confirm", confirm)):
-        if asked and settings.level != "enclosed":
+    for wish, value in (("audit", audit), ("confirm", confirm)):
+        if value and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", f"Nothing else has a proof to {wish}.")
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it

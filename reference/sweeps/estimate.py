@@ -57,11 +57,11 @@ class Errors:
 def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     """Return the errors of a run, and which rows stop where they are moved: at least one more run, by its engine."""
     moved = engine.solve(rows, MOVED)
-    found, stopped = errors(rows, run, moved), moved.fate == STOPPED
-    wild = ~(found.position <= GROWN * rows.length[:, 0]) | _reaches_the_pivot(rows)
+    estimated, stopped = errors(rows, run, moved), moved.fate == STOPPED
+    wild = ~(estimated.position <= GROWN * rows.length[:, 0]) | _reaches_the_pivot(rows)
     grown = np.flatnonzero(~stopped & wild)
     if not len(grown):
-        return found, stopped
+        return estimated, stopped
     back = engine.solve(rows[grown], MOVED_BACK)
     rate, state = rows.rate[grown, None], moved.state.copy()
     gaps = [np.abs(other - run.state[grown]) for other in (state[grown], back.state)]

@@ -114,10 +114,10 @@ class Part:
 
     def list_transits(self, replaced: Iterable[int], rows: Any, times: Any, directions: Any) -> None:
         """List transits in the order of their rows, in place of those that are listed for some rows."""
-        kept = ~np.isin(self.transits["row"], list(replaced))
+        stays = ~np.isin(self.transits["row"], list(replaced))
         added = dict(zip(self.transits, (rows, times, directions), strict=True))
         both = {
-            name: np.concatenate([listed[kept], np.asarray(added[name], listed.dtype)])
+            name: np.concatenate([listed[stays], np.asarray(added[name], listed.dtype)])
             for name, listed in self.transits.items()
         }
         order = np.argsort(both["row"], kind="stable")
@@ -192,10 +192,10 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
     wanted = request.wanted
     more: dict[int, str] = {}
     for engine, chosen in _shared(request.engine, rows):
-        own, at = rows[chosen], places[chosen]
-        run = engine.solve(own, wanted)
-        errors, lost = judged(engine, own, run)
-        part.fill(at, _results(own, run, errors))
+        of_engine, at = rows[chosen], places[chosen]
+        run = engine.solve(of_engine, wanted)
+        errors, lost = judged(engine, of_engine, run)
+        part.fill(at, _results(of_engine, run, errors))
         part.columns["engine"][at] = engine.name
         if wanted.times:
             listed = part.columns["row"][at][run.transit_row]
@@ -213,7 +213,8 @@ def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
     """Return engines with the rows that each solves: heyoka those with drag where the other has none."""
     engine = batches()[name]
     chosen = np.full(len(rows), engine.drag) | (rows.drag[:, 0] == 0)
-    return [(solver, own) for solver, own in ((engine, chosen), (batches()["heyoka"], ~chosen)) if own.any()]
+    shares = ((engine, chosen), (batches()["heyoka"], ~chosen))
+    return [(solver, share) for solver, share in shares if share.any()]
 
 
 def _results(rows: Rows, run: Outcomes, errors: Errors) -> dict[str, Any]:

@@ -82,8 +82,8 @@ class Request:
             Column(key, WORDS if key in TEXTS else "float64", f"{key} of the scene, the nearest double")
             for key in self.table.values
         ]
-        wanted = [column for column in COLUMNS[1:] if not column.wants or set(column.wants) & set(self.want)]
-        return (COLUMNS[0], *varied, *wanted)
+        results = [column for column in COLUMNS[1:] if not column.wants or set(column.wants) & set(self.want)]
+        return (COLUMNS[0], *varied, *results)
 
     @property
     def parts(self) -> int:
@@ -226,14 +226,14 @@ def _engine(name: str, swings: float) -> Batch:
     Raises:
         InputError: there is none of this name, or its packages are missing.
     """
-    known = batches()
+    engines = batches()
     if name == AUTO:
-        installed = [engine for engine in known.values() if engine.installed]
+        installed = [engine for engine in engines.values() if engine.installed]
         return min(installed, key=lambda engine: engine.expected_s(swings) - engine.saved_s)
-    if name not in known:
-        raise unknown("--engine", name, "an engine for many rows", (AUTO, *known), "")
-    if not known[name].installed:
-        needed = ", ".join(known[name].requires)
-        advice = f"Install it with pip install 'foucault-reference[{known[name].extra}]'."
+    if name not in engines:
+        raise unknown("--engine", name, "an engine for many rows", (AUTO, *engines), "")
+    if not engines[name].installed:
+        needed = ", ".join(engines[name].requires)
+        advice = f"Install it with pip install 'foucault-reference[{engines[name].extra}]'."
         raise InputError("--engine", name, f"the package {needed}, which it needs", advice)
-    return known[name]
+    return engines[name]

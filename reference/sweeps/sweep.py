@@ -190,12 +190,10 @@ def load_sweep(folder: str | Path) -> Swept:
         InputError: there is none, or it is not done yet.
     """
     store = Store.opened(Path(folder))
-    left = len(store.missing())
-    if left:
-        advice = f"Go on with `foucault sweep --out {folder}`."
-        raise InputError(
-            "sweep", str(folder), "a sweep that is done", f"{left} of {store.request.parts} parts miss. {advice}"
-        )
+    count = len(store.missing())
+    if count:
+        advice = f"{count} of {store.request.parts} parts miss. Go on with `foucault sweep --out {folder}`."
+        raise InputError("sweep", str(folder), "a sweep that is done", advice)
     return Swept(store.request, store)
 
 
@@ -213,16 +211,16 @@ def run(
         store = Store.begun(out, asked)
         parts = store.missing()
         report(asked.table.count - sum(len(asked.rows_of(part)) for part in parts))
-    kept: dict[int, Part] = {}
+    in_memory: dict[int, Part] = {}
     tally, compile_s = Tally(), 0.0
     if parts:
         with _workers(asked, out, workers, cluster, len(parts)) as executor:
-            tally = drive(asked, parts, executor, store.save if store is not None else kept.__setitem__, report)
+            tally = drive(asked, parts, executor, store.save if store is not None else in_memory.__setitem__, report)
         compile_s = executor.compile_s
     audit = None
     if asked.audit:
-        audit = audited(asked, store.read_part if store is not None else lambda part: kept[part].columns)
-    solved = Part.joined([kept[part] for part in sorted(kept)]) if kept else Part()
+        audit = audited(asked, store.read_part if store is not None else lambda part: in_memory[part].columns)
+    solved = Part.joined([in_memory[part] for part in sorted(in_memory)]) if in_memory else Part()
     swept = Swept(asked, store, solved, tally, audit, compile_s, time.perf_counter() - started)
     if store is not None:
         document = asdict(audit) if audit is not None else None

@@ -38,9 +38,9 @@ def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
     text = f"{owner} has no attribute {name!r}"
     if name.startswith("_"):  # Python itself asks for such names, and wants no advice
         return AttributeError(text)
-    known = sorted(names)
-    near = nearest(name, known)
-    return AttributeError(f"{text}; it has {', '.join([*near, *(other for other in known if other not in near)])}")
+    every = sorted(names)
+    near = nearest(name, every)
+    return AttributeError(f"{text}; it has {', '.join([*near, *(other for other in every if other not in near)])}")
 
 
 class Declaration(Protocol):

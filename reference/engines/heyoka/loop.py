@@ -41,9 +41,9 @@ class Integrator:
         k = Constants.of({name: hy.par[i] for i, name in enumerate(names)})
         state = hy.make_vars(*MODEL.variables)
         _, v = MODEL.cartesian(state, k, hy)
-        self._found: dict[int, list[float]] = {kind: [] for kind in sought}
+        self._events: dict[int, list[float]] = {kind: [] for kind in sought}
         rate = {TRANSIT: v[0], HEIGHT: v[2]}
-        events = [hy.nt_event(rate[kind], _recorder(found)) for kind, found in self._found.items()]
+        events = [hy.nt_event(rate[kind], _recorder(noted)) for kind, noted in self._events.items()]
         keep_on_disk(DOUBLE)
         self._ta: Any = hy.taylor_adaptive(
             as_pairs(state, rates(MODEL, k)(state, hy)), np.zeros(len(state)), tol=tolerance, nt_events=events
@@ -52,8 +52,8 @@ class Integrator:
 
     def begin(self, k: Constants, state: Any) -> None:
         """Set a row's constants and its state at t = 0."""
-        for found in self._found.values():
-            found.clear()
+        for noted in self._events.values():
+            noted.clear()
         self._ta.time = 0.0
         self._ta.state[:] = state
         self._ta.pars[:] = [*k.turn[1:], k.pull[2], k.drag][: self._parameters]
@@ -63,7 +63,7 @@ class Integrator:
 
         A zero at the release may hide the next one from heyoka, if both are in one step: the first one is short.
         """
-        short = any(release.zero[kind] for kind in self._found)
+        short = any(release.zero[kind] for kind in self._events)
         if short:
             self._ta.step(min(release.quiet, release.end))
         outcome, _, _, steps, *_ = self._ta.propagate_until(release.end, max_steps=most)
@@ -72,7 +72,7 @@ class Integrator:
 
     def zeros(self, kind: int) -> Zeros:
         """Return the zeros of a kind that were passed, in order."""
-        return Zeros.of(self._found.get(kind, []))
+        return Zeros.of(self._events.get(kind, []))
 
     def at(self, times: Array) -> Any:
         """Return the states at increasing times, shape (variables, times)."""
@@ -80,11 +80,11 @@ class Integrator:
         return self._ta.propagate_grid(grid)[-1][len(grid) - len(times) :].T
 
 
-def _recorder(found: list[float]) -> Callable[[Any, float, int], None]:
+def _recorder(noted: list[float]) -> Callable[[Any, float, int], None]:
     """Return what notes an event; heyoka deep-copies callbacks: a function stays itself, a bound method would not."""
 
     def record(_: Any, t: float, direction: int) -> None:
-        found.extend((t, direction))
+        noted.extend((t, direction))
 
     return record
 
@@ -107,8 +107,8 @@ def _lent(*kind: Any) -> Iterator[Integrator]:
 
 
 def _sought(wanted: Wanted) -> tuple[int, ...]:
-    asked = {TRANSIT: wanted.transits or wanted.times, HEIGHT: wanted.apsides}
-    return tuple(kind for kind, wish in asked.items() if wish)
+    is_sought = {TRANSIT: wanted.transits or wanted.times, HEIGHT: wanted.apsides}
+    return tuple(kind for kind, sought in is_sought.items() if sought)
 
 
 def prepare(wanted: Wanted, drag: bool, tolerance: float) -> float:
@@ -147,7 +147,7 @@ def _solve(
         first.begin(k, state)
         most = LEAST_STEPS + STEPS_PER_SWING * release.end * release.rate / (2 * np.pi)
         last, steps, stopped = first.to_end(release, int(most))
-        transits, heights = (release.after(first.zeros(one), one) for one in (TRANSIT, HEIGHT))
+        transits, heights = (release.after(first.zeros(zero), zero) for zero in (TRANSIT, HEIGHT))
     if stopped:
         outcomes.fate[row] = STOPPED
         return Zeros.of([])

@@ -32,9 +32,9 @@ class Zeros:
     directions: Array
 
     @classmethod
-    def of(cls, found: Sequence[float]) -> Self:
+    def of(cls, pairs: Sequence[float]) -> Self:
         """Return zeros from a list of a time, its direction, the next time and so on."""
-        times, directions = np.array(found, dtype=np.float64).reshape(-1, 2).T
+        times, directions = np.array(pairs, dtype=np.float64).reshape(-1, 2).T
         order = np.argsort(times, kind="stable")
         return cls(times[order], directions[order])
 

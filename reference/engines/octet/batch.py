@@ -49,12 +49,12 @@ class OctetBatch(Batch):
             raise ValueError("rows with drag are not for this kernel")
         numbers, results = packed(rows, wanted), np.zeros((len(rows), RESULTS))
         lanes, moments = empty_march(), empty_moments(ROOM if wanted.times else 0)
-        done, found = len(rows) == 0, [[column[:0] for column in moments[1:]]]
+        done, pieces = len(rows) == 0, [[column[:0] for column in moments[1:]]]
         while not done:
             moments.number[0] = 0
             done = march(*_arguments(lanes, wanted, numbers, results, moments, STEPS_PER_CALL))
-            found.append([column[: moments.number[0]].copy() for column in moments[1:]])
-        row, t, direction = (np.concatenate(column) for column in zip(*found, strict=True))
+            pieces.append([column[: moments.number[0]].copy() for column in moments[1:]])
+        row, t, direction = (np.concatenate(column) for column in zip(*pieces, strict=True))
         order = np.argsort(row, kind="stable")  # a row's own are in order of time
         return outcomes(rows, numbers, results, (row[order], t[order], direction[order].astype(np.int8)))
 

@@ -86,7 +86,7 @@ class March(NamedTuple):
     """The lanes: what is carried between steps, and working arrays.
 
     Attributes:
-        own: the numbers of each lane's row, a row of eight for each of `rows`' columns; the state is the present one.
+        state: the present one and the constants of each lane's row, a row of eight for each of `rows`' columns.
         c: coefficients.
         transits, highest: the zeros of xdot and of u' on the step.
         w: working arrays of the long way.
@@ -97,7 +97,7 @@ class March(NamedTuple):
         counts: the next row, the number of rows that are done, and the row of each lane, -1 for none.
     """
 
-    own: Array
+    state: Array
     c: Series
     transits: Zeros
     highest: Zeros
@@ -112,9 +112,9 @@ class March(NamedTuple):
 
 def empty_march() -> March:
     """Return lanes without rows."""
-    own, time, low, length, last, top = (aligned(size * LANES) for size in (rows.COLUMNS, 1, 1, 1, 1, 3))
+    state, time, low, length, last, top = (aligned(size * LANES) for size in (rows.COLUMNS, 1, 1, 1, 1, 3))
     working = empty_series(), empty_zeros(), empty_zeros(), empty_bisection()
-    return March(own, *working, time, low, length, last, top, np.zeros(ROW + LANES, dtype=np.int64))
+    return March(state, *working, time, low, length, last, top, np.zeros(ROW + LANES, dtype=np.int64))
 
 
 @compiled
@@ -125,7 +125,7 @@ def _take_row(m: March, lane: int, numbers: Array, results: Array) -> None:
     m.counts[ROW + lane] = row if sought else -1
     at = row * rows.COLUMNS if sought else 0
     for column in range(rows.COLUMNS):
-        m.own[LANES * column + lane] = numbers[at + column]
+        m.state[LANES * column + lane] = numbers[at + column]
     m.time[lane] = m.time_low[lane] = 0.0
     for z, column in ((m.transits, rows.SEEKS_X), (m.highest, rows.SEEKS_U)):
         z.sought[lane] = numbers[at + column] if sought else 0.0
@@ -134,14 +134,14 @@ def _take_row(m: March, lane: int, numbers: Array, results: Array) -> None:
     if sought:
         results[row * rows.RESULTS + rows.HIGHEST] = numbers[at + rows.U]
     else:
-        m.own[LANES * rows.END + lane] = np.inf
+        m.state[LANES * rows.END + lane] = np.inf
 
 
 @compiled
 def _set_length(m: March, order: int) -> None:
     """Set the steps' lengths, none beyond its row's end."""
-    left = load(m.own, LANES * rows.END) - load(m.time, 0)
-    left = (left + (load(m.own, LANES * rows.END_LOW) - load(m.time_low, 0))) / load(m.own, LANES * rows.UNIT)
+    left = load(m.state, LANES * rows.END) - load(m.time, 0)
+    left = (left + (load(m.state, LANES * rows.END_LOW) - load(m.time_low, 0))) / load(m.state, LANES * rows.UNIT)
     length = step_length(m.c, order)
     last = at_least(length, left)
     store(m.last, 0, last)
@@ -150,7 +150,7 @@ def _set_length(m: March, order: int) -> None:
 
 @compiled
 def _advance_time(m: March) -> None:
-    step, time = load(m.length, 0) * load(m.own, LANES * rows.UNIT), load(m.time, 0)
+    step, time = load(m.length, 0) * load(m.state, LANES * rows.UNIT), load(m.time, 0)
     total = time + step
     other = total - time
     error = (time - (total - other)) + (step - other)
@@ -163,7 +163,7 @@ def _leave(m: March, lane: int, numbers: Array, results: Array, fate: int) -> No
     """Write a row's end, and take the next row."""
     at = m.counts[ROW + lane] * rows.RESULTS
     for column in range(rows.S + 1):
-        results[at + column] = m.own[LANES * column + lane]
+        results[at + column] = m.state[LANES * column + lane]
     results[at + rows.FATE] = fate
     m.counts[DONE] += 1
     _take_row(m, lane, numbers, results)
@@ -173,7 +173,7 @@ def _leave(m: March, lane: int, numbers: Array, results: Array, fate: int) -> No
 def _begin(m: March) -> None:
     """Set the rates at the release of rows that begin: where u' is exactly zero, its slope gives the sign."""
     fresh = at_least(spread(0.0), load(m.time, 0))
-    level = where(load(m.own, LANES * rows.ZEROS_U), load(m.c.udot, LANES), load(m.c.udot, 0))
+    level = where(load(m.state, LANES * rows.ZEROS_U), load(m.c.udot, LANES), load(m.c.udot, 0))
     store(m.transits.before, 0, where(fresh, load(m.c.xdot, 0), load(m.transits.before, 0)))
     store(m.highest.before, 0, where(fresh, level, load(m.highest.before, 0)))
 
@@ -182,11 +182,11 @@ def _begin(m: March) -> None:
 def _place_zeros(m: March, order: int) -> None:
     """Find transits and highest points on the step of each lane."""
     if occupied(load(m.transits.sought, 0)):
-        store(m.transits.after, 0, xdot_of(m.own))
+        store(m.transits.after, 0, xdot_of(m.state))
         seek(m.transits, m.c.xdot, m.length, m.time, order)
         refine(m.transits, m.c.xdot, m.length, order, CONVERGED)
     if occupied(load(m.highest.sought, 0)):
-        store(m.highest.after, 0, udot_of(m.own))
+        store(m.highest.after, 0, udot_of(m.state))
         seek_highest(m.highest, m.c.udot, m.length, order)
         if occupied(load(m.highest.hit, 0)):
             refine(m.highest, m.c.udot, m.length, order, TURNED)
@@ -196,11 +196,11 @@ def _place_zeros(m: March, order: int) -> None:
 @compiled
 def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Moments) -> bool:
     """Note what a lane has passed; return false if its transits stay in doubt."""
-    at, unit, close = row * rows.RESULTS, m.own[LANES * rows.UNIT + lane], m.own[LANES * rows.CLOSE_S + lane]
+    at, unit, close = row * rows.RESULTS, m.state[LANES * rows.UNIT + lane], m.state[LANES * rows.CLOSE_S + lane]
     since, low, n = m.time[lane], m.time_low[lane], 0
     results[at + rows.STEPS] += 1.0
     if m.transits.doubt[lane] != 0.0:
-        multiplicity = -1 if since > 0.0 else int(m.own[LANES * rows.ZEROS_X + lane])
+        multiplicity = -1 if since > 0.0 else int(m.state[LANES * rows.ZEROS_X + lane])
         n = all_zeros(m.w, m.transits, m.c.xdot, lane, m.length[lane], multiplicity, order)
         if n == DOUBT:
             return False
@@ -210,7 +210,7 @@ def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Mo
         note_transit(results, at, row, moments, since + (low + m.w.places[i] * unit), m.w.slopes[i], close)
     if m.highest.hit[lane] != 0.0:
         x, p, u = m.top[lane], m.top[LANES + lane], m.top[2 * LANES + lane]
-        sharpness = -m.highest.slope[lane] / (m.own[LANES * rows.PULL + lane] * u * (2.0 - u))
+        sharpness = -m.highest.slope[lane] / (m.state[LANES * rows.PULL + lane] * u * (2.0 - u))
         bend = sharpness if m.highest.doubt[lane] == 0.0 else 0.0
         note_highest(results, at, since + (low + m.highest.place[lane] * unit), x, p, u, bend)
     elif m.highest.doubt[lane] != 0.0:
@@ -228,10 +228,10 @@ def march(m: March, order: int, numbers: Array, results: Array, moments: Moments
     for _ in range(steps):
         if m.counts[DONE] == many or 0 < len(moments.row) < moments.number[0] + LANES * MOST_ZEROS:
             break
-        taylor_coefficients(m.c, m.own, order)
+        taylor_coefficients(m.c, m.state, order)
         _begin(m)
         _set_length(m, order)
-        sum_series(m.own, m.c, m.length, order)
+        sum_series(m.state, m.c, m.length, order)
         _place_zeros(m, order)
         for lane in range(LANES):
             row = m.counts[ROW + lane]
@@ -239,7 +239,7 @@ def march(m: March, order: int, numbers: Array, results: Array, moments: Moments
                 short = m.last[lane] == 0.0 and not m.length[lane] > SHORTEST
                 if not _note(m, order, lane, row, results, moments):
                     m.last[lane] = 1.0 + DOUBTFUL
-                if short or not abs(m.own[LANES * rows.X + lane]) < 2.0:
+                if short or not abs(m.state[LANES * rows.X + lane]) < 2.0:
                     m.last[lane] = 1.0 + STOPPED
         _advance_time(m)
         store(m.transits.before, 0, load(m.transits.after, 0))

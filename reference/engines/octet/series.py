@@ -49,10 +49,10 @@ def empty_series() -> Series:
 
 
 @inlined
-def _next_order(c: Series, own: Array, k: int, lx: Any, lp: Any, lu: Any) -> None:
+def _next_order(c: Series, state: Array, k: int, lx: Any, lp: Any, lu: Any) -> None:
     """Write the coefficients of order k + 1 from those of order k and from order k of λ x, λ p, λ u."""
     at, to, share, less = LANES * k, LANES * (k + 1), spread(1.0 / (k + 1)), spread(-1.0 / (k + 1))
-    op, ou, pull = load(own, LANES * TURN_P), load(own, LANES * TURN_U), load(own, LANES * PULL)
+    op, ou, pull = load(state, LANES * TURN_P), load(state, LANES * TURN_U), load(state, LANES * PULL)
     x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
     w, v, s = load(c.w, at), load(c.v, at), load(c.s, at)
     # what comes last in the chain of dependent operations is added last
@@ -78,17 +78,17 @@ def _next_order(c: Series, own: Array, k: int, lx: Any, lp: Any, lu: Any) -> Non
 
 
 @compiled
-def taylor_coefficients(c: Series, own: Array, order: int) -> None:
-    """Fill the coefficients from the state in `own`, a row of eight for each of `rows`' columns."""
+def taylor_coefficients(c: Series, state: Array, order: int) -> None:
+    """Fill the coefficients from the state and the constants, a row of eight for each of `rows`' columns."""
     for array, column in ((c.x, X), (c.p, P), (c.u, U), (c.w, W), (c.v, V), (c.s, S)):
-        store(array, 0, load(own, LANES * column))
-    x0, p0, u0, op = load(c.x, 0), load(c.p, 0), load(c.u, 0), load(own, LANES * TURN_P)
+        store(array, 0, load(state, LANES * column))
+    x0, p0, u0, op = load(c.x, 0), load(c.p, 0), load(c.u, 0), load(state, LANES * TURN_P)
     w, v, s = load(c.w, 0) - op, load(c.v, 0), load(c.s, 0)
-    l0 = fma(fma(fma(w * w, v, v), s, s), load(own, LANES * PULL), spread(1.0) - u0)
+    l0 = fma(fma(fma(w * w, v, v), s, s), load(state, LANES * PULL), spread(1.0) - u0)
     store(c.tension, 0, l0)
-    _next_order(c, own, 0, l0 * x0, l0 * p0, l0 * u0)
+    _next_order(c, state, 0, l0 * x0, l0 * p0, l0 * u0)
     x1, p1, u1, l1 = load(c.x, LANES), load(c.p, LANES), load(c.u, LANES), load(c.tension, LANES)
-    _next_order(c, own, 1, fma(l0 * x1, l1, x0), fma(l0 * p1, l1, p0), fma(l0 * u1, l1, u0))
+    _next_order(c, state, 1, fma(l0 * x1, l1, x0), fma(l0 * p1, l1, p0), fma(l0 * u1, l1, u0))
     for k in range(2, order, 2):
         # orders k and k + 1 together: each coefficient that is loaded serves both
         ax = ap = au = bx = bp = bu = spread(0.0)
@@ -104,12 +104,12 @@ def taylor_coefficients(c: Series, own: Array, order: int) -> None:
         x, p, u = load(c.x, at), load(c.p, at), load(c.u, at)
         ax, ap, au = fma(ax, before, x1), fma(ap, before, p1), fma(au, before, u1)
         ax, ap, au = fma(fma(ax, pull, x0), l0, x), fma(fma(ap, pull, p0), l0, p), fma(fma(au, pull, u0), l0, u)
-        _next_order(c, own, k, ax, ap, au)
+        _next_order(c, state, k, ax, ap, au)
         bx, bp, bu = fma(fma(bx, pull, x1), l1, x), fma(fma(bp, pull, p1), l1, p), fma(fma(bu, pull, u1), l1, u)
         at += LANES
         pull, x, p, u = load(c.tension, at), load(c.x, at), load(c.p, at), load(c.u, at)
         bx, bp, bu = fma(fma(bx, pull, x0), l0, x), fma(fma(bp, pull, p0), l0, p), fma(fma(bu, pull, u0), l0, u)
-        _next_order(c, own, k + 1, bx, bp, bu)
+        _next_order(c, state, k + 1, bx, bp, bu)
 
 
 @inlined
@@ -130,7 +130,7 @@ def step_length(c: Series, order: int) -> Any:
 
 
 @compiled
-def sum_series(own: Array, c: Series, length: Array, order: int) -> None:
+def sum_series(state: Array, c: Series, length: Array, order: int) -> None:
     """Write the state at the end of the step, put back on the sphere."""
     r, none = load(length, 0), spread(0.0)
     x = p = u = w = v = s = none
@@ -141,23 +141,23 @@ def sum_series(own: Array, c: Series, length: Array, order: int) -> None:
     half = fma(fma(x * x, p, p), u, u - spread(2.0)) * spread(-0.5)
     x, p, u = fma(x, half, x), fma(p, half, p), fma(u, half, u - spread(1.0))
     down = u - spread(1.0)
-    outward = none - fma(fma((w - load(own, LANES * TURN_P)) * x, v, p), s, down)
-    store(own, LANES * X, x)
-    store(own, LANES * P, p)
-    store(own, LANES * U, u)
-    store(own, LANES * W, fma(w, outward, x))
-    store(own, LANES * V, fma(v, outward, p))
-    store(own, LANES * S, fma(s, outward, down))
+    outward = none - fma(fma((w - load(state, LANES * TURN_P)) * x, v, p), s, down)
+    store(state, LANES * X, x)
+    store(state, LANES * P, p)
+    store(state, LANES * U, u)
+    store(state, LANES * W, fma(w, outward, x))
+    store(state, LANES * V, fma(v, outward, p))
+    store(state, LANES * S, fma(s, outward, down))
 
 
 @inlined
-def xdot_of(own: Array) -> Any:
+def xdot_of(state: Array) -> Any:
     """Return x' of a state."""
-    turned = fma(load(own, LANES * W), load(own, LANES * TURN_U), load(own, LANES * P))
-    return turned - load(own, LANES * TURN_P) * load(own, LANES * U)
+    turned = fma(load(state, LANES * W), load(state, LANES * TURN_U), load(state, LANES * P))
+    return turned - load(state, LANES * TURN_P) * load(state, LANES * U)
 
 
 @inlined
-def udot_of(own: Array) -> Any:
+def udot_of(state: Array) -> Any:
     """Return u' of a state."""
-    return fma(load(own, LANES * S), load(own, LANES * TURN_P), load(own, LANES * X))
+    return fma(load(state, LANES * S), load(state, LANES * TURN_P), load(state, LANES * X))

@@ -33,12 +33,12 @@ def coefficients():
 
     @numba.njit(error_model="numpy")
     def fill(m, order):
-        taylor_coefficients(m.c, m.own, order)
+        taylor_coefficients(m.c, m.state, order)
 
     def of(many):
         rows, m = rows_of(many), empty_march()
         numbers = packed(rows, Wanted()).T
-        m.own.reshape(-1, LANES)[:, : len(many)] = numbers
+        m.state.reshape(-1, LANES)[:, : len(many)] = numbers
         fill(m, ORDER)
         x, p, u = (array.reshape(-1, LANES)[: ORDER + 1, : len(many)] for array in (m.c.x, m.c.p, m.c.u))
         return x, p, u, numbers[UNIT], rows
