@@ -59,7 +59,8 @@ def jobs(replaced: Sequence[str], out: Path | None) -> list[Job]:
     every = []
     for scene in scenes:
         name = dataset_id(scene)
-        every.append(Job(scene, name, out / name if out is not None else default_folder(scene, name)))
+        folder = out / name if out is not None else default_folder(scene, name)
+        every.append(Job(scene, name, folder))
     return sorted(every, key=lambda job: (-job.scene.exact.t_end, job.name))
 
 

@@ -154,15 +154,13 @@ class Outcomes:
     @classmethod
     def empty(cls, count: int) -> Self:
         """Return the outcomes of `count` rows, to be filled in: nothing found, nothing known."""
-        unknown = {field.name: np.full(count, np.nan) for field in fields(cls)}
-        none = {name: np.zeros(count, np.int32) for name in ("steps", "transits", "close_pairs", "apsides")}
-        listed = {"transit_row": np.int64, "transit_t": np.float64, "transit_direction": np.int8}
-        return cls(
-            **unknown
-            | none
-            | {name: np.zeros(0, kind) for name, kind in listed.items()}
-            | {"fate": np.zeros(count, np.int8), "state": np.full((count, 6), np.nan)}
-        )
+        columns: dict[str, Any] = {field.name: np.full(count, np.nan) for field in fields(cls)}
+        for name in ("steps", "transits", "close_pairs", "apsides"):
+            columns[name] = np.zeros(count, np.int32)
+        columns |= {"fate": np.zeros(count, np.int8), "state": np.full((count, 6), np.nan)}
+        for name, kind in (("transit_row", np.int64), ("transit_t", np.float64), ("transit_direction", np.int8)):
+            columns[name] = np.zeros(0, kind)
+        return cls(**columns)
 
     def with_transits(self, transits: Iterable[tuple[int, Array, Array]]) -> Self:
         """Return the same with transits: of each row its number, their times and their directions."""

@@ -212,14 +212,16 @@ def run(
         parts = store.missing()
         report(asked.table.count - sum(len(asked.rows_of(part)) for part in parts))
     in_memory: dict[int, Part] = {}
+    save = store.save if store is not None else in_memory.__setitem__
     tally, compile_s = Tally(), 0.0
     if parts:
         with _workers(asked, out, workers, cluster, len(parts)) as executor:
-            tally = drive(asked, parts, executor, store.save if store is not None else in_memory.__setitem__, report)
+            tally = drive(asked, parts, executor, save, report)
         compile_s = executor.compile_s
     audit = None
     if asked.audit:
-        audit = audited(asked, store.read_part if store is not None else lambda part: in_memory[part].columns)
+        read = store.read_part if store is not None else lambda part: in_memory[part].columns
+        audit = audited(asked, read)
     solved = Part.joined([in_memory[part] for part in sorted(in_memory)]) if in_memory else Part()
     swept = Swept(asked, store, solved, tally, audit, compile_s, time.perf_counter() - started)
     if store is not None:

@@ -25,7 +25,6 @@ PARIS = Inputs(
     flattening=1 / Fraction("298.257223564"), position=(Fraction("0.3"), Fraction("0.4"), Fraction(0), Fraction(0)),
     angles=None, t_end=Fraction(60), grid_step=Fraction(1),
 )  # fmt: skip
-DEGREE = 180 / Fraction("3.14159265358979323846")
 
 
 def scene(**changes: object) -> Inputs:
