@@ -28,7 +28,6 @@ from reference.numbers.taylor_step import DIGIT_BITS, Digits
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth
-LOOSE = Fraction(10**9)
 
 
 def exact_errors(inputs, piece, balls, ratios):
