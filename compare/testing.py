@@ -128,7 +128,7 @@ def message(result: Score) -> str:
         f"  difference {worst.difference:+.3e} m",
         f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
     ]
-    each = ", ".join(f"{name} {abs(one.difference):.2g}" for name, one in result.worst_of_each.items())
+    each = ", ".join(f"{name} {abs(worst.difference):.2g}" for name, worst in result.worst_of_each.items())
     lines.append(f"  worst of each: {each}")
     if result.falls_short:
         demanded = f"{percent(result.covers)} demanded" if result.covers else "no row after t = 0"

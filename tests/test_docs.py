@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 import typer
-from pages import PAGES, blocks, commands, of_language, output, shows, write_files
+from pages import PAGES, blocks, code_spans, commands, of_language, output, shows, write_files
 from places import ROOT
 
 import compare
@@ -27,6 +27,8 @@ TUTORIAL, SWEEPS, STUDIES, CONTRIBUTING, API = (
     "docs/api.md",
 )
 INDENTED = None
+BESIDE = {"docs/oracle.md": ["compare/score"]}  # where the files are that a page names without a folder
+EVERYWHERE = ["compare", "reference", "tests", "docs"]
 # what the blocks of each page are in; all but formulas, and what Sphinx itself carries out, is run
 LANGUAGES = {
     "README.md": {"sh", "console", "pycon"},  # sh by .ci/run, the others by test_readme.py
@@ -166,3 +168,14 @@ def test_every_file_and_folder_that_a_page_names_exists():
         paths += [(ROOT / page).parent / link for link in links]
         missing += [(page, path) for path in paths if not path.exists()]
     assert missing == []
+
+
+@pytest.mark.parametrize("page", sorted({*PAGES} - {"CHANGELOG.md"}))  # which tells of what was
+def test_every_script_that_a_page_names_is_in_the_tree_or_written_by_the_page(page, tmp_path):
+    folders = [ROOT / folder for folder in BESIDE.get(page, EVERYWHERE)]
+    there = {path.name for folder in folders for path in folder.rglob("*.*")} | {
+        path.name for path in ROOT.glob("*.py")
+    }
+    there |= {*write_files(page, tmp_path)}
+    scripts = [word for span in code_spans(page) for word in span.split() if re.fullmatch(r"[\w./-]+\.(py|js)", word)]
+    assert [word for word in scripts if not ((ROOT / word).is_file() if "/" in word else word in there)] == []

@@ -81,12 +81,12 @@ def layout(
         InputError: a column is missing or there twice, or its unit is not known.
     """
     of_units = defaults(units)
-    known = [*needed, *optional]
+    columns = [*needed, *optional]
     meanings = [meaning(word, of_units) for word in words]
     places: dict[str, int] = {}
-    for name in known:
-        found = [(one.rank, i) for i, one in enumerate(meanings) if one is not None and one.column == name]
-        best = [i for rank, i in found if rank == min(found)[0]]
+    for name in columns:
+        ranked = [(word.rank, i) for i, word in enumerate(meanings) if word is not None and word.column == name]
+        best = [i for rank, i in ranked if rank == min(ranked)[0]]
         if len(best) > 1:
             same = ", ".join(words[i].strip() for i in best)
             raise InputError(where, same, f"one column {name}", "Say with --columns which one it is.")
@@ -95,12 +95,12 @@ def layout(
         elif name in needed:
             got = f"no {name} in {', '.join(word.strip() for word in words)[:80]}"
             raise InputError(where, got, f"one column {name}", advice(needed, optional))
-    chosen = {name: one for name, i in places.items() if (one := meanings[i]) is not None}
-    for name, one in chosen.items():
-        if one.factor is None:
+    chosen = {name: word for name, i in places.items() if (word := meanings[i]) is not None}
+    for name, read_as in chosen.items():
+        if read_as.factor is None:
             field = f"{where}: {words[places[name]].strip()}"
-            raise InputError(field, one.unit, f"a unit of {name} that is known", "Write s, m or m/s.")
-    factors = {name: one.factor for name, one in chosen.items() if one.factor is not None and one.factor != 1}
+            raise InputError(field, read_as.unit, f"a unit of {name} that is known", "Write s, m or m/s.")
+    factors = {name: word.factor for name, word in chosen.items() if word.factor is not None and word.factor != 1}
     return Layout(places, factors, tuple(_conventions(words, places, chosen)))
 
 
@@ -132,16 +132,16 @@ def _conventions(words: Sequence[str], places: dict[str, int], chosen: dict[str,
     if renamed:
         others = [unquoted(word) for i, word in enumerate(words) if i not in places.values()]
         others = [word for word in others if word not in SKIPPED]
-        left = f"; not read: {', '.join(others)}" if others else ""
-        said.append(Deviation("columns", f"{', '.join(renamed)}{left}"))
-    units = [f"{name} from {one.unit}" for name, one in chosen.items() if abs(one.factor or 1) != 1]
+        unread = f"; not read: {', '.join(others)}" if others else ""
+        said.append(Deviation("columns", f"{', '.join(renamed)}{unread}"))
+    units = [f"{name} from {word.unit}" for name, word in chosen.items() if abs(word.factor or 1) != 1]
     if units:
         said.append(Deviation("units", f"{', '.join(units)}, converted to SI units"))
     return said
 
 
-def _signed(one: Meaning) -> str:
-    return f"-{one.column}" if one.factor is not None and one.factor < 0 else one.column
+def _signed(word: Meaning) -> str:
+    return f"-{word.column}" if word.factor is not None and word.factor < 0 else word.column
 
 
 @dataclass
@@ -189,12 +189,12 @@ class Header:
         if self.naming.columns:
             return self._given(count), len(fields)
         for above, text, is_comment in reversed(self.lines):
-            found = self._named(text, count, is_comment)
-            if found is not None:
-                if len(found) != count:
-                    got, expected = f"{count} fields", f"{len(found)} as in the header, line {above}"
+            header = self._named(text, count, is_comment)
+            if header is not None:
+                if len(header) != count:
+                    got, expected = f"{count} fields", f"{len(header)} as in the header, line {above}"
                     raise InputError(f"{self.name}: line {number}", got, expected, "Is the line cut off?")
-                return self._resolved(found, f"{self.name}: header"), len(fields)
+                return self._resolved(header, f"{self.name}: header"), len(fields)
         names = unnamed(count, self.needed)
         if names is None or (len(self.needed) == 1 and self.lines):
             raise InputError(f"{self.name}: first line", row[:80], "a header that names the columns", self._advice)
@@ -232,7 +232,7 @@ class Header:
 
     @staticmethod
     def _columns(way: Sequence[str]) -> set[str]:
-        return {one.column for word in way if (one := meaning(word, {})) is not None}
+        return {read_as.column for word in way if (read_as := meaning(word, {})) is not None}
 
     def _resolved(self, way: Sequence[str], where: str) -> Layout:
         return layout(way, self.needed, self.optional, self.naming.units, where)

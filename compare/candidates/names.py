@@ -193,8 +193,8 @@ def defaults(words: tuple[str, ...]) -> dict[str, str]:
         unit = plain_unit(word)
         columns = ("t",) if unit in TIMES else ("x", "y", "z", "vx", "vy", "vz") if unit in LENGTHS else ()
         if not columns:
-            known = ", ".join([*TIMES, *LENGTHS])
-            raise InputError("--units", word, f"units of time or length: {known}", "Separate two with a comma.")
+            expected = f"units of time or length: {', '.join([*TIMES, *LENGTHS])}"
+            raise InputError("--units", word, expected, "Separate two with a comma.")
         if columns[0] in units:
             raise InputError("--units", ",".join(words), "one unit of time and one of length at most")
         units |= {column: f"{unit}/s" if column.startswith("v") else unit for column in columns}

@@ -160,9 +160,9 @@ def _of_table(array: object, name: str, naming: Naming) -> Candidate:
 def _candidate(name: str, arrays: Sequence[object], made: Layout, transits: Array | None = None) -> Candidate:
     """Make a candidate of arrays of which each column is the one at its place, in SI units."""
     columns = {column: _real(arrays[i], f"{name}: {column}") for column, i in made.places.items()}
-    found = candidate_of(name, columns, transits)
-    scaled, low = made.converted({"t": found.t, **found.columns}, found.low)
-    return replace(found, t=scaled.pop("t"), columns=scaled, low=low, conventions=made.conventions)
+    candidate = candidate_of(name, columns, transits)
+    scaled, low = made.converted({"t": candidate.t, **candidate.columns}, candidate.low)
+    return replace(candidate, t=scaled.pop("t"), columns=scaled, low=low, conventions=made.conventions)
 
 
 def _bounded(stream: BinaryIO, head: bytes, spool: BinaryIO, name: str, most: int = MAX_BYTES) -> None:
@@ -182,13 +182,13 @@ def _arrays(data: BinaryIO, name: str) -> dict[str, object]:
     try:
         with zipfile.ZipFile(data) as archive:
             members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
-        wanted = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
-        wanted = wanted or [word for word in members if word == TABLE]
-        size = sum(members[word].file_size for word in wanted)
+        chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
+        chosen = chosen or [word for word in members if word == TABLE]
+        size = sum(members[word].file_size for word in chosen)
         if size <= MAX_UNPACKED:
             data.seek(0)
             with np.load(data, allow_pickle=False) as arrays:
-                return {word: arrays[word] for word in wanted}
+                return {word: arrays[word] for word in chosen}
     except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
         raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
     raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")

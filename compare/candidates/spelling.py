@@ -115,8 +115,8 @@ def spelling(line: str) -> Spelling | None:
         for separator in (",", ";", "\t", None):
             if (separator is not None and separator not in line) or (comma and separator == ","):
                 continue
-            one = Spelling(separator, comma, fortran, quoted)
-            fields = [text.strip() for text in one.fields(line)]
+            tried = Spelling(separator, comma, fortran, quoted)
+            fields = [text.strip() for text in tried.fields(line)]
             numbers = sum(is_number(text) or _HEXFLOAT.fullmatch(text) is not None for text in fields)
             share = numbers / max(1, len(fields) - (fields[-1:] == [""]))
             if share > best.share:

@@ -59,7 +59,8 @@ def paragraph(value: str) -> Html:
 
 def findings(sentences: Iterable[str]) -> Html:
     """Return a list of the most important sentences."""
-    return Html('<ul class="findings">\n' + "\n".join(f"<li>{text(one)}</li>" for one in sentences) + "\n</ul>")
+    items = "\n".join(f"<li>{text(sentence)}</li>" for sentence in sentences)
+    return Html(f'<ul class="findings">\n{items}\n</ul>')
 
 
 def facts(pairs: Mapping[str, str]) -> Html:
@@ -157,7 +158,7 @@ class Table:
         classes = [f' class="{kind}"' if kind else "" for kind in kinds]
         names = [f' data-name="{text(title)}"' if cards and i else "" for i, title in enumerate(self.columns)]
         head = "".join(
-            f'<th scope="col"{own}>{text(title)}</th>' for own, title in zip(classes, self.columns, strict=True)
+            f'<th scope="col"{kind}>{text(title)}</th>' for kind, title in zip(classes, self.columns, strict=True)
         )
         body = []
         for i, row in enumerate(self._texts()):
@@ -193,7 +194,9 @@ class Table:
         return stream.getvalue()
 
     def _texts(self) -> list[list[str]]:
-        return [["" if one is None else one if isinstance(one, str) else str(one) for one in row] for row in self.rows]
+        return [
+            ["" if cell is None else cell if isinstance(cell, str) else str(cell) for cell in row] for row in self.rows
+        ]
 
 
 def _harmless(value: Any) -> Any:

@@ -35,7 +35,7 @@ def document_of(
     return {
         "programs": dict(programs or {}),
         "rows": [asdict(cell) for cell in cells],
-        **{one.value: sum(cell.status == one for cell in cells) for one in COUNTED},
+        **{status.value: sum(cell.status == status for cell in cells) for status in COUNTED},
         "long_runs": [run.document() for run in runs],
         "machine": machine(),
     }
@@ -115,7 +115,7 @@ def page_text(document: dict[str, Any]) -> str:
     cells, runs = _parsed(document)
     letters = "; ".join(f"{letter}: {status.words}" for status, letter in LETTERS.items())
     failures = [cell for cell in cells if cell.reason and cell.status != Status.NOT_INSTALLED]
-    wrong, magnified = ([cell for cell in failures if cell.status == one] for one in COUNTED)
+    wrong, magnified = ([cell for cell in failures if cell.status == status] for status in COUNTED)
     parts = [
         section("Findings", findings(headlines(cells))),
         section(
@@ -187,7 +187,7 @@ def _scenes(cells: Sequence[Cell]) -> Html:
     for name in dict.fromkeys(cell.scene for cell in cells):
         scene = load_scene(name)
         statuses = [cell.status for cell in cells if cell.scene == name]
-        correct, failed = statuses.count(Status.OK), sum(one not in (Status.OK, *NOT_TRIED) for one in statuses)
+        correct, failed = statuses.count(Status.OK), sum(status not in (Status.OK, *NOT_TRIED) for status in statuses)
         rows.append((name, scene.title, ", ".join(scene.flags), correct, failed))
     columns = {"scene": "", "description": "prose", "flags": "prose", "correct": "number", "failed": "number"}
     return Table(columns, rows).html()
@@ -196,13 +196,14 @@ def _scenes(cells: Sequence[Cell]) -> Html:
 def text_table(document: dict[str, Any]) -> str:
     """Return main results and one line for each method, as text for a terminal."""
     cells, runs = _parsed(document)
-    present = [one for one in Status if one in {cell.status for cell in cells}]
+    present = [status for status in Status if status in {cell.status for cell in cells}]
     rows = []
     for method, precision in dict.fromkeys((cell.method, cell.precision) for cell in cells):
-        own = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
-        counts = Counter(cell.status for cell in own)
-        rows.append((method, precision, _settings(own), f"{own[0].asked:.1f}", *(counts[one] or "" for one in present)))
-    numbers = ("setting", "asked", *(one.words for one in present))
+        group = [cell for cell in cells if (cell.method, cell.precision) == (method, precision)]
+        counts = Counter(cell.status for cell in group)
+        outcomes = [counts[status] or "" for status in present]
+        rows.append((method, precision, _settings(group), f"{group[0].asked:.1f}", *outcomes))
+    numbers = ("setting", "asked", *(status.words for status in present))
     table = Table({"method": "", "precision": "", **dict.fromkeys(numbers, "number")}, rows)
     lines = [*headlines(cells), f"load: {busy(cells)}", "", *table.lines()]
     return "\n".join([*lines, "", *advice(present), *([""] if runs else []), *laws(runs)])
@@ -210,11 +211,11 @@ def text_table(document: dict[str, Any]) -> str:
 
 def _settings(cells: Sequence[Cell]) -> str:
     """Return the setting of a method's cells, or from which to which they go: steps are parts of a scene's times."""
-    known = sorted({cell.setting for cell in cells if cell.setting is not None})
-    if not known:
+    settings = sorted({cell.setting for cell in cells if cell.setting is not None})
+    if not settings:
         return ""
     unit = {"step": " s", "precision": " bits"}.get(cells[0].kind, "")
-    return "–".join(tidy(one) for one in dict.fromkeys((known[0], known[-1]))) + unit
+    return "–".join(tidy(value) for value in dict.fromkeys((settings[0], settings[-1]))) + unit
 
 
 REPORT = Report("stability.json", text_table, page_text)

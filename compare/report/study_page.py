@@ -107,7 +107,7 @@ def _overview(rows: Sequence[Row]) -> str:
         "was run. Crosses along the top: failed runs, at their cost. Errors below those of the methods of fixed "
         "precision have a panel of their own, with its own scale; the grey band is the bound of the reference."
     )
-    hidden = [one.label for one in curves(rows) if any(not row.cpu_s for row in one.rows)]
+    hidden = [curve.label for curve in curves(rows) if any(not row.cpu_s for row in curve.rows)]
     return f"{caption} Without a cost, and therefore not in the picture: {', '.join(hidden)}." if hidden else caption
 
 

@@ -55,22 +55,22 @@ _ORDERS = (
 def costs(rows: Sequence[Row], bound_m: float) -> Html:
     """Return the cost of each error with each method, sorted by the cost at the smallest error that is reached."""
     placed = []
-    least = [next((one.cpu_s for one in costs_at(rows, error_m, bound_m)), None) for error_m in TARGETS_M]
+    least = [next((cost.cpu_s for cost in costs_at(rows, error_m, bound_m)), None) for error_m in TARGETS_M]
     for curve in curves(rows):
         reached = [cost_at(curve, error_m, bound_m) for error_m in TARGETS_M]
         if any(reached):
             order = [(cost is None, cost.cpu_s if cost else 0.0) for cost in reversed(reached)]
-            cells = [_cost_cell(one, best) for one, best in zip(reached, least, strict=True)]
+            cells = [_cost_cell(cost, best) for cost, best in zip(reached, least, strict=True)]
             placed.append((order, [curve.label, *cells]))
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
     return Table(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(_COSTS)
 
 
-def _cost_cell(one: CostAtError | None, least: float | None) -> str:
-    if one is None:
+def _cost_cell(cost: CostAtError | None, least: float | None) -> str:
+    if cost is None:
         return ""
-    figure = f"{PART_MARK if one.extrapolated else ''}{cpu(one.cpu_s)}"
-    return strong(figure) if one.cpu_s == least else figure
+    figure = f"{PART_MARK if cost.extrapolated else ''}{cpu(cost.cpu_s)}"
+    return strong(figure) if cost.cpu_s == least else figure
 
 
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
@@ -129,24 +129,28 @@ def failures(rows: Sequence[Row]) -> Html | None:
 def words(statuses: Collection[Status]) -> Html:
     """Return the meaning of the words that stand for these statuses, and what to do about each."""
     columns = {"word": "", "meaning": "prose", "what to do": "prose"}
-    return Table(columns, [(one.words, one.meaning, one.advice) for one in Status if one in statuses]).html()
+    rows = [(status.words, status.meaning, status.advice) for status in Status if status in statuses]
+    return Table(columns, rows).html()
 
 
 def advice(statuses: Collection[Status]) -> list[str]:
     """Return what to do about each of these statuses, as lines of text."""
-    return [f"{one.words}: {one.advice}" for one in Status if one in statuses and one.advice]
+    return [f"{status.words}: {status.advice}" for status in Status if status in statuses and status.advice]
 
 
 def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], files: Sequence[str] = ()) -> Html:
     """Return titles, orders, sources and licences of the methods, and the user's programs and files."""
-    known = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
-    found: dict[str, Order] = {}
-    for one in orders(rows, bound_m):
-        found.setdefault(one.method, one)  # the first formulation is the method's own
+    listed = [METHODS[name] for name in dict.fromkeys(row.method for row in rows) if name in METHODS]
+    of_method: dict[str, Order] = {}
+    for order in orders(rows, bound_m):
+        of_method.setdefault(order.method, order)  # the first formulation is the method's own
     body = [
-        (one.id, one.title, one.order or ABSENT, observed(found.get(one.id)), one.source, one.licence, one.extra)
-        for one in known
-    ]
+        (
+            method.id, method.title, method.order or ABSENT, observed(of_method.get(method.id)),
+            method.source, method.licence, method.extra,
+        )
+        for method in listed
+    ]  # fmt: skip
     yours = {name: (shortened(command, LONGEST_COMMAND), "--run") for name, command in programs.items()}
     yours |= dict.fromkeys(files, ("", "--candidates"))
     rest = [(name, command, "", "", source, "", "") for name, (command, source) in yours.items()]
@@ -163,14 +167,13 @@ def observed(order: Order | None) -> str:
 
 def _orders_as_text(rows: Sequence[Row], bound_m: float) -> list[str]:
     """Return declared and observed orders as lines of text."""
-    found = orders(rows, bound_m)
-    own = {one.method: one.formulation for one in reversed(found)}
-    words = "; ".join(
-        f"{one.method}{'' if own[one.method] == one.formulation else f' ({one.formulation})'} {one.declared}: "
-        f"{observed(one)}"
-        for one in found
-    )
-    return ["", *wrap(f"Order, declared: observed. {words}", 100)] if found else []
+    declared = orders(rows, bound_m)
+    usual = {order.method: order.formulation for order in reversed(declared)}
+    texts = []
+    for order in declared:
+        other = "" if usual[order.method] == order.formulation else f" ({order.formulation})"
+        texts.append(f"{order.method}{other} {order.declared}: {observed(order)}")
+    return ["", *wrap(f"Order, declared: observed. {'; '.join(texts)}", 100)] if texts else []
 
 
 def text_table(document: dict[str, Any]) -> str:

@@ -31,7 +31,7 @@ def lines(score: Score) -> Iterator[str]:
     worst = score.worst
     numbers = f"expected {worst.expected:.17g}, got {worst.got:.17g}"
     yield _row("worst", f"{worst.component} at t = {worst.t:.10g} s", numbers)
-    each = (f"{name} {abs(one.difference):.2g} {_unit(name)}" for name, one in score.worst_of_each.items())
+    each = (f"{name} {abs(row.difference):.2g} {_unit(name)}" for name, row in score.worst_of_each.items())
     yield _row("worst of each", ", ".join(each))
     turn, delay = score.swing.largest_turn, score.swing.largest_delay
     if turn is not None and delay is not None:

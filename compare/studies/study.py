@@ -1,4 +1,4 @@
-"""Error against run time: every method over its ladder of settings on one scene.
+"""Error against run time: every method over its ladder of settings on one scene, and the order that its runs show.
 
 >>> from compare.studies.study import study
 >>> study("paris", ["rk4"], t_end=60)

@@ -91,7 +91,7 @@ def test_a_damaged_entry_is_solved_again():
 
 
 @pytest.mark.usefixtures("kept")
-def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched(monkeypatch):
+def test_a_dataset_is_read_once_in_a_process_and_again_when_it_was_touched():
     scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
     golden = golden_of(scene)
     assert golden_of(scene) is golden

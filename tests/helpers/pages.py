@@ -38,6 +38,12 @@ def blocks(page: str) -> list[Block]:
     return [kinds[token.type](token) for token in tokens if token.type in kinds]
 
 
+def code_spans(page: str) -> list[str]:
+    """Return what stands between backticks in the text of a page, in order."""
+    tokens = MarkdownIt("commonmark").parse((ROOT / page).read_text(encoding="utf-8"))
+    return [part.content for token in tokens for part in token.children or () if part.type == "code_inline"]
+
+
 def of_language(page: str, language: str) -> list[str]:
     """Return the texts of a page's blocks in a language."""
     return [block.text for block in blocks(page) if block.language == language]

@@ -57,8 +57,8 @@ class StudyResults:
     def sentence(self) -> str:
         """Return it in short; empty if nothing is known."""
         if self.asked:
-            right = sum(one.status is Status.OK for one in self.asked)
-            wrong = [one.method for one in self.asked if one.status is Status.SILENTLY_WRONG]
+            right = sum(result.status is Status.OK for result in self.asked)
+            wrong = [result.method for result in self.asked if result.status is Status.SILENTLY_WRONG]
             return f"{right} of {len(self.asked)} runs of methods kept what was asked for" + (
                 f"; silently wrong: {', '.join(dict.fromkeys(wrong))}." if wrong else ", and none was silently wrong."
             )
@@ -125,14 +125,14 @@ def entries(folder: Path, studies: Path | None) -> list[Entry]:
         DatasetError: a dataset is damaged.
     """
     try:
-        found = sorted(path.parent for path in folder.glob(f"*/{MANIFEST}"))
+        paths = sorted(path.parent for path in folder.glob(f"*/{MANIFEST}"))
     except OSError as error:
         raise InputError("--data", str(folder), "a folder of golden datasets", f"{error.strerror}.") from None
-    if not found:
+    if not paths:
         advice = "`foucault generate --all` makes those that ship."
         raise InputError("--data", str(folder), "a folder of golden datasets, each a folder in it", advice)
     readings: dict[str, dict[str, Golden]] = {}
-    for path in found:
+    for path in paths:
         golden = load(path)
         readings.setdefault(_name(golden), {})[golden.manifest.inputs] = golden
     kept = kept_studies(studies)
@@ -194,4 +194,4 @@ def _least(rows: Sequence[dict[str, Any]]) -> list[MethodResult]:
         error = row.get("error_m")
         if row["status"] == Status.OK and error is not None and error < (best[name].error_m if name in best else 1e300):
             best[name] = MethodResult(name, Status.OK, error_m=error, cpu_s=row.get("cpu_s"))
-    return sorted(best.values(), key=lambda one: one.error_m or 0.0)
+    return sorted(best.values(), key=lambda result: result.error_m or 0.0)

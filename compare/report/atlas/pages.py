@@ -48,7 +48,7 @@ def scene_page(entry: Entry, svgs: Sequence[str], base: str) -> str:
     """Return the page of a scene, which holds its golden rows and judges a file by them."""
     first, *others = entry.datasets
     fared = parts.methods(entry.studied)
-    readings = [Html(f"<h3>{text(one.manifest.id)}</h3>\n{parts.dataset(one, base)}") for one in others]
+    readings = [Html(f"<h3>{text(golden.manifest.id)}</h3>\n{parts.dataset(golden, base)}") for golden in others]
     return page(
         entry.id,
         [
@@ -78,16 +78,20 @@ def _sentence(entry: Entry) -> str:
 
 
 def _card(entry: Entry, svgs: Sequence[str], base: str) -> Html:
-    manifest, told = entry.golden.manifest, parts.trust(entry.golden)
-    shown = {name: told[name] for name in SHOWN}
-    of_files = [" ".join(parts.linked(one, name, base) for name in one.manifest.files) for one in entry.datasets]
-    shown |= {f"files of {one.manifest.id}": Html(names) for one, names in zip(entry.datasets, of_files, strict=True)}
+    manifest, trust = entry.golden.manifest, parts.trust(entry.golden)
+    shown = {name: trust[name] for name in SHOWN}
+    of_files = [
+        " ".join(parts.linked(golden, name, base) for name in golden.manifest.files) for golden in entry.datasets
+    ]
+    shown |= {
+        f"files of {golden.manifest.id}": Html(names) for golden, names in zip(entry.datasets, of_files, strict=True)
+    }
     shown["to score"] = Html(
         f"<code>{text(entry.score_command())}</code>, or drop a file on {_link(entry, 'its page')}"
     )
     if entry.studied.sentence():
         shown["methods"] = entry.studied.sentence()
-    levels = " ".join(one.manifest.level for one in entry.datasets)
+    levels = " ".join(golden.manifest.level for golden in entry.datasets)
     return Html(
         f'<article class="card" id="{text(entry.id)}" data-flags="{text(" ".join(entry.flags))}" '
         f'data-levels="{levels}">\n<div class="head">\n'
@@ -102,13 +106,17 @@ def _link(entry: Entry, words: str) -> Html:
 
 
 def _jumps(scenes: Sequence[Entry]) -> Html:
-    links = "\n".join(f'<a href="#{text(one.id)}">{text(one.id)}</a>' for one in scenes)
+    links = "\n".join(f'<a href="#{text(entry.id)}">{text(entry.id)}</a>' for entry in scenes)
     return Html(f'<p class="jumps">\n{links}\n</p>')
 
 
 def _filters(scenes: Sequence[Entry]) -> Html:
-    flags = sorted({flag for one in scenes for flag in one.flags})
-    levels = [level for level in LEVELS if any(level == of.manifest.level for one in scenes for of in one.datasets)]
+    flags = sorted({flag for entry in scenes for flag in entry.flags})
+    levels = [
+        level
+        for level in LEVELS
+        if any(level == golden.manifest.level for entry in scenes for golden in entry.datasets)
+    ]
     return Html(
         f'<form class="filters" hidden>\n{_choice("flag", flags)}\n{_choice("level", levels)}\n'
         '<output id="count"></output>\n</form>'

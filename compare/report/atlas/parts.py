@@ -111,21 +111,24 @@ def inputs(golden: Golden) -> Html:
     return facts(fields)
 
 
-def methods(kept: StudyResults) -> list[Html]:
+def methods(studied: StudyResults) -> list[Html]:
     """Return tables of how methods fared, as far as studies are kept: none, one or two."""
     parts = []
-    if kept.asked:
-        best_first = sorted(kept.asked, key=lambda one: -(one.digits if one.digits is not None else -1.0))
-        asked = Table(
+    if studied.asked:
+        best_first = sorted(studied.asked, key=lambda result: -(result.digits if result.digits is not None else -1.0))
+        table = Table(
             {"method": "", "outcome": "", "asked for": "number", "digits kept": "number", "CPU s": "number"},
-            [(one.method, one.status.words, _one(one.asked), _one(one.digits), _cpu(one)) for one in best_first],
-            ["" if one.status is Status.OK else "failed" for one in best_first],
+            [
+                (result.method, result.status.words, _one(result.asked), _one(result.digits), _cpu(result))
+                for result in best_first
+            ],
+            ["" if result.status is Status.OK else "failed" for result in best_first],
         )
-        parts.append(asked.html("Runs that were asked for the same digits (docs/studies.md)"))
-    if kept.least:
-        rows = [(one.method, f"{one.error_m:.2g} m", _cpu(one)) for one in kept.least]
+        parts.append(table.html("Runs that were asked for the same digits (docs/studies.md)"))
+    if studied.least:
+        rows = [(result.method, f"{result.error_m:.2g} m", _cpu(result)) for result in studied.least]
         least = Table({"method": "", "least error": "number", "its CPU s": "number"}, rows)
-        parts.append(least.html(f"The most accurate run of each method over {kept.span_s:g} s"))
+        parts.append(least.html(f"The most accurate run of each method over {studied.span_s:g} s"))
     return parts
 
 
@@ -133,8 +136,8 @@ def _one(digits: float | None) -> str:
     return "" if digits is None else f"{max(digits, 0.0):.1f}"
 
 
-def _cpu(one: MethodResult) -> str:
-    return "" if one.cpu_s is None else f"{one.cpu_s:.2g}"
+def _cpu(result: MethodResult) -> str:
+    return "" if result.cpu_s is None else f"{result.cpu_s:.2g}"
 
 
 def embedded(golden: Golden) -> dict[str, Any]:
@@ -156,7 +159,7 @@ def embedded(golden: Golden) -> dict[str, Any]:
         "grid": {name: _doubles(golden.grid[name]) for name in ("t", *STATE)},
         "transits": None if reason else {"t": _doubles(transits["t"]), "weight": _doubles(weight)},
         "no_transits": reason,
-        "possible": [[float(one.from_s), float(one.to_s)] for one in golden.manifest.possible],
+        "possible": [[float(span.from_s), float(span.to_s)] for span in golden.manifest.possible],
         "words": _vocabulary(),
     }
 

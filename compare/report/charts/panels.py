@@ -79,14 +79,14 @@ def _draw(axes: Any, panel: Panel) -> None:
     draw(axes, panel.lines)
     axes.set(xlabel=panel.x, ylabel=panel.y, title=panel.title)
     if panel.log:
-        logarithmic(axes, "y", *limits([y for one in panel.lines for y in one.y]), 8)
+        logarithmic(axes, "y", *limits([y for line in panel.lines for y in line.y]), 8)
     else:
         axes.ticklabel_format(axis="y", useOffset=False)
     given = {"xlim": panel.xlim, "xticks": panel.xticks, "ylim": panel.ylim, "yticks": panel.yticks}
     axes.set(**{name: value for name, value in given.items() if value is not None})
     if panel.level:
         axes.set_aspect("equal")
-    names = [one for one in panel.lines if one.name]
+    names = [line for line in panel.lines if line.name]
     if panel.bare:
         axes.set_axis_off()
         name_ends(axes, names, size=9)

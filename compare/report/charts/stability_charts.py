@@ -116,7 +116,7 @@ def _key(axes: Any, y: float, wide: float, present: set[Status]) -> None:
         _square(axes, i, y, Status.OK, digits)
     axes.text(len(_STEPS) + 1.3, y + 0.5, "digits kept, at least", fontsize=8, va="center_baseline", color=INK)
     x = 0.0
-    for status in [one for one in LETTERS if one in present]:
+    for status in [status for status in LETTERS if status in present]:
         needs = 1.7 + _CHARACTER * len(status.words)
         if x == 0.0 or x + needs > wide:
             x, y = 0.0, y + 1.2
@@ -160,13 +160,13 @@ def _line(run: LongRun, place: int) -> Line:
 def _guides(lines: Sequence[Line]) -> list[Line]:
     """Return fans of guide lines, one fan above each group of lines that have similar errors where the fan begins."""
     groups: list[list[tuple[float, Line]]] = []
-    for low, line in sorted(((_error_at(one, one.x[-1]), one) for one in lines), key=itemgetter(0)):
+    for low, line in sorted(((_error_at(line, line.x[-1]), line) for line in lines), key=itemgetter(0)):
         if groups and low < groups[-1][-1][0] * _APART:
             groups[-1].append((low, line))
         else:
             groups.append([(low, line)])
     guides = []
-    above = max(4.0, (max(one.y[-1] for one in lines) / min(one.y[0] for one in lines)) ** _ABOVE)
+    above = max(4.0, (max(line.y[-1] for line in lines) / min(line.y[0] for line in lines)) ** _ABOVE)
     for group in groups:
         last = max(line.x[-1] for _, line in group)
         end, low = last / _BEFORE, above * max(_error_at(line, last) for _, line in group)

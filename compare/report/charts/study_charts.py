@@ -108,7 +108,7 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
     """
     best = front(rows, bound_m)
     on_front = {row.key for row in best}
-    shown = [one for one in curves(rows) if one.own or any(row.key in on_front for row in one.rows)]
+    shown = [curve for curve in curves(rows) if curve.own or any(row.key in on_front for row in curve.rows)]
     lines = ladders(shown, cost_of, partial(error_of, bound_m=bound_m))
     if not lines:
         return None
@@ -126,14 +126,14 @@ def overview(rows: Sequence[Row], bound_m: float) -> str | None:
         grid[-1, 0].set_xlabel(CPU)
         figure.supylabel(ERROR, fontsize=9)
         legend(grid[0, 0], lines)
-        names = ", ".join(one.name for one in lines)
+        names = ", ".join(line.name for line in lines)
         return svg_text(figure, "overview", f"Largest position error against CPU seconds, log-log, of {names}.")
 
 
 def _scales(lines: Sequence[Ladder], bound_m: float) -> list[tuple[float, float]]:
     """Return the lowest and the highest error of each panel."""
-    errors = [error for one in lines for error in one.y]
-    fixed = [error for one in lines if one.family != Family.MANY_DIGITS for error in one.y]
+    errors = [error for line in lines for error in line.y]
+    fixed = [error for line in lines if line.family != Family.MANY_DIGITS for error in line.y]
     finest, most = min(errors), max(errors) * 30
     split = max(min(fixed) / _SPLIT, FINEST_M) if fixed else 0.0
     if finest >= split:
@@ -147,13 +147,13 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
 
     The family of many digits is left to `precision_ladder` if there are others. None if no row is measured.
     """
-    lines = ladders([one for one in curves(rows) if one.own], cost_of, partial(error_of, bound_m=bound_m))
-    coarse = [one for one in lines if one.family != Family.MANY_DIGITS] or lines
-    families = [family for family in Family if any(one.family == family for one in coarse)]
+    lines = ladders([curve for curve in curves(rows) if curve.own], cost_of, partial(error_of, bound_m=bound_m))
+    coarse = [line for line in lines if line.family != Family.MANY_DIGITS] or lines
+    families = [family for family in Family if any(line.family == family for line in coarse)]
     if not families:
         return None
-    x_limits = limits([cpu_s for one in coarse for cpu_s in one.x])
-    y_limits = limits([error for one in coarse for error in one.y], 0.2, 6.0)
+    x_limits = limits([cpu_s for line in coarse for cpu_s in line.x])
+    y_limits = limits([error for line in coarse for error in line.y], 0.2, 6.0)
     count = -(-len(families) // _COLUMNS)
     with sheet((9.5, 2.9 * count)) as figure:
         grid = figure.subplots(count, min(_COLUMNS, len(families)), sharex=True, sharey=True, squeeze=False)
@@ -164,12 +164,12 @@ def by_family(rows: Sequence[Row], bound_m: float) -> str | None:
             logarithmic(panel, "y", *y_limits, 9)
             panel.tick_params(labelbottom=i + _COLUMNS >= len(families))
             panel.set_title(family)
-            for one in lines:
-                if one.family != family:
-                    panel.plot(one.x, one.y, color=RULE, linewidth=1.0, zorder=1)
-            own = [one for one in lines if one.family == family]
-            draw(panel, own)
-            legend(panel, own, size=7, inside=True)
+            for line in lines:
+                if line.family != family:
+                    panel.plot(line.x, line.y, color=RULE, linewidth=1.0, zorder=1)
+            members = [line for line in lines if line.family == family]
+            draw(panel, members)
+            legend(panel, members, size=7, inside=True)
         figure.supxlabel(CPU, fontsize=9)
         figure.supylabel(ERROR, fontsize=9)
         return svg_text(figure, "families", f"Error against CPU seconds in small multiples: {', '.join(families)}.")
@@ -203,8 +203,10 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
     is fitted, the fit is a broad and faint line, and its exponent stands beside the name.
     """
     laws = costs_of_digits(rows, bound_m)
-    own = [one for one in curves(rows) if one.own and family_of(one.method) in (Family.MANY_DIGITS, Family.HEYOKA)]
-    if not any(one.kind == "precision" and one.measured for one in own):
+    shown = [
+        curve for curve in curves(rows) if curve.own and family_of(curve.method) in (Family.MANY_DIGITS, Family.HEYOKA)
+    ]
+    if not any(curve.kind == "precision" and curve.measured for curve in shown):
         return None
 
     def digits(row: Row) -> float | None:
@@ -214,7 +216,7 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
         law = laws.get(curve.label)
         return curve.label if law is None else f"{curve.label}, ∝ digits^{law.exponent:.2f} ± {law.standard_error:.2f}"
 
-    lines = ladders(own, digits, cost_of, name)
+    lines = ladders(shown, digits, cost_of, name)
     with sheet((9.5, 5.2)) as figure:
         axes = figure.subplots()
         logarithmic(axes, "y", *limits([cpu for line in lines for cpu in line.y], 0.4, 3.0), 12)
@@ -244,9 +246,9 @@ def _known(axes: Any, bound_m: float) -> None:
 
 def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str | None:
     """Draw error against evaluations of the right-hand side, for methods that count them; None if there are none."""
-    own = [one for one in curves(rows) if one.own]
+    shown = [curve for curve in curves(rows) if curve.own]
     return _single(
-        ladders(own, lambda row: whole_evaluations(row, t_end), partial(error_of, bound_m=bound_m)),
+        ladders(shown, lambda row: whole_evaluations(row, t_end), partial(error_of, bound_m=bound_m)),
         bound_m,
         ("evaluations", "evaluations of the right-hand side", "Error against evaluations of the right-hand side"),
     )
@@ -254,8 +256,8 @@ def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str |
 
 def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw the error achieved against the relative tolerance asked for; None if no method takes a tolerance."""
-    own = [one for one in curves(rows) if one.own and one.kind == "tolerance"]
-    coarse = [one for one in own if family_of(one.method) != Family.MANY_DIGITS]
+    shown = [curve for curve in curves(rows) if curve.own and curve.kind == "tolerance"]
+    coarse = [curve for curve in shown if family_of(curve.method) != Family.MANY_DIGITS]
     words = ("tolerance", "relative tolerance asked for", "Error achieved against the tolerance asked for")
     lines = ladders(coarse, attrgetter("setting"), partial(error_of, bound_m=bound_m))
     return _single(lines, bound_m, words, diagonal="error in m = tolerance")
@@ -264,8 +266,8 @@ def achieved_tolerance(rows: Sequence[Row], bound_m: float) -> str | None:
 def formulations(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw error against CPU seconds of formulations of the same equations with one method; None without such rows."""
     every = curves(rows)
-    compared = {one.method for one in every if not one.own}
-    curves_compared = [one for one in every if one.method in compared]
+    compared = {curve.method for curve in every if not curve.own}
+    curves_compared = [curve for curve in every if curve.method in compared]
     lines = ladders(curves_compared, cost_of, partial(error_of, bound_m=bound_m), attrgetter("formulation"))
     words = ("formulations", CPU, "Error against CPU seconds of formulations of the same equations")
     lines = [replace(line, style=line_style(COLOURS[i % 6], i)) for i, line in enumerate(lines)]
@@ -282,8 +284,8 @@ def _single(lines: Sequence[Line], bound_m: float, words: tuple[str, str, str], 
     description = f"{words[2]}, log-log: {', '.join(line.name for line in lines)}."
     with sheet((9.5, 5.6)) as figure:
         axes = figure.subplots()
-        logarithmic(axes, "x", *limits([x for one in lines for x in one.x], 0.4, 3.0), 12)
-        logarithmic(axes, "y", *limits([y for one in lines for y in one.y], 0.2, 5.0), 16)
+        logarithmic(axes, "x", *limits([x for line in lines for x in line.x], 0.4, 3.0), 12)
+        logarithmic(axes, "y", *limits([y for line in lines for y in line.y], 0.2, 5.0), 16)
         axes.set(xlabel=words[1], ylabel=ERROR)
         band(axes, bound_m)
         if diagonal:

@@ -34,25 +34,25 @@ _MARGIN = 8
 
 def suite_document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
     """Return the JSON document of several candidates, each of a scene of its own or all of one."""
-    scenes = list(dict.fromkeys(one.scene for one in outcomes))
+    scenes = list(dict.fromkeys(outcome.scene for outcome in outcomes))
     return {
         "scene": scenes[0] if len(scenes) == 1 else None,
         "scenes": scenes,
         "agree": _agreeing(outcomes),
         "digits": _fewest_digits(outcomes),
         "data": DATA_VERSION,
-        "verdict": max((one.verdict for one in outcomes), key=ORDER.index),
-        "rows": [one.document() for one in outcomes],
+        "verdict": max((outcome.verdict for outcome in outcomes), key=ORDER.index),
+        "rows": [outcome.document() for outcome in outcomes],
     }
 
 
 def _agreeing(outcomes: Sequence[Outcome]) -> int:
-    return sum(one.verdict == "agrees" for one in outcomes)
+    return sum(outcome.verdict == "agrees" for outcome in outcomes)
 
 
 def _fewest_digits(outcomes: Sequence[Outcome]) -> float | None:
     """Return the least digits of the scenes that agree, rounded down to a tenth; None if none does."""
-    digits = [one.score.errors.digits for one in outcomes if one.score is not None and one.score.agrees]
+    digits = [outcome.score.errors.digits for outcome in outcomes if outcome.score is not None and outcome.score.agrees]
     return math.floor(10 * min(digits)) / 10 if digits else None
 
 
@@ -101,11 +101,13 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
     """Return the page as HTML."""
     numbers = ("covered", "largest error", "tolerance", "digits")
     columns = {"scene": "", "verdict": "", **dict.fromkeys(numbers, "number"), "transits": "", "candidate": "prose"}
-    kinds = ["" if one.verdict == "agrees" else "failed" for one in outcomes]
+    kinds = ["" if outcome.verdict == "agrees" else "failed" for outcome in outcomes]
     table = Table(columns, list(map(_cells, outcomes)), kinds)
     parts = [section("Scenes", Html(f'<div class="wide">{badge(outcomes)}</div>'), table.html())]
     reasons = [
-        Html(f"<h3>{text(one.scene)}</h3>\n{findings(one.main_lines)}") for one in outcomes if one.verdict != "agrees"
+        Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(outcome.main_lines)}")
+        for outcome in outcomes
+        if outcome.verdict != "agrees"
     ]
     if reasons:
         parts.append(section("What was found", *reasons))
@@ -133,9 +135,9 @@ def _cells(outcome: Outcome) -> tuple[str, ...]:
 def annotation(outcome: Outcome) -> str:
     """Return the workflow command that shows an outcome, with the verdict and what is known of its reason."""
     agrees = outcome.verdict == "agrees"
-    told = outcome.main_lines[:1] if agrees else outcome.main_lines
+    lines = outcome.main_lines[:1] if agrees else outcome.main_lines
     place = f"file={_property(outcome.name)},title={_property(f'foucault {outcome.scene}')}"
-    return f"::{'notice' if agrees else 'error'} {place}::{_data(chr(10).join(told))}"
+    return f"::{'notice' if agrees else 'error'} {place}::{_data(chr(10).join(lines))}"
 
 
 def _data(text: str) -> str:
@@ -150,14 +152,14 @@ def summary(outcomes: Sequence[Outcome]) -> str:
     """Return the table of the outcomes as Markdown, and the reasons of those that do not agree."""
     rows = ["| | scene | candidate | verdict | largest error | digits |", "|---|---|---|---|---|---|"]
     details = []
-    for one in outcomes:
-        errors = None if one.score is None else one.score.errors
+    for outcome in outcomes:
+        errors = None if outcome.score is None else outcome.score.errors
         numbers = ("", "") if errors is None else (f"{errors.max_m:.3g} m", f"{errors.digits:.1f}")
-        cells = [SIGNS[one.verdict], one.scene, f"`{one.name}`", one.verdict, *numbers]
+        cells = [SIGNS[outcome.verdict], outcome.scene, f"`{outcome.name}`", outcome.verdict, *numbers]
         rows.append("| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |")
-        if one.verdict != "agrees":
-            fence = "\n".join(line.replace("```", "'''") for line in one.lines)
-            details.append(f"\n<details><summary>{one.scene}</summary>\n\n```\n{fence}\n```\n</details>")
+        if outcome.verdict != "agrees":
+            fence = "\n".join(line.replace("```", "'''") for line in outcome.lines)
+            details.append(f"\n<details><summary>{outcome.scene}</summary>\n\n```\n{fence}\n```\n</details>")
     return "\n".join(["### Foucault pendulum", "", *rows, *details, ""])
 
 
@@ -192,15 +194,15 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
     }
     root = ElementTree.Element("testsuites", counts)
     suite = ElementTree.SubElement(root, "testsuite", {"name": "foucault", **counts})
-    for one in outcomes:
-        timing = None if one.score is None else one.score.timing
-        fields = {"classname": f"foucault.{one.scene}", "name": plain_lines(one.name)}
+    for outcome in outcomes:
+        timing = None if outcome.score is None else outcome.score.timing
+        fields = {"classname": f"foucault.{outcome.scene}", "name": plain_lines(outcome.name)}
         case = ElementTree.SubElement(suite, "testcase", fields | ({"time": f"{timing.wall_s:.3f}"} if timing else {}))
-        lines = [plain_lines(line) for line in one.lines]
-        if one.verdict == "agrees":
+        lines = [plain_lines(line) for line in outcome.lines]
+        if outcome.verdict == "agrees":
             result = ElementTree.SubElement(case, "system-out")
         else:
-            word = "error" if one.verdict == REFUSED else "failure"
+            word = "error" if outcome.verdict == REFUSED else "failure"
             result = ElementTree.SubElement(case, word, {"message": lines[0]})
         result.text = "\n".join(lines)
     ElementTree.indent(root)

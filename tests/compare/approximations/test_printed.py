@@ -34,10 +34,6 @@ def gastebois(sidereal_hours="23.93", latitude="48.87"):
     )
 
 
-def printed_value(word, scene, decimals, unit=1):
-    return f"{float(APPROXIMATIONS[word].value(scene)) / unit:.{decimals}f}"
-
-
 # Mathar, sections V and VII; `foucault paper` judges the numbers printed there ------------------------------------
 def test_the_frequency_of_the_reference_is_the_papers_cut_off_after_nine_decimals():
     hertz = frequency(PARIS, 1000)

@@ -92,7 +92,7 @@ def test_what_stands_in_a_row_cannot_break_the_page() -> None:
     assert "&lt;script&gt;alert" in text
 
 
-def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_matplotlib_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     import builtins
 
     imported = builtins.__import__

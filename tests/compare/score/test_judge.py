@@ -167,7 +167,7 @@ def test_the_reading_of_the_inputs_is_chosen_and_said(foucault, good):
     assert read["decimal"]["max_error_m"] == pytest.approx(read["auto"]["input_floor_m"], rel=0.1)
 
 
-def test_more_digits_than_a_doubles_are_judged_as_decimals(foucault, golden):
+def test_more_digits_than_a_doubles_are_judged_as_decimals(foucault):
     decimal = load("paris")
     said = json.loads(foucault("score", "paris", decimal.path / "grid.csv", "--json")[1])
     assert (said["inputs"], said["verdict"]) == ("decimal", "agrees")

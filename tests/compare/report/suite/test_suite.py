@@ -101,9 +101,7 @@ def test_a_file_of_no_scene_costs_only_itself(foucault, tmp_path, folder):
 
 
 @pytest.mark.parametrize(("names", "status"), [(("good", "wrong"), 1), (("good", "bad", "wrong"), 2), (("good",), 0)])
-def test_one_bad_file_of_several_costs_only_itself_and_the_worst_status_counts(
-    foucault, tmp_path, folder, names, status
-):
+def test_one_bad_file_of_several_costs_only_itself_and_the_worst_status_counts(foucault, tmp_path, names, status):
     golden = load("paris.binary64")
     rows = np.column_stack([golden.t, golden.x, golden.y])[:11]
     for name in names:
@@ -175,7 +173,7 @@ def test_what_an_annotation_would_take_for_its_own_is_escaped(foucault, tmp_path
     assert "a%2Cb%3Ac%25.csv,title=foucault paris::" in line
 
 
-def test_documents_keep_their_schema(foucault, folder, tmp_path):
+def test_documents_keep_their_schema(foucault, folder):
     """A score with everything in it, one of transits alone, a suite; an extra key or a word for a number is refused."""
     paris = folder / "paris.npz"
     documents = [
