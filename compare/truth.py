@@ -145,5 +145,5 @@ def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
         numbers = {"bound_m": np.array(truth.bound_m), "number": np.array(truth.number)}
         return {"t": truth.t, "states": truth.states, "low": truth.low, **numbers}
 
-    found = cache.arrays("dense", f"{recipe.hexdigest()[:32]}.npz", make)
-    return Dense(found["t"], found["states"], found["low"], float(found["bound_m"]), str(found["number"]))
+    stored = cache.arrays("dense", f"{recipe.hexdigest()[:32]}.npz", make)
+    return Dense(stored["t"], stored["states"], stored["low"], float(stored["bound_m"]), str(stored["number"]))

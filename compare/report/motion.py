@@ -65,11 +65,11 @@ class Motion:
         gauge = _gauge(golden)
         line, swings = _line(golden, states, gauge)
         plane = np.full(len(states), np.nan) if gauge is None else np.degrees(gauge.swing_plane(states))
-        known = np.isfinite(plane)
+        swinging = np.isfinite(plane)
         transits = golden.transits
         return cls(
             golden.manifest.id, float(golden.scene.exact.length), golden.t, states[:, :3], line, swings,
-            golden.t[known], plane[known], transits["t"], transits["x"], np.array(golden.directions),
+            golden.t[swinging], plane[swinging], transits["t"], transits["x"], np.array(golden.directions),
         )  # fmt: skip
 
     @classmethod

@@ -79,16 +79,16 @@ def rows_of(document: dict[str, Any]) -> list[Row]:
 
 def curves(rows: Sequence[Row]) -> list[Curve]:
     """Group rows by method and formulation, in order of appearance; a method's first formulation is its own."""
-    own: dict[str, str] = {}
+    usual: dict[str, str] = {}
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
-        own.setdefault(row.method, row.formulation)
+        usual.setdefault(row.method, row.formulation)
         groups.setdefault((row.method, row.formulation), []).append(row)
     return [
         Curve(
             method,
             formulation,
-            own[method] == formulation,
+            usual[method] == formulation,
             tuple(sorted(group, key=lambda row: row.setting if row.kind == "precision" else -row.setting)),
         )
         for (method, formulation), group in groups.items()
@@ -192,8 +192,8 @@ def _prices(curve: Curve, bound_m: float) -> str:
 
 def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
     """Yield the cheapest method at each error that is reached; errors at which it is the same run share a sentence."""
-    found = [(error_m, costs) for error_m in TARGETS_M if (costs := costs_at(rows, error_m, bound_m))]
-    for _, group in groupby(found, key=lambda one: (one[1][0].label, one[1][0].cpu_s)):
+    reached = [(error_m, costs) for error_m in TARGETS_M if (costs := costs_at(rows, error_m, bound_m))]
+    for _, group in groupby(reached, key=lambda target: (target[1][0].label, target[1][0].cpu_s)):
         alike = list(group)
         (first_m, costs), (last_m, _) = alike[0], alike[-1]
         if len(alike) > 1 and all(others == costs for _, others in alike):
@@ -240,9 +240,9 @@ def costs_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> dict[str, Powe
     """
     laws = {}
     for curve in curves(rows):
-        known = [row for row in _measured(curve.rows) if row.error_m and bound_m < row.error_m < 1 and row.cpu_s]
-        if curve.kind == "precision" and len({row.error_m for row in known}) >= LEAST_POINTS:
-            laws[curve.label] = power_law([digits_of(row, bound_m) for row in known], map(cost_of, known))
+        measured = [row for row in _measured(curve.rows) if row.error_m and bound_m < row.error_m < 1 and row.cpu_s]
+        if curve.kind == "precision" and len({row.error_m for row in measured}) >= LEAST_POINTS:
+            laws[curve.label] = power_law([digits_of(row, bound_m) for row in measured], map(cost_of, measured))
     return laws
 
 

@@ -155,17 +155,15 @@ def _beyond_the_cord(candidate: Candidate, scene: Scene) -> Deviation | None:
     length = float(scene.exact.length)
     if reach <= BEYOND * length:
         return None
-    found = f"x and y reach {reach:.4g} and the cord is {scene.pendulum.length} m long"
+    far = f"x and y reach {reach:.4g} and the cord is {scene.pendulum.length} m long"
     scale = _scale(candidate, scene)
     if scale is None:
-        return Deviation("beyond_the_cord", f"{found}: pixels, or another unit? Metres are wanted")
+        return Deviation("beyond_the_cord", f"{far}: pixels, or another unit? Metres are wanted")
     unit = next((word for word, size in LENGTHS.items() if size != 1 and abs(scale * float(size) - 1) < SAME), None)
     times = f"the first row is {scale:.6g} times the release"
     if unit is None:
-        return Deviation(
-            "scale", f"{found}: {times}; are {scale:.6g} pixels, or of another unit, a metre? Divide by it"
-        )
-    return Deviation("scale", f"{found}: {times}, so they are {LONG_NAMES[unit]}; --units {unit} reads them so")
+        return Deviation("scale", f"{far}: {times}; are {scale:.6g} pixels, or of another unit, a metre? Divide by it")
+    return Deviation("scale", f"{far}: {times}, so they are {LONG_NAMES[unit]}; --units {unit} reads them so")
 
 
 def _scale(candidate: Candidate, scene: Scene) -> float | None:

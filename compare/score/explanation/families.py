@@ -176,13 +176,13 @@ def _in_window(
     columns, root = rows.shape[1], math.sqrt(len(times))
     slopes, fresh, damping = None, False, list(DAMPING)
     best, least = theta, math.inf
-    kept = np.zeros(rows.size)
+    residual = np.zeros(rows.size)
     for _ in range(STEPS):
         left = (rows - pendulum.rows(theta, times, columns)).ravel()
         size = float(np.linalg.norm(left)) / root
         stuck = not size < 0.5 * least
         if size < least:
-            best, least, kept = theta, size, left
+            best, least, residual = theta, size, left
         if least < noise:
             break
         if slopes is None or (stuck and not fresh):
@@ -197,7 +197,7 @@ def _in_window(
             least = math.inf
             break
         hold = max(noise, 1e-3 * least) * root
-        theta = best + scales * _step(slopes, kept, (best - guess) / scales, hold, damping[0])
+        theta = best + scales * _step(slopes, residual, (best - guess) / scales, hold, damping[0])
     if slopes is None:
         slopes = pendulum.slopes(best, times, columns, scales, nudges)
     return Fit("sphere", best, least, tuple(range(len(NAMES))), slopes / scales / root)

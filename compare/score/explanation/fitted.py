@@ -69,8 +69,8 @@ def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Reading 
         if fit.rest > 3 * max(least, floor / 1.2):
             continue
         reader = Reader(replace(case.right, kind=fit.kind), fit, floor)
-        known = [cause for cause in causes_of(case, fit.kind) if integrators or cause.stage != "integrator"]
-        likely = reader.readings(known)[:TRIED]
+        causes = [cause for cause in causes_of(case, fit.kind) if integrators or cause.stage != "integrator"]
+        likely = reader.readings(causes)[:TRIED]
         likely += [reader.without(reading, cause) for reading in likely[:2] for cause in reading.causes]
         for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
             leaves = rms(case.left(reading.program))
@@ -183,8 +183,8 @@ def in_whole_steps(causes: Sequence[Deviation], spacing: float, share: float) ->
             yield cause
             continue
         many = round(spacing / cause.value)
-        known = share * many
-        if many and known < 0.5 and abs(spacing / cause.value - many) <= max(known, APART):
+        doubt = share * many
+        if many and doubt < 0.5 and abs(spacing / cause.value - many) <= max(doubt, APART):
             step = spacing / many
             text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
             yield replace(cause, value=step, shift=step, text=text)

@@ -72,7 +72,7 @@ class Reader:
     fit: Fit
     floor: float
 
-    def readings(self, known: Sequence[Cause]) -> list[Reading]:
+    def readings(self, causes: Sequence[Cause]) -> list[Reading]:
         """Return the best combinations, the best first."""
         nothing = self._judged((), self.right)
         best, beam = [nothing], [nothing]
@@ -83,7 +83,7 @@ class Reader:
             for reading in beam:
                 groups = {cause.group for cause in reading.causes}
                 cost = sum(cause.cost for cause in reading.causes)
-                for cause in known:
+                for cause in causes:
                     key = frozenset((*map(id, reading.causes), id(cause)))
                     if cost + cause.cost > least or cause.group in groups or key in seen:
                         continue
@@ -103,15 +103,15 @@ class Reader:
             if not beam:
                 break
         best.sort(key=lambda reading: reading.score)
-        return [self._exactly_named(best[0], known), *best[1:]]
+        return [self._exactly_named(best[0], causes), *best[1:]]
 
-    def _exactly_named(self, reading: Reading, known: Sequence[Cause]) -> Reading:
+    def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
         """Put a named cause in place of a fitted number that is as good as equal to its own: that is no accident."""
         for cause in reading.causes:
             if not cause.free or cause.stage == "integrator":
                 continue
             value = reading.value(cause)
-            for other in known:
+            for other in causes:
                 if other.free or other.group != cause.group:
                     continue
                 program = other.change(reading.program)
@@ -161,7 +161,7 @@ class Reader:
         values, _ = gauss_newton(model, start, steps=NEWTON, gain=GAIN)
         return self._judged(together, program.with_inputs(free, values))
 
-    def like_a_step(self, reading: Reading, known: Iterable[Cause]) -> bool:
+    def like_a_step(self, reading: Reading, causes: Iterable[Cause]) -> bool:
         """Return whether what a reading leaves is an integrator's, too little for its method to be named.
 
         A drag or a step halves it then, and no input does as well.
@@ -170,7 +170,7 @@ class Reader:
         if "integrator" in groups:
             return False
         least = {True: math.inf, False: math.inf}
-        for cause in known:
+        for cause in causes:
             if cause.group not in groups and not _clash(reading.causes, cause):
                 extended = self._with(reading, cause)
                 kind = cause.stage == "integrator" or cause.free == "drag"
