@@ -23,8 +23,11 @@ from ..candidates.external import Timing, arguments, timed
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
 from ..report.suite import outcome_forms
-from ..report.suite.outcome import Outcome, SuiteFiles, suite_files
+from ..score.verdict import Outcome
 from .options import announce
+
+SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")  # of a suite's files
+TRANSITS = ".transits"
 
 
 class Trial(NamedTuple):
@@ -34,6 +37,55 @@ class Trial(NamedTuple):
     candidate: Candidate | None
     transits: Array | None = None
     timing: Timing | None = None
+
+
+@dataclass(frozen=True)
+class SuiteFiles:
+    """The files of a suite for one scene, such as paris.csv, with paris.transits.csv beside it.
+
+    Attributes:
+        scene: id of a scene that ships, or the path of a TOML file of the same name beside the candidate.
+        candidate: its file; None if there are transits alone.
+        transits: the file of its transits, or None.
+    """
+
+    scene: str
+    candidate: Path | None
+    transits: Path | None
+
+    @property
+    def name(self) -> str:
+        """The candidate's file, or that of its transits."""
+        return str(self.candidate or self.transits)
+
+
+def suite_files(folder: Path) -> list[SuiteFiles]:
+    """List the candidates of a folder by their scenes, sorted.
+
+    Raises:
+        InputError: it is no folder, holds no candidates, or two for one scene.
+    """
+    if not folder.is_dir():
+        raise InputError(
+            "--suite", str(folder), "a folder", "Its files are named by their scenes: paris.csv, hard.npz."
+        )
+    by_scene: dict[str, dict[bool, Path]] = {}
+    for path in sorted(folder.iterdir()):
+        if path.suffix.lower() not in SUFFIXES or not path.is_file():
+            continue
+        of_transits = path.stem.endswith(TRANSITS)
+        others = by_scene.setdefault(path.stem.removesuffix(TRANSITS), {})
+        if of_transits in others:
+            raise InputError("--suite", f"{others[of_transits].name} and {path.name}", "one file for a scene")
+        others[of_transits] = path
+    if not by_scene:
+        expected = f"files named by their scenes, with one of {', '.join(SUFFIXES)}"
+        raise InputError("--suite", str(folder), expected, "For paris: paris.csv, and paris.transits.csv if you like.")
+    suite = []
+    for scene, paths in sorted(by_scene.items()):
+        described = folder / f"{scene}.toml"
+        suite.append(SuiteFiles(str(described) if described.is_file() else scene, paths.get(False), paths.get(True)))
+    return suite
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from reference.commands.terminal import AsJson, Assignments, chosen, completion,
 from .options import listed
 
 if TYPE_CHECKING:
-    from ..report.suite.outcome import Outcome
+    from ..score.verdict import Outcome
 
 MAX_REPEATS = 1000
 TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats

@@ -17,15 +17,14 @@ from xml.etree import ElementTree
 from reference.errors import plain_lines
 from reference.scenes.shipped import DATA_VERSION
 
-from ...score.verdict import percent
+from ...score.verdict import REFUSED, Outcome, percent
 from ..folder import CSV, PAGE, check_folder, json_text, write_file, write_files, writing
 from ..page import Html, Table, findings, page, paragraph, section, text
-from .outcome import ORDER, REFUSED, Outcome
 
 JSON, BADGE = "suite.json", "badge.svg"
 KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "tolerance_m", "error")  # of rows.csv
 SUMMARY = "GITHUB_STEP_SUMMARY"
-SIGNS = {"agrees": "✅", "disagrees": "❌", REFUSED: "⚠️"}
+SIGNS = {"agrees": "✅", "disagrees": "❌", REFUSED: "⚠️"}  # from best to worst
 LABEL = "Foucault pendulum"
 GOOD, BAD = "#2f7d32", "#b3261e"  # white text on them has a contrast above 5 to 1
 _WIDTH = 6.2  # px of a letter of 11 px, about; textLength makes it exact
@@ -41,7 +40,7 @@ def suite_document(outcomes: Sequence[Outcome]) -> dict[str, Any]:
         "agree": _agreeing(outcomes),
         "digits": _fewest_digits(outcomes),
         "data": DATA_VERSION,
-        "verdict": max((outcome.verdict for outcome in outcomes), key=ORDER.index),
+        "verdict": max((outcome.verdict for outcome in outcomes), key=[*SIGNS].index),
         "rows": [outcome.document() for outcome in outcomes],
     }
 

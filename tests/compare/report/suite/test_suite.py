@@ -13,7 +13,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from compare.report.suite.outcome import suite_files
+from compare.commands.judging import suite_files
 from reference import load, load_scene, trajectory
 from reference.scenes.shipped import DATA_VERSION
 
