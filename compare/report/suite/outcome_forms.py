@@ -185,7 +185,7 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
     Raises:
         InputError: the file cannot be written.
     """
-    verdicts = [one.verdict for one in outcomes]
+    verdicts = [outcome.verdict for outcome in outcomes]
     counts = {
         "tests": str(len(outcomes)),
         "failures": str(verdicts.count("disagrees")),
