@@ -23,7 +23,7 @@ PARIS = load_scene("paris")
 
 def test_motions_stand_before_numbers_and_follow_from_the_declarations_types():
     assert list(APPROXIMATIONS) == [*motions(), *quantities()]
-    assert (motions()[0], quantities()[0]) == ("conical", "apparent_gravity")
+    assert "conical" in motions() and "apparent_gravity" in quantities()
 
 
 def test_every_declaration_is_filled_in():

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from compare.candidates.layout import Naming
-from compare.candidates.names import defaults, meaning, size_of
+from compare.candidates.names import LENGTHS, LONG_NAMES, TIMES, defaults, meaning, size_of
 from compare.candidates.read import read, read_stream
 from reference import InputError, load
 
@@ -135,6 +135,10 @@ def test_digits_beyond_a_double_survive_a_unit():
     assert found.columns["x"][0] == 0.3
     exact = Fraction("0.30000000000000000000000012345") - Fraction(0.3)
     assert found.low["x"][0] == pytest.approx(float(exact), rel=1e-12)
+
+
+def test_every_unit_has_a_long_name_for_messages():
+    assert {*TIMES, *LENGTHS} - {"s", "m"} == {*LONG_NAMES}
 
 
 def test_units_of_speed():

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import pkgutil
 from functools import cache
+from importlib import import_module
 
 import numpy as np
 import pytest
 from small_scenes import make_scene
 
+import compare.methods
 import reference
-from compare.methods import METHODS, Problem, available, gauss_legendre, rk4, rkng56, rkng67
+from compare.methods import METHODS, Problem, available, gauss_legendre
 from reference.numbers.precision import real
 
 SPAN = 3.0
@@ -59,12 +62,17 @@ def test_the_error_falls_at_least_as_fast_as_the_claim_in_the_formulation_that_s
 
 
 def test_every_method_of_fixed_step_declares_the_order_that_its_tableau_proves_and_its_title_names() -> None:
-    tableaux = {"rk4": rk4.TABLEAU, "rkng56": rkng56.TABLEAU, "rkng67": rkng67.TABLEAU, "rkmk4": rk4.TABLEAU}
-    proved = {name: tableau.order for name, tableau in tableaux.items()}
     gauss_legendre.gauss(gauss_legendre.STAGES)  # raises unless its quadrature has order 2 stages
-    steps = {name: method for name, method in METHODS.items() if method.setting == "step"}
-    assert proved | {"gauss_legendre": 2 * gauss_legendre.STAGES} == {name: one.order for name, one in steps.items()}
-    assert all(f"order {method.order}" in method.title for method in steps.values())
+    of_fixed_step = []
+    for file in pkgutil.iter_modules(compare.methods.__path__):
+        module = import_module(f"compare.methods.{file.name}")
+        for method in getattr(module, "METHODS", ()):
+            if method.setting == "step":
+                of_fixed_step.append(method.id)
+                proved = 2 * gauss_legendre.STAGES if module is gauss_legendre else module.TABLEAU.order
+                assert method.order == proved, method.id
+                assert f"order {proved}" in method.title
+    assert sorted(of_fixed_step) == sorted([*EXPLICIT, "gauss_legendre"])
 
 
 @needs_numba

@@ -194,7 +194,7 @@ def table_case(program: Path, number: int) -> Told:
 def test_one_to_three_mistakes_drawn_at_random_are_named(
     mistaken: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
 ) -> None:
-    """Every word right and none besides in 95 %, and never a wrong one first."""
+    """Of this draw: every word right and none besides in 95 %, and never a wrong one first. Others reach 85 to 88 %."""
     count = size(10, 60)
     begun = time.process_time()
     table = {number: table_case(mistaken, number) for number in range(count)}

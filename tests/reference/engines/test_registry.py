@@ -78,7 +78,7 @@ def test_the_cheapest_engine_that_serves_is_taken():
 
 def test_an_engine_that_is_not_there_is_refused(monkeypatch):
     assert checked(None) == checked(AUTO) == AUTO
-    with pytest.raises(InputError, match="one of auto, heyoka, limbs"):
+    with pytest.raises(InputError, match=r"one of auto, .*heyoka, .*limbs"):
         checked("abacus")
     monkeypatch.setattr(type(engines()["limbs"]), "requires", ("no_such_module",))
     with pytest.raises(InputError, match=r"foucault-reference\[methods\]"):
