@@ -30,7 +30,7 @@ from .size import MOST_PREC, fraction_bits
 from .zeros import MOST_ZEROS
 
 STEPS_PER_CALL = 1024
-COMPILE_S = 16  # what compiling takes, about, of which users are told
+COMPILE_S = 18  # what compiling takes, about, of which users are told
 ROWS = np.array((X, M, W, TENSION))
 ORDER_PER_BIT = 0.5  # of the series: more than a run alone would take, since every step must be proved
 POLYNOMIALS_PER_CALL = 64
