@@ -22,7 +22,7 @@ class NotFiniteError(InputError):
 
 @dataclass(frozen=True)
 class Deviation:
-    """What is found out about a candidate: a way in which its file is written, or a thing that its program does.
+    """How a candidate deviates from what was expected: in the way its file is written, or in what its program does.
 
     Attributes:
         id: a stable word.

@@ -31,7 +31,7 @@ TRANSITS = ".transits"
 
 
 class Trial(NamedTuple):
-    """What is judged: a candidate, its transits or transits alone, and how long its program took."""
+    """A candidate to judge, with its transits or transits alone, and how long its program took."""
 
     scene: Scene
     candidate: Candidate | None
