@@ -7,6 +7,8 @@
 PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+# A lock names every package: --no-deps, so that pip looks for no newer one
+LOCKED := $(INSTALL) --no-deps --require-hashes -r
 PYTEST := $(BIN)/python -m pytest -q -n 2 --dist loadfile --no-loadscope-reorder
 packages = $$(sed -n '/win32/d; s/==.*//p' $(1) | sort -u | wc -l)
 
@@ -77,14 +79,14 @@ lint: .venv/testing
 	@echo "Creating .venv"
 	@$(PYTHON) -m venv --clear .venv
 	@echo "Downloading and installing $(call packages,requirements.lock) packages into .venv"
-	@$(INSTALL) --require-hashes -r requirements.lock
+	@$(LOCKED) requirements.lock
 	@echo "Installing foucault itself into .venv"
 	@$(INSTALL) --no-build-isolation --no-deps -e .
 	@touch $@
 
 .venv/testing: .venv/solving requirements-test.lock
 	@echo "Bringing .venv to the $(call packages,requirements-test.lock) packages that tests need"
-	@$(INSTALL) --require-hashes -r requirements-test.lock
+	@$(LOCKED) requirements-test.lock
 	@touch $@
 
 .venv-peers/ready: requirements-peers.lock pyproject.toml
@@ -92,7 +94,7 @@ lint: .venv/testing
 	  the native methods are compiled. On Debian and Ubuntu: apt install gfortran g++ cmake libgsl-dev libsundials-dev" >&2; exit 2; }
 	@echo "Downloading and installing $(call packages,requirements-peers.lock) packages into .venv-peers"
 	@$(PYTHON) -m venv --clear .venv-peers
-	@$(subst .venv,.venv-peers,$(INSTALL)) --require-hashes -r requirements-peers.lock
+	@$(subst .venv,.venv-peers,$(LOCKED)) requirements-peers.lock
 	@$(subst .venv,.venv-peers,$(INSTALL)) --no-build-isolation --no-deps -e .
 	@touch $@
 
