@@ -38,13 +38,13 @@ def command(
     for folder in folders:
         with progress() as show:
             outcome = verify(folder, show(folder.name))
-            problems, notes = outcome.problems, outcome.notes
+            problems, undecided, notes = outcome.problems, outcome.undecided, outcome.foreign
             if recompute and not problems:
                 problems, measured = recomputed(folder, show(folder.name))
-                notes = [*outcome.foreign, *measured]
-        rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": notes})
+                undecided, notes = [], [*notes, *measured]
+        rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": [*undecided, *notes]})
         if not as_json:
-            typer.echo(f"{folder}: {'ok' if not problems else 'WRONG'}")
+            typer.echo(f"{folder}: {'WRONG' if problems else '; '.join(['ok', *undecided])}")
             for line in [*problems, *notes]:
                 typer.echo(f"  {line}")
     if as_json:

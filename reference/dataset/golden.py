@@ -10,7 +10,6 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +17,6 @@ import numpy as np
 from pydantic import ValidationError
 
 from ..errors import DatasetError, FoucaultError, InputError, did_you_mean
-from ..numbers.columns import VELOCITY
 from ..numbers.precision import Array
 from ..scenes.scene import Scene, parse_scene
 from ..scenes.shipped import seals
@@ -54,11 +52,6 @@ class Files:
     texts: dict[str, str]
     tables: dict[str, Sheet]
     foreign: list[str]
-
-    @cached_property
-    def fastest(self) -> Fraction:
-        """The largest speed in the grid, in m/s, as the sum of its components' sizes."""
-        return max(sum(map(abs, row), Fraction(0)) for row in self.tables["grid.csv"].numbers(VELOCITY))
 
 
 def read_files(folder: Path) -> Files:

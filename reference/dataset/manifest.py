@@ -187,6 +187,7 @@ class Manifest(Part):
             f"decimals.transits: must name the columns {', '.join(TRANSITS)}": {*self.decimals.get("transits", ())}
             in ({*TRANSITS}, {*transits}),
             f"files: {' and '.join(ALWAYS)} belong to every dataset": set(ALWAYS) <= set(self.files),
+            "files: transits.csv belongs to a dataset with transits": not transits or "transits.csv" in self.files,
         }
         broken = [rule for rule, holds in rules.items() if not holds]
         if broken:

@@ -54,9 +54,8 @@ def changes_in(name: str) -> list[str]:
 def is_of_shipped_scene(scene: Scene, name: str) -> bool:
     """Return whether a dataset is that of a scene that comes with the project, unchanged but for its reading."""
     shipped = shipped_scene(scene)
-    if shipped is scene or scene.run != shipped.run:
-        return False
-    return name == dataset_id(shipped.model_copy(update={"inputs": scene.inputs}))
+    same = shipped is not scene and scene == shipped.model_copy(update={"inputs": scene.inputs})
+    return same and name == dataset_id(scene)
 
 
 def default_folder(scene: Scene, name: str) -> Path:

@@ -31,17 +31,12 @@ class Verification:
     Attributes:
         problems: a sentence for each; none if the dataset passes.
         foreign: a note on each file in the folder that does not belong to the dataset.
-        left_out: a sentence for each check that was not made, with its reason.
+        undecided: a sentence on what only `recompute` decides; none if that is nothing.
     """
 
     problems: list[str]
     foreign: list[str]
-    left_out: list[str]
-
-    @property
-    def notes(self) -> list[str]:
-        """All that a user should know besides problems: files that do not belong to it, and checks not made."""
-        return [*self.foreign, *self.left_out]
+    undecided: list[str]
 
 
 def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
@@ -61,13 +56,21 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
     foreign = [f"{name}: not part of the dataset, ignored" for name in files.foreign[:MAX_PROBLEMS]]
     foreign += [f"and {more} more"] if (more := len(files.foreign) - MAX_PROBLEMS) > 0 else []
     problems = [*islice(seal_problems(files), MAX_PROBLEMS), *_row_by_row(files)]
-    left_out: list[str] = []
+    undecided: list[str] = []
     if not problems:
         try:
-            problems, left_out = motion.problems(files, report)
+            problems, undecided = motion.problems(files, report)
         except (ArithmeticError, BeyondDoublesError):
             problems = [BEYOND]
-    return Verification(problems[:MAX_PROBLEMS], foreign, left_out)
+    if not problems and (undecided := [*undecided, *_claims(files.manifest)]):
+        undecided = [f"not decided without --recompute: {', '.join(undecided)}"]
+    return Verification(problems[:MAX_PROBLEMS], foreign, undecided)
+
+
+def _claims(manifest: Manifest) -> list[str]:
+    """Return what a manifest says of its proof and its cross-checks, for which nothing but the index can vouch."""
+    claims = {"the proof": manifest.enclosure, "the cross-checks": manifest.cross_checks}
+    return [name for name, made in claims.items() if made and seals().get(manifest.id) != manifest.seal]
 
 
 def problems_of(folder: Path) -> list[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -26,8 +26,9 @@ def forge(
     grid: Change | None = None,
     transits: Change | None = None,
     manifest: Callable[[dict[str, Any]], object] | None = None,
+    without: Sequence[str] = (),
 ) -> None:
-    """Change a dataset in place: its tables' rows, its manifest, and all that depends on them."""
+    """Change a dataset in place: its tables' rows, its manifest, and all that depends on them; leave files out."""
     files = read_files(folder)
     document = json.loads((folder / MANIFEST).read_text())
     texts, tables = dict(files.texts), dict(files.tables)
@@ -35,6 +36,13 @@ def forge(
         if change is not None:
             _change_table(tables, kind, change)
             document["counts"][kind] = len(tables[f"{kind}.csv"].rows)
+            if kind == "transits":
+                _change_bounds(document, tables["transits.csv"])
+    for name in without:
+        document["files"].pop(name, None)
+        texts.pop(name, None)
+        tables.pop(name, None)
+        (folder / name).unlink(missing_ok=True)
     if manifest is not None:
         manifest(document)
     if grid is not None:
@@ -72,6 +80,13 @@ def _change_table(tables: dict[str, Sheet], kind: str, change: Change) -> None:
         places = {name: sheet.header.index(name) for name in NUMBERS[kind]}
         doubles = {name: [float(Fraction(row[place])) for row in forged.rows] for name, place in places.items()}
         tables[f"{kind}.binary64.csv"] = binary64_sheet(forged, doubles)
+
+
+def _change_bounds(document: dict[str, Any], transits: Sheet) -> None:
+    """Have the bounds on all times say what the rows do."""
+    bounds, largest = document["bounds"], max((row[-1] for row in transits.rows), key=Fraction, default=None)
+    bounds["transit_s"] = largest
+    bounds["transits"] = {**bounds["transits"], "t": largest} if largest else {}
 
 
 def moved(text: str, by: Fraction) -> str:

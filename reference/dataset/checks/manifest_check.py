@@ -28,14 +28,16 @@ def problems(files: Files) -> Iterator[str]:
         yield f"{MANIFEST}: run.formulation = {run.formulation} is none"
         return
     vanishes = xdot_vanishes(Start.of(scene.exact, PREC))
+    counts, possible, sought = manifest.counts, manifest.possible, scene.run.transits and not vanishes
     made = manifest.model_copy(
         update={
             **following(scene, run.formulation, run.number, files.tables["grid.csv"]),
             "level": scene.run.level,
             "digits": scene.run.digits,
-            "counts": manifest.counts.model_copy(update={"possible": len(manifest.possible)}),
+            "counts": counts.model_copy(update={"transits": counts.transits * sought, "possible": len(possible)}),
+            "possible": possible * sought,
             "bounds": bounds_of(manifest.bounds.grid, manifest.bounds.transits),
-            "transits": completeness(scene, vanishes, bool(manifest.possible)),
+            "transits": completeness(scene, vanishes, bool(possible)),
         }
     )
     for place, *both in differences(manifest.model_dump(), made.model_dump()):
@@ -69,17 +71,18 @@ def _possible(files: Files) -> Iterator[str]:
     last = Fraction(0)
     for interval in files.manifest.possible:
         low, high = Fraction(interval.from_s), Fraction(interval.to_s)
-        if not last <= low <= high <= files.scene.exact.t_end:
+        if not last <= low < high <= files.scene.exact.t_end:
             yield f"{MANIFEST}: possible transits must be intervals in order within (0, t_end]"
         last = high
 
 
 def _bounds(manifest: Manifest) -> Iterator[str]:
-    """Check that each bound covers the rounding to the printed digits."""
+    """Check that each bound covers the rounding to the printed digits, and leaves only the last of them open."""
     for kind in ("grid", "transits"):
         for name, bound in getattr(manifest.bounds, kind).items():
-            if Fraction(bound) < Fraction(1, 2 * 10 ** manifest.decimals[kind][name]):
-                yield f"{MANIFEST}: bounds.{kind}.{name} = {bound} is less than half a unit of the last printed digit"
+            units = Fraction(bound) * 10 ** manifest.decimals[kind][name]
+            if units < Fraction(1, 2) or (units > 1 and (kind == "grid" or manifest.enclosure)):
+                yield f"{MANIFEST}: bounds.{kind}.{name} = {bound} is not from half a unit to one of the last digit"
 
 
 def _evidence(manifest: Manifest) -> Iterator[str]:

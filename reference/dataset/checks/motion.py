@@ -2,59 +2,63 @@
 
 Two runs from the exact release, at two precisions, show by their disagreement how far the finer one can be trusted.
 Where even the most bits that limbs have do not decide, as on a chaotic scene, that is said, and nothing is wrong.
+Each zero of xdot is a row of `transits.csv`, or lies in a possible interval, where xdot only grazes zero.
 """
 
 from __future__ import annotations
 
 import re
+from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from fractions import Fraction
 
 from ...engines.limbs.size import LEAST_PREC, LIMB_BITS, MOST_PREC
-from ...engines.plan import Run
+from ...engines.plan import Plan, Run
 from ...engines.registry import engines
-from ...errors import IntegrationError, UnreachableError
+from ...errors import UnreachableError
 from ...model.start import Start
-from ...numbers.columns import GRID, TRANSITS
+from ...numbers.columns import GRID, TRANSITS, VELOCITY
 from ...numbers.precision import DOUBLE_BITS, GUARD_BITS, bits_of
 from ...numbers.table import Table
 from ..golden import Files
-from ..manifest import Kind, Manifest
+from ..manifest import MANIFEST, Kind, Manifest
 from ..sheets import Sheet
+from .tables import largest_jerk
 
 BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
 PATIENCE = 4  # times that, for all attempts together, where the first does not decide
+GRAZES = 8  # of the bounds on vx, and of xdot where a proof may not have decided whether it is zero
 FINER_BITS = 44  # two limbs, between two attempts; one limb between the two runs of an attempt
 
 Progress = Callable[[float, float], None]  # called with the simulated time reached and the whole span, in s
 
 
 def problems(files: Files, report: Progress | None = None) -> tuple[list[str], list[str]]:
-    """Return a sentence for every number that the motion contradicts, and what could not be checked."""
+    """Return a sentence for every number that the motion contradicts, and what was not decided, with the reason."""
     if not engines()["limbs"].installed:
-        return [], _undecided("integrating it again needs numba (pip install 'foucault-reference[methods]')")
+        return [], _undecided("integrating it again needs numba: pip install 'foucault-reference[methods]'")
     manifest = files.manifest
     allowed_s = BASE_S + ROW_S * manifest.counts.grid + TRANSIT_S * manifest.counts.transits
     prec, steps, expected_s, most_s = _first_prec(manifest), _steps(files), 0.0, allowed_s
-    seek = files.scene.run.transits and manifest.transits == "complete" and "transits.csv" in files.tables
     try:
         while prec <= MOST_PREC:
             expected_s += 2 * engines()["limbs"].expected_s(steps, prec)
             if expected_s > most_s:
                 return [], _undecided(f"integrating it again would take about {expected_s:.0f} s")
-            coarse, fine = (_run(files, bits, seek, report) for bits in (prec - LIMB_BITS, prec))
+            coarse, fine = (_run(files, bits, report) for bits in (prec - LIMB_BITS, prec))
             differing = _compared(files, coarse, fine)
             if differing is not None:
-                return differing, []
+                return differing, ["the possible transits"] * bool(manifest.possible)
             prec, most_s = prec + FINER_BITS, PATIENCE * allowed_s
-    except (IntegrationError, UnreachableError) as error:
+    except UnreachableError as error:
         return [], _undecided(str(error))
     return [], _undecided(f"two runs in up to {MOST_PREC} bits are further apart than the bounds")
 
 
 def _undecided(reason: str) -> list[str]:
-    """Return the note on a dataset whose motion was not compared."""
-    return [f"motion not decided without --recompute: each row was checked by itself; {reason}"]
+    """Return what is said of a dataset whose motion was not compared."""
+    return [f"the motion (each row was checked by itself; {reason})"]
 
 
 def _first_prec(manifest: Manifest) -> int:
@@ -67,31 +71,32 @@ def _first_prec(manifest: Manifest) -> int:
 def _steps(files: Files) -> int:
     """Return about how many steps a run takes: the fastest rate in the scene, over the whole span."""
     start = Start.of(files.scene.exact, GUARD_BITS)
+    speed = max(sum(map(abs, row), Fraction(0)) for row in files.tables["grid.csv"].numbers(VELOCITY))
     rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)) + abs(start.k.rate) + start.k.drag)
-    rate += float(files.fastest / files.scene.exact.length)
-    return int(min(1e15, float(files.scene.exact.t_end) * rate))
+    return int(min(1e15, float(files.scene.exact.t_end) * (rate + float(speed / files.scene.exact.length))))
 
 
-def _run(files: Files, prec: int, seek: bool, report: Progress | None) -> Run:
+def _run(files: Files, prec: int, report: Progress | None) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
-    end = float(inputs.t_end)
-    return limbs.run(limbs.plan(inputs, prec, tuple(inputs.grid), seek), report and (lambda t: report(t, end)))
+    plan = limbs.plan(inputs, prec, tuple(inputs.grid), files.scene.run.transits)
+    return limbs.run(plan, report and (lambda t: report(t, float(inputs.t_end))))
 
 
 def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     """Return the numbers that are off; None where the two runs are too far apart to tell."""
     kinds: list[tuple[Kind, Table, Table]] = [("grid", coarse.grid, fine.grid)]
-    if fine.transits is not None:
+    differing: list[str] = []
+    if coarse.transits is not None and fine.transits is not None:
         if coarse.directions != fine.directions:
             return None
-        sheet = files.tables["transits.csv"]
-        directions = [int(row[sheet.header.index("direction")]) for row in sheet.rows]
-        if directions != fine.directions:
-            return [f"transits.csv: {len(directions)} transits, the motion has {len(fine.directions)}"]
-        assert coarse.transits is not None
-        if directions:
-            kinds.append(("transits", coarse.transits, fine.transits))
-    differing = []
+        outside, differing = _outside_intervals(files, fine.plan, fine.transits)
+        rows = files.tables["transits.csv"].numbers(("direction",)) if files.manifest.counts.transits else ()
+        listed, found = [direction for (direction,) in rows], [fine.directions[k] for k in outside]
+        if listed != found:
+            differing.append(f"transits.csv: {len(listed)} transits are not the motion's, which are {len(found)}")
+        elif found:
+            both = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
+            kinds.append(("transits", both[0], both[1]))
     for kind, rough, table in kinds:
         columns = table.only(GRID if kind == "grid" else TRANSITS)
         apart = columns.distance(rough).largest()
@@ -100,6 +105,31 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
             return None
         differing += _off(kind, files.tables[f"{kind}.csv"], columns, apart, bounds)
     return differing
+
+
+def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int], list[str]]:
+    """Return which zeros of xdot lie in no possible interval, and a sentence for each interval that is refuted.
+
+    By Taylor's theorem xdot at a zero, or in the middle of an interval, tells how near to zero it comes elsewhere.
+
+    Args:
+        files: the dataset, with its intervals.
+        plan: of the run that found the zeros.
+        zeros: their times and states.
+    """
+    parts, times, slopes, refuted = files.manifest.possible, zeros.exact("t"), zeros.exact("ax"), []
+    near, jerk, outside = GRAZES * files.manifest.bound("grid", "vx"), largest_jerk(files), {*range(len(times))}
+    spans = [(Fraction(part.from_s), Fraction(part.to_s)) for part in parts]
+    moments = (Fraction(0), *((low + high) / 2 for low, high in spans))
+    middles = engines()["limbs"].run(replace(plan, times=moments, transits=False)).grid
+    for part, (low, high), vx, ax in zip(parts, spans, middles.exact("vx")[1:], middles.exact("ax")[1:], strict=True):
+        inside, half = range(bisect_left(times, low), bisect_right(times, high)), (high - low) / 2
+        outside.difference_update(inside)
+        shown = any(slopes[k] ** 2 > near * jerk for k in inside) or part.parity == ("odd", "even")[len(inside) % 2]
+        if shown or abs(vx) > near + half * (abs(ax) + jerk * half / 2):
+            place = f"possible: from {part.from_s} to {part.to_s} s"
+            refuted.append(f"{MANIFEST}: {place} the motion has {len(inside)} transits, and that is decided")
+    return sorted(outside), refuted
 
 
 def _off(

@@ -39,7 +39,7 @@ def problems(files: Files) -> Iterator[str]:
     constant = files.scene.exact.drag == 0
     if constant:
         yield from grid.with_another_invariant(grid.first())
-    if files.manifest.counts.transits and "transits.csv" in files.tables:
+    if files.manifest.counts.transits:
         transits = _moments(files, "transits")
         yield from transits.off_the_sphere()
         if constant:

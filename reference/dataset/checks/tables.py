@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from itertools import pairwise
 
+from ...model.algebra import dot
 from ...model.start import Start
 from ...numbers.columns import GRID, STATE
 from ...numbers.precision import GUARD_BITS, bits_of, decimals_for, to_fraction
@@ -25,7 +26,7 @@ def problems(files: Files) -> Iterator[str]:
     yield from _digits(files)
     for kind in ("grid", "transits"):
         yield from _doubles(files, kind)
-    if files.manifest.counts.transits and "transits.csv" in files.tables:
+    if files.manifest.counts.transits:
         yield from _order(files, files.tables["transits.csv"])
         yield from _bound_column(files, files.tables["transits.csv"])
 
@@ -121,7 +122,7 @@ def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
     gaps += [manifest.enclosure.transit_radius_s] if manifest.enclosure else []
     apart = 2 * max((Fraction(gap) for gap in gaps if gap is not None), default=Fraction(0))
     error = 2 * manifest.bound("grid", "vx")  # of xdot, and over ax that of the time
-    grazing = error * _largest_jerk(files)
+    grazing = error * largest_jerk(files)
     for k, (bound, ax) in enumerate(transits.numbers(("bound", "ax")), 1):
         if bound < half_unit:
             yield f"transits.csv: transit {k}: bound {float(bound):.2g} s is less than half a unit of the last digit"
@@ -131,8 +132,14 @@ def _bound_column(files: Files, transits: Sheet) -> Iterator[str]:
         yield f"{MANIFEST}: bounds.transits.t is not the largest bound of transits.csv"
 
 
-def _largest_jerk(files: Files) -> Fraction:
-    """Return an estimate from above of the rate of xddot, in m/s³: where ax is small against it, a zero may graze."""
+def largest_jerk(files: Files) -> Fraction:
+    """Return a bound on the rate of xddot, in m/s³: where ax is small against it, a zero of xdot may graze.
+
+    With p for the pull, w = 2 |Ω| + γ, and v for the largest speed over l, which follows from h at the release and drag
+    can only lower, it is 8 l (p + v² + w²) (v + w).
+    """
     start = Start.of(files.scene.exact, GUARD_BITS)
-    square = to_fraction(start.ctx.norm(start.k.pull)) + (files.fastest / files.scene.exact.length) ** 2
-    return 8 * square * files.fastest
+    ctx, k = start.ctx, start.k
+    pull, w = ctx.norm(k.pull), 2 * abs(k.rate) + k.drag
+    v = ctx.sqrt(ctx.norm(start.v) ** 2 + 2 * (pull - dot(start.n, k.pull) + k.rate**2))
+    return to_fraction(8 * k.length * (pull + v**2 + w**2) * (v + w))

@@ -39,7 +39,7 @@ def test_twenty_problems_are_listed_at_most(dataset):
 def test_twenty_foreign_files_are_named_and_the_others_counted(dataset, more):
     for k in range(20 + more):
         (dataset / f"{k}.txt").touch()
-    notes = [note for note in verify(dataset).notes if "not part of the dataset" in note or note.startswith("and ")]
+    notes = [note for note in verify(dataset).foreign if "not part of the dataset" in note or note.startswith("and ")]
     assert len(notes) == min(20, 20 + more) + (more > 0)
     assert (notes[-1] == f"and {more} more") is (more > 0)
 
@@ -67,8 +67,8 @@ def sealed(dataset, name, old, new):
 
 def test_a_dataset_needs_the_files_of_every_one_and_no_others(dataset):
     document = json.loads((dataset / MANIFEST).read_text())
-    files = {name: document["files"][name] for name in ALWAYS}
-    assert set(Manifest.model_validate({**document, "files": files}).files) == set(ALWAYS)
+    files = {name: document["files"][name] for name in (*ALWAYS, "transits.csv")}
+    assert set(Manifest.model_validate({**document, "files": files}).files) == {*ALWAYS, "transits.csv"}
     for name in ALWAYS:
         with pytest.raises(ValidationError, match="belong to every dataset"):
             Manifest.model_validate({**document, "files": {other: files[other] for other in ALWAYS if other != name}})

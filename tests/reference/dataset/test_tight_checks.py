@@ -9,15 +9,19 @@ from itertools import product
 from types import SimpleNamespace
 
 import mpmath
+import numpy as np
 import pytest
 from small_scenes import make_scene
 
+import reference
 from reference.dataset.checks import motion, physics, tables
 from reference.dataset.golden import read_files
 from reference.dataset.sheets import Sheet
+from reference.engines.registry import engines
 from reference.model.constants import constants
 from reference.model.force import acceleration, invariant
-from reference.numbers.columns import GRID
+from reference.model.start import Start
+from reference.numbers.columns import GRID, POSITION, VELOCITY
 from reference.numbers.precision import context, fixed_decimal
 from reference.numbers.table import Table, integers
 
@@ -147,7 +151,7 @@ def test_the_bound_of_a_time_may_be_anything_where_xddot_is_so_small_that_the_ze
     """ax² against twice the bound on xdot times the jerk."""
     (ax,), _ = state(files, "transits", ROW, ("ax",))
     jerk = part * ax**2 / (2 * Fraction(files.manifest.bounds.grid["vx"]))
-    monkeypatch.setattr(tables, "_largest_jerk", lambda _: jerk)
+    monkeypatch.setattr(tables, "largest_jerk", lambda _: jerk)
     wide = with_change(files, "transits", "bound", Fraction(10))
     assert of_bounds(wide, "transit 4: bound", "leave open") is not grazes
 
@@ -185,12 +189,25 @@ def test_the_bound_of_all_times_is_the_largest_of_them(files, by, found):
     assert of_bounds(changed, "is not the largest bound of transits.csv") is found
 
 
-def test_the_jerk_is_eight_times_the_largest_speed_times_the_squares_of_the_rates(files):
-    """g/l of the swing, and v²/l² of the turn."""
-    scene = make_scene(pendulum={"length": "2"}, site={"rotation_rate": "0", "gravity": "5"})
-    grid = Sheet(("vx", "vy", "vz"), [("1", "-2", "0.5"), ("-3", "0.25", "0"), ("1", "1", "1")], {})
-    found = tables._largest_jerk(replace(files, scene=scene, tables={"grid.csv": grid}))
-    assert float(found) == pytest.approx(8 * (5 / 2 + (3.5 / 2) ** 2) * 3.5, rel=1e-12)
+def test_the_jerk_is_bounded_by_the_rates_of_the_largest_speed_of_the_swing_of_rotation_and_of_drag(files):
+    """Released at 3 m/s and 0.4 m above the lowest point; the Earth turns by 0.001 rad/s."""
+    scene = make_scene(
+        pendulum={"length": "2", "drag": "0.01"},
+        site={"rotation_rate": "0.001", "gravity": "5", "gravity_is": "effective"},
+        release={"x": "1.2", "y": "0", "vx": "0", "vy": "3"},
+    )
+    v, w = math.sqrt(1.5**2 + 2 * (0.4 / 2 * 5 / 2 + 1e-6)), 0.012
+    found = tables.largest_jerk(replace(files, scene=scene))
+    assert float(found) == pytest.approx(8 * 2 * (5 / 2 + v**2 + w**2) * (v + w), rel=1e-6)
+
+
+@pytest.mark.parametrize("name", ["over_top", "conical", "damped", "fast_pole", "weightless", "overdamped", "hard"])
+def test_no_rate_of_xddot_exceeds_its_bound(files, name):
+    golden = reference.load(name)
+    k = Start.of(golden.scene.exact, 53).k.converted(float)
+    n, v = (tuple(golden.grid[name] / k.length for name in names) for names in (POSITION, VELOCITY))
+    jerks = np.abs(np.diff(acceleration(n, v, k)[0] * k.length)) / np.diff(golden.t)
+    assert jerks.max() <= float(tables.largest_jerk(replace(files, scene=golden.scene)))
 
 
 @pytest.mark.parametrize(
@@ -214,9 +231,9 @@ def test_the_states_at_transits_are_those_printed_with_no_speed_to_the_east_and_
     assert [Fraction(bound, made.unit) for bound in made.bounds] == [*bounds[:3], 0, bounds[3], 0]
 
 
-def test_the_motion_has_its_transits_sought_just_where_the_dataset_claims_to_hold_them_all(files, monkeypatch):
+def test_the_motion_has_its_transits_sought_unless_the_scene_asks_for_none(files, monkeypatch):
     sought = []
-    monkeypatch.setattr(motion, "_run", lambda _files, _prec, seek, *_: sought.append(seek))
+    monkeypatch.setattr(type(engines()["limbs"]), "run", lambda _, plan, *_words: sought.append(plan.transits))
     monkeypatch.setattr(motion, "_compared", lambda *_: [])
     unasked = files.scene.with_values(["run.transits=false"])
     undecided = files.manifest.model_copy(update={"transits": "undecided intervals"})
@@ -224,19 +241,15 @@ def test_the_motion_has_its_transits_sought_just_where_the_dataset_claims_to_hol
     others = (replace(files, scene=unasked), replace(files, manifest=undecided), replace(files, tables=states_alone))
     for changed in (files, *others):
         assert motion.problems(changed) == ([], [])
-    assert sought == [True, True, *[False] * 6]
+    assert sought == [True, True, False, False, *[True] * 4]
 
 
-def test_transits_that_are_none_or_not_given_are_not_looked_at(files):
+def test_transits_that_are_none_are_not_looked_at(files):
     counts = files.manifest.counts.model_copy(update={"transits": 0})
     none = files.manifest.model_copy(update={"counts": counts})
     for check, column in ((physics, "z"), (tables, "bound")):
         broken = with_change(files, "transits", column, Fraction(1))
-        for changed, seen in (
-            (broken, True),
-            (replace(broken, manifest=none), False),
-            (replace(broken, tables={"grid.csv": files.tables["grid.csv"]}), False),
-        ):
+        for changed, seen in ((broken, True), (replace(broken, manifest=none), False)):
             found = [problem for problem in check.problems(changed) if "binary64" not in problem]
             assert any("transits" in problem for problem in found) is seen, (check, found)
 

@@ -33,15 +33,40 @@ def problems(dataset: Path) -> str:
 
 def test_an_untouched_dataset_passes(dataset):
     found = verify(dataset)
-    assert (found.problems, found.notes) == ([], [])
+    assert (found.problems, found.foreign) == ([], [])
+
+
+def test_what_nothing_here_can_vouch_for_is_said_in_the_verdict(dataset, foucault):
+    """The cross-checks and the proof of a dataset that is not in the index; of one that is, nothing is left to say."""
+    words = "not decided without --recompute: "
+    assert foucault("verify", dataset)[:2] == (0, f"{dataset}: ok; {words}the cross-checks\n")
+    assert foucault("verify", dataset, "--recompute")[:2] == (0, f"{dataset}: ok\n")
+    copy = Path(shutil.copytree(reference.load("separatrix").path, dataset.parent / "separatrix"))
+    assert verify(copy).undecided == []
 
 
 def test_a_missing_file_is_found_and_a_foreign_one_is_mentioned(dataset):
     (dataset / "notes.txt").write_text("mine")
-    assert verify(dataset).notes == ["notes.txt: not part of the dataset, ignored"]
+    assert verify(dataset).foreign == ["notes.txt: not part of the dataset, ignored"]
     assert problems(dataset) == ""
     (dataset / "transits.csv").unlink()
     assert "transits.csv: No such file" in problems(dataset)
+
+
+def test_a_dataset_that_counts_transits_and_has_no_table_of_them_is_refused(dataset):
+    forge(dataset, without=("transits.csv", "transits.binary64.csv"))
+    assert "transits.csv belongs to a dataset with transits" in problems(dataset)
+    with pytest.raises(DatasetError, match=r"transits\.csv belongs"):
+        reference.load(dataset)
+
+
+def test_a_dataset_that_counts_no_transits_must_have_none(dataset):
+    def none(document):
+        document["counts"]["transits"] = 0
+        document["bounds"].update(transit_s=None, transits={})
+
+    forge(dataset, without=("transits.csv", "transits.binary64.csv"), manifest=none)
+    assert problems(dataset) == "transits.csv: 0 transits are not the motion's, which are 36"
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"schema_version": 3}', "nonsense", "", "\ufeff{}", '{"a":' * 100_000])
@@ -120,7 +145,7 @@ WORDS = {
         lambda m: m["cross_checks"][0].update(formulation=m["run"]["formulation"]), "no cross-check is in another"),
     "runs that do not agree": (
         lambda m: m["cross_checks"][0].update(position_m="1.0e-10"), "the runs are 1.0e-10 apart"),
-    "a smaller bound": (lambda m: m["bounds"]["grid"].update(x="1.0e-25"), "less than half a unit"),
+    "a smaller bound": (lambda m: m["bounds"]["grid"].update(x="1.0e-25"), "is not from half a unit to one"),
     "a smaller largest bound": (
         lambda m: m["bounds"].update(position_m=m["bounds"]["grid"]["x"]), "bounds.position_m = "),
     "a larger bound on times": (lambda m: m["bounds"]["transits"].update(t="1.0e-03"), "is not the largest"),
@@ -138,10 +163,15 @@ WORDS = {
     "a strange file": (
         lambda m: m["files"].update({"/dev/zero": m["files"]["grid.csv"]}), "breaks the schema at files"),
     "a huge number": (lambda m: m["bounds"].update(position_m="1e+999999999"), "breaks the schema at bounds"),
-    "bounds that no double can square": (far_too_wide, "beyond the range of binary64"),
+    "bounds that no double can square": (far_too_wide, "is not from half a unit to one"),
+    "bounds wider than a digit": (lambda m: m["bounds"]["grid"].update(vz="1.1e-22"), "is not from half a unit to one"),
+    "transits of a scene that asks for none": (
+        lambda m: (m["scene"]["run"].update(transits="false"), m.update(transits="not asked for")),
+        "counts.transits = 36 does not follow from the scene and the tables, which give 0"),
     "a wrong count": (lambda m: m["counts"].update(transits=35), "36 rows, the manifest counts 35"),
     "intervals that overlap": (lambda m: possible(m, (10, 20), (19, 30)), "must be intervals in order"),
     "an interval that ends before it begins": (lambda m: possible(m, (20, 10)), "must be intervals in order"),
+    "an interval without length": (lambda m: possible(m, (20, 20)), "must be intervals in order"),
     "an interval beyond the end": (lambda m: possible(m, (299, "300.1")), "must be intervals in order"),
     "an interval before the start": (lambda m: possible(m, ("-0.1", 1)), "must be intervals in order"),
     "a proof wider than the bounds": (lambda m: proved(m, "position_m", "1.2"), "more than bounds.position_m"),
@@ -165,7 +195,7 @@ def test_a_forged_word_in_the_manifest_is_found_although_the_seal_fits(dataset, 
 @pytest.mark.parametrize(
     "change",
     [
-        lambda m: possible(m, (0, 10), (10, 20), (300, 300)),
+        lambda m: possible(m, (0, 10), (10, 20), (299, 300)),
         lambda m: proved(m, "position_m", "1.09"),  # bounds are rounded up to two digits
         lambda m: proved(m, "transit_s", "1.09"),
     ],
@@ -204,7 +234,7 @@ def test_without_numba_what_was_left_out_is_said(dataset, monkeypatch):
     monkeypatch.setattr(type(engines()["limbs"]), "requires", ("no_such_module",))
     found = verify(dataset)
     assert found.problems == []
-    assert "numba" in found.notes[0]
+    assert "numba" in found.undecided[0]
 
 
 @pytest.mark.parametrize("kind, column", [pair for pair in COLUMNS if pair not in ONLY_MOTION])
@@ -289,7 +319,7 @@ def drop(*which: int):
 
 
 @pytest.mark.parametrize(
-    "rows, said", [((4,), "do not alternate"), ((6, 7), "contradicts"), ((3, 4), "the motion has")]
+    "rows, said", [((4,), "do not alternate"), ((6, 7), "contradicts"), ((3, 4), "are not the motion's")]
 )
 def test_transits_left_out_are_found_by_their_neighbours_by_the_grid_or_by_the_motion(dataset, rows, said):
     """Transits 7 and 8 of Paris lie on both sides of t = 60 s, 4 and 5 between two grid times."""
@@ -350,10 +380,10 @@ def test_a_long_motion_in_a_small_file_is_not_integrated_and_that_is_said(datase
     monkeypatch.setattr(motion, "ROW_S", 0.0)
     monkeypatch.setattr(motion, "TRANSIT_S", 0.0)
     monkeypatch.setattr(motion, "_steps", lambda _: 10**6)
-    (note,) = verify(dataset).notes
+    (note,) = verify(dataset).undecided
     one_run = engines()["limbs"].expected_s(10**6, motion._first_prec(read_files(dataset).manifest))
-    assert note.startswith("motion not decided without --recompute: ")
-    assert note.endswith(f"would take about {2 * one_run:.0f} s")
+    assert note.startswith("not decided without --recompute: the motion (each row was checked by itself; ")
+    assert note.endswith(f"would take about {2 * one_run:.0f} s), the cross-checks")
 
 
 def test_where_two_runs_do_not_decide_others_follow_in_four_times_what_two_may_take(dataset, monkeypatch):
@@ -363,19 +393,19 @@ def test_where_two_runs_do_not_decide_others_follow_in_four_times_what_two_may_t
     manifest = read_files(dataset).manifest
     allowed = motion.BASE_S + motion.ROW_S * manifest.counts.grid + motion.TRANSIT_S * manifest.counts.transits
     monkeypatch.setattr(type(engines()["limbs"]), "expected_s", lambda *_: allowed / 2)
-    (note,) = verify(dataset).notes
+    (note,) = verify(dataset).undecided
     assert len(precs) == 2 * motion.PATIENCE
-    assert note.endswith(f"would take about {(motion.PATIENCE + 1) * allowed:.0f} s")
+    assert note.endswith(f"would take about {(motion.PATIENCE + 1) * allowed:.0f} s), the cross-checks")
 
 
 def test_where_the_most_bits_do_not_decide_the_motion_that_is_a_note_and_no_failure(dataset, foucault, monkeypatch):
     monkeypatch.setattr(motion, "_compared", lambda *_: None)
     status, out, _ = foucault("verify", dataset)
-    ok, note = out.splitlines()
+    ok, note = out.rstrip("\n").split("; ", 1)
     assert (status, ok) == (0, f"{dataset}: ok")
-    assert note.startswith("  motion not decided without --recompute: each row was checked by itself")
+    assert note.startswith("not decided without --recompute: the motion (each row was checked by itself; two runs")
     (row,) = json.loads(foucault("verify", dataset, "--json")[1])["rows"]
-    assert row == {"path": str(dataset), "ok": True, "problems": [], "notes": [note.strip()]}
+    assert row == {"path": str(dataset), "ok": True, "problems": [], "notes": [note]}
     assert foucault("verify", dataset, "--recompute")[:2] == (0, f"{dataset}: ok\n")
 
 

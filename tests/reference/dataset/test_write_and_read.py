@@ -335,6 +335,12 @@ def test_only_a_scene_as_it_stands_goes_to_the_shipped_place(monkeypatch, tmp_pa
     assert folder(paris.with_values(["run.t_end=60"])) == Path("golden/paris")
     assert folder(paris.with_values(["site.latitude=0"])) == Path("golden/paris+site.latitude=0")
     assert folder(make_scene("mine")) == Path("golden/mine")
+    for words in (
+        {"title": "mine"},
+        {"source": "mine"},
+        {"flags": ("stiff",)},
+    ):  # a copy of its file that says another thing
+        assert folder(paris.model_copy(update=words)) == Path("golden/paris")
     monkeypatch.setattr(place, "in_checkout", lambda: False)
     assert folder(paris) == Path("golden/paris")
 

@@ -1,0 +1,92 @@
+"""Possible transits: an interval that a proof left undecided passes and is named; one that the motion refutes does not.
+
+Of two releases that differ by 1e-22 m/s one has two zeros of xdot in a tenth of a nanosecond at 22.945 s, one has none.
+"""
+
+from __future__ import annotations
+
+import shutil
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+from forgery import forge, moved
+
+import reference
+from reference.dataset.golden import read_files
+from reference.dataset.verify import recompute, verify
+from reference.dataset.write import write
+
+SPEEDS = {0: "-0.0077460679307865453684", 2: "-0.0077460679307865453685"}  # m/s to the east, by the zeros in the dip
+SAID = "not decided without --recompute: the possible transits, the proof, the cross-checks"
+
+
+@pytest.fixture(scope="module", params=SPEEDS)
+def undecided(request, tmp_path_factory):
+    changes = ["run.t_end=24", "run.grid_step=2", "run.digits=10", f"release.vx={SPEEDS[request.param]}"]
+    scene = reference.load_scene("close_pair", changes)
+    return write(reference.solve(scene), tmp_path_factory.mktemp(f"zeros_{request.param}") / "grazing")
+
+
+@pytest.fixture
+def grazing(undecided, tmp_path):
+    return Path(shutil.copytree(undecided, tmp_path / "grazing"))
+
+
+def test_what_a_proof_leaves_undecided_passes_and_is_said(grazing):
+    (part,) = read_files(grazing).manifest.possible
+    assert part.parity == "even" and Fraction(part.to_s) - Fraction(part.from_s) < Fraction(1, 10**8)
+    found = verify(grazing)
+    assert (found.problems, found.undecided) == ([], [SAID])
+    assert recompute(grazing) == ([], [])
+
+
+def interval(document, **ends):
+    document["possible"][0].update(ends)
+
+
+def another(document, *ends):
+    document["possible"].insert(0, dict(zip(("from_s", "to_s", "parity"), (*ends, "unknown"), strict=True)))
+    document["counts"]["possible"] += 1
+
+
+REFUTED = {
+    "an odd number": lambda document: interval(document, parity="odd"),
+    "the transit before": lambda document: interval(document, from_s="22.2", parity="unknown"),
+    "the first transit": lambda document: another(document, "0", "0.5"),
+    "a narrow one in the middle of a swing": lambda document: another(document, "0.4", "0.40000000001"),
+    "a wide one between two transits": lambda document: another(document, "0.48", "0.49"),
+    "nearly all": lambda document: another(document, "0", "22.9"),
+}
+
+
+@pytest.mark.parametrize("name", REFUTED)
+def test_an_interval_in_which_the_motion_is_decided_is_found(grazing, name):
+    forge(grazing, manifest=REFUTED[name])
+    assert any("the motion has" in problem and "that is decided" in problem for problem in verify(grazing).problems)
+
+
+@pytest.mark.parametrize("places", [range(0, 40, 2), [0], [40]])
+def test_a_transit_outside_the_intervals_must_be_listed(grazing, places):
+    def drop(rows, header):
+        rows[:] = [row for i, row in enumerate(rows) if i not in places]
+        for k, row in enumerate(rows, 1):
+            row[0] = str(k)
+
+    forge(grazing, transits=drop)
+    assert "are not the motion's" in verify(grazing).problems[-1]
+
+
+@pytest.mark.parametrize("late", [Fraction(1, 1000), Fraction(1, 10**8)])
+def test_a_transit_outside_the_intervals_is_where_the_motion_has_it(grazing, late):
+    forge(grazing, transits=lambda rows, _: [row.__setitem__(1, moved(row[1], late)) for row in rows])
+    assert "t is off by" in verify(grazing).problems[0]
+
+
+def test_all_directions_turned_are_found(grazing):
+    def turn(rows, header):
+        for row in rows:
+            row[2] = "-1" if row[2] == "+1" else "+1"
+
+    forge(grazing, transits=turn)
+    assert "are not the motion's" in verify(grazing).problems[0]
