@@ -62,9 +62,10 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
             problems, undecided = motion.problems(files, report)
         except (ArithmeticError, BeyondDoublesError):
             problems = [BEYOND]
-    if not problems and (undecided := [*undecided, *_claims(files.manifest)]):
-        undecided = [f"not decided without --recompute: {', '.join(undecided)}"]
-    return Verification(problems[:MAX_PROBLEMS], foreign, undecided)
+    if problems:
+        return Verification(problems[:MAX_PROBLEMS], foreign, [])
+    words = ", ".join([*undecided, *_claims(files.manifest)])
+    return Verification([], foreign, [f"not decided without --recompute: {words}"] if words else [])
 
 
 def _claims(manifest: Manifest) -> list[str]:

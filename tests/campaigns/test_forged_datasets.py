@@ -182,13 +182,15 @@ def test_what_exceeds_thirty_bounds_is_found_although_every_hash_and_the_seal_fi
 MOTIONS = {
     "at_rest_first": ("paris", ["run.t_end=300", "run.digits=20"]),
     "close_pair": ("close_pair", ["run.t_end=30", "run.digits=20"]),
+    "grazing": (
+        "close_pair", ["run.t_end=24", "run.grid_step=2", "run.digits=10", "release.vx=-0.0077460679307865453685"]),
     "conical": ("conical", ["run.t_end=20", "run.digits=20"]),
     "damped": ("damped", ["run.t_end=200", "run.digits=15"]),
     "spherical": ("spherical", ["run.t_end=60", "run.grid_step=20", "run.digits=12", "run.level=confirmed"]),
     "few_digits": ("paris", ["run.t_end=300", "run.digits=4", "run.level=self_consistent"]),
     "planar": ("meridian_plane", ["run.t_end=20", "run.digits=20"]),
     "resting": ("at_rest", ["run.t_end=600", "run.digits=20"]),
-}
+}  # fmt: skip
 
 
 def numbered(rows):
