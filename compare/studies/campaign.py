@@ -129,8 +129,7 @@ def _stored(path: Path | None, kind: type[Any]) -> Iterator[tuple[tuple[str, tup
         with suppress(KeyError, TypeError, ValueError):
             key = record["recipe"], tuple(record["item"])
             hash(key)
-            types.validate_python(record["result"])
-            yield key, kind.parsed(record["result"])
+            yield key, types.validate_python(record["result"])
 
 
 def _store(path: Path | None, record: dict[str, Any]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -10,6 +11,7 @@ from dataclasses import dataclass
 from decimal import MAX_EMAX, MAX_PREC, MIN_EMIN, Context, Decimal
 from fractions import Fraction
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -19,12 +21,14 @@ from ..errors import InputError, unknown
 from ..numbers.double_double import DoubleDouble
 from ..numbers.precision import with_decimal_point
 from ..scenes.scene import Reading, checked_value, field_names
+from ..system.documents import MAX_JSON_BYTES, regular
 from .parquet import need_pyarrow, read_columns
 
 TEXTS = ("inputs", "site.gravity_is")  # the fields that can be varied and are not numbers
 _FIXED = ("id", "title", "source", "flags", "run.grid_step", "run.digits", "run.level", "run.transits")
 MOST_ROWS = 10**8
 MOST_VALUES = 10**7  # of a field: they are held as text
+MOST_BYTES = MAX_JSON_BYTES  # of a file of rows, whose values go to the plan
 FORMS = "START:STOP:STEP, or values V1,V2,…, or @FILE.csv"
 PARQUET = (".parquet", ".pq")
 _EXACT = Context(prec=MAX_PREC, Emax=MAX_EMAX, Emin=MIN_EMIN)
@@ -233,9 +237,17 @@ def listed(path: Path) -> Table:
 def _columns_of_parquet(path: Path) -> dict[str, tuple[str, ...]]:
     """Return the columns of a Parquet file; a double stands for exactly the number that it is."""
     need_pyarrow("--rows", str(path), "the package pyarrow")
-    with _readable("--rows", path):
-        columns = read_columns(path)
+    with _readable("--rows", path), regular(path, "--rows", MOST_BYTES, "a Parquet file") as stream:
+        columns = read_columns(stream, _check_size)
     return {key: tuple(map(_text, column)) for key, column in columns.items()}
+
+
+def _check_size(names: Iterable[str], rows: int) -> None:
+    """Refuse a file of rows by its columns, or their number."""
+    for key in names:
+        _check_key("--rows", key)
+    if rows > MOST_VALUES:
+        raise InputError("--rows", f"{rows} rows", f"at most {MOST_VALUES:,}")
 
 
 def _text(value: Any) -> str:
@@ -271,10 +283,11 @@ def _column_of_csv(path: Path, key: str) -> list[str]:
 
 def _lines(option: str, path: Path) -> list[list[str]]:
     """Return the lines of a CSV file, all of one length."""
-    with _readable(option, path), path.open(newline="", encoding="utf-8-sig") as stream:
-        lines = [line for line in csv.reader(stream) if line]
-    if not lines:
-        raise InputError(option, str(path), "a CSV file with a line at least")
+    with _readable(option, path), regular(path, option, MOST_BYTES, "a CSV file") as stream:
+        text = io.TextIOWrapper(stream, "utf-8-sig", newline="")
+        lines = list(islice(filter(None, csv.reader(text)), MOST_VALUES + 2))
+    if not 0 < len(lines) <= MOST_VALUES + 1:
+        raise InputError(option, str(path), f"a CSV file of 1 to {MOST_VALUES:,} rows")
     for number, line in enumerate(lines, 1):
         if len(line) != len(lines[0]):
             raise InputError(

@@ -1,12 +1,16 @@
-"""The columns of a sweep, once for schema, files and docs, and Parquet files of them; the only door to pyarrow."""
+"""The columns of a sweep, once for schema, files and docs, and Parquet files of them; the only door to pyarrow.
+
+A file that is written here is sealed: at its end stands the sha256 of all other bytes, and of what the file is.
+"""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
@@ -19,7 +23,8 @@ TIMES = "transit-times"
 WANTS = (FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE)  # what `all` means; the times of the transits are more
 WORDS = "dictionary"  # the kind of a column of words that repeat
 
-_KEY = b"foucault.plan"  # of the plan's hash in a file's metadata
+_PART, _SEAL = "foucault.part", "foucault.seal"  # keys of a file's metadata
+_MARK, _HEX = b"sha256:", 64  # what stands before the digits of a seal, and how many these are
 
 
 @dataclass(frozen=True)
@@ -92,8 +97,8 @@ def pyarrow_version() -> str:
     return str(pa.__version__)
 
 
-def parquet(columns: Iterable[Column], values: dict[str, Any], plan: str) -> bytes:
-    """Return columns as a Parquet file: zstd, numbers with their bytes split, words by dictionary."""
+def parquet(columns: Iterable[Column], values: dict[str, Any], part: str) -> bytes:
+    """Return columns as a Parquet file, sealed as `part`: zstd, numbers with their bytes split, words by dictionary."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -105,18 +110,39 @@ def parquet(columns: Iterable[Column], values: dict[str, Any], plan: str) -> byt
             arrays.append(pa.array(values[column.name], pa.string()).dictionary_encode().cast(kind))
         else:
             arrays.append(pa.array(values[column.name], kind))
-    table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={_KEY: plan.encode()}))
+    table = pa.Table.from_arrays(arrays, schema=pa.schema(fields, metadata={_PART: part}))
     words = [field.name for field in fields if pa.types.is_dictionary(field.type)]
     split = [field.name for field in fields if field.type == pa.float64()]
     stream = io.BytesIO()
-    pq.write_table(
-        table, stream, compression="zstd", use_dictionary=words, use_byte_stream_split=split, write_statistics=True
-    )
-    return stream.getvalue()
+    with pq.ParquetWriter(
+        stream, table.schema, compression="zstd", use_dictionary=words, use_byte_stream_split=split,
+        write_page_checksum=True,
+    ) as writer:  # fmt: skip
+        writer.write_table(table)
+        writer.add_key_value_metadata({_SEAL: _MARK.decode() + "0" * _HEX})
+    data = stream.getvalue()
+    at, seal = _seal(data, part)
+    return data[:at] + seal + data[at + _HEX :]
 
 
-def read_columns(path: Path) -> dict[str, list[Any]]:
+def is_sealed(data: bytes, part: str) -> bool:
+    """Return whether a file has every byte that `parquet` wrote as `part`."""
+    at, seal = _seal(data, part)
+    return data[at : at + _HEX] == seal
+
+
+def _seal(data: bytes, part: str) -> tuple[int, bytes]:
+    """Return where in a file its seal stands, and what it has to be."""
+    at = data.rfind(_MARK) + len(_MARK)
+    return at, sha256(part.encode() + data[:at] + data[at + _HEX :]).hexdigest().encode()
+
+
+def read_columns(stream: BinaryIO, check: Callable[[list[str], int], None]) -> dict[str, list[Any]]:
     """Return the columns of any Parquet file.
+
+    Args:
+        stream: the file.
+        check: called with their names and the number of rows before any is read.
 
     Raises:
         OSError: it cannot be read, or is none.
@@ -125,29 +151,28 @@ def read_columns(path: Path) -> dict[str, list[Any]]:
     import pyarrow.parquet as pq
 
     try:
-        return dict(pq.read_table(path).to_pydict())
-    except pa.ArrowException as error:
+        file = pq.ParquetFile(stream)
+        check(file.schema_arrow.names, file.metadata.num_rows)
+        return dict(file.read().to_pydict())
+    except (OSError, pa.ArrowException) as error:
         raise OSError(0, str(error).splitlines()[0]) from None
 
 
-def footer(path: Path) -> tuple[int, str]:
-    """Return the number of rows of a file, and the hash of its plan; 0 and nothing if it is none, or cut short."""
+def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, Any]:
+    """Return columns of several files, one below the other; words as objects, None where there is none.
+
+    Raises:
+        OSError: a file cannot be read, or was damaged.
+    """
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     try:
-        read = pq.read_metadata(path)
-    except (OSError, pa.ArrowException):
-        return 0, ""
-    return read.num_rows, (read.metadata or {}).get(_KEY, b"").decode()
-
-
-def arrays(paths: Iterable[Path], names: list[str] | None = None) -> dict[str, Any]:
-    """Return columns of several files, one below the other; words as objects, None where there is none."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    table = pa.concat_tables([pq.read_table(path, columns=names) for path in paths])
+        table = pa.concat_tables(
+            [pq.read_table(path, columns=names, page_checksum_verification=True) for path in paths]
+        )
+    except pa.ArrowException as error:
+        raise OSError(0, str(error).splitlines()[0]) from None
     columns = {}
     for name, column in zip(table.column_names, table.columns, strict=True):
         words = pa.types.is_dictionary(column.type)

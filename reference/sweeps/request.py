@@ -9,10 +9,12 @@ import hashlib
 import json
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
+
+from pydantic import PositiveInt
+from pydantic.dataclasses import dataclass as checked
 
 from ..engines import AUTO
 from ..engines.batch_interface import Batch, Wanted
@@ -22,7 +24,7 @@ from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
 from ..scenes.scene import LEVELS, Level, Scene, parse_scene
 from .axes import TEXTS, Table, grid, listed
-from .parquet import AMPLITUDE, COLUMNS, FREQUENCY, PRECESSION, TIMES, TRANSITS, WANTS, WORDS, Column
+from .parquet import AMPLITUDE, COLUMNS, FREQUENCY, PRECESSION, TIMES, TRANSIT_COLUMNS, TRANSITS, WANTS, WORDS, Column
 from .row_constants import ANGLES, POSITION
 
 SCHEMA = 2
@@ -32,7 +34,7 @@ ALL = "all"
 PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
 
 
-@dataclass(frozen=True)
+@checked(frozen=True)
 class Request:
     """A sweep.
 
@@ -57,7 +59,7 @@ class Request:
     tolerance: float | None
     engine: str
     identity: str
-    rows_per_part: int
+    rows_per_part: PositiveInt
     audit: int = 0
 
     @property
@@ -143,8 +145,9 @@ class Request:
 
     @cached_property
     def hash(self) -> str:
-        """The sha256 of `document`, which every part carries."""
-        return hashlib.sha256(json.dumps(self.document(), sort_keys=True).encode()).hexdigest()
+        """The sha256 of `document` and of the columns, which every part carries."""
+        columns = [(column.name, column.kind) for column in (*self.columns, *TRANSIT_COLUMNS)]
+        return hashlib.sha256(json.dumps([self.document(), columns], sort_keys=True).encode()).hexdigest()
 
 
 @lru_cache(maxsize=1)

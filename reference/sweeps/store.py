@@ -1,26 +1,28 @@
 """A sweep on disk: a folder with its plan and its parts in Parquet.
 
 `plan.json` says all that decides a number, `rows/part-00000000.parquet` … hold the rows, `transits/part-…` their
-transits where these are wanted, `summary.json` comes last. A part appears whole or not at all, and carries the hash of
-the plan: those that are there are not computed again.
+transits where these are wanted, `summary.json` comes last. A part appears whole or not at all, and is sealed with the
+plan and its number: those whose seals are right are not computed again.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ..errors import InputError, plain_json
-from ..system.documents import json_document
+from ..system.documents import json_document, regular
 from ..system.workspace import replace_file
-from .parquet import TRANSIT_COLUMNS, Column, arrays, footer, need_pyarrow, parquet, pyarrow_version
+from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, need_pyarrow, parquet, pyarrow_version
 from .part import Part
 from .request import Request
 
 PLAN, SUMMARY, ROWS, TRANSITS = "plan.json", "summary.json", "rows", "transits"
+MOST_BYTES = 1 << 40  # of a part: no limit but that of a disk
 
 
 @dataclass(frozen=True)
@@ -70,12 +72,13 @@ class Store:
         try:
             document = json_document(folder / PLAN, "--out")
             request = Request.of(document)
+            unchanged = request.hash == document["hash"]
         except FileNotFoundError:
             raise InputError("--out", str(folder), f"a folder of a sweep, with {PLAN}") from None
         except (ValueError, KeyError, TypeError, AttributeError, InputError):
-            document, request = {}, None
-        if request is None or request.hash != document.get("hash"):
-            raise InputError("--out", str(folder), f"a {PLAN} as it was written", "It was changed: sweep anew.")
+            unchanged = False
+        if not unchanged:
+            raise InputError("--out", str(folder), f"a {PLAN} as this version writes it", "Sweep anew.")
         return cls(folder, request, str(document.get("pyarrow")))
 
     def _check_same(self, request: Request) -> None:
@@ -108,12 +111,20 @@ class Store:
         return self.folder / kind / f"part-{part:08d}.parquet"
 
     def missing(self) -> list[int]:
-        """Return the parts that are not there yet, or not whole, or of another plan."""
+        """Return the parts that are not there yet, were damaged, or are others of this plan or of another."""
         return [part for part in range(self.request.parts) if not all(self._sound(part, kind) for kind in self._kinds)]
 
     def _sound(self, part: int, kind: str) -> bool:
-        rows, plan = footer(self.path(part, kind))
-        return plan == self.request.hash and (kind == TRANSITS or rows == len(self.request.rows_of(part)))
+        with (
+            suppress(FileNotFoundError, InputError),
+            regular(self.path(part, kind), "--out", MOST_BYTES, "a part") as stream,
+        ):
+            return is_sealed(stream.read(), self._named(part, kind))
+        return False
+
+    def _named(self, part: int, kind: str) -> str:
+        """Return what a part is, for its seal."""
+        return f"{kind} {part} of {self.request.hash}"
 
     def save(self, part: int, solved: Part) -> None:
         """Write a part, whole or not at all.
@@ -122,21 +133,33 @@ class Store:
             OSError: it cannot be written.
         """
         if solved.transits:
-            self._write(self.path(part, TRANSITS), TRANSIT_COLUMNS, solved.transits)
-        self._write(self.path(part), self.request.columns, solved.columns)
+            self._write(part, TRANSITS, solved.transits)
+        self._write(part, ROWS, solved.columns)
 
-    def _write(self, path: Path, columns: Iterable[Column], values: dict[str, Any]) -> None:
-        data = parquet(columns, values, self.request.hash)
-        replace_file(path, lambda stream: stream.write(data))
+    def _write(self, part: int, kind: str, values: dict[str, Any]) -> None:
+        columns = self.request.columns if kind == ROWS else TRANSIT_COLUMNS
+        data = parquet(columns, values, self._named(part, kind))
+        replace_file(self.path(part, kind), lambda stream: stream.write(data))
 
     def read(self, names: Iterable[str] | None = None, kind: str = ROWS) -> dict[str, Any]:
-        """Return columns of the whole sweep as arrays, all if no names are given."""
+        """Return columns of the whole sweep as arrays, all if no names are given.
+
+        Raises:
+            InputError: a part was damaged or lost since its seal was checked.
+        """
         chosen = list(names) if names is not None else None
-        return arrays([self.path(part, kind) for part in range(self.request.parts)], chosen)
+        return self._arrays([self.path(part, kind) for part in range(self.request.parts)], chosen)
 
     def read_part(self, part: int) -> dict[str, Any]:
-        """Return the columns of one part as arrays."""
-        return arrays([self.path(part)])
+        """Return the columns of one part as arrays; errors as of `read`."""
+        return self._arrays([self.path(part)])
+
+    def _arrays(self, paths: list[Path], names: list[str] | None = None) -> dict[str, Any]:
+        try:
+            return arrays(paths, names)
+        except OSError as error:
+            advice = f"{error.strerror or error}. Go on with `foucault sweep --out {self.folder}`."
+            raise InputError("sweep", str(self.folder), "parts as they were written", advice) from None
 
     def summarize(self, document: dict[str, Any]) -> None:
         """Write what became of the sweep."""

@@ -187,13 +187,13 @@ def load_sweep(folder: str | Path) -> Swept:
     """Return the sweep in a folder.
 
     Raises:
-        InputError: there is none, or it is not done yet.
+        InputError: there is none, or it is not done yet, or a part of it was damaged.
     """
     store = Store.opened(Path(folder))
     count = len(store.missing())
     if count:
-        advice = f"{count} of {store.request.parts} parts miss. Go on with `foucault sweep --out {folder}`."
-        raise InputError("sweep", str(folder), "a sweep that is done", advice)
+        advice = f"{count} of {store.request.parts} are missing or damaged. Go on with `foucault sweep --out {folder}`."
+        raise InputError("sweep", str(folder), "a sweep whose parts are all there", advice)
     return Swept(store.request, store)
 
 

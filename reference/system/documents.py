@@ -1,4 +1,4 @@
-"""Read TOML and JSON files that a stranger may have written: bounded in size and depth, and so in time and memory."""
+"""Read files that a stranger may have written: regular ones of a bounded size; TOML and JSON of bounded depth."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import stat
 import sys
 import tomllib
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -87,7 +87,20 @@ def json_lines(path: Path, field: str) -> Iterator[dict[str, Any]]:
             yield document
 
 
-def _read(path: Path, field: str, most: int, expected: str) -> bytes:
+@contextmanager
+def regular(path: Path, field: str, most: int, expected: str) -> Iterator[BinaryIO]:
+    """Open a regular file for reading.
+
+    Args:
+        path: of the file.
+        field: what the user gave it for, to be named in messages.
+        most: bytes that it has at most.
+        expected: what it should be, such as "a TOML file".
+
+    Raises:
+        FileNotFoundError: there is no such file.
+        InputError: it is none, is larger, or cannot be read.
+    """
     try:
         with open_at_once(path) as stream:
             status = os.fstat(stream.fileno())
@@ -95,11 +108,16 @@ def _read(path: Path, field: str, most: int, expected: str) -> bytes:
                 raise InputError(field, str(path), "a regular file", "Pipes and devices are not read.")
             if status.st_size > most:
                 raise InputError(field, str(path), f"{expected} of at most {most} bytes")
-            return stream.read()
+            yield stream
     except FileNotFoundError:
         raise
     except OSError as error:
         raise InputError(field, str(path), "a readable file", f"{error.strerror}.") from None
+
+
+def _read(path: Path, field: str, most: int, expected: str) -> bytes:
+    with regular(path, field, most, expected) as stream:
+        return stream.read()
 
 
 def _reason(error: Exception) -> str:

@@ -6,6 +6,7 @@ import io
 import json
 import random
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from places import ROOT
@@ -110,6 +111,35 @@ def a_command(chance: Chance) -> str:
         (*WORDS, *(f"{{{field.rpartition('.')[2]}}}" for field in FIELDS), " "), k=chance.randint(0, 8)
     )
     return "/no/such/program " + chance.choice(("", " ")).join(parts)
+
+
+NO_DOCUMENTS = ("[" * 10**5, '{"a":' * 10**5, "", "[]", "null", '"x"', "1", "9" * 5000, "{}", "\ufeff{}", "\0" * 99)
+STRANGE = (
+    None, -1, 0, 10**30, 10**400, "x", "", [], {}, True, 1e308, "1e400", [[]], [1], ["x", [1]], {"a": 1}, {"a": []},
+    float("nan"), float("inf"),
+)  # fmt: skip
+
+
+def a_document(chance: Chance, document: dict[str, object]) -> bytes:
+    """Return a JSON document with a value that is another, or damaged, or none at all."""
+    kind = chance.random()
+    if kind < 0.2:
+        return chance.choice(NO_DOCUMENTS).encode()
+    if kind < 0.5:
+        return damaged(chance, json.dumps(document).encode())
+    return json.dumps(with_strange_value(chance, document)).encode()
+
+
+def with_strange_value(chance: Chance, document: dict[str, Any]) -> dict[str, Any]:
+    """Return a document in which one value, somewhere, is another."""
+    changed = json.loads(json.dumps(document))
+    inside: Any = changed
+    while True:
+        key = chance.choice(list(inside)) if isinstance(inside, dict) else chance.randrange(len(inside))
+        if not isinstance(inside[key], (dict, list)) or not inside[key] or chance.random() < 0.3:
+            inside[key] = chance.choice(STRANGE)
+            return changed
+        inside = inside[key]
 
 
 def encoded(chance: Chance, text: str) -> bytes:

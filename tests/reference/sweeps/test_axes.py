@@ -103,7 +103,7 @@ def test_values_come_from_a_file(tmp_path):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "a line at least"),
+        ("", "1 to 10,000,000 rows"),
         ("site.latitude\n", "rows below it"),
         ("latitude\n1\n", "a field that a sweep can vary"),
         ("site.latitude,site.latitude\n1,2\n", "each field once"),
