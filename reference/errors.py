@@ -21,10 +21,11 @@ MOST = 5  # names in a message at most
 VERY_ALIKE = (1.0, 0.8)  # of difflib, from 0 to 1: names that are as alike as this leave no room for others
 LEAST_PART = 3  # characters of a word that is looked for inside the names as well
 
-# controls, invisible and direction-changing characters, separators of lines, bytes that are not UTF-8 (surrogates)
+# controls, invisible and direction-changing characters, separators of lines, bytes that are not UTF-8 (surrogates),
+# and the last two, which XML forbids
 _UNSAFE = (
     r"\x00-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb\ud800-\udfff"
-    r"\U000e0000-\U000e007f"
+    r"\ufffe\uffff\U000e0000-\U000e007f"
 )
 _CONTROL = re.compile(f"[{_UNSAFE}]")
 _CONTROL_BUT_LINES = re.compile(rf"(?![\n\t])[{_UNSAFE}]")

@@ -34,6 +34,7 @@ TIME_WORDS = {
     "simulationtime", "timestamp", "tsim",
 }  # fmt: skip
 TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")  # a column that is called so
+LONGEST = 100  # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
 _BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
 _AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
 TIMES = {
@@ -90,7 +91,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
         InputError: its unit contradicts `units`.
     """
     text = unquoted(word)
-    for name, said in _parts(text):
+    for name, said in _parts(text) if len(text) <= LONGEST else ():
         found = _column(name)
         if found is None:
             continue

@@ -19,7 +19,7 @@ MARKS = {mark[0] for mark in COMMENTS}
 _FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
 _HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
 _APART = re.compile(r"\s{2,}|\t")
-_BEFORE_BRACKET = re.compile(r"\s+(?=[(\[{])")
+_BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
 
 
 def chunks(stream: BinaryIO, name: str, head: bytes = b"") -> Iterator[tuple[list[str], bool]]:

@@ -13,7 +13,7 @@ import numpy as np
 from reference import FoucaultError, InputError, Scene, load_scene
 from reference.commands.progress import progress
 from reference.commands.terminal import stoppable
-from reference.errors import Stopped
+from reference.errors import Stopped, plain
 from reference.numbers.precision import Array
 
 from .. import judge
@@ -110,7 +110,7 @@ class Judging:
         except Stopped:
             raise
         except FoucaultError as error:
-            return Outcome(name, scene_id, error=error)
+            return Outcome(plain(name), plain(scene_id), error=error)
         score = score if timing is None else replace(score, timing=timing)
         return Outcome(score.candidate.name, score.scene.id, score)
 
@@ -131,7 +131,7 @@ class Judging:
             times = self.times(transits)
             output, timing = timed(arguments(words, scene), timeout, repeats)
             with output:
-                return Trial(scene, read_stream(output, name, naming=self.naming), times, timing)
+                return Trial(scene, read_stream(output, plain(name), naming=self.naming), times, timing)
 
         return self.outcome(name, scene.id, trial)
 

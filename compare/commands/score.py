@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from secrets import token_hex
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -255,9 +256,12 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
     if as_json:
         emit(outcomes[0].document() if len(outcomes) == 1 else suite_document(outcomes))
         return
-    for outcome in outcomes:
-        for line in outcome.lines:
-            typer.echo(line)
+    lines = [line for outcome in outcomes for line in outcome.lines]
+    if github:  # nothing in them is a command to it
+        token = token_hex()
+        lines = [f"::stop-commands::{token}", *lines, f"::{token}::"]
+    for line in lines:
+        typer.echo(line)
     if github:
         for outcome in outcomes:
             typer.echo(annotation(outcome))

@@ -4,7 +4,7 @@
 
 class Unreadable extends Error {}
 
-const NUMBER = /^[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?$/i;
+const NUMBER = /^[+-]?(\d+(\.\d*)?|\.\d+)(e[+-]?\d+)?$/i;
 const NOT_FINITE = /^[+-]?(nan|inf|infinity)$/i;
 const HEXFLOAT = /^[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+$/i; // never read, but no word either
 const COMMENT = /^(#|%|!|\/\/)/;
@@ -12,6 +12,7 @@ const FORTRAN = /([\d.])[dD](?=[+-]?\d)/g;
 const MOST_DIGITS = 17; // of a double
 const KNOWN = ["t", "x", "y", "z", "vx", "vy", "vz"];
 const UNNAMED = { 3: KNOWN.slice(0, 3), 4: KNOWN.slice(0, 4), 7: KNOWN, 10: KNOWN.slice(0, 4) }; // 10: foucPend
+const LONGEST = 100; // characters of a word of a header, whose patterns take the square of it
 const BRACKETS = /^(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]$/;
 const AFTER = /^(.*?)(?:\s*\/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:\/|_per_|_)[^\s_/]+)?)$/;
 const PER = /^(?:(\w+?)\s*(?:\/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹))$/;
@@ -61,6 +62,7 @@ function columnOf(name, vocabulary) {
 // What a word of a header means: {column, factor: [numerator, denominator] or undefined if unknown, unit, rank}.
 function meaning(word, vocabulary) {
   const text = unquoted(word);
+  if (text.length > LONGEST) return undefined;
   const brackets = BRACKETS.exec(text);
   const after = AFTER.exec(text);
   let ways = [[text, ""]];
@@ -111,7 +113,7 @@ function fieldsOf(line, { separator, comma }) {
 function wordsOf(line) {
   const ways = [",", ";", "\t"].filter((separator) => line.includes(separator)).map((one) => line.split(one));
   const bare = line.trim();
-  ways.push(bare.split(/\s{2,}|\t/), bare.replace(/\s+(?=[(\[{])/g, "").split(/\s+/), bare.split(/\s+/));
+  ways.push(bare.split(/\s{2,}|\t/), bare.replace(/(?<!\s)\s+(?=[(\[{])/g, "").split(/\s+/), bare.split(/\s+/));
   return ways.map((way) => (way.length > 1 && !way[way.length - 1].trim() ? way.slice(0, -1) : way));
 }
 

@@ -154,11 +154,12 @@ def summary(outcomes: Sequence[Outcome]) -> str:
     for outcome in outcomes:
         errors = None if outcome.score is None else outcome.score.errors
         numbers = ("", "") if errors is None else (f"{errors.max_m:.3g} m", f"{errors.digits:.1f}")
-        cells = [SIGNS[outcome.verdict], outcome.scene, f"`{outcome.name}`", outcome.verdict, *numbers]
-        rows.append("| " + " | ".join(cell.replace("|", "\\|").replace("\n", " ") for cell in cells) + " |")
+        names = [f"`{name.replace('`', chr(39))}`" for name in (outcome.scene, outcome.name)]
+        cells = [SIGNS[outcome.verdict], *names, outcome.verdict, *numbers]
+        rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
         if outcome.verdict != "agrees":
             fence = "\n".join(line.replace("```", "'''") for line in outcome.lines)
-            details.append(f"\n<details><summary>{outcome.scene}</summary>\n\n```\n{fence}\n```\n</details>")
+            details.append(f"\n<details><summary>{escape(outcome.scene)}</summary>\n\n```\n{fence}\n```\n</details>")
     return "\n".join(["### Foucault pendulum", "", *rows, *details, ""])
 
 
@@ -195,7 +196,7 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
     suite = ElementTree.SubElement(root, "testsuite", {"name": "foucault", **counts})
     for outcome in outcomes:
         timing = None if outcome.score is None else outcome.score.timing
-        fields = {"classname": f"foucault.{outcome.scene}", "name": plain_lines(outcome.name)}
+        fields = {"classname": f"foucault.{outcome.scene}", "name": outcome.name}
         case = ElementTree.SubElement(suite, "testcase", fields | ({"time": f"{timing.wall_s:.3f}"} if timing else {}))
         lines = [plain_lines(line) for line in outcome.lines]
         if outcome.verdict == "agrees":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import time
 from fractions import Fraction
 
 import numpy as np
@@ -135,6 +136,28 @@ def test_digits_beyond_a_double_survive_a_unit():
     assert found.columns["x"][0] == 0.3
     exact = Fraction("0.30000000000000000000000012345") - Fraction(0.3)
     assert found.low["x"][0] == pytest.approx(float(exact), rel=1e-12)
+
+
+def test_a_word_longer_than_any_name_is_none():
+    assert meaning("x" + " " * 90 + "(m)", {}).column == "x"
+    assert meaning("x" + " " * 100 + "(m)", {}) is None
+
+
+@pytest.mark.parametrize("piece", ["( ", "[", " ", "a in ", "_per_", "/", "- "])
+def test_a_line_takes_no_longer_than_its_length_tells(piece):
+    """Four times the length takes four times as long; of a pattern that backtracks it would be sixteen times."""
+
+    def cost(length):
+        line = f"a{piece * (length // len(piece))}b\n".encode()
+        taken = []
+        for _ in range(3):
+            before = time.process_time()
+            with pytest.raises(InputError):
+                read_stream(io.BytesIO(line), "a line")
+            taken.append(time.process_time() - before)
+        return min(taken)
+
+    assert cost(16_000) < 10 * max(cost(4_000), 0.01)
 
 
 def test_every_unit_has_a_long_name_for_messages():

@@ -185,7 +185,7 @@ vz_ms x(µm) vy[µm/s] x..m x__cm (x) []
 
 
 def test_headers_mean_what_they_mean_to_score(golden):
-    headers = [*HEADERS.split(), "position x", "time in ms", " x / cm ", ""]
+    headers = [*HEADERS.split(), "position x", "time in ms", " x / cm ", "", f"x{' ' * 100}(m)"]
     found = run(golden, headers=headers)["meanings"]
     for word, mine in zip(headers, found, strict=True):
         one = meaning(word, {})

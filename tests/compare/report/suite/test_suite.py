@@ -154,13 +154,13 @@ def test_github_gets_annotations_and_a_summary(foucault, folder, tmp_path, monke
     (tmp_path / "summary.md").write_text("before\n")
     status, out, _ = foucault("score", "--suite", folder, "--no-diagnosis", "--github")
     assert status == 2
-    commands = [line for line in out.splitlines() if line.startswith("::")]
+    commands = [line for line in out.splitlines() if line.startswith(("::error", "::notice"))]
     assert [line.split(" ")[0] for line in commands] == ["::error", "::notice", "::error"]
     assert "title=foucault paris::" in commands[1]
     assert all("%0A" in line or line.count("::") == 2 for line in commands)
     summary = (tmp_path / "summary.md").read_text()
     assert summary.startswith("before\n### Foucault pendulum")
-    assert "| ✅ | paris |" in summary and "| ❌ | wrong |" in summary and "<details>" in summary
+    assert "| ✅ | `paris` |" in summary and "| ❌ | `wrong` |" in summary and "<details>" in summary
     monkeypatch.delenv("GITHUB_STEP_SUMMARY")
     assert foucault("score", "--suite", folder, "--no-diagnosis", "--github")[0] == 2
 
@@ -169,7 +169,7 @@ def test_what_an_annotation_would_take_for_its_own_is_escaped(foucault, tmp_path
     name = tmp_path / "a,b:c%.csv"
     name.write_text("t,x,y\n0,0.3,0.4\n60,1,1\n")
     out = foucault("score", "paris", name, "--github", "--no-diagnosis")[1]
-    (line,) = [line for line in out.splitlines() if line.startswith("::")]
+    (line,) = [line for line in out.splitlines() if line.startswith("::error")]
     assert "a%2Cb%3Ac%25.csv,title=foucault paris::" in line
 
 
