@@ -123,7 +123,7 @@ def test_every_damaged_part_is_found_and_computed_again(damage, folders, size, t
 def test_what_is_damaged_after_the_load_is_not_taken_for_numbers(folders, size, tally):
     whole, copy, _, _ = folders
     true, found = load_sweep(whole), Counter()
-    for i in range(size(20, 1000)):
+    for i in range(size(60, 1000)):
         chance = Chance(f"4 {i}")
         swept, kind, part = load_sweep(copy), chance.choice(KINDS), chance.randrange(PARTS)
         path = copy / kind / f"part-{part:08d}.parquet"

@@ -12,6 +12,7 @@ import pytest
 
 from reference import InputError, load_scene, load_sweep, sweep
 from reference.sweeps import driver
+from reference.sweeps.parquet import COLUMNS
 from reference.sweeps.sweep import asked_for, run
 
 pytest.importorskip("pyarrow")
@@ -104,7 +105,7 @@ def test_the_same_fields_in_another_order_are_another_sweep(tmp_path):
         run(asked_for(scene, over[::-1], None, folder, audit=0, engine="heyoka"), folder)
 
 
-def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
+def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path, monkeypatch):
     folder = tmp_path / "changed"
     shutil.copytree(whole, folder)
     plan = json.loads((folder / "plan.json").read_text())
@@ -114,6 +115,9 @@ def test_a_changed_plan_and_other_versions_are_refused(whole, tmp_path):
     (folder / "plan.json").write_text(json.dumps(plan | {"pyarrow": "1.0"}))
     with pytest.raises(InputError, match=r"pyarrow 1\.0"):
         run(asked(folder), folder)
+    with monkeypatch.context() as patch, pytest.raises(InputError, match="as this version writes it"):
+        patch.setattr("reference.sweeps.request.COLUMNS", COLUMNS[:-1])
+        load_sweep(folder)
     older = replace(asked(folder), identity="heyoka 1.0")
     (folder / "plan.json").write_text(json.dumps({"hash": older.hash, "pyarrow": plan["pyarrow"], **older.document()}))
     with pytest.raises(InputError, match=r"expected heyoka 1\.0, as in .* Install the versions"):
