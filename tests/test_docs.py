@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import tomllib
@@ -34,7 +35,7 @@ LANGUAGES = {
     "README.md": {"sh", "console", "pycon"},  # sh by .ci/run, the others by test_readme.py
     CONTRIBUTING: {"sh"},
     TUTORIAL: {"sh", "console", "python", "toml"},
-    SWEEPS: {"sh"},
+    SWEEPS: {"sh", "bash"},
     STUDIES: {"sh"},
     API: {"{eval-rst}", "python"},
     "docs/cite.md": {"{literalinclude} ../CITATION.cff"},
@@ -86,6 +87,13 @@ def test_the_commands_of_the_page_on_sweeps_work(foucault, tmp_path, monkeypatch
         assert (name, status) == ("foucault", 0), err
         rows.append(int(re.findall(r"^(\d+) rows: \1 ok$", out, re.M)[0]))
     assert rows == [181, 10 * 20, 3 * 2, 2]
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
+def test_a_cluster_under_tls_is_begun_as_the_page_on_sweeps_says(tmp_path):
+    pytest.importorskip("distributed")
+    (block,) = of_language(SWEEPS, "bash")
+    assert re.search(r"^91 rows: 91 ok$", output(block, tmp_path), re.M)
 
 
 def test_the_commands_of_the_studies_are_those_that_make_the_page():

@@ -72,7 +72,8 @@ def scheduler_at(address: str) -> Iterator[Scheduler]:
     """Provide a scheduler whose workers all have the versions that are here; leave it, or end one that is started here.
 
     Args:
-        address: tcp://HOST:PORT of a scheduler, or local:N for N processes of one thread on this machine.
+        address: tcp://HOST:PORT of a scheduler, or tls:// with the certificates in dask's configuration, or local:N for
+            N processes of one thread on this machine.
 
     Raises:
         InputError: no scheduler answers there, it has no workers, or their versions differ from those here.
@@ -98,17 +99,22 @@ def _connected(address: str, stack: ExitStack) -> Any:
             raise InputError("--cluster", address, "local:N with a number of workers from 1")
         # dask gives a local worker up that is being started again some seconds after its death: the last one, too
         stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": FOREVER_S}))
-        cluster = distributed.LocalCluster(
-            n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
-        )
+        try:
+            cluster = distributed.LocalCluster(
+                n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50
+            )
+        except RuntimeError as error:
+            raise InputError("--cluster", address, "processes that dask can start here", f"{error}") from None
         return stack.enter_context(distributed.Client(stack.enter_context(cluster)))
     if not address.startswith(SCHEMES):
-        raise InputError("--cluster", address, "tcp://HOST:PORT of a scheduler of dask, or local:N")
+        raise InputError("--cluster", address, "tcp://HOST:PORT or tls://HOST:PORT of a scheduler of dask, or local:N")
     try:
         return stack.enter_context(distributed.Client(address, timeout=WAIT_S))
     except (OSError, ValueError):
         advice = "Start one with `dask scheduler`, and workers with `dask worker ADDRESS`."
         raise InputError("--cluster", address, f"a scheduler that answers within {WAIT_S:g} s", advice) from None
+    except TypeError as error:  # of tls:// without certificates
+        raise InputError("--cluster", address, "certificates in dask's configuration", f"{error}.") from None
 
 
 def _check_versions(client: Any) -> None:

@@ -76,7 +76,7 @@ def _folder(kind: str) -> Path | None:
         folder = base / kind
         base.mkdir(mode=0o700, parents=True, exist_ok=True)
         folder.mkdir(mode=0o700, exist_ok=True)
-        doubt = _distrust(base)
+        doubt = _distrust(base) or _distrust(folder)
     except RuntimeError:
         doubt = "this user has no home folder (FOUCAULT_CACHE names another)"
     except OSError as error:

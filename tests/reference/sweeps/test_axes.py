@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -98,6 +100,34 @@ def test_values_come_from_a_file(tmp_path):
     assert texts(f"site.latitude=@{tmp_path / 'b.csv'}") == ["3", "4"]
     with pytest.raises(InputError, match=r"a column release\.x"):
         axis(f"release.x=@{tmp_path / 'a.csv'}", "decimal")
+
+
+@pytest.mark.parametrize("option", ["--rows", "--over"])
+def test_only_regular_files_hold_values(tmp_path, option):
+    def read(path):
+        return listed(Path(path)) if option == "--rows" else axis(f"site.latitude=@{path}", "decimal")
+
+    for name in ("pipe.csv", "pipe.parquet"):
+        os.mkfifo(tmp_path / name)
+    for path in (tmp_path / "pipe.csv", tmp_path / "pipe.parquet", "/dev/zero"):
+        with pytest.raises(InputError, match="a regular file"):
+            read(path)
+    for path in (tmp_path, tmp_path / "none.csv"):
+        with pytest.raises(InputError, match=r"a readable file|a regular file"):
+            read(path)
+
+
+def test_rows_are_counted_before_they_are_read(tmp_path, monkeypatch):
+    pa, pq = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    monkeypatch.setattr("reference.sweeps.axes.MOST_VALUES", 3)
+    monkeypatch.setattr(pq.ParquetFile, "read", lambda *_: pytest.fail("it was read"))
+    for name, count, said in (("site.latitude", 4, "at most 3"), ("nothing", 1, "a field that a sweep can vary")):
+        pq.write_table(pa.table({name: [1.0] * count}), tmp_path / "rows.parquet")
+        with pytest.raises(InputError, match=said):
+            listed(tmp_path / "rows.parquet")
+    (tmp_path / "rows.csv").write_text("site.latitude\n" + "1\n" * 4)
+    with pytest.raises(InputError, match="1 to 3 rows"):
+        listed(tmp_path / "rows.csv")
 
 
 @pytest.mark.parametrize(

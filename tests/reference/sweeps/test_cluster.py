@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
+import subprocess
 from dataclasses import replace
 
 import poisoned_sweep
@@ -131,3 +133,34 @@ def test_a_scheduler_without_workers_is_named(tmp_path, monkeypatch):
         pytest.raises(InputError, match="a scheduler with workers"),
     ):
         run(asked(tmp_path / "out"), tmp_path / "out", cluster=empty.scheduler_address)
+
+
+@pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
+def test_tls_is_dasks_own_and_an_address_without_certificates_is_refused(tmp_path):
+    import dask
+
+    from reference.sweeps.cluster import scheduler_at
+
+    key, certificate = str(tmp_path / "key.pem"), str(tmp_path / "certificate.pem")
+    command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-keyout", key, "-out", certificate]
+    subprocess.run([*command, "-subj", "/CN=sweep", "-days", "2"], check=True, capture_output=True)
+    names = ["ca-file", *(f"{who}.{what}" for who in ("client", "scheduler", "worker") for what in ("cert", "key"))]
+    given = {f"distributed.comm.tls.{name}": key if name.endswith("key") else certificate for name in names}
+    encrypted = {"distributed.comm.require-encryption": True}
+    with dask.config.set(encrypted | given), scheduler_at("local:1") as local:
+        address = local.client.scheduler.address
+        assert address.startswith("tls://127.0.0.1:")
+        with scheduler_at(address) as remote:
+            assert remote.submit(sum, [1, 2]).result() == 3
+        with (
+            dask.config.set(dict.fromkeys(given)),
+            pytest.raises(InputError, match="certificates in dask's configuration"),
+            scheduler_at(address),
+        ):
+            pass
+    with (
+        dask.config.set(encrypted),
+        pytest.raises(InputError, match="processes that dask can start here"),
+        scheduler_at("local:1"),
+    ):
+        pass

@@ -67,6 +67,12 @@ def test_the_cache_is_its_owners_alone(own_cache):
     assert cache.entry("kind", "name") == own_cache / "kind" / "name"
 
 
+def test_a_folder_of_one_kind_is_trusted_as_little(own_cache):
+    cache.arrays("kind", "name", lambda: {"x": np.zeros(3)})
+    (own_cache / "kind").chmod(0o777)
+    assert cache.arrays("kind", "name", made)["x"].tolist() == [0, 1, 2]
+
+
 @pytest.mark.parametrize(
     ("mode", "why"), [(0o777, "others can write into "), (0o775, "others can write into "), (0o700, "another user")]
 )
