@@ -176,6 +176,7 @@ class Manifest(Part):
             "level: a proof and the level enclosed belong together": (self.level == "enclosed") == bool(self.enclosure),
             "level: no run agrees with the published one": bool(self.cross_checks) or self.level == "computed",
             "level: a single run has no cross-checks": not (self.cross_checks and self.level == "computed"),
+            "notes: one for each flag": {*self.notes} == {*self.flags},
             "counts: a grid has two times at least": self.counts.grid >= 2,
             f"bounds.grid: must name the columns {', '.join(GRID)}": tuple(bounds.grid) == GRID,
             f"bounds.transits: must name the columns {', '.join(TRANSITS)}": tuple(bounds.transits) == transits,

@@ -181,7 +181,8 @@ WORDS = {
     "a grid of one time": (lambda m: m["counts"].update(grid=1), "a grid has two times at least"),
     "an audit of no proof": (lambda m: m.update(command=f"{m['command']} --audit"), "command does not follow"),
     "a run that checks itself": (one_run_twice, "level = self_consistent, and no cross-check differs from the run"),
-    "a flag without a note": (lambda m: m.update(flags=["stiff"]), "notes.stiff = None does not follow"),
+    "a flag without a note": (lambda m: m.update(flags=["stiff"]), "notes: one for each flag"),
+    "another note": (lambda m: m.update(flags=["stiff"], notes={"stiff": "x"}), "notes.stiff = x does not follow"),
 }  # fmt: skip
 
 
