@@ -6,12 +6,17 @@ there is a crossing in between, and if heyoka reports none, it has lost one.
 
 Signs alone do not show everything. If xdot is +0.3 mm/s and falling at the start, and +0.2 mm/s and rising at the end,
 it has a minimum in between. That may be +0.1 mm/s, with no transit, or -0.1 mm/s, with two close together, as happens
-when the swing plane passes through north-south. To tell them apart, xdot is evaluated at the minimum.
+when the swing plane passes through north-south. Two may be lost beside a crossing that was found, too. So the zeros of
+the step's polynomial are counted, by Descartes' rule: in Bernstein's form its coefficients change sign as often as it
+has zeros, or 2, 4, … times oftener. One change at most is certain. A convex piece has one zero if its ends differ in
+sign; else two or none, and xdot at its minimum says which. Any other piece is halved.
 
 So a step is taken again, with its left edge moved, unless
 
 - the crossings in it alternate, and lead from the sign of xdot at its start to the sign at its end,
-- xdot keeps its sign at a minimum of |xdot| inside it, if it has no crossing.
+- they are as many as its polynomial has zeros.
+
+Many steps are checked in one go, which costs less.
 
 If xdot is zero at the release, that zero at t = 0 is no transit: a first step leaves it out, so short that it holds no
 other.
@@ -19,14 +24,18 @@ other.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from functools import cache
+from itertools import pairwise
+from math import comb
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from ...errors import IntegrationError
+from ...numbers.precision import Array
 from ..plan import AT_REST
 
 if TYPE_CHECKING:
@@ -34,11 +43,32 @@ if TYPE_CHECKING:
 
 MAX_RETRIES = 6  # how often steps are taken again before the run is given up
 SHORTER = Fraction(79, 128)  # a step taken again is cut by this factor: no simple ratio, so that no edge returns
-MINIMUM_BISECTIONS = 60  # the minimum of |xdot| is found to this many bits of a step
+AT_ONCE = 100  # steps that are checked together
+ROUNDING = 2.0**-46  # of Bernstein's form in double, against the sum of the coefficients' sizes
+MOST_TERMS = 40  # of a polynomial whose zeros are counted; those beyond, e**-80 of the first, count as rounding
+MOST_PIECES = 200  # that a step is cut into
+MINIMUM_BISECTIONS = 60  # the minimum of |xdot| is found to this many bits of a piece
 
 
-class _Contradiction(Exception):
-    """The zeros of a step contradict each other."""
+class _Step(NamedTuple):
+    """A step that was taken.
+
+    Attributes:
+        mark: its start.
+        states, zeros: how many there were before it.
+        end: its end in s.
+        series: Taylor coefficients of x over l.
+        length: in s.
+        directions: of the zeros in it.
+    """
+
+    mark: tuple[Any, Any]
+    states: int
+    zeros: int
+    end: Any
+    series: Any
+    length: Any
+    directions: list[int]
 
 
 def quiet_start(stepper: Stepper, multiplicity: int) -> Fraction:
@@ -91,73 +121,114 @@ def march(
     if quiet is not None:
         stepper.advance(min(stepper.numbers.of(quiet), end))
         collect()
-    last_starts: deque[tuple[Any, int, int]] = deque(maxlen=2)  # of the last two steps
-    retries, at_start = 0, stepper.xdot_and_xddot(stepper.state)
-    limit = end - stepper.time
+    steps: list[_Step] = []  # the last one that was checked, and those after it
+    retries, limit = 0, end - stepper.time
     while stepper.time < end:
-        last_starts.append((stepper.mark(), len(states), len(zeros)))
+        mark, counts = stepper.mark(), (len(states), len(zeros))
         stepper.advance(limit)
-        try:
-            zeros_of_step, at_start = _checked_zeros(stepper, last_starts[-1][0][0], at_start)
-        except _Contradiction as contradiction:
-            retries += 1
-            if retries > MAX_RETRIES:
-                raise IntegrationError(
-                    f"zeros of xdot near t = {float(stepper.time)} s: {contradiction}.",
-                    AT_REST,
-                ) from None
-            limit = (stepper.time - last_starts[-1][0][0]) * stepper.numbers.of(SHORTER**retries)
-            mark, state_count, zero_count = last_starts[0]
-            stepper.back(mark)
-            del states[state_count:], zeros[zero_count:]
-            last_starts.clear()
-            at_start = stepper.xdot_and_xddot(stepper.state)
-            continue
-        zeros += zeros_of_step
-        retries = retries if limit < end - last_starts[-1][0][0] else 0
+        found = sorted(stepper.zeros, key=lambda zero: zero.t)
+        directions = [zero.direction for zero in found]
+        steps.append(_Step(mark, *counts, stepper.time, *stepper.last_of_x(), directions))
+        zeros += found
         collect()
+        if len(steps) > AT_ONCE or retries or stepper.time >= end:
+            if (wrong := _first_contradiction(steps)) is not None:
+                i, contradiction = wrong
+                retries += 1
+                if retries > MAX_RETRIES:
+                    raise IntegrationError(f"zeros of xdot near t = {float(steps[i].end)} s: {contradiction}.", AT_REST)
+                limit = (steps[i].end - steps[i].mark[0]) * stepper.numbers.of(SHORTER**retries)
+                before = steps[max(i - 1, 0)]
+                stepper.back(before.mark)
+                del states[before.states :], zeros[before.zeros :], steps[max(i - 1, 0) :]
+                continue
+            retries = retries if limit < end - mark[0] else 0
+            del steps[:-1]
         limit = end - stepper.time
         if report is not None:
             report(float(stepper.time))
     return np.array(states, dtype=stepper.numbers.dtype), zeros
 
 
-def _checked_zeros(
-    stepper: Stepper, t_start: Any, at_start: tuple[float, float]
-) -> tuple[list[Zero], tuple[float, float]]:
-    """Return the zeros of the last step, checked, and xdot and xddot at its end.
+def _first_contradiction(steps: Sequence[_Step]) -> tuple[int, str] | None:
+    """Return the first of consecutive steps whose zeros fail a guard, as its index, and how; None if none does."""
+    x = np.array([step.series[1:] for step in steps])
+    x *= np.cumprod(np.broadcast_to([[step.length] for step in steps], x.shape), axis=1)
+    k = np.arange(1, x.shape[1] + 1)
+    series = x.astype(float) * k
+    sizes = np.abs(series)
+    noise = ROUNDING * sizes.sum(axis=1) + sizes[:, MOST_TERMS:].sum(axis=1)
+    forms = (series[:, :MOST_TERMS] / noise[:, None]) @ _bernstein(min(x.shape[1], MOST_TERMS))[0].T
+    ends = np.sign([*series[:, 0], float(polyval(1, x[-1] * k))])
+    changes = np.count_nonzero(np.diff(_signs(forms, ends[:-1], ends[1:])), axis=1)
+    found = np.array([len(step.directions) for step in steps])
+    first = np.array([step.directions[0] if step.directions else 0 for step in steps])
+    for i in map(int, np.flatnonzero((changes != found) | (found > 1) | (first + ends[:-1] * found != 0))):
+        signs = [ends[i], *steps[i].directions, ends[i + 1]]
+        if ends[i] == 0 or any(b != -a for a, b in pairwise(signs[:-1])):
+            return i, "two crossings in a row have the same direction"
+        if signs[-1] != signs[-2]:
+            return i, "the sign of xdot at the step's ends does not fit the crossings between"
+        if (count := _count_zeros(x[i] * k, forms[i], *ends[i : i + 2])) != found[i]:
+            return i, f"xdot crosses zero {count} times, and {found[i]} crossings were found"
+    return None
+
+
+def _signs(form: Array, left: Any, right: Any) -> Array:
+    """Return the signs of Bernstein forms, at the ends as given; where rounding decides 0, which makes two changes."""
+    signs = np.sign(np.trunc(form))
+    signs[..., 0], signs[..., -1] = left, right
+    return signs
+
+
+def _count_zeros(xdot: Any, form: Array, left: float, right: float) -> float:
+    """Return how many zeros a polynomial has between 0 and 1; NaN if more than two are too close to be counted.
 
     Args:
-        stepper: after the step.
-        t_start: where the step began.
-        at_start: xdot and xddot there.
-
-    Raises:
-        _Contradiction: a guard fails.
+        xdot: its coefficients, in the run's type.
+        form: its Bernstein form, in units of its error.
+        left: its sign at 0.
+        right: its sign at 1.
     """
-    zeros = sorted(stepper.zeros, key=lambda zero: zero.t)
-    at_end = stepper.xdot_and_xddot(stepper.state)
-    sign = np.sign(at_start[0])
-    for zero in zeros:
-        if zero.direction != -sign:
-            raise _Contradiction("two crossings in a row have the same direction")
-        sign = -sign
-    if sign == 0 or sign != np.sign(at_end[0]):
-        raise _Contradiction("the sign of xdot at the step's ends does not fit the crossings between")
-    has_minimum = at_start[0] * at_start[1] < 0 < at_end[0] * at_end[1]
-    if not zeros and has_minimum and _xdot_at_minimum(stepper, t_start) * sign <= 0:
-        raise _Contradiction("xdot crosses zero twice and neither was found")
-    return zeros, at_end
+    count, (_, to_half) = 0.0, _bernstein(len(form))
+    zero = 0 * xdot[0]
+    pieces = [(form, zero, zero + 1, left, right)]
+    for form, low, high, left, right in pieces:  # which grow
+        changes = np.count_nonzero(np.diff(_signs(form, left, right)))
+        bends = np.sign(np.trunc(np.diff(form, 2) / 4))
+        if changes <= 1:
+            count += changes
+        elif abs(bends.sum()) == len(bends):
+            dips = left == right == bends[0] and _dips(xdot, low, high)
+            count += 2 * dips + (left != right)
+        elif len(pieces) < MOST_PIECES:
+            middle = (low + high) / 2
+            between = np.sign(float(polyval(middle, xdot)))
+            pieces.append((to_half @ form, low, middle, left, between))
+            pieces.append(((to_half @ form[::-1])[::-1], middle, high, between, right))
+        else:
+            return np.nan
+    return count
 
 
-def _xdot_at_minimum(stepper: Stepper, t_start: Any) -> float:
-    """Return xdot where |xdot| has its minimum inside the last step, by bisection for xddot = 0."""
-    low, high = t_start, stepper.time
-    rising = stepper.xdot_and_xddot(stepper.sample(high))[1] > 0
+@cache
+def _bernstein(terms: int) -> tuple[Array, Array]:
+    """Return the matrices from coefficients to Bernstein's form, and from that to the form on the first half."""
+    n = range(terms)
+    form = np.array([[comb(j, i) / comb(terms - 1, i) for i in n] for j in n])
+    return form, np.array([[comb(j, i) / 2**j for i in n] for j in n])
+
+
+def _dips(xdot: Any, low: Any, high: Any) -> bool:
+    """Return whether a polynomial has its minimum between two places, and another sign there; by bisection."""
+    slopes = xdot[1:] * np.arange(1, len(xdot))
+    sign, rising = float(polyval(low, xdot)), polyval(high, slopes) > 0
+    if (polyval(low, slopes) > 0) == rising:
+        return False
     for _ in range(MINIMUM_BISECTIONS):
         middle = (low + high) / 2
-        if (stepper.xdot_and_xddot(stepper.sample(middle))[1] > 0) == rising:
+        if (polyval(middle, slopes) > 0) == rising:
             high = middle
         else:
             low = middle
-    return stepper.xdot_and_xddot(stepper.sample(high))[0]
+    return float(polyval(high, xdot)) * sign <= 0

@@ -9,12 +9,13 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from numbers import Real
 from typing import Any
 
 import heyoka as hy
 import numpy as np
 
-from ...errors import IntegrationError
+from ...errors import InputError, IntegrationError
 from ...model.constants import Constants
 from ...model.force import acceleration
 from ...model.formulations import Formulation
@@ -141,6 +142,8 @@ class Propagator:
             system = hy.var_ode_sys(system, [hy.par[0]], order=1)
         keywords = dict(self.numbers.keywords)
         if tolerance is not None:
+            if not (isinstance(tolerance, Real) and 0 < tolerance < 1):
+                raise InputError("tolerance", tolerance, "a relative error between 0 and 1")
             keywords["tol"] = self.numbers.of(Fraction(tolerance))
         started = time.process_time()
         zeros = np.array([self.numbers.of(0)] * len(state), dtype=self.numbers.dtype)

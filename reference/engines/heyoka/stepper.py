@@ -62,7 +62,6 @@ class Stepper:
         self.steps = 0
         self._longest = None if longest is None else self.numbers.of(longest)
         system = System.build(formulation, self.model.k)
-        self._variables = [name for name, _ in system.equations]
         compiled = dict(self.numbers.keywords)
         if not number.hardware and span is not None and float(span) * start.rate < SHORT_RUN:
             compiled["opt_level"] = 0  # calls of MPFR give the same numbers
@@ -80,9 +79,6 @@ class Stepper:
         started = time.process_time()
         keep_on_disk(number)
         self._ta: Any = hy.taylor_adaptive(system.equations, state, fp_type=self.numbers.type, **keywords)
-        if events:
-            outputs = [system.xdot, system.xddot]
-            self._outputs = hy.cfunc(outputs, self._variables, fp_type=self.numbers.type, **compiled)
         self.compile_s = time.process_time() - started
         self.terms, self.order = len(self._ta.decomposition), int(self._ta.order)
         self._powers: tuple[Any, Any] = (None, None)
@@ -128,10 +124,9 @@ class Stepper:
         self._ta.time, self._ta.state[:] = mark
         self.zeros.clear()
 
-    def xdot_and_xddot(self, state: Any) -> tuple[float, float]:
-        """Return xdot and xddot over l at a state, as binary64 with the right signs; only with events."""
-        xdot, xddot = self._outputs(state)
-        return float(xdot), float(xddot)
+    def last_of_x(self) -> tuple[Any, Any]:
+        """Return the Taylor coefficients of the first variable in the last step (a copy), and the step's length."""
+        return self._ta.tc[0].copy(), self._ta.last_h
 
     def coefficients(self) -> tuple[Any, Any]:
         """Return the Taylor coefficients of every variable, shape (variables, order + 1), and heyoka's step size.
@@ -162,7 +157,7 @@ class Stepper:
         step, powers = self.numbers.of(h), [self.numbers.power_of_two(bits)]
         for _ in range(self.order + 1):
             powers.append(powers[-1] * step)
-        half = len(self._variables) // 2
+        half = len(self._ta.state) // 2
         return np.array([powers[:-1]] * half + [powers[1:]] * half)
 
     def _exact_time(self) -> Fraction:

@@ -13,10 +13,10 @@ from typing import Any
 
 import heyoka as hy
 
+from ...errors import InputError
 from ...model.algebra import minus, product
 from ...model.carried import constant_variables
 from ...model.constants import Constants
-from ...model.force import acceleration
 from ...model.formulations import FORMULATIONS, Formulation, Lagrangian
 from ...model.start import Start, xdot_vanishes
 from ...numbers.precision import DOUBLE, LONG_DOUBLE, NumberType
@@ -63,20 +63,18 @@ class System:
     Attributes:
         equations: pairs of a variable and its rate.
         xdot: velocity of the x coordinate, over l.
-        xddot: its acceleration, over l.
     """
 
     equations: list[tuple[Any, Any]]
     xdot: Any
-    xddot: Any
 
     @classmethod
     def build(cls, formulation: Formulation, constants: Constants) -> System:
         """Build the expressions of a formulation; `constants` are numbers of the run's type, or variables."""
         state = hy.make_vars(*formulation.variables)
-        n, v = formulation.cartesian(state, constants, hy)
+        _, v = formulation.cartesian(state, constants, hy)
         equations = as_pairs(state, rates(formulation, constants)(state, hy))
-        return cls(equations, v[0], acceleration(n, v, constants)[0])
+        return cls(equations, v[0])
 
 
 def rates(formulation: Formulation, constants: Constants) -> Callable[[Any, Any], Sequence[Any]]:
@@ -87,7 +85,13 @@ def rates(formulation: Formulation, constants: Constants) -> Callable[[Any, Any]
 
 
 def as_pairs(state: Sequence[Any], rates: Sequence[Any]) -> list[tuple[Any, Any]]:
-    """Return the pairs (variable, rate) that heyoka takes; a rate that is the int 0 becomes an expression."""
+    """Return the pairs (variable, rate) that heyoka takes; a rate that is the int 0 becomes an expression.
+
+    Raises:
+        InputError: there are not as many rates as variables.
+    """
+    if len(rates) != len(state):
+        raise InputError("derivatives", f"{len(rates)} rates", f"{len(state)}, one a variable")
     return [(name, rate + hy.expression(0.0)) for name, rate in zip(state, rates, strict=True)]
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from itertools import combinations
 
 import heyoka as hy
 import numpy as np
 import pytest
 from small_scenes import make_scene, start_for, stepper_of
 
-from reference.engines.heyoka.events import march, quiet_start
+from reference.engines.heyoka.events import _first_contradiction, _Step, march, quiet_start
 from reference.engines.heyoka.model import Numbers
 from reference.engines.heyoka.stepper import Stepper
 from reference.engines.heyoka.system import System
@@ -181,8 +182,67 @@ def test_guard_a_close_pair_lost_together_is_found_again():
     assert len(again) == len(plain)
 
 
+class LosesSome(Stepper):
+    """Forgets some of the events of one step, the first that has four."""
+
+    forget, lost = (), 0
+
+    def advance(self, limit):
+        super().advance(limit)
+        if self.lost == 0 and len(self.zeros) == 4:
+            self.lost = len(self.forget)
+            self.zeros[:] = [zero for i, zero in enumerate(self.zeros) if i not in self.forget]
+
+
+def bunched_scene():
+    """A swing so much smaller than the cord that a step lasts two periods, and most hold four zeros."""
+    release = {"x": "1e-32", "y": "1e-32", "vx": "1e-32"}
+    return make_scene(site={"gravity_is": "effective", "rotation_rate": "0"}, release=release)
+
+
+@pytest.mark.parametrize("forget", [lost for count in range(1, 5) for lost in combinations(range(4), count)])
+def test_guard_whatever_is_lost_in_a_step_is_found_again(forget):
+    scene = bunched_scene()
+    stepper = losing(scene, real(128), type("Loses", (LosesSome,), {"forget": forget}))
+    times = [float(zero.t) for zero in guarded_moving(scene, stepper, 120)]
+    assert np.diff(times) == pytest.approx(np.full(14, np.pi * np.sqrt(67 / 9.80665)), abs=1e-6)
+    assert stepper.lost == len(forget)
+
+
 def guarded_moving(scene, stepper, t_end=60):
     return march(stepper, [stepper.numbers.of(0), stepper.numbers.of(t_end)])[1]
+
+
+def step_of(zeros, rest, directions, dtype=float):
+    """A step whose xdot has these zeros, and directions of the zeros that were found."""
+    xdot = np.polynomial.polynomial.polymul(np.polynomial.polynomial.polyfromroots(zeros), rest)
+    series = np.concatenate([[0.3], xdot / np.arange(1, len(xdot) + 1)]).astype(dtype)
+    return _Step((0.0, None), 0, 0, 1.0, series, dtype(1), directions)
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.longdouble])
+def test_guard_the_zeros_of_any_polynomial_are_counted(dtype):
+    """Up to four zeros in a step, some close together, others just outside it, or complex and near."""
+    rng = np.random.default_rng(31)
+    for case in range(300):
+        many = case % 5
+        zeros = np.sort(rng.uniform(0.001, 0.999, many))
+        if many > 1 and case % 4 == 0:
+            zeros[1] = zeros[0] + 10 ** rng.uniform(-5, -3)
+            zeros.sort()
+        outside = rng.choice([-1e-6, 1 + 1e-6, 1.5, -3.0], rng.integers(0, 3)).tolist()
+        middle, aside = rng.uniform(0, 1), 10 ** rng.uniform(-3, 0)
+        near = np.polynomial.polynomial.polyfromroots(outside) if outside else np.ones(1)
+        rest = np.polynomial.polynomial.polymul([middle**2 + aside**2, -2 * middle, 1], near)
+        far = np.exp(-2.0 * np.arange(15)) * rng.uniform(-1, 1, 15)
+        far[0] = 2.0
+        rest = np.polynomial.polynomial.polymul(rest, far)
+        first = -np.sign(np.polynomial.polynomial.polyval(0, rest) * (-1) ** many)
+        directions = [int(first) * (-1) ** k for k in range(many)]
+        assert _first_contradiction([step_of(zeros, rest, directions, dtype)]) is None, (case, zeros)
+        for lost in range(1, 1 << many):
+            kept = [d for k, d in enumerate(directions) if not lost >> k & 1]
+            assert _first_contradiction([step_of(zeros, rest, kept, dtype)]) is not None, (case, zeros, lost)
 
 
 def test_events_that_contradict_each_other_for_good_stop_the_run(paris):
