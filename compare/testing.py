@@ -21,6 +21,7 @@ import numpy.typing as npt
 
 from reference import InputError, Scene
 from reference.numbers.precision import Array
+from reference.scenes.scene import AnyScene
 
 from .candidates.candidate import COLUMNS, candidate_of, checked_transits
 from .candidates.external import placeholders
@@ -30,7 +31,7 @@ from .score.verdict import percent
 
 
 def assert_agrees(
-    scene: str | Scene,
+    scene: AnyScene,
     t: npt.ArrayLike,
     states: npt.ArrayLike,
     *,
@@ -43,7 +44,7 @@ def assert_agrees(
     """Assert that positions agree with the truth of a scene.
 
     Args:
-        scene: a scene, its id, or the path of a TOML file.
+        scene: a scene, its id, the path of a TOML file, or nested mappings.
         t: times in s, shape (rows,), increasing.
         states: x, y in m; or x, y, z in m; or these and vx, vy, vz in m/s: shape (rows, 2), (rows, 3) or (rows, 6).
         tolerance: largest position error allowed, in m; a millionth of the amplitude if None, as in `foucault score`.

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .dataset.golden import Golden, load
     from .dataset.write import write
     from .engines.trajectory import integrate, trajectory
+    from .numbers.table import Table
     from .solver.solution import Solution
     from .solver.solve import solve
     from .sweeps.sweep import Swept, load_sweep, sweep
@@ -35,6 +36,7 @@ __all__ = [
     "Scene",
     "Solution",
     "Swept",
+    "Table",
     "UnreachableError",
     "integrate",
     "load",
@@ -54,6 +56,7 @@ __getattr__, __dir__ = lazy(
         "Golden": "dataset.golden",
         "Solution": "solver.solution",
         "Swept": "sweeps.sweep",
+        "Table": "numbers.table",
         "integrate": "engines.trajectory",
         "load": "dataset.golden",
         "load_sweep": "sweeps.sweep",

@@ -133,6 +133,16 @@ def unknown(field: str, word: str, expected: str, known: Iterable[str], otherwis
     return InputError(field, word, expected, did_you_mean(word, known, otherwise))
 
 
+def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
+    """Return the error for an unknown attribute, which says what there is, the nearest names first."""
+    text = f"{owner} has no attribute {name!r}"
+    if name.startswith("_"):  # Python itself asks for such names, and wants no advice
+        return AttributeError(text)
+    every = sorted(names)
+    near = nearest(name, every)
+    return AttributeError(f"{text}; it has {', '.join([*near, *(other for other in every if other not in near)])}")
+
+
 def is_plain(text: str) -> bool:
     """Return whether a text is one line without control characters."""
     return _CONTROL.search(text) is None

@@ -95,7 +95,7 @@ def _exact(options: Options) -> Iterator[tuple[Array, Array, list[float]]]:
     states = np.array([getattr(solution, name) for name in ("x", "y", "z", "vx", "vy", "vz")]).T
     start = Start.of(options.scene.exact, PREC)
     states[0] = [float(part) for part in (*start.position, *start.velocity)]  # as given: the solver's has rounding
-    zeros = [] if solution.transits is None else solution.transits["t"].tolist()
+    zeros = solution.transits["t"].tolist()
     yield solution.t[: rows + 1], states[: rows + 1], zeros
 
 

@@ -1,4 +1,8 @@
-"""Capture what compiled libraries write to this process's stdout and stderr, below Python's own streams."""
+"""Capture what compiled libraries write to this process's stdout and stderr, below Python's own streams.
+
+Descriptors belong to the whole process: only one that was started to run methods is captured. In a user's process
+libraries print where they like.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 _turn = threading.RLock()  # descriptors are the process's: of two threads the last to leave would restore the other's
+
+
+own_process = False  # set in a process that was started to run methods
 
 
 class Capture:
@@ -28,8 +35,11 @@ class Capture:
 def captured(*descriptors: int) -> Iterator[Capture]:
     """Redirect file descriptors (1 for stdout, 2 for stderr) to a file while a library runs, in one thread at a time.
 
-    What other threads print meanwhile is captured too.
+    What other threads print meanwhile is captured too. In a user's process nothing is.
     """
+    if not own_process:
+        yield Capture()
+        return
     with _turn, tempfile.TemporaryFile() as handle:
         sys.stdout.flush()
         sys.stderr.flush()

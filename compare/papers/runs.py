@@ -61,7 +61,6 @@ def solved(changes: tuple[str, ...], t_end: str, digits: int = 20) -> Solution:
 
 def frequency(solution: Solution) -> Any:
     """Return the swings a second, from the release to the last transit that ends a whole swing."""
-    assert solution.transits is not None
     times = solution.transits.exact("t")
     half = times[1] / 2
     swings = [(round(t / half), t) for t in times]

@@ -15,11 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from reference import Golden, InputError, Scene, UnreachableError, load_scene
+from reference import Golden, InputError, Scene, UnreachableError
 from reference.dataset.dense import WITHIN
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
 from reference.numbers.precision import Array
+from reference.scenes.scene import AnyScene, as_scene
 
 from ..candidates.candidate import Candidate, Deviation
 from ..candidates.external import PLACEHOLDER_BITS
@@ -41,7 +42,7 @@ SAME = 1e-3  # relative difference of ratios that count as one scale
 
 def judge(
     candidate: Candidate | str | Path | None,
-    scene: Scene | str | Path,
+    scene: AnyScene,
     *,
     transits: Array | None = None,
     tolerance: float | None = None,
@@ -57,7 +58,7 @@ def judge(
 
     Args:
         candidate: the trajectory, at its own times, or the path of its file; None to judge transits alone.
-        scene: the problem that it claims to solve: a scene, its id, or the path of a TOML file.
+        scene: the problem that it claims to solve: a scene, its id, the path of a TOML file, or nested mappings.
         transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
         tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
         inputs: decimal, binary64, or auto: binary64 for programs whose numbers fit in a double.
@@ -75,7 +76,7 @@ def judge(
     """
     if tolerance is not None and not 0 < tolerance < math.inf:
         raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
-    scene = scene if isinstance(scene, Scene) else load_scene(scene)
+    scene = as_scene(scene)
     if not 0 <= covers <= 1:
         raise InputError("covers", f"{covers:g}", "a share of the scene's span, from 0 to 1")
     if candidate is None:

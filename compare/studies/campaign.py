@@ -27,7 +27,7 @@ from reference.system import cache
 from reference.system.documents import json_lines
 from reference.system.workers import Emit, Worker
 
-from ..methods import METHODS
+from ..methods import METHODS, capture
 from .row import Record
 
 JUDGED = 2  # changes when equal runs are measured or judged otherwise, so that old results are not used again
@@ -112,6 +112,7 @@ def campaign(
 
 def measured(emit: Emit, measurement: Measurement[Item, Result], items: Sequence[Item]) -> None:
     """Measure items one after the other, in a child process, and send each result."""
+    capture.own_process = True
     for item in items:
         emit(measurement.measure(item))
 

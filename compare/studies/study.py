@@ -12,7 +12,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
 
-from reference import Golden, Scene, load_scene
+from reference import Golden, Scene
+from reference.scenes.scene import AnyScene, as_scene
 from reference.status import Status
 
 from ..candidates.candidate import Candidate
@@ -104,7 +105,7 @@ class _Runs(OnScene[Item, Row]):
 
 
 def study(
-    scene: Scene | str,
+    scene: AnyScene,
     methods: Sequence[str] | None = None,
     *,
     t_end: float | None = None,
@@ -122,8 +123,8 @@ def study(
     """Measure error against run time of methods on a scene: `study("paris", ["rk4"], t_end=600).rows`.
 
     Args:
-        scene: an id, the path of a TOML file, or a scene; its inputs are read as binary64, because that is the problem
-            which methods in double solve.
+        scene: a scene, its id, the path of a TOML file, or nested mappings; its inputs are read as binary64, because
+            that is the problem which methods in double solve.
         methods: ids, each run over its settings; all if None.
         t_end: end of the span in s; the scene's own if None.
         formulations: whether to compare the formulations of the equations in one method as well.
@@ -141,7 +142,7 @@ def study(
         InputError: an unknown scene or method.
         UnreachableError: the truth cannot be solved for.
     """
-    requested = load_scene(scene) if isinstance(scene, str) else scene
+    requested = as_scene(scene)
     span = [] if t_end is None else [f"run.t_end={t_end}"]
     problem = on_doubles(requested.with_values(["inputs=binary64", *span]))
     golden = golden_of(problem, digits or problem.run.digits, announce, solving, grid=True)

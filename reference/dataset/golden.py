@@ -11,16 +11,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
 
 from ..errors import DatasetError, FoucaultError, InputError, did_you_mean
+from ..numbers.columns import GridColumns
 from ..numbers.precision import Array
-from ..scenes.scene import Scene, parse_scene
+from ..scenes.scene import Level, Scene, parse_scene
 from ..scenes.shipped import seals
-from ..system.imports import no_attribute
 from .manifest import FORMAT, MANIFEST, Manifest
 from .place import golden_folder
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
@@ -226,7 +225,7 @@ class PrintedTable:
 
 
 @dataclass(frozen=True, repr=False)
-class Golden:
+class Golden(GridColumns):
     """A golden dataset, as read from disk: the same columns as a `Solution`, as printed.
 
     `golden.t`, `.x`, … are the grid as binary64 arrays of shape (rows,); both tables have `table["x"]`, the same,
@@ -247,6 +246,11 @@ class Golden:
     transits: PrintedTable
 
     @property
+    def level(self) -> Level:
+        """Level of trust in the numbers, one of `scene.LEVELS`."""
+        return self.manifest.level
+
+    @property
     def times(self) -> tuple[Fraction, ...]:
         """Grid times in s, exact."""
         return tuple(self.grid.exact("t"))
@@ -260,24 +264,11 @@ class Golden:
         """Return a grid column as printed."""
         return self.grid.decimals(column)
 
-    def exact(self, column: str) -> list[Fraction]:
-        """Return the exact values of the printed decimals of a grid column."""
-        return self.grid.exact(column)
-
-    def __getattr__(self, name: str) -> Any:
-        """Return a grid column as the nearest doubles, shape (rows,)."""
-        if not name.startswith("_") and name in self.grid.columns:
-            return self.grid[name]
-        raise no_attribute("a Golden", name, () if name.startswith("_") else {*self.grid.columns, *_NAMES})
-
     def __repr__(self) -> str:
         """Return id, level, digits, and the numbers of rows and transits."""
         about, counts = self.manifest, self.manifest.counts
         rows = f"{counts.grid} grid times, {counts.transits} transits"
         return f"Golden({about.id}: {about.level}, {about.digits} digits, {rows})"
-
-
-_NAMES = ("path", "manifest", "grid", "transits", "scene", "times", "directions", "decimals", "exact")
 
 
 def load(name: str | Path) -> Golden:

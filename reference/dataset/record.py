@@ -78,7 +78,7 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
         decimals={"grid": grid.decimals, "transits": transits.decimals},
         bounds=_bounds(solution, grid, transits),
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
-        transits=completeness(scene, solution.transits is None, bool(solution.possible)),
+        transits=completeness(scene, solution.zeros is None, bool(solution.possible)),
         possible=[
             Possible.model_validate({"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity})
             for low, high, parity in solution.possible
@@ -141,7 +141,7 @@ def command(scene: Scene, name: str, making: Making) -> str:
 def _bounds(solution: Solution, grid: Sheet, transits: Sheet) -> Bounds:
     of_grid = column_bounds(solution.grid, grid.decimals)
     of_transits = {}
-    if solution.transits is not None and transits.rows:
+    if transits.rows:
         largest = max((row[-1] for row in transits.rows), key=Fraction)
         of_transits = column_bounds(solution.transits, transits.decimals) | {"t": largest}
     return bounds_of(of_grid, of_transits)

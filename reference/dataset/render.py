@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from ..numbers.columns import TRANSITS
-from ..numbers.table import Table
 from ..scenes.scene import Level
 from ..solver.solution import Solution
 from .manifest import MANIFEST, FileRecord, Manifest
@@ -32,7 +30,7 @@ def render(solution: Solution, name: str | None = None) -> dict[str, str]:
     if solution.scene.run.transits:
         tables["transits.csv"] = transits
         if len(transits.rows) <= MOST_DOUBLES:
-            of_transits = nearest_doubles(solution.transits or Table(TRANSITS, 0, []), transits)
+            of_transits = nearest_doubles(solution.transits, transits)
             tables["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
     record = manifest_of(solution, grid, transits, name)
     texts = {name: sheet.csv() for name, sheet in tables.items()} | derived_texts(record, tables)

@@ -62,7 +62,7 @@ def grid_sheet(solution: Solution) -> Sheet:
 
 def transits_sheet(solution: Solution) -> Sheet:
     """Return `transits.csv`: every zero of xdot; the bound on t includes the rounding of t to its digits."""
-    table = solution.transits
+    table = solution.zeros
     if table is None:
         return Sheet(TRANSITS_HEADER, [], {})
     decimals = transit_decimals(solution)

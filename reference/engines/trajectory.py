@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BeyondDoublesError, InputError, IntegrationError
+from ..errors import BeyondDoublesError, InputError, IntegrationError, unknown
 from ..model.carried import carried
 from ..model.constants import Constants
 from ..model.formulations import FORMULATIONS
 from ..model.start import Start
 from ..numbers.precision import DOUBLE, GUARD_BITS, Array, NumberType
 from ..scenes.inputs import Inputs
-from ..scenes.scene import Scene
+from ..scenes.scene import AnyScene, as_scene
 
 MAX_STEPS = 3_000_000  # of one run, so that a variant much stiffer than the scene comes to an end
 
@@ -117,6 +117,8 @@ def integrate(
         The states as binary64, shape (times, variables).
 
     Raises:
+        InputError: times that do not increase from 0; a wrong tolerance; not as many rates, or numbers of `start`, as
+            variables.
         IntegrationError: heyoka stops before the last time, also because `max_steps` do not suffice, or a state is
             not finite.
     """
@@ -124,12 +126,14 @@ def integrate(
 
     propagator = Propagator(variables, derivatives, number, tolerance=tolerance)
     numbers = propagator.numbers
-    states = propagator.from_zero(numbers.all_of(start), numbers.all_of(times), max_steps=max_steps)
+    if len(start) != len(variables):
+        raise InputError("start", start, f"{len(variables)} numbers, one a variable")
+    states = propagator.from_zero(numbers.all_of(start), _from_zero(times, numbers), max_steps=max_steps)
     return np.asarray(states.astype(float))
 
 
 def trajectory(
-    scene: Scene,
+    scene: AnyScene,
     times: Sequence[Any] | Array,
     *,
     formulation: str = "momentum",
@@ -140,7 +144,7 @@ def trajectory(
     """Integrate a scene in one run.
 
     Args:
-        scene: its exact inputs are used.
+        scene: a scene, its id, the path of a TOML file, or nested mappings; its exact inputs are used.
         times: increasing, from 0, in s.
         formulation: a name of `model.formulations.FORMULATIONS`.
         number: type to compute in.
@@ -151,16 +155,20 @@ def trajectory(
         x, y, z in m and vx, vy, vz in m/s as binary64, shape (times, 6).
 
     Raises:
+        InputError: a wrong scene, formulation or tolerance; times that do not increase from 0.
         UnreachableError: a number of the scene is too large.
         IntegrationError: heyoka stops before the last time, as where the formulation is singular.
     """
+    scene = as_scene(scene)
+    if formulation not in FORMULATIONS:
+        raise unknown("formulation", formulation, f"one of {', '.join(FORMULATIONS)}", FORMULATIONS, "")
     start = Start.of(scene.exact, number.prec + GUARD_BITS)
     start = start if alter is None else replace(start, k=alter(start.k))
     from .heyoka.model import Numbers, RoundedModel
 
     try:
         model = RoundedModel(carried(FORMULATIONS[formulation], start, Numbers(number).of), start.k, number)
-        moments, state = model.numbers.all_of(times), model.release(start)
+        moments, state = _from_zero(times, model.numbers), model.release(start)
     except OverflowError:
         raise BeyondDoublesError from None
     most = LEAST_STEPS + math.ceil(STEPS_PER_RADIAN * start.fastest_rate * float(moments[-1]))
@@ -170,4 +178,19 @@ def trajectory(
         where = SINGULAR.get(formulation)
         advice = f"The formulation {formulation} is singular {where}: take momentum." if where else ""
         raise IntegrationError(error.reason, advice) from None
-    return model.doubles(states)
+    rows = model.doubles(states)
+    rows[0] = [float(part * start.k.length) for part in (*start.n, *start.v)]  # a formulation rounds them
+    return rows
+
+
+def _from_zero(times: Sequence[Any] | Array, numbers: Any) -> Any:
+    """Return times as heyoka's numbers of a run's type."""
+    try:
+        moments = numbers.all_of(times)
+        line = np.array(moments, dtype=numbers.dtype)
+        good = len(line) > 0 and line[0] == 0 and bool((line[1:] > line[:-1]).all())
+    except (ArithmeticError, AttributeError, TypeError, ValueError):  # what is no number, infinity and NaN among them
+        good = False
+    if not good:
+        raise InputError("times", times, "numbers of seconds that increase, the first of them 0")
+    return moments

@@ -5,6 +5,14 @@ CONTRIBUTING.md says what else one more column of `grid.csv` takes.
 
 from __future__ import annotations
 
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..errors import no_attribute
+from .precision import Array
+
 POSITION = ("x", "y", "z")
 VELOCITY = ("vx", "vy", "vz")
 STATE = POSITION + VELOCITY
@@ -16,3 +24,29 @@ TRANSITS = ("t", "x", "y", "z", "vy", "ax")  # of transits.csv, beside number, d
 UNITS = {("t",): "s", POSITION: "m", VELOCITY: "m/s", ("ax",): "m/s^2"}  # of the columns of each kind
 KINDS = {name: kind for kind in UNITS for name in kind}  # the columns of a column's kind, whose sizes are alike
 HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair}  # the same errors are assumed of both
+
+
+class GridColumns:
+    """What has a table `grid` of rows at `times`: its columns as attributes."""
+
+    grid: Any
+    times: Any
+
+    @property
+    def t(self) -> Array:
+        """Grid times in s, shape (rows,)."""
+        return np.array([float(t) for t in self.times])
+
+    def exact(self, column: str) -> list[Fraction]:
+        """Return the exact values of a grid column."""
+        return list(self.times if column == "t" else self.grid.exact(column))
+
+    if TYPE_CHECKING:
+        x = y = z = vx = vy = vz = np.empty(0)
+    else:  # not seen by mypy, so that it finds an unknown attribute
+
+        def __getattr__(self, name: str) -> Array:
+            """Return a grid column, shape (rows,)."""
+            if name in GRID:
+                return self.grid[name]
+            raise no_attribute(f"a {type(self).__name__}", name, {*GRID, *(n for n in dir(self) if n[0] != "_")})

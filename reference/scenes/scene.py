@@ -280,6 +280,24 @@ def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
     return parse_scene(document)
 
 
+AnyScene = Scene | str | Path | Mapping[str, Any]
+
+
+def as_scene(scene: AnyScene) -> Scene:
+    """Return a scene that is given as one, by its id or the path of a TOML file, or as nested mappings.
+
+    Raises:
+        InputError: it is none of these, or a field is wrong.
+    """
+    if isinstance(scene, Mapping):
+        return parse_scene(scene)
+    if isinstance(scene, str | Path):
+        return load_scene(scene)
+    if not isinstance(scene, Scene):
+        raise InputError("scene", scene, "a Scene, an id, the path of a TOML file, or nested mappings")
+    return scene
+
+
 def _no_scene(word: str) -> InputError:
     expected = "a scene's id or the path of a TOML file"
     return unknown("SCENE", word, expected, scene_ids(), "`foucault scenes` lists the ids.")

@@ -87,8 +87,8 @@ def audited(solution: Solution, digits: Any) -> Solution:
 def proved_digits(solution: Solution) -> Any:
     """Return all digits of a solution, and which transits are decided."""
     tables = [solution.grid.printed(grid_decimals(solution))]
-    if solution.transits is not None:
-        tables.append(solution.transits.printed(transit_decimals(solution)))
+    if solution.zeros is not None:
+        tables.append(solution.zeros.printed(transit_decimals(solution)))
     return tables, solution.directions, [parity for *_, parity in solution.possible]
 
 
@@ -139,10 +139,10 @@ def _compared(witness: Run, solution: Solution) -> tuple[CrossCheck, int]:
     """Return a run as a check of a solution, and the bits that it lacks to agree to a quarter of the last digit."""
     gaps = solution.grid.distance(witness.grid.only(GRID)).largest()
     missing = bits_lacking(gaps, grid_decimals(solution))
-    if solution.transits is None or witness.transits is None or solution.possible:
+    if solution.zeros is None or witness.transits is None or solution.possible:
         return CrossCheck.of(witness, gaps, None), missing
     if witness.directions != solution.directions:
         return CrossCheck.of(witness, gaps, None), max(missing, witness.plan.number.prec // 2)
-    apart = solution.transits.distance(witness.transits.only(TRANSITS)).largest()
+    apart = solution.zeros.distance(witness.transits.only(TRANSITS)).largest()
     missing = max(missing, bits_lacking(apart, transit_decimals(solution)))
     return CrossCheck.of(witness, gaps, apart["t"]), missing

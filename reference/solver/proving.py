@@ -155,7 +155,7 @@ def guarded(solution: Solution, pilot: Pilot) -> Solution:
     Raises:
         IntegrationError: the run finds other transits; names the first that differs.
     """
-    scene, times, transits = solution.scene, solution.times, solution.transits
+    scene, times, transits = solution.scene, solution.times, solution.zeros
     if transits is None:
         return solution
     usual, finer = (pilot.bits_for(digits, times[-1], checked=False) for digits in (USUAL_DIGITS, FINER_DIGITS))
@@ -202,7 +202,6 @@ def _transit_gap(event_run: Run, solution: Solution, xdot_error: Fraction) -> Fr
     `xdot_error` is how far its xdot may be from the truth, in m/s.
     """
     transits, directions = solution.transits, solution.directions
-    assert transits is not None
     seen = event_run.transits or Table(transits.columns, 0, [])
     if len(seen) != len(directions) and not solution.possible:
         raise IntegrationError(f"heyoka finds {len(seen)} transits, the enclosure {len(directions)}.")

@@ -6,19 +6,15 @@ The decimals follow from the bounds, and so does whether a proof decides each di
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
 from ..engines.plan import Run
 from ..errors import UnreachableError
-from ..numbers.columns import GRID, POSITION, VELOCITY
-from ..numbers.precision import Array
+from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.table import Table, decimals_of, resolved
 from ..scenes.scene import Level, Scene
-from ..system.imports import no_attribute
 
 
 @dataclass(frozen=True)
@@ -91,14 +87,14 @@ class Proof:
 
 
 @dataclass(frozen=True, repr=False)
-class Solution:
+class Solution(GridColumns):
     """A solved scene.
 
     Attributes:
         scene: the scene as solved.
         times: grid times in s, exact.
         grid: `columns.GRID` at those times, in SI units.
-        transits: `columns.TRANSITS` of every zero of xdot; None if not asked for, or if xdot is identically zero.
+        zeros: `transits`, or None if they were not asked for, or if xdot is identically zero.
         directions: +1 where xdot goes from - to +, per transit.
         run: the run that the numbers come from.
         checks: runs that agree with it.
@@ -110,14 +106,14 @@ class Solution:
         not_checked: why there is neither. The proof does not rest on it, and a run that finds other transits is an
             error.
 
-    `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,); both tables have
-    `table["x"]`, the same, `table.exact("x")` as fractions, and `table.bound("x")`.
+    `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,), `solution.exact("x")` are
+    fractions; both tables have `table["x"]`, `table.exact("x")`, the same, and `table.bound("x")`.
     """
 
     scene: Scene
     times: tuple[Fraction, ...]
     grid: Table
-    transits: Table | None
+    zeros: Table | None = field(repr=False)
     directions: list[int] = field(repr=False)
     run: Source
     checks: tuple[CrossCheck, ...] = ()
@@ -128,20 +124,14 @@ class Solution:
     not_checked: str = ""
 
     @property
+    def transits(self) -> Table:
+        """`columns.TRANSITS` of every zero of xdot; without rows if not asked for, or if xdot is identically zero."""
+        return self.zeros or Table(TRANSITS, 0, [])
+
+    @property
     def level(self) -> Level:
         """Level of trust in the numbers, one of `scene.LEVELS`."""
         return self.scene.run.level
-
-    @property
-    def t(self) -> Array:
-        """Grid times in s, shape (rows,)."""
-        return np.array([float(t) for t in self.times])
-
-    def __getattr__(self, name: str) -> Any:
-        """Return a grid column by name."""
-        if name in GRID:
-            return self.grid[name]
-        raise no_attribute("a Solution", name, {*GRID, "t", *(attribute.name for attribute in fields(self))})
 
     def __repr__(self) -> str:
         """Return scene, level, digits, and the numbers of rows and transits."""
@@ -157,10 +147,10 @@ def grid_decimals(solution: Solution) -> dict[str, int]:
 
 def transit_decimals(solution: Solution) -> dict[str, int]:
     """Return those of the transits, empty without any table: as in the grid, and t and ax by their own size."""
-    if solution.transits is None:
+    if solution.zeros is None:
         return {}
-    return {**decimals_of(solution.transits.largest(), solution.scene.run.digits)} | {
-        name: places for name, places in grid_decimals(solution).items() if name in solution.transits.columns
+    return {**decimals_of(solution.zeros.largest(), solution.scene.run.digits)} | {
+        name: places for name, places in grid_decimals(solution).items() if name in solution.zeros.columns
     }
 
 
@@ -176,8 +166,8 @@ def exact_decimals(values: tuple[Fraction, ...]) -> int:
 def check_decided(solution: Solution) -> None:
     """Raise `UndecidedRounding`, for the widest of them, where proven intervals do not decide a printed digit."""
     tables: list[tuple[Table, dict[str, int]]] = [(solution.grid, grid_decimals(solution))]
-    if solution.transits is not None:
-        tables.append((solution.transits, transit_decimals(solution)))
+    if solution.zeros is not None:
+        tables.append((solution.zeros, transit_decimals(solution)))
     undecided = [number for table, decimals in tables if (number := table.undecided(decimals)) is not None]
     if undecided:
         raise UndecidedRounding(*max(undecided))

@@ -18,7 +18,7 @@ from ..errors import InputError, UnreachableError
 from ..numbers.columns import GRID
 from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
-from ..scenes.scene import Scene
+from ..scenes.scene import AnyScene, Scene, as_scene
 from .agreement import Agreement, with_transit_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
 from .pilot import Pilot
@@ -27,7 +27,7 @@ from .solution import CrossCheck, Solution, Source
 
 
 def solve(
-    scene: Scene,
+    scene: AnyScene,
     *,
     digits: int | None = None,
     level: str | None = None,
@@ -41,7 +41,7 @@ def solve(
     """Solve a scene to the digits and the level asked for (the scene's own by default).
 
     Args:
-        scene: the scene to solve.
+        scene: the scene to solve: a scene, its id, the path of a TOML file, or nested mappings.
         digits: significant decimal digits of the largest number in each column.
         level: one of `scene.LEVELS`.
         t_end: end of the run in s, as a decimal string.
@@ -61,7 +61,7 @@ def solve(
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
     requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits}
-    scene = scene.with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
+    scene = as_scene(scene).with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
     settings, times = scene.run, tuple(scene.exact.grid)
     engine = checked(engine)
     for wish, value in (("audit", audit), ("confirm", confirm)):

@@ -84,7 +84,7 @@ def _values(solution: Solution) -> dict[str, Any]:
     }
     names = ("t_first_s", "t_last_s", "frequency_hz", "frequency_error_hz", "transit_error_s")
     values |= dict.fromkeys(names, np.nan)
-    if transits is not None and solution.directions:
+    if solution.directions:
         times, bound = transits.exact("t"), max(transits.bound("t"))
         values |= {"t_first_s": float(times[0]), "t_last_s": float(times[-1]), "transit_error_s": float(bound)}
         if len(times) > 1:
@@ -99,8 +99,6 @@ def _norm(bounds: list[Any]) -> float:
 
 
 def _times(solution: Solution) -> tuple[list[float], list[int]]:
-    if solution.transits is None:
-        return [], []
     return [float(t) for t in solution.transits.exact("t")], list(solution.directions)
 
 

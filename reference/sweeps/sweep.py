@@ -14,7 +14,7 @@ import numpy as np
 
 from ..engines import AUTO
 from ..errors import InputError, unknown
-from ..scenes.scene import Scene
+from ..scenes.scene import AnyScene, Scene, as_scene
 from ..status import Status
 from ..system.imports import missing
 from ..system.workers import usable_cores
@@ -119,7 +119,7 @@ class Swept:
 
 
 def sweep(
-    scene: Scene,
+    scene: AnyScene,
     over: Iterable[str] = (),
     *,
     rows: str | Path | None = None,
@@ -137,7 +137,7 @@ def sweep(
     """Solve a scene for many values of some of its fields.
 
     Args:
-        scene: what is varied, and the span: its `t_end`.
+        scene: what is varied, and the span: its `t_end`; a scene, its id, the path of a TOML file, or nested mappings.
         over: words KEY=START:STOP:STEP, KEY=V1,V2,… or KEY=@FILE.csv; all combinations are rows, the last fastest.
         rows: instead, a CSV or Parquet file whose columns are fields, one row a scene.
         out: a folder for the rows, in Parquet; needed beyond 100,000 rows. A folder of the same sweep is gone on with.
@@ -159,7 +159,9 @@ def sweep(
     """
     file, folder = (Path(path) if path is not None else None for path in (rows, out))
     options = {"want": want, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
-    return run(asked_for(scene, over, file, folder, audit=audit_rows, **options), folder, workers, cluster, report)
+    return run(
+        asked_for(as_scene(scene), over, file, folder, audit=audit_rows, **options), folder, workers, cluster, report
+    )
 
 
 def asked_for(

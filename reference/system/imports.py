@@ -11,7 +11,7 @@ from importlib.util import find_spec
 from pkgutil import iter_modules
 from typing import Any, Protocol, TypeVar
 
-from ..errors import nearest, unknown
+from ..errors import no_attribute, unknown
 
 
 def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
@@ -31,16 +31,6 @@ def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], 
         return sorted({*vars(sys.modules[package]), *homes})
 
     return attribute, names
-
-
-def no_attribute(owner: str, name: str, names: Iterable[str]) -> AttributeError:
-    """Return the error for an unknown attribute, which says what there is, the nearest names first."""
-    text = f"{owner} has no attribute {name!r}"
-    if name.startswith("_"):  # Python itself asks for such names, and wants no advice
-        return AttributeError(text)
-    every = sorted(names)
-    near = nearest(name, every)
-    return AttributeError(f"{text}; it has {', '.join([*near, *(other for other in every if other not in near)])}")
 
 
 class Declaration(Protocol):

@@ -155,7 +155,6 @@ def transit_frequency() -> Any:
 
 def _planar_run() -> Finding:
     run = solved(STILL, "20", 30)
-    assert run.transits is not None
     period = mpf(run.transits.exact("t")[1])
     return Finding(abs(period - planar_period()) < MP.mpf("1e-27"), f"run without rotation: {shown(period, 25)} s")
 

@@ -5,10 +5,40 @@ from __future__ import annotations
 import os
 import threading
 
+import numpy as np
+import pytest
+
+import reference
+from compare import assert_agrees, study
+from compare.methods import METHODS, available, capture
 from compare.methods.capture import captured
+from compare.rhs.problem import Problem
+from reference.scenes.scene import LEVELS
 
 
-def test_what_is_written_is_captured_and_quoted_on_one_line(capfd):
+@pytest.fixture
+def own_process(monkeypatch):
+    monkeypatch.setattr(capture, "own_process", True)
+
+
+def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch):
+    redirected, golden = [], reference.load("paris")
+    monkeypatch.setattr(os, "dup2", lambda *descriptors: redirected.append(descriptors))
+    for level in LEVELS:
+        reference.solve("paris", t_end="5", digits=10, level=level)
+    reference.sweep("paris", ["site.latitude=0,45"], level="confirmed", workers=1)
+    reference.sweep("paris", ["site.latitude=0,45"])
+    assert_agrees("paris", golden.t[:9], np.column_stack([golden.x, golden.y])[:9])
+    assert study("paris", ["rk4"], t_end=60).rows
+    problem = Problem.of(reference.load_scene("paris"), "momentum", [0.0, 1.0, 2.0])
+    tried = [name for name in ("cvode_adams", "numbalsoda_lsoda") if not available(METHODS[name])]
+    for name in tried:
+        METHODS[name].prepare(problem, 1e-8)()
+    assert tried
+    assert redirected == []
+
+
+def test_what_is_written_is_captured_and_quoted_on_one_line(capfd, own_process):
     with captured(1, 2) as output:
         os.write(1, b"a step\n")
         os.write(2, b"failed\n")
@@ -17,7 +47,7 @@ def test_what_is_written_is_captured_and_quoted_on_one_line(capfd):
     assert capfd.readouterr().out == "after\n"
 
 
-def test_threads_that_capture_at_once_give_the_descriptors_back(capfd):
+def test_threads_that_capture_at_once_give_the_descriptors_back(capfd, own_process):
     def capture():
         for _ in range(50):
             with captured(1) as output:

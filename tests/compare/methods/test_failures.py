@@ -9,7 +9,7 @@ import pytest
 from method_cases import case
 from small_scenes import make_scene
 
-from compare.methods import METHODS, Problem, external
+from compare.methods import METHODS, Problem, capture, external
 from reference import InputError
 
 
@@ -45,7 +45,8 @@ def test_a_tolerance_that_scipy_raises_is_said(installed):
     assert "rtol" in outcome.reason
 
 
-def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd, installed):
+def test_compiled_lsoda_gives_up_in_its_own_words_and_keeps_stdout_clean(capfd, installed, monkeypatch):
+    monkeypatch.setattr(capture, "own_process", True)
     problem = Problem.of(case("steep").scene, "momentum")
     outcome = installed("numbalsoda_lsoda").prepare(problem, 1e-17)()
     assert outcome.status == "gave_up"

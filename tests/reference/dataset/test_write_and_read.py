@@ -183,6 +183,8 @@ def test_a_dataset_is_read_back_as_arrays_strings_and_fractions(dataset, solutio
     assert golden.scene == solution.scene
     with pytest.raises(AttributeError, match=r"a Golden has no attribute 'transit'; it has transits, "):
         _ = golden.transit
+    assert golden.level == solution.level == "confirmed"
+    assert golden.exact("t") == solution.exact("t") == list(golden.times)
 
 
 def test_a_solution_and_its_dataset_have_the_same_columns(dataset, solution):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from fractions import Fraction
 
@@ -95,6 +96,43 @@ def test_an_altered_constant_is_another_model(paris):
     still = trajectory(paris.with_values(["site.rotation_rate=0"]), TIMES)
     assert np.abs(free - trajectory(paris, TIMES)).max() > 1e-3
     assert not np.allclose(free, still, atol=1e-6)  # the centrifugal force is still there
+
+
+def oscillator(state, _):
+    return state[1], -state[0]
+
+
+@pytest.mark.parametrize(
+    "times",
+    [[], [1.0, 2.0], [0.0, 2.0, 1.0], [0.0, 1.0, 1.0], [0.0, math.nan], [math.nan], [0.0, math.inf],
+     np.array([0.0, math.nan]), np.zeros((2, 2)), 5.0, None, ["0", "1"], [0.0, None]],
+)  # fmt: skip
+def test_times_that_do_not_increase_from_zero_are_a_mistake(times, paris):
+    for number in (DOUBLE, LONG_DOUBLE, real(120)):
+        for call in (
+            lambda number: trajectory(paris, times, number=number),
+            lambda number: integrate(("q", "p"), oscillator, (1.0, 0.0), times, number=number),
+        ):
+            with pytest.raises(InputError, match=r"times: got .* seconds that increase, the first of them 0"):
+                call(number)
+
+
+def test_other_mistakes_name_their_field(paris):
+    with pytest.raises(InputError, match=r"formulation: got 'momentun', .*Did you mean momentum"):
+        trajectory(paris, [0, 1], formulation="momentun")
+    with pytest.raises(InputError, match="derivatives: got '1 rates', expected 2, one a variable"):
+        integrate(("q", "p"), lambda state, _: (state[1],), (1.0, 0.0), [0, 1])
+    with pytest.raises(InputError, match=r"start: .* 2 numbers, one a variable"):
+        integrate(("q", "p"), oscillator, (1.0,), [0, 1])
+    for wrong in (0.0, -1.0, math.nan, math.inf, "1e-9"):
+        with pytest.raises(InputError, match="tolerance: "):
+            integrate(("q", "p"), oscillator, (1.0, 0.0), [0, 1], tolerance=wrong)
+
+
+@pytest.mark.parametrize("formulation", ["momentum", "space", "spin", "plane", "angles"])
+def test_a_release_at_rest_is_at_rest_to_the_last_bit(formulation, paris):
+    assert trajectory(paris, [0, 1], formulation=formulation)[0].tolist()[3:] == [0, 0, 0]
+    assert trajectory(paris, [0, 1], formulation=formulation)[0].tolist()[:2] == [0.3, 0.4]
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from fractions import Fraction
 
+import mypy.api
 import pytest
 
 import reference
@@ -26,7 +27,7 @@ def solution():
     return replace(
         solved,
         grid=solved.grid.with_errors(dict.fromkeys(GRID, SURE)),
-        transits=solved.transits.with_errors(dict.fromkeys(TRANSITS, SURE)),
+        zeros=solved.transits.with_errors(dict.fromkeys(TRANSITS, SURE)),
     )
 
 
@@ -36,24 +37,24 @@ def test_transits_have_the_decimals_of_the_grid_and_their_own_for_time_and_accel
         name: grid[name] for name in ("x", "y", "z", "vy")
     }
     assert (transits["t"], transits["ax"]) == (4, 7)  # 57 s and 0.04 m/s² with six digits
-    assert transit_decimals(replace(solution, transits=None)) == {}
+    assert transit_decimals(replace(solution, zeros=None)) == {}
 
 
 @pytest.mark.parametrize("kind", ["grid", "transits"])
 def test_a_number_whose_error_leaves_a_digit_open_is_refused_in_grid_and_transits(solution, kind):
     check_decided(solution)
-    check_decided(replace(solution, transits=None))
+    check_decided(replace(solution, zeros=None))
     table = getattr(solution, kind)
     errors = dict.fromkeys(GRID if kind == "grid" else TRANSITS, SURE) | {"y": OPEN}
     with pytest.raises(UndecidedRounding, match="of y = "):
-        check_decided(replace(solution, **{kind: table.with_errors(errors)}))
+        check_decided(replace(solution, **{kind.replace("transits", "zeros"): table.with_errors(errors)}))
 
 
 @pytest.mark.parametrize(("of_grid", "of_transits"), [(OPEN, 2 * OPEN), (2 * OPEN, OPEN)])
 def test_the_widest_of_the_numbers_with_an_open_digit_is_named(solution, of_grid, of_transits):
     grid = solution.grid.with_errors(dict.fromkeys(GRID, SURE) | {"y": of_grid})
     transits = solution.transits.with_errors(dict.fromkeys(TRANSITS, SURE) | {"y": of_transits})
-    unsure = replace(solution, grid=grid, transits=transits)
+    unsure = replace(solution, grid=grid, zeros=transits)
     with pytest.raises(UndecidedRounding) as caught:
         check_decided(unsure)
     assert (caught.value.width, caught.value.column) == (2 * OPEN * 10 ** grid_decimals(unsure)["y"], "y")
@@ -62,3 +63,17 @@ def test_the_widest_of_the_numbers_with_an_open_digit_is_named(solution, of_grid
 @pytest.mark.parametrize(("values", "digits"), [(("60", "0"), 0), (("0.05",), 2), (("1.5", "0.125", "7"), 3)])
 def test_terminating_decimals_are_printed_exactly(values, digits):
     assert exact_decimals(tuple(map(Fraction, values))) == digits
+
+
+def test_columns_have_a_type_and_a_type_checker_finds_what_is_no_attribute(tmp_path):
+    program = tmp_path / "user.py"
+    program.write_text("""import reference
+for both in (reference.solve("paris"), reference.load("paris")):
+    reveal_type(both.vz)
+reference.solve({"id": "a"}).nonsense
+reference.load("paris").nonsense
+""")
+    output = mypy.api.run(["--strict", "--config-file=", f"--cache-dir={tmp_path}", str(program)])[0]
+    assert "float64" in output.splitlines()[0]
+    assert '"Solution" has no attribute "nonsense"' in output
+    assert '"Golden" has no attribute "nonsense"' in output

@@ -23,6 +23,7 @@ from reference.engines.registry import run
 from reference.errors import InputError, IntegrationError, UnreachableError
 from reference.numbers.columns import GRID
 from reference.numbers.precision import DOUBLE, real
+from reference.scenes.shipped import data_root
 from reference.solver import pilot as pilot_runs
 from reference.solver import reach
 from reference.solver import solve as solver
@@ -112,12 +113,29 @@ def test_arrays_are_the_nearest_doubles_of_the_exact_values(paris):
         assert getattr(solution, name).tolist() == [float(value) for value in solution.grid.exact(name)]
     with pytest.raises(AttributeError, match=r"a Solution has no attribute 'transit'; it has transits, "):
         _ = solution.transit
+    assert solution.exact("x") == solution.grid.exact("x")
+    assert solution.exact("t") == list(solution.times)
+
+
+def test_a_scene_may_be_given_by_id_by_path_and_as_mappings(paris, tmp_path):
+    path, short = tmp_path / "paris.toml", {"t_end": "60", "digits": 10, "level": "computed"}
+    path.write_text((data_root() / "scenes" / "paris.toml").read_text())
+    expected = reference.solve(paris, **short).grid.values
+    for given in ("paris", path, str(path), paris.model_dump()):
+        assert reference.solve(given, **short).grid.values == expected
+    assert len(reference.sweep("paris", ["site.latitude=0,45"])) == 2
+    assert reference.trajectory("paris", [0, 1]).tolist() == reference.trajectory(paris, [0, 1]).tolist()
+    for wrong, field in ((None, "scene"), (3, "scene"), ("pariss", "SCENE"), ({"id": "a"}, "release")):
+        for call in (reference.solve, reference.sweep, lambda scene: reference.trajectory(scene, [0, 1])):
+            with pytest.raises(InputError) as caught:
+                call(wrong)
+            assert caught.value.field == field
 
 
 def test_transits_can_be_left_out_and_are_not_looked_for_where_xdot_is_zero(paris):
-    assert reference.solve(paris, t_end="60", digits=10, transits=False).transits is None
+    assert len(reference.solve(paris, t_end="60", digits=10, transits=False).transits) == 0
     planar = make_scene(site={"rotation_rate": "0"}, release={"x": "0", "y": "0.4"}, run={"t_end": "60", "digits": 10})
-    assert reference.solve(planar).transits is None
+    assert reference.solve(planar).transits["t"].shape == (0,)
 
 
 @pytest.mark.parametrize(
