@@ -26,7 +26,7 @@ from reference.system.workspace import workspace
 from ..candidates.external import run_program
 from ..rhs.problem import Problem
 from ..rhs.straight_line import Program
-from .method import HIGH_ORDER, SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
+from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
 from .native.library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
 
 FLAGS = ("-std=c++17", "-O3", "-march=native", "-w")
@@ -142,7 +142,7 @@ def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequenc
     return path
 
 
-_native = partial(Method, setting="tolerance", family=Family.COMPILED)
+_native = partial(Method, setting="tolerance", family=Family.COMPILED, stability=NINE_DIGITS)
 _odeint = partial(
     _native,
     ladder=HIGH_ORDER,

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..rhs.problem import Problem
-from .method import HIGH_ORDER, SPACE_FIRST, Method, Outcome, Work, outcome
+from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Method, Outcome, Work, outcome
 
 ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 
@@ -77,5 +77,6 @@ METHODS = (
         extra="methods-jax",
         order=8,
         libraries=("numpy", "diffrax"),
+        stability=NINE_DIGITS,
     ),
 )

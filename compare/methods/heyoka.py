@@ -116,6 +116,7 @@ METHODS = (
         ladder=(64, 113, 160, 256, 512),
         prepare=lambda problem, setting: prepare_in(problem, real(int(setting)), None),
         number="MPFR",
+        stability=(("momentum", 100),),
         precision_runs=lambda bits: [("momentum", float(prec)) for prec in bits if prec > LONG_DOUBLE_BITS],
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .method import Family
+from .method import TWO_HUNDRED_STEPS, Family
 from .runge_kutta.fixed_step import explicit, fixed_step, nystrom
 from .runge_kutta.tableau import NystromTableau, fractions, triangle
 
@@ -48,5 +48,6 @@ METHODS = (
         formulations=("plane", "space"),
         order=TABLEAU.order,
         family=Family.PAPER,
+        stability=TWO_HUNDRED_STEPS,
     ),
 )

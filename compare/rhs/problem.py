@@ -127,8 +127,10 @@ class Swing:
 
     def sizes(self, variables: int) -> Array:
         """Return bounds on positions (radians, or n) and rates (1/s), in the order of a state's variables."""
-        sizes: Array = np.repeat([self.reach, self.fastest], variables // 2)
-        return np.maximum(sizes, SMALLEST_SIZE)
+        rise = self.reach**2 / (1 + math.sqrt(1 - self.reach**2))  # 1 - cos of the largest angle from the vertical
+        positions, rates = (self.reach, self.reach, rise), (self.fastest, self.fastest, self.fastest * self.reach)
+        half = variables // 2
+        return np.maximum([*positions[:half], *rates[:half]], SMALLEST_SIZE)
 
 
 @dataclass(frozen=True)

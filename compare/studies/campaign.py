@@ -30,7 +30,7 @@ from reference.system.workers import Emit, Worker
 from ..methods import METHODS, capture
 from .row import Record
 
-JUDGED = 2  # changes when equal runs are measured or judged otherwise, so that old results are not used again
+JUDGED = 3  # changes when equal runs are measured or judged otherwise, so that old results are not used again
 STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
 TRUTH_LIBRARIES = {"heyoka", "python-flint"}  # of the reference
 ONE_THREAD = {
