@@ -60,10 +60,10 @@ mutants: .venv/testing
 	@echo "Changing the source in 60 places, one at a time, and running its tests"
 	$(BIN)/python tests/mutants.py
 
-# docs/studies.md again, from new runs; what was stopped goes on where it was
-studies: .venv/testing
+# docs/studies.md again, from new runs of every method, so in the environment of `peers`; what was stopped goes on
+studies: .venv-peers/ready
 	@echo "Measuring what docs/studies.md says: most of an hour, best on an idle machine"
-	$(BIN)/python tests/bench/studies.py
+	.venv-peers/bin/python tests/bench/studies.py
 
 lint: .venv/testing
 	@echo "Checking style and types"

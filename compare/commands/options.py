@@ -35,7 +35,7 @@ Methods = Annotated[
     typer.Option(
         "--methods",
         metavar="A,B,…",
-        help="Ids of methods, as `foucault methods` lists them (default: all).",
+        help="Ids of methods, as `foucault methods` lists them (default: all that have runs for it).",
         autocompletion=completion_of_lists(method_ids),
     ),
 ]

@@ -74,7 +74,7 @@ def command(
     t_end: Annotated[
         str | None,
         typer.Option(
-            "--t-end", metavar="S", help="End of the run in s (default: the scene's; at most 600 with --precisions)."
+            "--t-end", metavar="S", help="End of the run in s (default: the scene's; at most 14400 with --precisions)."
         ),
     ] = None,
     limit: Annotated[

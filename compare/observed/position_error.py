@@ -42,7 +42,8 @@ class PowerLaw:
     Attributes:
         factor: y at x = 1.
         exponent: slope in logarithms.
-        standard_error: of the exponent.
+        standard_error: of the exponent, if y scatters about a power law.
+        within: factor within which all points lie.
         points: number of points fitted.
         low: smallest x of these points.
         high: largest x of these points.
@@ -51,6 +52,7 @@ class PowerLaw:
     factor: float
     exponent: float
     standard_error: float
+    within: float
     points: int
     low: float
     high: float
@@ -74,11 +76,12 @@ def power_law(x: Iterable[float], y: Iterable[float]) -> PowerLaw:
     mean_u, mean_v = (math.fsum(column) / len(points) for column in zip(*points, strict=True))
     spread = math.fsum((u - mean_u) ** 2 for u, _ in points)
     exponent = math.fsum((u - mean_u) * (v - mean_v) for u, v in points) / spread
-    residual = math.fsum((v - mean_v - exponent * (u - mean_u)) ** 2 for u, v in points)
-    error = math.sqrt(residual / (len(points) - 2) / spread)
+    off = [v - mean_v - exponent * (u - mean_u) for u, v in points]
+    error = math.sqrt(math.fsum(one**2 for one in off) / (len(points) - 2) / spread)
+    within = math.exp(max(map(abs, off)))
     low, high = min(u for u, _ in points), max(u for u, _ in points)
     factor = math.exp(mean_v - exponent * mean_u)
-    return PowerLaw(factor, exponent, error, len(points), math.exp(low), math.exp(high))
+    return PowerLaw(factor, exponent, error, within, len(points), math.exp(low), math.exp(high))
 
 
 def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:

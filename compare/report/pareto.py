@@ -11,8 +11,6 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 from typing import Any
 
-from reference.status import Status
-
 from ..observed.position_error import LEAST_POINTS, PowerLaw, power_law
 from ..studies.row import Row
 
@@ -62,14 +60,12 @@ class CostAtError:
         method: id of the method.
         cpu_s: CPU seconds.
         interpolated: between two settings; otherwise the cost is that of a setting at least as accurate.
-        extrapolated: whether the cost is based on a run over a part of the span.
     """
 
     label: str
     method: str
     cpu_s: float
     interpolated: bool
-    extrapolated: bool
 
 
 def rows_of(document: dict[str, Any]) -> list[Row]:
@@ -109,7 +105,7 @@ def front(rows: Sequence[Row], bound_m: float = 0.0) -> list[Row]:
     """Return the Pareto front: the measured rows with no other that is more accurate at no greater cost.
 
     Args:
-        rows: any rows; failed ones are never on the front, extrapolated ones may be.
+        rows: any rows; those that were not run over the whole span are never on the front.
         bound_m: bound of the reference in m; errors below it count as equal.
 
     Returns:
@@ -128,32 +124,31 @@ def cost_at(curve: Curve, error_m: float, bound_m: float = 0.0) -> CostAtError |
 
     The cost is interpolated in logarithms between neighbouring settings on both sides of the error, never across a
     failed setting and never beyond the ladder: if the loosest setting is already more accurate, its cost is returned.
-    Runs over the whole span take precedence over extrapolated ones.
     """
     if error_m < bound_m:
         return None
     costs = [CostAtError(curve.label, curve.method, *one) for one in _ways(curve, error_m, bound_m)]
-    return min(costs, key=lambda cost: (cost.extrapolated, cost.cpu_s, cost.interpolated), default=None)
+    return min(costs, key=lambda cost: (cost.cpu_s, cost.interpolated), default=None)
 
 
-def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[tuple[float, bool, bool]]:
-    """Yield each cost at which the error is reached: CPU seconds, whether interpolated, whether extrapolated."""
+def _ways(curve: Curve, error_m: float, bound_m: float) -> Iterator[tuple[float, bool]]:
+    """Yield each cost at which the error is reached: CPU seconds, whether interpolated."""
     for row in curve.measured:
         if row.cpu_s and error_of(row, bound_m) <= error_m:
-            yield row.cpu_s, False, row.status == Status.EXTRAPOLATED
+            yield row.cpu_s, False
     for a, b in pairwise(curve.rows):
         if not (a.measured and b.measured and a.cpu_s and b.cpu_s):
             continue
         e, f = error_of(a, bound_m), error_of(b, bound_m)
         if 0 < min(e, f) < error_m < max(e, f):
             part = math.log(error_m / e) / math.log(f / e)
-            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part, True, Status.EXTRAPOLATED in (a.status, b.status)
+            yield a.cpu_s * (b.cpu_s / a.cpu_s) ** part, True
 
 
 def costs_at(rows: Sequence[Row], error_m: float, bound_m: float = 0.0) -> list[CostAtError]:
-    """Return the cost of an error with every method that reaches it: whole runs first, then by cost."""
+    """Return the cost of an error with every method that reaches it, the cheapest first."""
     costs = [cost_at(curve, error_m, bound_m) for curve in curves(rows)]
-    return sorted((cost for cost in costs if cost is not None), key=lambda cost: (cost.extrapolated, cost.cpu_s))
+    return sorted((cost for cost in costs if cost is not None), key=lambda cost: cost.cpu_s)
 
 
 def sentences(document: dict[str, Any]) -> list[str]:
@@ -163,30 +158,37 @@ def sentences(document: dict[str, Any]) -> list[str]:
     only the cost of digits is given: what was measured, the price of a further digit, and the power law.
     """
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
-    by_precision = [curve for curve in curves(rows) if curve.kind == "precision" and curve.measured]
-    ladders = [curve for curve in curves(rows) if curve.kind != "precision" and len(curve.rows) > 1]
-    coarse = any(error_of(row, bound_m) > TARGETS_M[-1] for curve in ladders for row in _measured(curve.rows))
-    if by_precision and not coarse:
-        prices = [_prices(curve, bound_m) for curve in curves(rows)]
+    if of_digits(rows, bound_m):
+        prices = [_prices(curve, bound_m, document["t_end"]) for curve in curves(rows)]
     else:
         prices = list(_cheapest(rows, bound_m))
-    laws = [cost_sentence(label, law) for label, law in costs_of_digits(rows, bound_m).items()]
+    laws = (cost_sentence(label, law, document["t_end"]) for label, law in costs_of_digits(rows, bound_m).items())
     return [sentence for sentence in (*prices, *laws) if sentence]
 
 
-def _prices(curve: Curve, bound_m: float) -> str:
+def of_digits(rows: Sequence[Row], bound_m: float) -> bool:
+    """Return whether a study says what digits cost, and nothing of large errors: a study of precisions."""
+    by_precision = [curve for curve in curves(rows) if curve.kind == "precision" and curve.measured]
+    ladders = [curve for curve in curves(rows) if curve.kind != "precision" and len(curve.rows) > 1]
+    coarse = any(error_of(row, bound_m) > TARGETS_M[-1] for curve in ladders for row in _measured(curve.rows))
+    return bool(by_precision) and not coarse
+
+
+def _prices(curve: Curve, bound_m: float, t_end: float) -> str:
     """Return what each number of digits costs with a method, and a further digit between the last two of them."""
     measured = [row for row in _measured(curve.rows) if error_of(row, 0.0) < 1 and row.cpu_s]
     costs = sorted((digits_of(row, bound_m), cost_of(row)) for row in measured)
     if not costs:
         return ""
     (least, cost), *others = costs
-    text = f"{curve.label}: {least:.0f} digits cost {seconds(cost)}"
+    text = f"{curve.label}: {least:.0f} digits over {t_end:g} s cost {seconds(cost)}"
     text += "".join(f", {digits:.0f} digits {seconds(cpu_s)}" for digits, cpu_s in others)
     if others:
         (fewer, less), (more, dearer) = costs[-2:]
         if more - fewer > 1:
-            text += f"; a further digit costs {seconds((dearer - less) / (more - fewer))} there"
+            text += (
+                f"; from {fewer:.0f} to {more:.0f} a further digit costs {seconds((dearer - less) / (more - fewer))}"
+            )
     return f"{text}."
 
 
@@ -205,14 +207,11 @@ def _cheapest(rows: Sequence[Row], bound_m: float) -> Iterator[str]:
 def _sentence(rows: Sequence[Row], where: str, costs: Sequence[CostAtError], bound_m: float) -> str:
     first = costs[0]
     head = f"{where} the cheapest method is {first.label}, with {seconds(first.cpu_s)} of CPU time"
-    if first.extrapolated:
-        head += " (extrapolated from a part of the span)"
     paper = next((cost for cost in costs if cost.method == PAPER_METHOD), None)
     if first.method == PAPER_METHOD:
         return head + (f": {_times(costs[1], first)} the next, {costs[1].label}." if len(costs) > 1 else ".")
     if paper is not None:
-        about = " (extrapolated)" if paper.extrapolated else ""
-        return f"{head}: {_times(paper, first)} {PAPER_NAME}{about}."
+        return f"{head}: {_times(paper, first)} {PAPER_NAME}."
     best = min((error_of(row, bound_m) for row in _measured(rows) if row.method == PAPER_METHOD), default=None)
     return head + (f"; {PAPER_NAME} does not reach it ({best:.1e} m at best)." if best is not None else ".")
 
@@ -246,20 +245,13 @@ def costs_of_digits(rows: Sequence[Row], bound_m: float = 0.0) -> dict[str, Powe
     return laws
 
 
-def cost_sentence(label: str, law: PowerLaw) -> str:
-    """Return the fitted cost of digits as a sentence."""
+def cost_sentence(label: str, law: PowerLaw, t_end: float) -> str:
+    """Return the fitted cost of digits over a span of `t_end` s as a sentence."""
     return (
-        f"The cost of {label} is {law.factor:.2g} s · digits^a with a = {law.exponent:.2f} ± "
-        f"{law.standard_error:.2f} (standard error of the fit to {law.points} settings, {law.low:.0f} to "
-        f"{law.high:.0f} digits; digits = −log10 of the largest error in m)."
+        f"The cost of {label} over {t_end:g} s is about {law.factor:.2g} s · digits^{law.exponent:.1f}: {law.points} "
+        f"settings of {law.low:.0f} to {law.high:.0f} digits lie within a factor of {law.within:.2f} of it (digits = "
+        "−log10 of the largest error in m)."
     )
-
-
-def whole_evaluations(row: Row, t_end: float) -> float | None:
-    """Return the evaluations of the right-hand side over the whole span, scaled up for an extrapolated row."""
-    if row.rhs_evaluations is None or row.status == Status.OK or not row.reached_t:
-        return row.rhs_evaluations
-    return row.rhs_evaluations * t_end / row.reached_t
 
 
 def seconds(cpu_s: float) -> str:

@@ -11,7 +11,7 @@ from ..studies.row import Row
 from . import study_tables
 from .folder import Report
 from .page import Html, facts, figure, findings, join, page, paragraph, section
-from .pareto import curves, rows_of, sentences
+from .pareto import curves, of_digits, rows_of, sentences
 
 _LEAD = (
     "How accurate and how fast integrators are on one Foucault pendulum: every method at a range of settings, its "
@@ -24,8 +24,7 @@ _FAMILIES = (
 )
 _RIGHT_HAND_SIDES = (
     "Error against evaluations of the right-hand side: the work of a method, whatever the machine. Taylor methods have "
-    "no such evaluations and are not shown. Where only a part of the span was run, the count is scaled to the whole "
-    "span."
+    "no such evaluations and are not shown."
 )
 _TOLERANCE = (
     "The error that a method achieves for the tolerance that it is given. The tolerance is relative and applies to one "
@@ -47,17 +46,17 @@ _NO_PICTURES = "The pictures need matplotlib: pip install 'foucault-reference[pl
 def page_text(document: dict[str, Any]) -> str:
     """Return the page as HTML; `title` of the scene and `limit_s` of a run are used if the document has them."""
     rows, bound_m = rows_of(document), float(document["reference"]["bound_m"])
-    conclusions = sentences(document)
-    failed, lost = study_tables.failures(rows), {row.status for row in rows if not row.measured}
+    conclusions, coarse = sentences(document), not of_digits(rows, bound_m)
+    failed, lost = study_tables.failures(rows), {row.status for row in rows if row.failed}
     programs, files = document.get("programs", {}), document.get("candidates", ())
     parts = [
         section(
             "Main results",
             findings(conclusions) if conclusions else paragraph("No method reached an error of 1e-3 m."),
         ),
-        section("Least cost of an error", study_tables.costs(rows, bound_m)),
-        *_pictures(document, rows, bound_m),
-        section("The Pareto front", study_tables.pareto_front(rows, bound_m)),
+        *([section("Least cost of an error", study_tables.costs(rows, bound_m))] if coarse else []),
+        *_pictures(rows, bound_m),
+        *([section("The Pareto front", study_tables.pareto_front(rows, bound_m))] if coarse else []),
         section("Every row", study_tables.every_row(rows, bound_m)),
         *([section("What failed, and why", failed, study_tables.words(lost))] if failed else []),
         section("How it was measured", *map(paragraph, _measured(document.get("limit_s")))),
@@ -79,23 +78,20 @@ def _lead(document: dict[str, Any]) -> Html:
     return join([paragraph(_LEAD), facts(details)])
 
 
-def _pictures(document: dict[str, Any], rows: Sequence[Row], bound_m: float) -> list[Html]:
+def _pictures(rows: Sequence[Row], bound_m: float) -> list[Html]:
     if importlib.util.find_spec("matplotlib") is None:
         return [section("Pictures", paragraph(_NO_PICTURES))]
     from .charts import study_charts as charts
 
-    pictures = [
+    digits = ("What digits cost", charts.precision_ladder(rows, bound_m), _PRECISION)
+    errors = [
         ("Error against CPU time", charts.overview(rows, bound_m), _overview(rows)),
         ("Family by family", charts.by_family(rows, bound_m), _FAMILIES),
-        (
-            "Evaluations of the right-hand side",
-            charts.right_hand_sides(rows, bound_m, document["t_end"]),
-            _RIGHT_HAND_SIDES,
-        ),
+        ("Evaluations of the right-hand side", charts.right_hand_sides(rows, bound_m), _RIGHT_HAND_SIDES),
         ("Tolerance asked for, error achieved", charts.achieved_tolerance(rows, bound_m), _TOLERANCE),
         ("Formulations", charts.formulations(rows, bound_m), _FORMULATIONS),
-        ("What digits cost", charts.precision_ladder(rows, bound_m), _PRECISION),
     ]
+    pictures = [digits] if of_digits(rows, bound_m) else [*errors, digits]
     return [section(heading, figure(svg, caption)) for heading, svg, caption in pictures if svg is not None]
 
 
@@ -103,12 +99,13 @@ def _overview(rows: Sequence[Row]) -> str:
     """Return the caption of the picture of all methods, with a list of the methods that it cannot show."""
     caption = (
         "Largest error of position over the grid against CPU seconds; down and to the left is better. The broad grey "
-        "staircase is the Pareto front. Faint marks: the cost is extrapolated, and the error is that of the part that "
-        "was run. Crosses along the top: failed runs, at their cost. Errors below those of the methods of fixed "
-        "precision have a panel of their own, with its own scale; the grey band is the bound of the reference."
+        "staircase is the Pareto front. Runs of which only a part was made have no error and are not shown. "
+        "Crosses along the top: failed runs, at their cost. Errors below those of the methods of fixed precision have "
+        "a panel of their own, with its own scale; the grey band is the bound of the reference."
     )
-    hidden = [curve.label for curve in curves(rows) if any(not row.cpu_s for row in curve.rows)]
-    return f"{caption} Without a cost, and therefore not in the picture: {', '.join(hidden)}." if hidden else caption
+    unknown = {row.key for row in rows if not row.cpu_s or not (row.measured or row.failed)}
+    hidden = [curve.label for curve in curves(rows) if unknown & {row.key for row in curve.rows}]
+    return f"{caption} Runs without a cost or an error are of {', '.join(hidden)}." if hidden else caption
 
 
 def _measured(limit_s: float | None) -> list[str]:
@@ -120,7 +117,8 @@ def _measured(limit_s: float | None) -> list[str]:
         f"{REPEAT_S:g} CPU second is spent or it has run {REPEATS} times. Imports and compilation are timed apart. "
         "Before the timed runs, a run over a short span warms up the method and shows how much the whole span will "
         f"cost. If that exceeds {limit}, only a part of the span is run and its cost is scaled to the whole; the row "
-        "says so. The errors of such a row are those of the part: over the whole span they may be larger.",
+        "says so. Such a row has the error at the end of the part, and none of the whole span: how an error will grow "
+        "is not known, and it takes no part in pictures, fronts and costs.",
         "All methods get the same numbers: those of the scene, each rounded to the nearest double. They are compared "
         "with the reference solution of exactly these numbers, so that the rounding of the inputs does not count as an "
         "error of a method. The error is the largest distance from the reference over the grid, computed without "

@@ -32,16 +32,16 @@ SPREAD = 0.2  # difference of repeated costs over their median; with more, ratio
 _COSTS = (
     "CPU seconds that a method needs to reach an error over the whole span. Between two settings the cost is "
     "interpolated in logarithms; it is never extrapolated beyond the settings that were run. If even the loosest "
-    "setting of a method is more accurate, the cost of that setting is given. Bold: the cheapest method. ~: the cost "
-    "is based on a run over a part of the span. Empty: not reached. The methods are sorted by their cost at the "
-    "smallest error that they reach."
+    "setting of a method is more accurate, the cost of that setting is given. Bold: the cheapest method. Empty: not "
+    "reached over the whole span. The methods are sorted by their cost at the smallest error that they reach."
 )
 _FRONT = "No other row is both cheaper and more accurate than one of these. Cheapest first."
 _ROWS = (
-    "● and shaded: on the Pareto front. ~: the cost is extrapolated from a part of the span; counts and errors are "
-    "those of that part. Spread: the difference between the largest and the smallest CPU time of the repeats, divided "
-    "by their median. Compile: CPU seconds of imports and compilation, which are not part of the cost. <: the error "
-    "of transits is not resolved, because it is measured from the doubles next to their true times; it is below this."
+    "● and shaded: on the Pareto front. ~: the cost is extrapolated from a part of the span, up to the last t; counts "
+    "and end error are those of that part, and the error over the whole span is not known. Spread: the difference "
+    "between the largest and the smallest CPU time of the repeats, divided by their median. Compile: CPU seconds of "
+    "imports and compilation, which are not part of the cost. <: the error of transits is not resolved, because it is "
+    "measured from the doubles next to their true times; it is below this."
 )
 _FAILED = "Failed rows keep their place in the tables: nothing is left out. A failed row is never on the Pareto front."
 _ORDERS = (
@@ -69,8 +69,7 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
 def _cost_cell(cost: CostAtError | None, least: float | None) -> str:
     if cost is None:
         return ""
-    figure = f"{PART_MARK if cost.extrapolated else ''}{cpu(cost.cpu_s)}"
-    return strong(figure) if cost.cpu_s == least else figure
+    return strong(cpu(cost.cpu_s)) if cost.cpu_s == least else cpu(cost.cpu_s)
 
 
 def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
@@ -95,9 +94,7 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
     cells, kinds = [], []
     for curve in curves(rows):
         for i, row in enumerate(curve.rows):
-            kinds.append(
-                " ".join(["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * (not row.measured))
-            )
+            kinds.append(" ".join(["first"] * (i == 0) + ["front"] * (row.key in best) + ["failed"] * row.failed))
             cells.append((
                 FRONT_MARK if row.key in best else "", row.method, row.formulation, setting(row),
                 row.status.words, number(row.error_m), number(row.end_error_m), transit_error(row),
@@ -113,7 +110,7 @@ def failures(rows: Sequence[Row]) -> Html | None:
     groups: dict[tuple[str, Status, str], list[Row]] = {}
     for curve in curves(rows):
         for row in curve.rows:
-            if not row.measured:
+            if row.failed:
                 groups.setdefault((curve.label, row.status, row.reason), []).append(row)
     if not groups:
         return None
@@ -184,7 +181,7 @@ def text_table(document: dict[str, Any]) -> str:
     measured, failed = [], []
     for curve in curves(rows):
         for row in curve.rows:
-            if row.measured:
+            if not row.failed:
                 mark = "*" if row.key in best else ""
                 errors = number(row.error_m), transit_error(row), number(row.h_drift)
                 measured.append((mark, curve.label, setting(row), *errors, cost(row), count(row.rhs_evaluations)))
@@ -199,9 +196,9 @@ def text_table(document: dict[str, Any]) -> str:
         "",
         *Table(columns, measured).lines(),
         "",
-        f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span; the errors are those of that part",
+        f"* on the Pareto front   {PART_MARK} extrapolated from a part of the span, so without its error (see --limit)",
     ]
-    lost = {row.status for row in rows if not row.measured}
+    lost = {row.status for row in rows if row.failed}
     if failed:
         reasons = Table({"": "", "method": "", "setting": "number", "reason": ""}, failed).lines()
         lines += ["", "Failed:", *reasons, "", *advice(lost)]

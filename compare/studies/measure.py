@@ -3,7 +3,9 @@
 Only the integration itself is timed, in one thread, with output at the golden grid times. A probe over a short span
 comes first: it warms up, and it predicts the cost of the whole span. Where that exceeds the limit a part of the span is
 measured. What this part takes beyond the probe tells what the rest will take, so that a costly start, as of a stiff
-motion, is not counted again and again. Only if that exceeds the limit too is the cost extrapolated; the row says so.
+motion, is not counted again and again. Only if that exceeds the limit too is the cost extrapolated; the row says so,
+and has no error over the whole span: extrapolated by its growth over a 16th of the span, the error of 53 runs was off by
+up to 240 times.
 """
 
 from __future__ import annotations
@@ -144,7 +146,7 @@ class Bench:
             self._row_of(base, outcome, cpu_s if whole else whole_s),
             status=Status.OK if whole else Status.EXTRAPOLATED,
             reason=reason,
-            error_m=float(errors.max()),
+            error_m=float(errors.max()) if whole else None,
             end_error_m=float(errors[-1]),
             h_drift=h_drift(self.scene, outcome),
             cpu_spread=(max(costs_s) - min(costs_s)) / cpu_s if cpu_s and len(costs_s) > 1 else None,

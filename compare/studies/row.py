@@ -41,9 +41,9 @@ class Row(Record):
         setting: step in s, relative tolerance, or bits.
         kind: which of these: "step", "tolerance" or "precision".
         inputs: how the scene's numbers are read: "decimal" or "binary64".
-        status: where it is EXTRAPOLATED, the errors are those of the part that was run.
+        status: where it is EXTRAPOLATED, only a part of the span was run, up to `reached_t`.
         reason: why it is not OK.
-        error_m: largest position error on the grid.
+        error_m: largest position error on the grid; None where only a part of it was run.
         end_error_m: position error at the last row reached.
         transit_error_s: largest error of a transit's time, by one Newton step from the state at the true time; None
             also where it is not resolved.
@@ -91,5 +91,10 @@ class Row(Record):
 
     @property
     def measured(self) -> bool:
-        """True if the row has a cost and an error."""
-        return self.status in (Status.OK, Status.EXTRAPOLATED)
+        """True if the whole span was run, to a right end: then the row has a cost and an error."""
+        return self.status == Status.OK
+
+    @property
+    def failed(self) -> bool:
+        """True if it is not known what the whole span costs."""
+        return self.status not in (Status.OK, Status.EXTRAPOLATED)

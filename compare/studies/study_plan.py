@@ -15,7 +15,9 @@ from ..methods import METHODS, Method, available, suited
 
 FORMULATIONS = ("momentum", "space", "spin", "plane", "angles", "lagrangian")
 FORMULATIONS_OF = "heyoka_double"  # the method in which they are compared
-SPAN_S = 600  # longer scenes are cut to this, unless an end is given: 512 bits take a thousand times as long as double
+SPAN_S = (
+    14_400  # longer scenes are cut to this, unless an end is given; over less, what a run costs at all hides digits
+)
 MOST_BITS = 4096
 SPARE_DIGITS = 8  # digits of the truth beyond those of the finest run
 STEP_BITS = 12  # bits of a step's mantissa: its first 2**41 multiples are doubles

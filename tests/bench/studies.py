@@ -2,7 +2,7 @@
 
     python tests/bench/studies.py [NAME…] [--page]     or: make studies
 
-Without names all studies are run, most of an hour on a busy machine; one that was stopped goes
+Without names all studies are run, most of an hour on a quiet machine; one that was stopped goes
 on where it was. `--page` runs none and writes the page from the kept files alone. A test holds the page against them.
 """
 
@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 import studies_page
+
+from compare.studies.campaign import JUDGED
 
 ROOT = Path(__file__).resolve().parents[2]
 KEPT, PAGE, WORK = ROOT / "docs/studies", ROOT / "docs/studies.md", ROOT / "build/studies"
@@ -53,6 +55,7 @@ def run(name: str, command: str) -> dict[str, Any]:
 def keep(name: str, document: dict[str, Any]) -> None:
     """Write what the page needs of a document: rounded numbers, one row a line."""
     short = {key: _short(value) for key, value in document.items() if key not in ("rows", "long_runs")}
+    short["judged"] = JUDGED
     for part in ("rows", "long_runs"):
         short[part] = [_row(row) for row in document.get(part, [])]
     lines = [f"{json.dumps(key)}: {_lines(value)}" for key, value in short.items()]

@@ -16,12 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from reference.status import Status
-
 from ...methods import METHODS
 from ...methods.method import Family
 from ...studies.row import Row
-from ..pareto import Curve, cost_of, costs_of_digits, curves, digits_of, error_of, front, whole_evaluations
+from ..pareto import Curve, cost_of, costs_of_digits, curves, digits_of, error_of, front
 from .drawing import (
     BAND,
     COLOURS,
@@ -87,16 +85,12 @@ def ladders(
     places: Counter[Family] = Counter()
     lines = []
     for curve in curves:
-        points = [
-            (x, y, row.status == Status.EXTRAPOLATED)
-            for row in curve.measured
-            if (x := x_of(row)) and (y := y_of(row)) and math.isfinite(x + y)
-        ]
+        points = [(x, y) for row in curve.measured if (x := x_of(row)) and (y := y_of(row)) and math.isfinite(x + y)]
         if points:
             family = family_of(curve.method)
             style = line_style(FAMILY_COLOURS[family], places[family])
-            across, up, faint = zip(*points, strict=True)
-            lines.append(Ladder(name(curve), across, up, style, faint, family))
+            across, up = zip(*points, strict=True)
+            lines.append(Ladder(name(curve), across, up, style, [False] * len(points), family))
             places[family] += 1
     return lines
 
@@ -184,7 +178,7 @@ def _staircase(best: Sequence[Row], bound_m: float) -> Line:
 
 def _failed(axes: Any, rows: Sequence[Row]) -> None:
     """Draw failed rows that have a cost as crosses in a strip along the top, in the colour of their family."""
-    failed = [row for row in rows if not row.measured and row.cpu_s]
+    failed = [row for row in rows if row.failed and row.cpu_s]
     strip = {"transform": axes.transAxes, "zorder": 0}
     axes.fill([0, 1, 1, 0], [_STRIP, _STRIP, 1, 1], color=BAND, linewidth=0, **strip)
     middle = (1 + _STRIP) / 2
@@ -214,7 +208,7 @@ def precision_ladder(rows: Sequence[Row], bound_m: float) -> str | None:
 
     def name(curve: Curve) -> str:
         law = laws.get(curve.label)
-        return curve.label if law is None else f"{curve.label}, ∝ digits^{law.exponent:.2f} ± {law.standard_error:.2f}"
+        return curve.label if law is None else f"{curve.label}, ∝ digits^{law.exponent:.1f}"
 
     lines = ladders(shown, digits, cost_of, name)
     with sheet((9.5, 5.2)) as figure:
@@ -244,11 +238,11 @@ def _known(axes: Any, bound_m: float) -> None:
         axes.text(high, 0.01, text, transform=axes.get_xaxis_transform(), color=FAINT, fontsize=8, ha="right")
 
 
-def right_hand_sides(rows: Sequence[Row], bound_m: float, t_end: float) -> str | None:
+def right_hand_sides(rows: Sequence[Row], bound_m: float) -> str | None:
     """Draw error against evaluations of the right-hand side, for methods that count them; None if there are none."""
     shown = [curve for curve in curves(rows) if curve.own]
     return _single(
-        ladders(shown, lambda row: whole_evaluations(row, t_end), partial(error_of, bound_m=bound_m)),
+        ladders(shown, attrgetter("rhs_evaluations"), partial(error_of, bound_m=bound_m)),
         bound_m,
         ("evaluations", "evaluations of the right-hand side", "Error against evaluations of the right-hand side"),
     )

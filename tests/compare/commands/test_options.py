@@ -66,7 +66,7 @@ REFUSED = [
     (("score", "paris", "--approximation", "conic"), "approximation", "Did you mean conical?"),
     (("score", "paris", "--approximation", "precession_sine"), "--approximation", "a number, not a motion"),
     (("stability", "--methods", "nothing_like_it"), "method", "`foucault methods` lists them"),
-    (("stability", "--methods", "rk4,rkng56"), "methods", "expected methods that declare runs in `stability`"),
+    (("stability", "--methods", "rk4,mpmath_odefun"), "methods", "expected methods that declare runs in `stability`"),
     (("stability", "--name", "mine"), "--name", "without --run"),
     (("stability", "--run", "./p {nonsense}"), "--run", "{x0}"),
     (("stability", "--run", "./p 'x"), "--run", "a command with balanced quotes"),

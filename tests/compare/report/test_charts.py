@@ -58,7 +58,7 @@ def study_rows():
         rows += ladder(name, "tolerance", points, calls=None if "heyoka" in name else 5000)
     rows += ladder("heyoka_double", "tolerance", [(1e-6, 3e-6, 0.02), (1e-9, 2e-9, 0.03)], "angles")
     rows += ladder("heyoka_real", "precision", [(64, 1e-17, 2.0), (113, 1e-32, 5.0), (160, 1e-39, 9.0)], "momentum")
-    rows += ladder("limbs", "precision", [(100, 1e-28, 1.0), (200, 1e-60, 4.0)], status="extrapolated")
+    rows += ladder("limbs", "precision", [(100, 1e-28, 1.0), (200, 1e-60, 4.0)])
     rows.append(
         Row("mpmath_odefun", "momentum", 53, "precision", "binary64", "not_installed", "not installed (mpmath)")
     )
@@ -92,7 +92,7 @@ CHARTS = {  # how each is drawn, the titles of its axes with their units, and th
     "overview": (lambda: study_charts.overview(ROWS, BOUND), {CPU, ERROR, "failed"}, OWN),
     "families": (lambda: study_charts.by_family(ROWS, BOUND), {CPU, ERROR, Family.PAPER}, CALLS),
     "evaluations": (
-        lambda: study_charts.right_hand_sides(ROWS, BOUND, 86400.0),
+        lambda: study_charts.right_hand_sides(ROWS, BOUND),
         {"evaluations of the right-hand side", ERROR},
         CALLS,
     ),
@@ -207,7 +207,7 @@ def test_pictures_of_rows_that_all_failed_are_none():
     failed = [row for row in ROWS if not row.measured]
     for draw in ("overview", "by_family", "achieved_tolerance", "formulations", "precision_ladder"):
         assert getattr(study_charts, draw)(failed, BOUND) is None
-    assert study_charts.right_hand_sides(failed, BOUND, 1.0) is None
+    assert study_charts.right_hand_sides(failed, BOUND) is None
 
 
 @pytest.mark.parametrize("rows", [steps("rk4", 1)[:1], ladder("rk4", "step", [(0.1, 0.0, 1.0), (0.2, 1e-3, 0.5)])])

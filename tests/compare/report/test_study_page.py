@@ -19,7 +19,7 @@ from places import ROOT
 from compare.report import page as parts
 from compare.report import study_page
 from compare.report.page import Html, Table
-from compare.report.study_tables import busy, cpu, setting, tidy
+from compare.report.study_tables import busy, cpu, setting, text_table, tidy
 from compare.studies.campaign import load_per_core
 from compare.studies.row import Row
 from reference.status import Status
@@ -39,7 +39,7 @@ def study_document(rows=None, **more):
         row("heyoka_double", 1e-8, 2e-7, 0.01, formulation="momentum", h_drift=1e-12, transit_error_s=3e-9),
         row("heyoka_double", 2.0**-52, 3e-13, 0.02, formulation="momentum"),
         row("heyoka_double", 2.0**-52, 9e-13, 0.025),
-        row("scipy_dop853", 1e-6, 1e-5, 40.0, Status.EXTRAPOLATED, reason="measured to t = 90 s"),
+        row("scipy_dop853", 1e-6, None, 40.0, Status.EXTRAPOLATED, reason="measured to t = 90 s"),
         row("scipy_lsoda", 1e-12, None, 0.7, Status.GAVE_UP, reason=NASTY, reached_t=123.5),
         row("scipy_bdf", 1e-12, 0.5, 0.7, Status.MISSED_TRANSITS, reason="1 of 9 transits is missed", reached_t=900.0),
         row("mpmath_odefun", 53, None, None, Status.NOT_INSTALLED, kind="precision",
@@ -286,3 +286,20 @@ def test_the_load_is_that_of_the_system_over_its_cores(monkeypatch):
     assert load_per_core() == 1.5
     monkeypatch.delattr(os, "getloadavg")
     assert load_per_core() is None
+
+
+def test_the_page_of_a_study_of_precisions_says_what_digits_cost_and_holds_no_picture_of_single_points():
+    rows = [row("heyoka_double", 2.0**-52, 1e-12, 0.001, formulation="momentum")]
+    rows += [row("limbs", bits, 10.0 ** (-bits / 3.3), bits**2 / 1e6, kind="precision") for bits in (113, 160, 256)]
+    text = study_page.page_text(study_document(rows))
+    assert "What digits cost" in text and "Every row" in text
+    for heading in ("Error against CPU time", "Family by family", "Tolerance asked for", "Least cost", "Pareto front<"):
+        assert heading in study_page.page_text(study_document()) and heading not in text, heading
+
+
+def test_a_run_over_a_part_of_the_span_has_no_error_and_is_no_failure():
+    part = row("scipy_dop853", 1e-6, None, 40.0, Status.EXTRAPOLATED, reason="measured to t = 90 s", end_error_m=1e-9)
+    page, text = study_page.page_text(study_document([part])), text_table(study_document([part]))
+    assert "What failed" not in page and "Failed:" not in text
+    assert "~40.0" in page and "~40.0" in text
+    assert "without its error (see --limit)" in text
