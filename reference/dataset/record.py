@@ -65,6 +65,7 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
     scene, run, proof = solution.scene, solution.run, solution.proof
     name = name or dataset_id(scene)
     making = Making(run.engine, proof is not None and proof.audited, proof is None or proof.confirmed)
+    end = grid.rows[-1][0]
     return Manifest.model_construct(
         schema_version=3,
         seal="",
@@ -80,7 +81,10 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
         counts=Counts(grid=len(grid.rows), transits=len(transits.rows), possible=len(solution.possible)),
         transits=completeness(scene, solution.zeros is None, bool(solution.possible)),
         possible=[
-            Possible.model_validate({"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity})
+            Possible.model_validate(
+                # rounded outwards, but not beyond the end of the run, which the last row prints exactly
+                {"from_s": outward(low, -1), "to_s": min(outward(high, 1), end, key=Fraction), "parity": parity}
+            )
             for low, high, parity in solution.possible
         ],
         run=RunRecord.model_validate(run),

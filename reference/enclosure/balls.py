@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, arb_poly, fmpq, fmpz
+from flint import arb, fmpq, fmpz
 
 from .shapes import Interval
 
@@ -69,6 +69,6 @@ def size(a: Vector) -> arb:
     return upper(upper(sum((x.abs_upper() ** 2 for x in a), arb(0))).sqrt())
 
 
-def norm(f: Any, bits: int) -> arb:
-    """Return an upper bound of the sup norm on |s| <= 1 of an integer polynomial over 2^bits."""
-    return upper((arb_poly(f)(UNIT) / (fmpz(1) << bits)).abs_upper())
+def total(f: Any, bits: int) -> arb:
+    """Return Σ|c_n| of an integer polynomial over 2^bits, exactly: it bounds the polynomial on complex |s| <= 1."""
+    return arb((sum(map(abs, f.coeffs()), fmpz(0)), fmpz(-bits)))

@@ -11,7 +11,7 @@ import numpy as np
 from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
 from ..numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
-from .balls import SHORT, Vector, add, ball, cross, demand, dot, fixed, interval, norm, size, times, upper
+from .balls import SHORT, Vector, add, ball, cross, demand, dot, fixed, interval, size, times, total, upper
 from .shapes import Covered, Interval, Sizes, Tube
 
 
@@ -84,9 +84,14 @@ class Piece:
 
     def __init__(self, balls: SceneBalls, step: TaylorStep) -> None:
         demand(-1 <= step.low < step.high <= 1 and step.h > 0, "a step must lie in -1 <= s <= 1, where its sizes hold")
+        rows = step.coefficients
+        if isinstance(rows, Digits):  # copied and frozen, as p and its defect must be of the same ones
+            rows = Digits(np.array(rows.table))
+            rows.table.setflags(write=False)
+            sound = rows.table.dtype == np.int32 and step.bits == DIGIT_BITS * rows.table.shape[1] - 1
+            demand(sound, "digits are of 32 bits, and coefficients of 22 bits a digit but one")
         self.balls, self.step, self.k = balls, step, scaled(balls, step.h, step.bits)
-        self.unit, self.rows = fmpz(1) << step.bits, step.coefficients
-        self.p = polynomials(self.rows, slice(3))
+        self.unit, self.rows, self.p = fmpz(1) << step.bits, rows, polynomials(rows, slice(3))
         self.v = [f.derivative() for f in self.p]
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
@@ -100,7 +105,7 @@ class Piece:
         k, bits = self.k, self.step.bits
         with ctx.workprec(SHORT):
             *d, t, t1 = self.defects()
-            v1, size_p, n = size([norm(f, bits) for f in self.v]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
+            v1, size_p, n = size([total(f, bits) for f in self.v]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
             defect = size_p * (size(d) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
             speed, rate = v1 + k.omega_size * size_p, (n - 1 + k.omega_size) * v1
             first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + (2 * n - 1) * t1 * size_p / 2
@@ -112,7 +117,7 @@ class Piece:
             from .digits import norms
 
             return norms(self.rows.table, self.k.whole)
-        return [norm(f, 2 * self.step.bits) for f in self.measured()]
+        return [total(f, 2 * self.step.bits) for f in self.measured()]
 
     def measured(self) -> list[fmpz_poly]:
         """Return d (three components), τ, τ' over 2^(2 bits)."""

@@ -1,6 +1,7 @@
 """TRUSTED. A proof from step to step: bound, output times and transits are given one piece, in order and without a gap.
 
-Who drives it proposes steps and columns, and can do no harm: there is a result only for a run that is complete.
+Who calls `advance` proposes steps and columns, and can do no harm: an exception closes a run for good, and there is a
+result only for a run that is complete.
 """
 
 from collections.abc import Callable
@@ -19,12 +20,13 @@ class Course:
     """The states at `times` (increasing, from 0 on) and, with `transits`, all zeros of xdot up to the last of them."""
 
     def __init__(self, balls: SceneBalls, times: list[Fraction], columns: bool, transits: bool) -> None:
-        self.balls, self.times, self.states = balls, tuple(times), list[list[Interval]]()
+        self.balls, self.times, self.states, self.open = balls, tuple(times), list[list[Interval]](), True
         self.bound: Any = Columns(balls) if columns else Radius(balls)
         self.scan = Scan(balls) if transits and not balls.still else None
 
-    def advance(self, step: TaylorStep, proposal: tuple[Proposal, ...], lap: Callable[[str], None]) -> Piece:
+    def advance(self, step: TaylorStep, proposal: tuple[Proposal, ...], lap: Callable[[str], None]) -> None:
         """Take the next step, and columns if it is proved by them; `lap` is told which part of the work is done."""
+        self._close()
         piece = Piece(self.balls, step)
         lap("defect" if piece.sizes else "")
         covered = self.bound.advance(piece, *proposal)
@@ -34,11 +36,18 @@ class Course:
         if self.scan:
             self.scan.advance(covered)
             lap("transits")
-        return piece
+        self.open = True
 
     def finish(self) -> tuple[list[list[Interval]], list[EnclosedTransit] | None]:
         """Return the states at `times`, and the transits; None if not requested or if xdot is zero for ever."""
+        self._close()
         end, complete = self.times[-1], len(self.states) == len(self.times)
-        demand(complete and (not end or self.bound.time == end), "the steps do not end with the run")
+        reached = {part.time for part in (self.bound, self.scan) if part}
+        demand(complete and (not end or reached == {end}), "the steps do not end with the run")
         transits = self.scan.finish() if self.scan and end else []
         return self.states, transits if self.scan else None
+
+    def _close(self) -> None:
+        """Close the run, until what comes next is done without an exception."""
+        demand(self.open, "the run is closed: it is finished, or a step failed")
+        self.open = False

@@ -103,6 +103,7 @@ class Scan:
         t = narrowed(leaves, begin, end, sides) if steady else begin.union(end)
         parity = "one" if steady and product < 0 else {-1: "odd", 0: "unknown", 1: "even"}[product]
         way = leaves[0].bend if steady else right if product < 0 else 0
+        demand(parity != "one" or way == right, "two enclosures contradict each other")
         self.found.append(EnclosedTransit(parity, way, interval(t), *self._values(leaves, t)))
 
     def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:

@@ -17,7 +17,7 @@ from flint import arb
 
 from ..errors import UnreachableError
 from ..numbers.taylor_step import TaylorStep
-from .bound import SceneBalls
+from .bound import Piece, SceneBalls
 from .course import Course
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, plan_for, short
@@ -174,9 +174,9 @@ class _Run:
         for step in self._until(chain([first], steps)):
             proposal = (columns.propose(step, [_log(z) for z in course.bound.z]),) if columns else ()
             self.clock.lap("candidate")
-            piece = course.advance(step, proposal, self.clock.lap)
+            course.advance(step, proposal, self.clock.lap)
             if self.flint_only:
-                check_sums(piece)
+                check_sums(Piece(balls, step))
             count += 1
             if len(course.states) > known:
                 known = len(course.states)

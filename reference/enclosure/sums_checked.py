@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from flint import arb, fmpz
+from flint import arb
 
 from ..numbers.taylor_step import Digits
+from .balls import total
 
 
 def check_sums(piece: Any) -> None:
@@ -23,6 +24,6 @@ def compare(piece: Any, norms: Callable[..., list[arb]]) -> None:
     table, whole = piece.rows.table, piece.k.whole
     rows = zip(piece.measured(), norms(table, whole, table.shape[1] - 1), norms(table, whole), strict=True)
     for f, exact, bound in rows:
-        own = arb((sum(map(abs, f.coeffs()), fmpz(0)), fmpz(-2 * piece.step.bits)))
+        own = total(f, 2 * piece.step.bits)
         if not (exact == own and bound >= own):
             raise ArithmeticError("audit: the sums of digits are not FLINT's")

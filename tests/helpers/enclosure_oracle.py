@@ -16,7 +16,7 @@ from reference.enclosure.bound import Piece, Radius, SceneBalls, output
 from reference.enclosure.enclosed_transits import Scan
 from reference.enclosure.frames import ColumnSource
 from reference.enclosure.six_columns import Columns
-from reference.numbers.taylor_step import TaylorStep
+from reference.numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
 from reference.scenes.inputs import Inputs
 
 PARIS = Inputs(
@@ -175,6 +175,24 @@ def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first
         yield step._replace(high=(end - step.centre) / step.h) if last else step
         if last:
             return
+
+
+def in_digits(step: TaylorStep) -> TaylorStep:
+    """The same step, its coefficients as digits over the next power of two that these have."""
+    from reference.enclosure.digits import split  # needs numba
+
+    count = -(-(step.bits + 1) // DIGIT_BITS)
+    up, orders = DIGIT_BITS * count - 1 - step.bits, max(map(len, step.coefficients))
+    table = np.zeros((4, count, orders), np.int64)
+    for i, row in enumerate(step.coefficients):
+        for k, c in enumerate(row):
+            table[i, :, k] = split(int(c) << up, count)
+    # signed digits, as a series has them: the leading ones of a small coefficient are 0
+    for q in range(count - 1, 0, -1):
+        over = table[:, q] >> (DIGIT_BITS - 1)
+        table[:, q] -= over << DIGIT_BITS
+        table[:, q - 1] += over
+    return step._replace(bits=step.bits + up, rows=Digits(table.astype(np.int32)))
 
 
 def carry(inputs: Inputs, proposal, columns: bool = False):

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from fractions import Fraction
 
+import numpy as np
 import pytest
-from enclosure_oracle import PARIS, carry, scene, steps, unit_step
+from enclosure_oracle import PARIS, carry, in_digits, scene, steps, unit_step
 from flint import arb
 
 from reference.enclosure.bound import Piece, Radius, SceneBalls, output, tube
 from reference.enclosure.course import Course
 from reference.enclosure.enclosed_transits import MOST_LEAVES, Scan
 from reference.enclosure.shapes import Covered, Tube
+from reference.numbers.taylor_step import Digits
 
 TIMES = [Fraction(0), Fraction(7), Fraction(20)]
 
@@ -74,3 +77,99 @@ def test_leaves_that_a_useless_tube_would_ask_for_are_one_possible_transit(width
     assert scan.leaves < MOST_LEAVES * 3
     found = scan.finish()
     assert all(t.kind == "possible" for t in found)
+
+
+def swallowed(proposed, times, transits, hooks=lambda _: nothing, inputs=PARIS):
+    """Drive a run on through every exception; return what it says at the end."""
+    one = Course(SceneBalls(inputs, 400), times, False, transits)
+    for i, step in enumerate(proposed):
+        with suppress(ArithmeticError, RuntimeError):
+            one.advance(step, (), hooks(i))
+    return one.finish()
+
+
+def nothing(_part):
+    """Hear what is done."""
+
+
+SHORT_ROD = scene(length="1", x="0.05", y="0.1")
+
+
+def test_an_exception_in_a_step_closes_the_run_for_good():
+    """F1 of the audit: the transits of a step were lost when what is told of the parts raised, and was caught."""
+    proposed = list(steps(SHORT_ROD, Fraction("5.04"), bits=160))
+
+    def raising(i):
+        def lap(part):
+            if i == len(proposed) - 1 and part == "bound":
+                raise RuntimeError
+
+        return lap
+
+    times = [Fraction(0), Fraction("5.04")]
+    assert len(swallowed(proposed, times, True, inputs=SHORT_ROD)[1]) == 5
+    with pytest.raises(ArithmeticError, match="closed"):
+        swallowed(proposed, times, True, raising, SHORT_ROD)
+
+
+def bumped(step, size=1 << 8):
+    """The step with a bump in w that vanishes, as does its slope, at both ends: only the defect sees it."""
+    c, rows = [Fraction(size << step.bits)], [[*map(int, row)] for row in step.coefficients]
+    for root in (step.low, step.low, step.high, step.high):
+        c = [a - root * b for a, b in zip([0, *c], [*c, 0], strict=True)]
+    rows[2][:5] = [a + int(b) for a, b in zip(rows[2], c, strict=False)]
+    return step._replace(rows=rows)
+
+
+def test_a_step_whose_bound_is_not_finite_is_not_passed_over():
+    """F1: the time went on and the radius did not, so the states of another motion could be proved."""
+    proposed = list(steps(SHORT_ROD, Fraction("5.04"), bits=160))
+    k = len(proposed) // 2
+    with pytest.raises(ArithmeticError, match="closed"):
+        chain = [*proposed[:k], bumped(proposed[k]), *proposed[k + 1 :]]
+        swallowed(chain, [Fraction(0), Fraction("5.04")], False, inputs=SHORT_ROD)
+
+
+def test_a_run_whose_scan_did_not_come_to_the_end_gives_nothing():
+    one = course(steps(PARIS, TIMES[-1]))
+    one.scan.time -= 1
+    with pytest.raises(ArithmeticError, match="do not end with the run"):
+        one.finish()
+
+
+class Changing(Digits):
+    """Digits whose table is another at a later reading."""
+
+    def __init__(self, first, later, readings):
+        self.tables = [first] * readings
+
+        self.later = later
+
+    @property
+    def table(self):
+        return self.tables.pop() if self.tables else self.later
+
+
+@pytest.mark.parametrize("readings", range(1, 6))
+def test_the_defect_is_that_of_the_polynomials_whatever_becomes_of_the_digits(readings):
+    """F2: p was made of one table, the defect of another."""
+    honest = in_digits(next(steps(PARIS, Fraction(5))))
+    table = honest.rows.table
+    moved = table.copy()
+    moved[0, 3, :3] += 1
+    balls = SceneBalls(PARIS, 192)
+    piece = Piece(balls, honest._replace(rows=Changing(moved, table, readings)))
+    own = Piece(balls, honest._replace(rows=Digits(piece.rows.table.copy())))
+    assert piece.p == own.p
+    assert [*map(str, piece.sizes)] == [*map(str, own.sizes)]
+    with pytest.raises(ValueError, match="read-only"):
+        piece.rows.table[0, 0, 0] = 1
+
+
+def test_digits_over_another_power_of_two_or_of_another_type_are_refused():
+    """F3: sums over 2^(22 L - 1) were taken for those of digits over 2^(22 L - 2)."""
+    rows, balls = np.zeros((4, 8, 3), np.int32), SceneBalls(PARIS, 400)
+    Piece(balls, unit_step(22 * 8 - 1, Digits(rows)))
+    for bits, table in ((22 * 8 - 2, rows), (22 * 8, rows), (22 * 8 - 1, rows.astype(np.int64))):
+        with pytest.raises(ArithmeticError, match="22 bits"):
+            Piece(balls, unit_step(bits, Digits(table)))

@@ -63,7 +63,7 @@ def of_digits(rng):
     if rng.random() < 0.3:
         table[:3, :, rng.randrange(orders) :] = 0
     bits = DIGIT_BITS * count - 1
-    return Piece(balls, unit_step(bits, Digits(table)))
+    return Piece(balls, unit_step(bits, Digits(table.astype(np.int32))))
 
 
 def defects(piece, s):

@@ -7,7 +7,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from enclosure_oracle import PARIS, contains, doubles, last_state, scanned, scene, steps, truth
+from enclosure_oracle import PARIS, contains, doubles, in_digits, last_state, scanned, scene, steps, truth
 from enclosure_recurrence import Recurrence, prove
 from flint import arb, ctx
 from hypothesis import given, settings
@@ -17,14 +17,12 @@ from scipy.integrate import solve_ivp
 from reference.enclosure.approximant import pair
 from reference.enclosure.balls import add, ball, cross
 from reference.enclosure.bound import Piece, Radius, SceneBalls
-from reference.enclosure.digits import split
 from reference.enclosure.frames import ColumnSource
 from reference.enclosure.six_columns import Columns
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.numbers.columns import TRANSITS
 from reference.numbers.precision import real
-from reference.numbers.taylor_step import DIGIT_BITS, Digits
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth
@@ -143,22 +141,6 @@ def start_moved(inputs, size):
     if inputs.position:
         return replace(inputs, position=(inputs.position[0] + size, *inputs.position[1:]))
     return replace(inputs, angles=(inputs.angles[0] + size, *inputs.angles[1:]))
-
-
-def in_digits(step):
-    """The same step, its coefficients as digits over the next power of two that these have."""
-    count = -(-(step.bits + 1) // DIGIT_BITS)
-    up, orders = DIGIT_BITS * count - 1 - step.bits, max(map(len, step.coefficients))
-    table = np.zeros((4, count, orders), np.int64)
-    for i, row in enumerate(step.coefficients):
-        for k, c in enumerate(row):
-            table[i, :, k] = split(int(c) << up, count)
-    # signed digits, as a series has them: the leading ones of a small coefficient are 0
-    for q in range(count - 1, 0, -1):
-        over = table[:, q] >> (DIGIT_BITS - 1)
-        table[:, q] -= over << DIGIT_BITS
-        table[:, q - 1] += over
-    return step._replace(bits=step.bits + up, rows=Digits(table.astype(np.int32)))
 
 
 def made_wrong(seed, digits, enough, judge):

@@ -22,7 +22,7 @@ from reference.dataset.write import write
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, fastest, run
 from reference.errors import InputError, IntegrationError, UnreachableError
-from reference.numbers.precision import real
+from reference.numbers.precision import fixed_decimal, real
 from reference.solver import proof_steps
 from reference.solver.enclosed import audited, proved_digits, solve_enclosed
 from reference.solver.proof_steps import Feed
@@ -146,6 +146,22 @@ def test_what_cannot_be_decided_is_said_and_its_row_left_out(monkeypatch, tmp_pa
     assert manifest.counts.transits == 35
     assert "possible transit in [" in (path / "certified.txt").read_text()
     assert problems_of(path) == []
+
+
+def at_a_transit(places=60):
+    """A scene that ends less than 10^-places s after its second transit, of fewer digits than would show it."""
+    far = reference.solve(make_scene(run=SHORT | {"t_end": "20", "digits": places + 2}))
+    late = -(-far.transits.exact("t")[1] * 10**places // 1)
+    return make_scene(run=SHORT | {"t_end": fixed_decimal(Fraction(late, 10**places), places), "digits": 24})
+
+
+def test_a_run_that_ends_at_a_transit_is_written_with_what_is_possible_up_to_its_end(tmp_path):
+    """F7 of the audit: the interval's end was rounded up beyond that of the run, and the proof lost."""
+    scene = at_a_transit()
+    manifest = load(write(reference.solve(scene), tmp_path / "end")).manifest
+    (possible,) = manifest.possible
+    assert (manifest.transits, manifest.counts.transits) == ("undecided intervals", 1)
+    assert Fraction(possible.to_s) == scene.exact.t_end
 
 
 def test_a_possible_transit_is_reported_within_the_run(monkeypatch):
