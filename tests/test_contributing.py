@@ -17,13 +17,13 @@ BALL = '''
 _state = output
 
 
-def output(covered: Covered, time: Fraction) -> list[Interval]:
+def output(covered: Covered, time: Fraction) -> State:
     """Return position, velocity and ax at an output time."""
     piece = covered.piece
     with ctx.workprec(piece.balls.prec):
         s = ball((time - piece.step.centre) / piece.step.h)
         ax = piece.v[0].derivative()(s) / piece.unit + arb(0, covered.tube.a)
-        return [*_state(covered, time), interval(ax * piece.balls.length / piece.k.h**2)]
+        return (*_state(covered, time), interval(ax * piece.balls.length / piece.k.h**2))
 '''
 # what is done to each file that the recipe names
 EDITS = {

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import json
+from collections.abc import Mapping
+
+from ..errors import DatasetError
 from ..scenes.scene import Level
 from ..solver.solution import Solution
 from .manifest import MANIFEST, FileRecord, Manifest
@@ -34,15 +38,24 @@ def render(solution: Solution, name: str | None = None) -> dict[str, str]:
             tables["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
     record = manifest_of(solution, grid, transits, name)
     texts = {name: sheet.csv() for name, sheet in tables.items()} | derived_texts(record, tables)
-    if solution.proof is not None:  # the tables, as they will be written, against the intervals that were proved
-        from ..enclosure.printed import check_grid, check_transits
-
-        proved = solution.proof.enclosed
-        check_grid(texts["grid.csv"], proved.times, proved.states, record.bounds.grid)
-        if "transits.csv" in texts:
-            check_transits(texts["transits.csv"], proved.transits or (), record.bounds.transits)
     manifest = record.model_copy(update={"files": {file: FileRecord.of(text) for file, text in texts.items()}})
     return {MANIFEST: manifest.sealed().text(), **texts}
+
+
+def check_proved(texts: Mapping[str, str], solution: Solution) -> None:
+    """Have trusted code hold the texts of a dataset at the level enclosed against what was proved.
+
+    Raises:
+        DatasetError: they state something else.
+    """
+    if json.loads(texts[MANIFEST])["level"] != "enclosed":
+        return
+    from ..enclosure.printed import check_dataset
+
+    try:
+        check_dataset(texts, solution.proof.proved if solution.proof else None)
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        raise DatasetError(solution.scene.id, [f"this is not what was proved; {error}"]) from error
 
 
 def derived_texts(manifest: Manifest, tables: dict[str, Sheet]) -> dict[str, str]:

@@ -21,7 +21,7 @@ from ..system.workers import Pool
 from .golden import read_files
 from .place import dataset_id, default_folder, is_of_shipped_scene, ships
 from .record import Making
-from .render import render
+from .render import check_proved, render
 from .sheets import column_bounds, scene_inputs
 
 Row = dict[str, Any]
@@ -79,7 +79,9 @@ def made(job: Job) -> tuple[Row, dict[str, str]]:
     """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
     try:
         solution = solved(job.scene, making_of(job.scene, job.name, job.folder))
-        return job.row(Status.OK) | summary(solution, job.folder), render(solution, job.name)
+        texts = render(solution, job.name)
+        check_proved(texts, solution)  # here, where the proof was made; what is written has these hashes
+        return job.row(Status.OK) | summary(solution, job.folder), texts
     except UnreachableError as error:
         status = Status.GAVE_UP if isinstance(error, IntegrationError) else Status.UNREACHABLE
         return job.row(status, str(error)), {}

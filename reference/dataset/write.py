@@ -15,7 +15,7 @@ from ..system.workspace import OLD, workspace
 from .manifest import MANIFEST
 from .place import ships
 from .record import Making
-from .render import render
+from .render import check_proved, render
 from .verify import problems_of
 
 
@@ -67,12 +67,12 @@ def write(solution: Solution, folder: str | Path, name: str | None = None) -> Pa
         raise InputError(
             "audit", "no audit", "an audited proof", "What ships in data/golden is proved by FLINT alone, too."
         )
-    write_texts(render(solution, name), folder)
+    write_texts(render(solution, name), folder, solution)
     return folder
 
 
-def write_texts(texts: Mapping[str, str], folder: Path) -> None:
-    """Write the files of a dataset that was rendered, as `write` does."""
+def write_texts(texts: Mapping[str, str], folder: Path, solution: Solution | None = None) -> None:
+    """Write the files of a dataset that was rendered, as `write` does; without its solution, they were checked."""
     check_target(folder)
     with _place(folder) as (work, target):
         new = work / "new"
@@ -85,6 +85,8 @@ def write_texts(texts: Mapping[str, str], folder: Path) -> None:
         problems = problems_of(new)
         if problems:
             raise DatasetError(str(folder), problems)
+        if solution is not None:
+            check_proved({path.name: path.read_bytes().decode() for path in new.iterdir()}, solution)
         if target.exists():
             target.rename(work / OLD)  # after an end between the two renames, `workspace` puts it back
         new.rename(target)

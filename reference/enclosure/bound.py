@@ -12,7 +12,7 @@ from flint import arb, ctx, fmpq, fmpz, fmpz_poly
 
 from ..numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, demand, dot, fixed, interval, size, times, total, upper
-from .shapes import Covered, Interval, Sizes, Tube
+from .shapes import Covered, Sizes, State, Tube
 
 
 class SceneBalls:
@@ -23,7 +23,7 @@ class SceneBalls:
 
     def __init__(self, inputs: Any, prec: int, flint_only: bool = False) -> None:
         demand(inputs.drag >= 0 and inputs.length > 0, "not a pendulum: the theorems take a length > 0 and a drag >= 0")
-        self.prec, self.flint_only = prec, flint_only  # by FLINT's polynomials alone, not by sums of digits
+        self.inputs, self.prec, self.flint_only = inputs, prec, flint_only  # the last: without sums of digits
         with ctx.workprec(prec):
             turn = fmpq(inputs.latitude.numerator, inputs.latitude.denominator) / 180
             sin, cos, rate = arb.sin_pi_fmpq(turn), arb.cos_pi_fmpq(turn), ball(inputs.rotation_rate)
@@ -86,10 +86,9 @@ class Piece:
         demand(-1 <= step.low < step.high <= 1 and step.h > 0, "a step must lie in -1 <= s <= 1, where its sizes hold")
         rows = step.coefficients
         if isinstance(rows, Digits):  # copied and frozen, as p and its defect must be of the same ones
-            rows = Digits(np.array(rows.table))
+            rows = Digits(np.array(rows.table, np.int32))
             rows.table.setflags(write=False)
-            sound = rows.table.dtype == np.int32 and step.bits == DIGIT_BITS * rows.table.shape[1] - 1
-            demand(sound, "digits are of 32 bits, and coefficients of 22 bits a digit but one")
+            demand(step.bits == DIGIT_BITS * rows.table.shape[1] - 1, "coefficients have 22 bits a digit, but one")
         self.balls, self.step, self.k = balls, step, scaled(balls, step.h, step.bits)
         self.unit, self.rows, self.p = fmpz(1) << step.bits, rows, polynomials(rows, slice(3))
         self.v = [f.derivative() for f in self.p]
@@ -195,11 +194,11 @@ def state(covered: Covered, s: arb) -> tuple[Vector, Vector]:
     return [x + arb(0, covered.tube.eta) for x in p], [x + arb(0, covered.tube.u) for x in v]
 
 
-def output(covered: Covered, time: Fraction) -> list[Interval]:
+def output(covered: Covered, time: Fraction) -> State:
     """Return position and velocity at an output time, in m and m/s; at 0 those of the release itself."""
     piece, balls = covered.piece, covered.piece.balls
     with ctx.workprec(balls.prec):
         demand(piece.begin <= time <= piece.end, "the tube holds on its own step only")
         r, v = state(covered, ball((time - piece.step.centre) / piece.step.h))
         moving = [balls.turned(r, -1), balls.turned(times(1 / piece.k.h, v), -1)]
-        return [interval(x * balls.length) for part in (moving if time else balls.release) for x in part]
+        return tuple(interval(x * balls.length) for part in (moving if time else balls.release) for x in part)

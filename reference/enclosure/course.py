@@ -7,26 +7,30 @@ result only for a run that is complete.
 from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
+from weakref import WeakSet
 
 from ..numbers.taylor_step import TaylorStep
 from .balls import demand
 from .bound import Piece, Radius, SceneBalls, output
 from .enclosed_transits import Scan
-from .shapes import EnclosedTransit, Interval, Proposal
+from .shapes import Proposal, Proved, State
 from .six_columns import Columns
+
+FINISHED = WeakSet[Proved]()
 
 
 class Course:
     """The states at `times` (increasing, from 0 on) and, with `transits`, all zeros of xdot up to the last of them."""
 
     def __init__(self, balls: SceneBalls, times: list[Fraction], columns: bool, transits: bool) -> None:
-        self.balls, self.times, self.states, self.open = balls, tuple(times), list[list[Interval]](), True
+        self.balls, self.times, self.states, self.open = balls, tuple(times), list[State](), True
         self.bound: Any = Columns(balls) if columns else Radius(balls)
         self.scan = Scan(balls) if transits and not balls.still else None
 
     def advance(self, step: TaylorStep, proposal: tuple[Proposal, ...], lap: Callable[[str], None]) -> None:
         """Take the next step, and columns if it is proved by them; `lap` is told which part of the work is done."""
-        self._close()
+        demand(self.open, "the run is closed: a step failed")
+        self.open = False
         piece = Piece(self.balls, step)
         lap("defect" if piece.sizes else "")
         covered = self.bound.advance(piece, *proposal)
@@ -38,16 +42,11 @@ class Course:
             lap("transits")
         self.open = True
 
-    def finish(self) -> tuple[list[list[Interval]], list[EnclosedTransit] | None]:
-        """Return the states at `times`, and the transits; None if not requested or if xdot is zero for ever."""
-        self._close()
-        end, complete = self.times[-1], len(self.states) == len(self.times)
+    def finish(self) -> Proved:
+        """Return what is proved; only this very object, and no copy of it, counts as the result of a proof."""
+        end, complete = self.times[-1], self.open and len(self.states) == len(self.times)
         reached = {part.time for part in (self.bound, self.scan) if part}
         demand(complete and (not end or reached == {end}), "the steps do not end with the run")
-        transits = self.scan.finish() if self.scan and end else []
-        return self.states, transits if self.scan else None
-
-    def _close(self) -> None:
-        """Close the run, until what comes next is done without an exception."""
-        demand(self.open, "the run is closed: it is finished, or a step failed")
-        self.open = False
+        transits = tuple(self.scan.finish() if end else ()) if self.scan else None
+        FINISHED.add(proved := Proved(self.balls.inputs, self.times, tuple(self.states), transits, self.balls.still))
+        return proved

@@ -25,8 +25,7 @@ def check(rows: Any, constants: Any) -> int:
     p, tension, constant = (max(int(x.max()), -int(x.min())) for x in parts)  # -x.min() itself may overflow
     most: int = digits * orders * p * (tension + 5 * constant + 3 * p)
     linear = orders**2 * p + constant + (1 << DIGIT_BITS) << DIGIT_BITS
-    small = orders < 1 << 18 and 2 * max(orders * p, tension, constant) < 1 << 31
-    demand(small and most + linear < 1 << 62, "digits may overflow")
+    demand(most + linear < 1 << 62 and 2 * max(orders * p, tension, constant) < 1 << 31, "digits may overflow")
     return most
 
 

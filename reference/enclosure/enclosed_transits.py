@@ -95,7 +95,8 @@ class Scan:
     def _close(self, right: int) -> None:
         leaves, sides, self.cluster, self.left = self.cluster, (self.left, right), [], right
         steady, product = {leaf.bend for leaf in leaves} in ({1}, {-1}), sides[0] * right
-        demand(bool(leaves) or product >= 0, "two enclosures contradict each other")
+        fits = product >= 0 or (leaves[0].bend == right if steady else bool(leaves))
+        demand(fits, "two enclosures contradict each other")
         if not leaves or (steady and product > 0):
             return
         ends = ((leaves[0].slope, leaves[0].low), (leaves[-1].slope, leaves[-1].high))
@@ -103,7 +104,6 @@ class Scan:
         t = narrowed(leaves, begin, end, sides) if steady else begin.union(end)
         parity = "one" if steady and product < 0 else {-1: "odd", 0: "unknown", 1: "even"}[product]
         way = leaves[0].bend if steady else right if product < 0 else 0
-        demand(parity != "one" or way == right, "two enclosures contradict each other")
         self.found.append(EnclosedTransit(parity, way, interval(t), *self._values(leaves, t)))
 
     def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:

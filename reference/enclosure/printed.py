@@ -1,45 +1,101 @@
-"""TRUSTED. The files that are printed from a proof, read back exactly and held against its intervals.
+"""TRUSTED. A dataset's files, read back as texts and held against what was proved: inputs, times, tables, page.
 
-So nothing that rounds or prints between a proof and its files has to be believed.
+So nothing that reads a scene, lays out a grid, hands on, rounds or prints has to be believed (THEOREM.md, section 9).
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from json import loads
 from typing import Any
 
+from ..scenes.inputs import Inputs
 from .balls import demand
-from .shapes import EnclosedTransit, Interval
+from .course import FINISHED
+from .shapes import Interval
 
+PLAIN = "length drag latitude altitude gravity rotation_rate equatorial_radius t_end grid_step"
+RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
+SAME = Fraction(1, 1 << 30)  # of a grid step: a time as near as this to t_end is t_end
 GRID = "t,x,y,z,vx,vy,vz"
 TRANSITS = "k,t,direction,x,y,z,vy,ax,bound"
-DECIMAL = frozenset("+-.0123456789")
-Bounds = Mapping[str, str]
+DECIMAL, APART = frozenset("+-.0123456789"), str.maketrans(",:[]()", " " * 6)
 
 
-def check_grid(text: str, times: Iterable[Fraction], states: Iterable[Sequence[Interval]], bounds: Bounds) -> None:
-    """Demand that grid.csv has the exact times, and that each number is the nearest to all of its interval."""
-    check_rows(text, GRID, ([t, *state] for t, state in zip(times, states, strict=True)), bounds)
+def check_dataset(texts: Mapping[str, str], proved: Any) -> None:
+    """Demand that manifest.json, both tables and certified.txt state what was proved, and of just these inputs."""
+    manifest = loads(texts["manifest.json"])
+    bounds, found, end = manifest["bounds"], proved.transits or (), proved.times[-1]
+    same = asked(manifest["scene"], manifest["inputs"]) == (proved.inputs, proved.times)
+    demand(same and proved in FINISHED, "misprint: the proof is of other inputs or times, or was changed")
+    states = ([t, *state] for t, state in zip(proved.times, proved.states, strict=True))
+    kinds = dict.fromkeys(("x", "y", "z"), "position_m") | dict.fromkeys(("vx", "vy", "vz"), "velocity_m_s")
+    least = {name: min(Fraction(x), Fraction(bounds.get(kinds.get(name), x))) for name, x in bounds["grid"].items()}
+    grid = check_rows(texts["grid.csv"], GRID, states, least)
+    ones, others = ([z for z in found if (z.parity == "one") is single] for single in (True, False))
+    zeros = ([k, z.t, z.direction, z.x, z.y, z.z, z.vy, z.ax] for k, z in enumerate(ones, 1))
+    least = {name: Fraction(x) for name, x in bounds["transits"].items()}
+    transits = check_rows(texts.get("transits.csv", TRANSITS), TRANSITS, zeros, least)
+    for z, said in zip(others, manifest["possible"], strict=True):
+        inside = Fraction(said["from_s"]) <= max(z.t.low, Fraction(0)) and min(z.t.high, end) <= Fraction(said["to_s"])
+        demand(inside and said["parity"] == z.parity, "misprint: a possible transit")
+    word = "not asked for" if proved.transits is None else "undecided intervals" if others else "complete"
+    words = ("not asked for", "xdot is identically zero" if proved.still else word)
+    counts = {"grid": len(grid), "transits": len(ones), "possible": len(others)}
+    right = manifest["transits"] in words and bounds["transit_s"] == bounds["transits"].get("t")
+    demand(right and manifest["counts"] == counts, "misprint: how many transits, or their largest bound")
+    check_page(texts["certified.txt"], manifest, grid, transits)
 
 
-def check_transits(text: str, found: Iterable[EnclosedTransit], bounds: Bounds) -> None:
-    """Demand that transits.csv has the single zeros, in order, each number the nearest to all of its interval."""
-    ones = enumerate((z for z in found if z.parity == "one"), 1)
-    rows = ([k, z.t, z.direction, z.x, z.y, z.z, z.vy, z.ax] for k, z in ones)
-    check_rows(text, TRANSITS, rows, bounds)
+def asked(scene: Mapping[str, Mapping[str, str]], reading: str) -> tuple[Inputs, tuple[Fraction, ...]]:
+    """Return the inputs, each as the decimal or as the double nearest to it, and the times from 0 to t_end."""
+    kind = "angles" if "angle" in scene["release"] else "position"
+    # rates that are not given are 0
+    texts = dict.fromkeys(RELEASES[kind][2:], "0") | {k: text for table in scene.values() for k, text in table.items()}
+
+    def exact(name: str) -> Fraction:
+        return Fraction({"decimal": str, "binary64": float}[reading](texts.pop(name)))
+
+    numbers: dict[str, Any] = {"position": None, "angles": None} | {name: exact(name) for name in PLAIN.split()}
+    numbers |= {kind: tuple(map(exact, RELEASES[kind])), "gravity_is": texts.pop("gravity_is")}
+    flat = texts["inverse_flattening"] == "inf"
+    inputs = Inputs(**numbers, flattening=Fraction(0) if flat else 1 / exact("inverse_flattening"))
+    demand(texts.keys() <= {"digits", "level", "transits", "inverse_flattening"}, "misprint: unknown inputs")
+    times = [k * inputs.grid_step for k in range(inputs.t_end // inputs.grid_step + 1)]
+    at_end = 0 < times[-1] > inputs.t_end - SAME * inputs.grid_step
+    return inputs, (*(times[:-1] if at_end else times), inputs.t_end)
 
 
-def check_rows(text: str, header: str, rows: Iterable[list[Any]], bounds: Bounds) -> None:
-    """Demand that a file has these rows; what has no bound must be exact, and t has its row's, if any."""
-    names, (first, *lines) = header.split(","), text.splitlines()
-    demand(first == header, f"misprint: the header {first}")
-    for line, row in zip(lines, rows, strict=True):
-        cells = dict(zip(names, line.split(","), strict=True))
-        of_row = {**bounds, "t": cells.get("bound", "0")}
+def check_rows(text: str, header: str, rows: Iterable[Any], bounds: dict[str, Fraction]) -> list[list[str]]:
+    """Demand that a table has these rows, its bounds no less than their rounding; return its cells."""
+    names, *cells = (line.split(",") for line in text.splitlines())
+    demand(names == header.split(","), f"misprint: the header {names}")
+    for texts, row in zip(cells, rows, strict=True):
+        said = dict(zip(names, texts, strict=True))
+        of_row = bounds | {"t": min(bounds["t"], Fraction(said["bound"]))} if "bound" in said else bounds
         for name, x in zip(names, row, strict=False):
-            check(cells[name], x if isinstance(x, Interval) else Interval(x, x), of_row.get(name, "0"))
+            check(said[name], x, of_row.get(name, Fraction(0)))
+    return cells
 
 
-def check(number: str, x: Interval, bound: str) -> None:
-    """Demand that a decimal is within half a unit of its last digit, and its bound, of all of an interval."""
-    value, most = Fraction(number), min(Fraction(bound), Fraction(1, 2 * 10 ** len(number.partition(".")[2])))
-    demand(set(number) <= DECIMAL and max(value - x.low, x.high - value) <= most, f"misprint: {number}")
+def check(number: str, x: Any, bound: Fraction) -> None:
+    """Demand that a decimal is exact, or nearest to all of an interval and its bound half a unit of the last digit."""
+    whole, _, part = number.partition(".")
+    n, ten, ends = int(whole + part), 10 ** len(part), (x.low, x.high) if isinstance(x, Interval) else (x,)
+    off = max(2 * abs(n * q.denominator - q.numerator * ten) - (len(ends) - 1) * q.denominator for q in ends)
+    covered = 2 * ten * bound.numerator >= (len(ends) - 1) * bound.denominator
+    demand(off <= 0 and covered and set(number) <= DECIMAL, f"misprint: {number}")
+
+
+def check_page(page: str, manifest: Any, grid: Any, transits: Any) -> None:
+    """Demand that the page has the inputs, and then the numbers of the other files, a row's after their names."""
+    names, bounds, scene = GRID.split(","), manifest["bounds"], manifest["scene"].items()
+    inputs = [f"{part}.{name} {text}" for part, table in scene for name, text in table.items()]
+    numbers = [f"{name} {text}" for row in (grid[0], grid[-1]) for name, text in zip(names, row, strict=True)]
+    numbers += ["{position_m} {velocity_m_s}".format(**bounds), *map(" ".join, bounds["grid"].items())]
+    numbers += [f"0 t 0 {len(transits)}", *(f"t {row[1]} {row[2]} {row[-1]}" for row in transits[:1] + transits[-1:])]
+    numbers += [bounds["transit_s"] or "", *("{from_s} {to_s}".format(**said) for said in manifest["possible"])]
+    for begin, end, expected in (("degrees)", "Model", inputs), ("State at", "How to score", numbers)):
+        words = page[page.index(begin) + len(begin) : page.index(end)].translate(APART).split()
+        said = [word for word in words if expected is inputs or word in names or not DECIMAL.isdisjoint(word[-1])]
+        demand(said == " ".join(expected).split(), f"misprint: certified.txt, before {end}")
+    demand(f"as: {manifest['inputs']}\n" in page and f"({manifest['transits']})\n" in page, "misprint: certified.txt")

@@ -11,7 +11,7 @@ from fractions import Fraction
 from itertools import chain, pairwise
 from math import ceil
 from time import process_time
-from typing import Any, cast
+from typing import Any
 
 from flint import arb
 
@@ -21,7 +21,7 @@ from .bound import Piece, SceneBalls
 from .course import Course
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, plan_for, short
-from .shapes import EnclosedTransit, Interval
+from .shapes import Proved, State
 from .sums_checked import check_sums
 
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
@@ -32,39 +32,20 @@ TINY = -1e9  # stands for the logarithm of a width that is 0
 PARTS = ("candidate", "defect", "bound", "transits")  # as datasets name them: the first is the approximant
 
 Approximant = Callable[[int], Iterable[TaylorStep]]
-State = tuple[Interval, Interval, Interval, Interval, Interval, Interval]
-
-
-@dataclass(frozen=True)
-class ProofCost:
-    """CPU seconds by part; `candidate` is the approximant's share, by the name that datasets use."""
-
-    candidate: float
-    defect: float
-    bound: float
-    transits: float
-
-    @property
-    def proof(self) -> float:
-        """All but the approximant."""
-        return self.defect + self.bound + self.transits
 
 
 @dataclass(frozen=True)
 class Enclosure:
-    """A proof's result: the true state at `times` lies in `states`, all zeros of xdot in (0, T] in `transits`."""
+    """A proof's result as trusted code returned it, and how it was reached."""
 
-    times: list[Fraction]
-    states: list[State]  # x, y, z in m, vx, vy, vz in m/s
-    transits: list[EnclosedTransit] | None  # None: not requested, or xdot is identically zero (`still`)
-    still: bool
+    proved: Proved
     bits: int
     order: int
     steps: int
     method: str  # "radius" (Theorem C) or "columns" (Theorem E)
     position_radius: Fraction  # the largest of all, in m
     velocity_radius: Fraction  # in m/s
-    cpu_s: ProofCost
+    cpu_s: dict[str, float]  # by part of the work
 
 
 class _TooWide(Exception):
@@ -183,16 +164,12 @@ class _Run:
                 self._check_widths(course.states[-1:], self.times[known - 1], USELESS, bits)
             if self.progress:
                 self.progress(float((step.centre + step.h * step.high) / self.end) if self.end else 1.0)
-        states, transits = course.finish()
+        proved = course.finish()
         self.clock.lap("transits")
-        position, velocity = self._check_widths(states, self.end, 1, bits)
-        rows = cast("list[State]", [tuple(row) for row in states])
-        cost = ProofCost(**self.clock.parts)
-        return Enclosure(
-            self.times, rows, transits, balls.still, bits, order, count, self.plan.method, position, velocity, cost
-        )
+        position, velocity = self._check_widths(proved.states, self.end, 1, bits)
+        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts)
 
-    def _check_widths(self, states: list[list[Interval]], time: Fraction, factor: int, bits: int) -> list[Fraction]:
+    def _check_widths(self, states: Sequence[State], time: Fraction, factor: int, bits: int) -> list[Fraction]:
         """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""
         widths = [[(i.high - i.low) / 2 for i in row] for row in states]
         position, velocity = (max(max(row[part]) for row in widths) for part in (slice(3), slice(3, 6)))

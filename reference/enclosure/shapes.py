@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 
 from flint import arb
 
+from ..scenes.inputs import Inputs
+
 
 @dataclass(frozen=True, slots=True)
 class Interval:
@@ -15,6 +17,9 @@ class Interval:
 
     low: Fraction
     high: Fraction
+
+
+State = tuple[Interval, ...]  # x, y, z in m, vx, vy, vz in m/s
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +39,17 @@ class EnclosedTransit:
     def kind(self) -> str:
         """Kind of transit: "one" where it is proved to be a single zero, else "possible"."""
         return "one" if self.parity == "one" else "possible"
+
+
+@dataclass(frozen=True, eq=False)
+class Proved:
+    """What a proof returns: of these inputs, the true state at each of `times` and every transit up to the last."""
+
+    inputs: Inputs
+    times: tuple[Fraction, ...]
+    states: tuple[State, ...]
+    transits: tuple[EnclosedTransit, ...] | None  # None: not requested, or `still`
+    still: bool  # xdot is identically zero
 
 
 class Sizes(NamedTuple):

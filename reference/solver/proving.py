@@ -101,14 +101,14 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
 
 def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approximant: Run, pilot: Pilot) -> Solution:
     bits = enclosed.bits + TABLE_BITS
-    grid = Table.of_intervals(GRID, enclosed.states, bits)
+    grid = Table.of_intervals(GRID, enclosed.proved.states, bits)
     gaps = checked_states(grid, times, approximant).largest()
     check = replace(CrossCheck.of(approximant, gaps, None), cpu_s=0.0)  # no further run, so no further cost
-    zeros = enclosed.transits or ()
+    zeros = enclosed.proved.transits or ()
     decided, undecided = [z for z in zeros if z.kind == "one"], [z for z in zeros if z.kind != "one"]
     directions = [z.direction for z in decided]
     transits = None
-    if enclosed.transits is not None:
+    if enclosed.proved.transits is not None:
         transits = Table.of_intervals(TRANSITS, [[getattr(z, name) for name in TRANSITS] for z in decided], bits)
     size, gap = (max(of[name] for name in POSITION) for of in (grid.largest(), gaps))
     proof = Proof(
@@ -120,8 +120,8 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
         velocity_radius=enclosed.velocity_radius,
         transit_radius=None if transits is None else max(transits.bound("t"), default=None),
         agreement_bits=-bits_in(gap / size) if gap else approximant.plan.number.prec,
-        cpu_s={part: float(seconds) for part, seconds in vars(enclosed.cpu_s).items()},
-        enclosed=enclosed,
+        cpu_s=enclosed.cpu_s,
+        proved=enclosed.proved,
     )
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)

@@ -68,7 +68,7 @@ class Source:
 class Proof:
     """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
 
-    `enclosed` is what was proved, which printed decimals are compared with; `audited`: FLINT alone proves it too;
+    `proved` is what trusted code returned, and compares with what is printed; `audited`: FLINT alone proves it too;
     `confirmed`: heyoka's run in another formulation agrees to every printed digit.
     """
 
@@ -81,7 +81,7 @@ class Proof:
     transit_radius: Fraction | None
     agreement_bits: int
     cpu_s: dict[str, float]
-    enclosed: Any = field(default=None, repr=False)
+    proved: Any = field(default=None, repr=False)
     audited: bool = False
     confirmed: bool = False
 

@@ -377,7 +377,7 @@ def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
 def test_no_proof_goes_to_the_golden_folder_unaudited(monkeypatch, tmp_path):
     monkeypatch.setattr(writer, "ships", lambda folder: folder.parent == tmp_path)
     monkeypatch.setattr(writer, "render", lambda *_: {})
-    monkeypatch.setattr(writer, "write_texts", lambda _, folder: folder.mkdir())
+    monkeypatch.setattr(writer, "write_texts", lambda _, folder, __: folder.mkdir())
     for proof in (None, SimpleNamespace(audited=True)):
         assert write(SimpleNamespace(proof=proof), tmp_path / f"{proof is None}").exists()
     with pytest.raises(InputError, match="audit"):

@@ -40,9 +40,9 @@ def test_forty_digits_hold_the_truth(inputs, end, size):
     end = min(end, size(30, 100))
     times = [Fraction(0), Fraction(1, 3), Fraction(end, 2), Fraction(end)]
     proof = prove(inputs, times, WANTED)
-    assert proof.times == times
+    assert proof.proved.times == tuple(times)
     assert max(proof.position_radius, proof.velocity_radius) <= WANTED
-    for row, exact in zip(proof.states[1:], truth(inputs, times[1:]), strict=True):
+    for row, exact in zip(proof.proved.states[1:], truth(inputs, times[1:]), strict=True):
         assert all(contains(i, x) for i, x in zip(row, exact, strict=True))
 
 
@@ -51,10 +51,10 @@ def test_the_hard_scenes_lie_inside(name, size):
     inputs, end = HARD[name], Fraction(size(12, 60))
     proof = enclose(inputs, [end], radius=WANTED, approximant=recurrence(inputs))
     assert proof.method == {12: "radius", 60: "columns"}[end]
-    assert len(proof.transits) == {"steep": {12: 26, 60: 134}, "near inverted": {12: 10, 60: 53}}[name][end]
-    assert {t.kind for t in proof.transits} == {"one"}
+    assert len(proof.proved.transits) == {"steep": {12: 26, 60: 134}, "near inverted": {12: 10, 60: 53}}[name][end]
+    assert {t.kind for t in proof.proved.transits} == {"one"}
     exact = steep_truth(inputs, end, 400)
-    assert all(contains(i, x) for i, x in zip(proof.states[0], exact, strict=True))
+    assert all(contains(i, x) for i, x in zip(proof.proved.states[0], exact, strict=True))
 
 
 def test_precision_rises_until_the_width_is_reached(monkeypatch):
@@ -107,7 +107,7 @@ def test_coefficients_of_an_integrator_are_an_approximant():
             break
     proof = enclose(PARIS, [Fraction(60)], radius=WANTED, approximant=lambda _bits: pair(turned(PARIS, rows)))
     (exact,) = truth(PARIS, [Fraction(60)])
-    assert all(contains(i, x) for i, x in zip(proof.states[0], exact, strict=True))
+    assert all(contains(i, x) for i, x in zip(proof.proved.states[0], exact, strict=True))
 
 
 def test_uneven_chains_are_covered_without_gap():
@@ -126,8 +126,8 @@ def test_uneven_chains_are_covered_without_gap():
 
 def test_time_zero_alone_gives_the_release():
     proof = enclose(PARIS, [Fraction(0)], radius=WANTED, approximant=recurrence(PARIS))
-    assert proof.transits == []
-    assert contains(proof.states[0][0], Fraction("0.3"))
+    assert proof.proved.transits == ()
+    assert contains(proof.proved.states[0][0], Fraction("0.3"))
     assert proof.position_radius < WANTED
 
 

@@ -52,9 +52,9 @@ def test_transits_are_those_of_an_event_finder(name):
     end = {"steep": Fraction(10), "near inverted": Fraction(4)}.get(name, Fraction(100))
     proof = prove(inputs, [end], Fraction(1, 10**20))
     expected = events(inputs, end)
-    assert [t.kind for t in proof.transits] == ["one"] * len(expected)
-    assert np.allclose([float(middle(t.t)) for t in proof.transits], expected, rtol=0, atol=1e-6)
-    for before, after in pairwise(proof.transits):
+    assert [t.kind for t in proof.proved.transits] == ["one"] * len(expected)
+    assert np.allclose([float(middle(t.t)) for t in proof.proved.transits], expected, rtol=0, atol=1e-6)
+    for before, after in pairwise(proof.proved.transits):
         assert before.direction == -after.direction
         assert before.t.high < after.t.low
 
@@ -89,7 +89,7 @@ def test_a_release_perpendicular_to_the_earths_axis_takes_few_leaves(monkeypatch
 
     monkeypatch.setattr(Scan, "_sort", counted)
     inputs = scene(latitude="30", length="1", angles=("30", "90", "0", "0"))
-    found = prove(inputs, [Fraction(5)], Fraction(1, 10**40)).transits
+    found = prove(inputs, [Fraction(5)], Fraction(1, 10**40)).proved.transits
     assert [t.kind for t in found] == ["possible", "one", "one", "one", "one"]
 
 
@@ -101,8 +101,8 @@ def test_a_release_perpendicular_to_the_earths_axis_takes_few_leaves(monkeypatch
 ])  # fmt: skip
 def test_no_transits_where_xdot_is_zero_for_ever(inputs):
     proof = prove(inputs, [Fraction(20)], Fraction(1, 10**15))
-    assert proof.still
-    assert proof.transits is None
+    assert proof.proved.still
+    assert proof.proved.transits is None
 
 
 def released_in_the_meridian(rng):
@@ -231,10 +231,10 @@ def test_a_parabola_that_stays_clear_has_no_zero():
 
 
 def test_an_end_on_a_transit_is_undecided_and_a_little_later_is_not():
-    (hit, *_) = prove(PARIS, [Fraction(12)], Fraction(1, 10**30)).transits
+    (hit, *_) = prove(PARIS, [Fraction(12)], Fraction(1, 10**30)).proved.transits
     at = middle(hit.t)
-    (last,) = prove(PARIS, [at], Fraction(1, 10**20)).transits
+    (last,) = prove(PARIS, [at], Fraction(1, 10**20)).proved.transits
     assert (last.kind, last.parity) == ("possible", "unknown")
-    (later,) = prove(PARIS, [at + Fraction(1, 10**6)], Fraction(1, 10**20)).transits
+    (later,) = prove(PARIS, [at + Fraction(1, 10**6)], Fraction(1, 10**20)).proved.transits
     assert later.kind == "one"
-    assert prove(PARIS, [at - Fraction(1, 10**6)], Fraction(1, 10**20)).transits == []
+    assert prove(PARIS, [at - Fraction(1, 10**6)], Fraction(1, 10**20)).proved.transits == ()

@@ -1,18 +1,23 @@
-"""What is printed from a proof is read back and held against its intervals: a wrong digit anywhere is found."""
+"""What is written from a proof is read back and held against it: a wrong digit, input or word anywhere is found."""
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
+from fractions import Fraction
 
 import pytest
+from random_scenes import random_scene
 
 pytest.importorskip("flint")
 
 import reference
 from reference.dataset.render import render
-from reference.enclosure.printed import check_grid, check_transits
-from reference.errors import FoucaultError
-from reference.numbers.columns import GRID
+from reference.dataset.sheets import scene_inputs
+from reference.enclosure.printed import asked, check_dataset
+from reference.errors import DatasetError, FoucaultError
+from reference.scenes.scene import parse_scene
+from reference.scenes.shipped import scene_ids
 
 
 @pytest.fixture(scope="module")
@@ -21,32 +26,35 @@ def solution():
 
 
 @pytest.fixture(scope="module")
-def printed(solution):
-    texts, proved = render(solution), solution.proof.enclosed
-    bounds = dict.fromkeys((*GRID, "ax"), "1")
-    return {
-        "grid.csv": lambda text: check_grid(text, proved.times, proved.states, bounds),
-        "transits.csv": lambda text: check_transits(text, proved.transits, bounds),
-    }, texts
+def texts(solution):
+    return render(solution)
 
 
-@pytest.mark.parametrize("name", ["grid.csv", "transits.csv"])
-def test_every_digit_that_is_changed_is_found(name, printed):
-    checks, texts = printed
-    checks[name](texts[name])
-    header, *lines = texts[name].splitlines()
+REFUSED = (ArithmeticError, ValueError, LookupError)
+
+
+def refuse(solution, texts, **spoilt):
+    """Demand that these texts are refused."""
+    names = {"grid": "grid.csv", "transits": "transits.csv", "page": "certified.txt", "manifest": "manifest.json"}
+    with pytest.raises(REFUSED):
+        check_dataset({**texts, **{names[name]: text for name, text in spoilt.items()}}, solution.proof.proved)
+
+
+@pytest.mark.parametrize("name", ["grid", "transits"])
+def test_every_digit_that_is_changed_is_found(name, solution, texts):
+    check_dataset(texts, solution.proof.proved)
+    header, *lines = texts[f"{name}.csv"].splitlines()
     found = 0
     for i in (0, len(lines) // 2, -1):
         cells = lines[i].split(",")
-        for k in range(len(cells) - (name == "transits.csv")):  # the bound may be larger
+        for k in range(len(cells) - (name == "transits")):  # the bound may be larger
             for place in (0, len(cells[k]) // 2, -1):
                 old = cells[k][place]
                 if old.isdigit():
                     new = cells[k][:place] + str((int(old) + 1) % 10) + cells[k][place:][1:]
                     spoilt = [*lines]
                     spoilt[i] = ",".join([*cells[:k], new, *cells[k + 1 :]])
-                    with pytest.raises(ArithmeticError, match="misprint"):
-                        checks[name]("\n".join([header, *spoilt]))
+                    refuse(solution, texts, **{name: "\n".join([header, *spoilt])})
                     found += 1
     assert found > 40
 
@@ -67,27 +75,82 @@ def swapped(lines):
         lambda lines: [line.replace(",-0.", ",-0_0.") for line in lines],
     ],
 )
-def test_rows_columns_directions_bounds_and_spellings_that_are_wrong_are_found(spoil, printed):
-    checks, texts = printed
-    with pytest.raises((ArithmeticError, ValueError)):
-        checks["transits.csv"]("\n".join(spoil(texts["transits.csv"].splitlines())))
+def test_rows_columns_directions_bounds_and_spellings_that_are_wrong_are_found(spoil, solution, texts):
+    refuse(solution, texts, transits="\n".join(spoil(texts["transits.csv"].splitlines())))
 
 
-def test_a_column_whose_bound_is_too_small_is_found(solution, printed):
-    proved = solution.proof.enclosed
-    with pytest.raises(ArithmeticError, match="misprint"):
-        check_grid(
-            printed[1]["grid.csv"],
-            proved.times,
-            proved.states,
-            dict.fromkeys(GRID, "1e-30"),
-        )
+def spoilt_manifest(text, *path, value):
+    """The manifest with one thing changed."""
+    document = part = json.loads(text)
+    for key in path[:-1]:
+        part = part[key]
+    part[path[-1]] = value
+    return json.dumps(document)
 
 
-def test_a_table_that_is_not_the_proof_is_not_printed(solution):
-    values = [tuple(v + (1 << solution.grid.bits) // 10**15 for v in row) for row in solution.grid.values]
-    with pytest.raises(ArithmeticError, match="misprint"):
-        render(replace(solution, grid=replace(solution.grid, values=values)))
+WRONG = [
+    *((("bounds", "grid", name), "1e-30") for name in ("x", "vz")),
+    *((("bounds", "transits", name), "1e-30") for name in ("t", "ax")),
+    *((("bounds", name), "1e-30") for name in ("position_m", "velocity_m_s", "transit_s")),
+    *((("counts", name), 77) for name in ("grid", "transits", "possible")),
+    *((("transits",), word) for word in ("undecided intervals", "xdot is identically zero")),
+    (("possible",), [{"from_s": "1", "to_s": "2", "parity": "odd"}]),
+    (("inputs",), "binary64"),
+    (("scene", "pendulum", "length"), "67.000000000000000001"),
+    (("scene", "pendulum", "drag"), "1e-18"),
+    (("scene", "site", "latitude"), "48.8461110000000000001"),
+    (("scene", "site", "gravity_is"), "effective"),
+    (("scene", "site", "inverse_flattening"), "inf"),
+    (("scene", "site", "wind"), "3"),
+    (("scene", "release", "vx"), "1e-18"),
+    (("scene", "release", "y"), "0.3"),
+    (("scene", "run", "grid_step"), "30"),
+    (("scene", "run", "t_end"), "61"),
+]
+
+
+@pytest.mark.parametrize(("path", "value"), WRONG, ids=lambda x: ".".join(x) if isinstance(x, tuple) else "")
+def test_a_manifest_of_other_inputs_bounds_counts_or_words_is_found(path, value, solution, texts):
+    refuse(solution, texts, manifest=spoilt_manifest(texts["manifest.json"], *path, value=value))
+
+
+def test_every_number_of_the_page_that_is_changed_is_found(solution, texts):
+    page, found = texts["certified.txt"], 0
+    begin, end = page.index("Inputs (SI"), page.index("How to score")
+    for k in [k for k in range(begin, end) if page[k].isdigit() and not page[k + 1].isdigit()]:
+        new = page[:k] + str((int(page[k]) + 1) % 10) + page[k + 1 :]
+        refuse(solution, texts, page=new)
+        found += 1
+    assert found > 50
+    refuse(solution, texts, page=page.replace("(complete)", "(undecided intervals)"))
+    refuse(solution, texts, page=page.replace("  x  ", "  y  "))
+
+
+def test_what_is_not_the_very_result_of_a_proof_is_not_written(solution, texts, tmp_path):
+    """F5 of the audit: transits shifted between the proof and the tables were written."""
+    proved, by = solution.proof.proved, Fraction(1, 10**18)
+    moved = [replace(z, t=replace(z.t, low=z.t.low + by, high=z.t.high + by)) for z in proved.transits]
+    for forged in (replace(proved), replace(proved, transits=tuple(moved)), None):
+        with pytest.raises(DatasetError, match="not what was proved"):
+            reference.write(replace(solution, proof=replace(solution.proof, proved=forged)), tmp_path / "forged")
+    assert [*tmp_path.iterdir()] == []
+
+
+def test_a_table_that_is_not_the_proof_is_not_written(solution, tmp_path, monkeypatch):
+    monkeypatch.setattr("reference.dataset.write.problems_of", lambda _: [])  # which find it, too
+    values = [*solution.grid.values]
+    values[-1] = tuple(v + (1 << solution.grid.bits) // 10**17 for v in values[-1])
+    with pytest.raises(FoucaultError, match="not what was proved; misprint"):
+        reference.write(replace(solution, grid=replace(solution.grid, values=values)), tmp_path / "wrong")
+    assert [*tmp_path.iterdir()] == []
+
+
+@pytest.mark.parametrize("reading", ["decimal", "binary64"])
+def test_trusted_code_reads_the_same_inputs_and_times_as_the_solver(reading):
+    scenes = [reference.load_scene(name, [f"inputs={reading}"]) for name in scene_ids()]
+    scenes += [parse_scene({**random_scene(seed), "inputs": reading}) for seed in range(100)]
+    for scene in scenes:
+        assert asked(scene_inputs(scene), reading) == (scene.exact, tuple(scene.exact.grid))
 
 
 def test_a_proof_ships_only_when_it_was_audited(solution, tmp_path, monkeypatch):

@@ -1,6 +1,7 @@
 """Errors of every size, sabotaged approximants, fast rotation, random scenes: the ball must contain the truth."""
 
 from collections import Counter
+from contextlib import suppress
 from dataclasses import replace
 from fractions import Fraction
 from random import Random
@@ -17,12 +18,14 @@ from scipy.integrate import solve_ivp
 from reference.enclosure.approximant import pair
 from reference.enclosure.balls import add, ball, cross
 from reference.enclosure.bound import Piece, Radius, SceneBalls
+from reference.enclosure.course import Course
 from reference.enclosure.frames import ColumnSource
 from reference.enclosure.six_columns import Columns
 from reference.engines.plan import Plan
 from reference.engines.registry import run
 from reference.numbers.columns import TRANSITS
 from reference.numbers.precision import real
+from reference.numbers.taylor_step import Digits
 
 FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
 ROUNDING = 1 + 1e-7  # of the double-precision truth
@@ -209,20 +212,116 @@ def test_transits_of_sabotaged_approximants_are_all_true_or_refused(digits, size
     tally(f"transits of approximants by {way}: {tried} sabotaged, {refused} refused; {said}")
 
 
+def other_list(rng, inputs, proposed):
+    """Steps left out, doubled, exchanged, at other times, of other sizes or of another scene."""
+    i, by = rng.randrange(len(proposed)), Fraction(10) ** -rng.randint(2, 30) * rng.choice((-1, 1))
+    step, (before, after) = proposed[i], (proposed[:i], proposed[i + 1 :])
+    rows = [*step.coefficients]
+    one = {
+        "nothing": step,
+        "low": step._replace(low=step.low + by),
+        "high": step._replace(high=step.high + by),
+        "centre": step._replace(centre=step.centre + by),
+        "h": step._replace(h=step.h * (1 + by)),
+        "bits": step._replace(bits=step.bits + rng.choice((-1, 1))),
+        "axes": step._replace(rows=[rows[k] for k in rng.sample(range(4), 4)]),
+        "order": step._replace(rows=[row[: rng.randint(1, len(row))] for row in rows]),
+        "sign": step._replace(rows=[[-c for c in row] for row in rows]),
+    }
+    every = {
+        "left out": [*before, *after],
+        "twice": [*before, step, step, *after],
+        "backwards": proposed[::-1],
+        "ends early": before or after,
+        "another scene": [*before, *list(steps(start_moved(inputs, by), proposed[-1].centre + 1))[i:]],
+        "late": [s._replace(centre=s.centre + by) for s in proposed],
+    }
+    kind = rng.choice([*one, *every])
+    return every[kind] if kind in every else [*before, one[kind], *after]
+
+
+def other_digits(rng, proposed):
+    """One step's digits flipped, exchanged, lost, too large, of another type, or others at a later reading."""
+    proposed = [in_digits(step) for step in proposed]
+    i = rng.randrange(len(proposed))
+    table = proposed[i].rows.table
+    spoilt, place = table.copy(), tuple(rng.randrange(n) for n in table.shape)
+    spoilt[place] ^= 1 << rng.randrange(22)
+
+    class Changing(Digits):
+        readings = rng.randint(1, 4)
+
+        @property
+        def table(self):
+            self.readings -= 1
+            return spoilt if self.readings >= 0 else table
+
+        @table.setter
+        def table(self, _):
+            """Forget it."""
+
+    others = [table[rng.sample(range(4), 4)], table[:, 1:], table[:, ::-1], table[..., ::-1], table.astype(float)]
+    others += [spoilt, spoilt, table.astype(np.int64) << rng.randrange(20)]
+    rows = rng.choice([Changing(spoilt), *map(Digits, others)])
+    return [*proposed[:i], proposed[i]._replace(rows=rows), *proposed[i + 1 :]]
+
+
+def driven(rng, inputs, proposed, columns):
+    """What a run gives whose driver goes on after exceptions, and has some of its own."""
+    balls = SceneBalls(inputs, proposed[0].bits + 64)
+    course = Course(balls, [Fraction(0), SABOTAGED_END[inputs]], columns, transits=True)
+    source, faulty = ColumnSource(balls) if columns else None, rng.choice((0, 0, 0, 0, 0.1))
+
+    def lap(_):
+        if rng.random() < faulty:
+            raise RuntimeError
+
+    for step in proposed:
+        with suppress(ArithmeticError, RuntimeError, ValueError, TypeError, IndexError):
+            course.advance(step, (source.propose(step, [0.0] * 6),) if source else (), lap)
+    return course.finish()
+
+
+SABOTAGED_END = {inputs: end for inputs, end, _ in SABOTAGED.values()}
+
+
+@BY
+def test_whole_runs_of_sabotaged_steps_and_drivers_claim_nothing_false(digits, size, tally):
+    rng, refused, tried = Random(41 + digits), 0, size(12, 300)
+    ends = {name: truth(inputs, [end], 300)[0] for name, (inputs, end, _) in SABOTAGED.items()}
+    zeros = {name: true_transits(inputs, end) for name, (inputs, end, _) in SABOTAGED.items()}
+    for _ in range(tried):
+        name = rng.choice(list(SABOTAGED))
+        inputs, end, columns = SABOTAGED[name]
+        proposed = list(sabotage(rng, inputs, end) if rng.random() < 0.6 else steps(inputs, end))
+        if digits or rng.random() < 0.5:
+            proposed = other_digits(rng, proposed) if digits else other_list(rng, inputs, proposed)
+        try:
+            proved = driven(rng, inputs, proposed, columns)
+        except (ArithmeticError, IndexError):
+            refused += 1
+            continue
+        assert all(contains(i, x) for i, x in zip(proved.states[-1], ends[name], strict=True)), name
+        assert not false_claims(proved.transits, *zeros[name]), name
+    assert 0 < refused < tried
+    way = "digits" if digits else "lists of steps"
+    tally(f"whole runs of sabotaged {way}: {tried}, {refused} refused, 0 false claims")
+
+
 def test_false_claims_are_seen():
     inputs, end, _ = SABOTAGED["paris"]
     true = true_transits(inputs, end)
     proof = prove(inputs, [end], Fraction(1, 10**20))
-    first, *others = proof.transits
+    first, *others = proof.proved.transits
     shifted = replace(first, t=replace(first.t, low=first.t.high, high=first.t.high + 1))
-    assert not false_claims(proof.transits, *true)
+    assert not false_claims(proof.proved.transits, *true)
     for wrong in (
         others,
         [shifted, *others],
         [replace(first, direction=-first.direction), *others],
         [replace(first, parity="even"), *others],
         [replace(first, vy=replace(first.vy, low=first.vy.high)), *others],
-        [*proof.transits, shifted],
+        [*proof.proved.transits, shifted],
     ):
         assert false_claims(wrong, *true)
 
@@ -253,7 +352,7 @@ def test_random_scenes_lie_inside(length, angle, azimuth, rate, turn, rotation, 
     )  # fmt: skip
     times = [Fraction(0), Fraction(1), Fraction(10, 3)]
     proof = prove(inputs, times, Fraction(1, 10**20))
-    for row, exact in zip(proof.states, truth(inputs, times, 300), strict=True):
+    for row, exact in zip(proof.proved.states, truth(inputs, times, 300), strict=True):
         for i, x in zip(row, exact, strict=True):
             assert contains(widened(i), x)
 
