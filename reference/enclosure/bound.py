@@ -101,17 +101,17 @@ class Piece:
     @cached_property
     def sizes(self) -> Sizes:
         """The defects and norms, from integers but for the radii of the constants (section 6)."""
-        k, bits = self.k, self.step.bits
+        k = self.k
         with ctx.workprec(SHORT):
-            *d, t, t1 = self.defects()
-            v1, size_p, n = size([total(f, bits) for f in self.v]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
+            *d, t, x, m, w, t1 = self.defects()
+            v1, size_p, n = size([x, m, w]), upper((1 + t).sqrt()), max(2, *map(len, self.p)) - 1
             defect = size_p * (size(d) + k.off * (2 * v1 + size_p)) + k.drag_size * k.omega_size * t
             speed, rate = v1 + k.omega_size * size_p, (n - 1 + k.omega_size) * v1
             first, second = t * speed + t1 * size_p / 2, t1 * speed + t * rate + (2 * n - 1) * t1 * size_p / 2
             return Sizes(*map(upper, (first, defect, size_p, size_p * speed, t, second)))
 
     def defects(self) -> list[arb]:
-        """Return the norms of d (three components), τ, τ': by sums of digits, or by FLINT's polynomials."""
+        """Return the norms of d (three components), τ, p' (three), τ': by sums of digits, or by FLINT's polynomials."""
         if isinstance(self.rows, Digits) and not self.balls.flint_only:
             from .digits import norms
 
@@ -119,14 +119,14 @@ class Piece:
         return [total(f, 2 * self.step.bits) for f in self.measured()]
 
     def measured(self) -> list[fmpz_poly]:
-        """Return d (three components), τ, τ' over 2^(2 bits)."""
+        """Return d (three components), τ, p' (three components), τ' over 2^(2 bits)."""
         k, p, v, unit = self.k, self.p, self.v, self.unit
         (tension,) = polynomials(self.rows, slice(3, 4))
         (turn, _, drag, cm, cw), a, lift = k.whole, [f.derivative() for f in v], tension - k.whole[1]
         d = [unit * x + f * y for x, f, y in zip(a, (lift, lift, tension), p, strict=True)]
         d = add(d, [-2 * turn * v[1], 2 * turn * v[0] - unit * cm, fmpz_poly([-unit * cw])])
         tau = dot(p, p) - unit * unit
-        return [*add(d, times(drag, v)), tau, tau.derivative()]
+        return [*add(d, times(drag, v)), tau, *times(unit, v), tau.derivative()]
 
 
 def polynomials(rows: Any, part: slice) -> list[fmpz_poly]:

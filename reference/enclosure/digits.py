@@ -2,7 +2,7 @@
 
 Nothing here is a float, and no sum can overflow: `check` refuses what could (THEOREM.md, section 6). A digit of row q
 stands for 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
-`multiply` is compiled: numba, LLVM and the machine code that is kept on disk are believed, but where FLINT audits.
+`multiply` and `carry` are compiled: numba, LLVM and the machine code kept on disk are believed, but where FLINT audits.
 """
 
 from functools import lru_cache
@@ -15,8 +15,8 @@ from ..numbers.taylor_step import DIGIT_BITS
 from ..system.machine_code import kept
 from .balls import demand
 
-MASK = (1 << DIGIT_BITS) - 1
-BLOCK, TOP_ROWS = 8, 3  # orders of a factor that are taken at once; rows in which a sum below 2^62 is carried on
+# orders of a factor that are taken at once; rows in which a sum below 2^62 is carried on
+MASK, BLOCK, TOP_ROWS = (1 << DIGIT_BITS) - 1, 8, 3
 
 
 def check(rows: Any, constants: Any) -> int:
@@ -38,12 +38,22 @@ def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:
             row = row[:-1]
         for q in range(min(r + 1 if alike else f.shape[0], len(to) - r)):
             for k in range(0, f.shape[1] - 2 * BLOCK, BLOCK):
-                factors, out = f[q, BLOCK + k : 2 * BLOCK + k], to[q + r, i, k : k + len(row) - BLOCK]
-                for j in range(len(out) if factors.any() else 0):
-                    total = 0
-                    for n in range(BLOCK):
-                        total += factors[n] * row[BLOCK + j - n]
-                    out[j] += (2 if alike and q < r else 1) * total
+                s, out = f[q, BLOCK + k : 2 * BLOCK + k], to[q + r, i, k : k + len(row) - BLOCK]
+                a, b, c, d, e, u, v, w = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7]  # held in registers
+                for j in range(len(out) if a | b | c | d | e | u | v | w else 0):
+                    x = a * row[j + 8] + b * row[j + 7] + c * row[j + 6] + d * row[j + 5]
+                    x += e * row[j + 4] + u * row[j + 3] + v * row[j + 2] + w * row[j + 1]
+                    out[j] += (2 if alike and q < r else 1) * x
+
+
+@kept()
+def carry(digits: Any) -> None:
+    """Make digits from 0 to 2^22 - 1 of sums; the highest, -1 for a negative coefficient, else 0, turns all signs."""
+    for t in range(len(digits) - 1, 0, -1):
+        for n in range(digits.shape[1]):
+            digits[t - 1, n] += digits[t, n] >> DIGIT_BITS
+            digits[t, n] &= MASK
+    digits *= 1 + 2 * digits[0]
 
 
 def padded(table: Any) -> Any:
@@ -60,7 +70,7 @@ def split(n: fmpz, count: int) -> list[int]:
 
 
 def norms(rows: Any, whole: list[fmpz], more: int = 1) -> list[arb]:
-    """Return sums of |c| of d (three components) and of τ, and that of n |c| of τ.
+    """Return sums of |c| of d (three components), of τ, of p' (three components) and of τ' (n |c|).
 
     Args:
         rows: digits of x, m, w, λ, shape (4, L, orders).
@@ -72,21 +82,18 @@ def norms(rows: Any, whole: list[fmpz], more: int = 1) -> list[arb]:
     most, p, bend = check(rows, constants), padded(rows[:3]), order[1:-1] * order[2:] * rows[:3, :, 2:] << half
     (turn, _, drag), v = padded(constants[:3, :, None]), padded(order[1:] * rows[:3, :, 1:])
     tension, lift = padded(rows[3]), padded(rows[3] - constants[1, :, None] * (order == 0))
-    digits = np.zeros((TOP_ROWS + count + more, 4, 2 * (orders + BLOCK)), np.int64)
+    digits = np.zeros((TOP_ROWS + count + more, 7, 2 * (orders + BLOCK)), np.int64)
     to = digits[TOP_ROWS:]
     to[:count, :3, : bend.shape[2]] = bend.swapaxes(0, 1)
+    to[:count, 4:, : orders - 1] = (order[1:] * rows[:3, :, 1:] << half).swapaxes(0, 1)
     to[:count, 1:3, 0] -= constants[3:].T << half
     to[0, 3, 0] -= 1 << 2 * half
     products = [(0, lift, p[0]), (1, lift, p[1]), (2, tension, p[2]), (0, -2 * turn, v[1]), (1, 2 * turn, v[0])]
     for i, f, g in (*products, *(x for n in range(3) for x in ((n, drag, v[n]), (3, p[n], p[n])))):
         multiply(to, i, f, g, f is g)
-    # carried, digits are from 0 to 2^22 - 1, but for the highest: -1 for a negative coefficient, else 0
-    for t in range(len(digits) - 1, 0, -1):
-        digits[t - 1] += digits[t] >> DIGIT_BITS
-        digits[t] &= MASK
-    digits *= 1 + 2 * digits[0]
+    carry(digits.reshape(len(digits), -1))
     # what is left out of at most 2 O coefficients, in units of the last row
     cut = 0 if more >= count - 1 else (4 * orders * most >> DIGIT_BITS) + 1
-    n, last = np.arange(digits.shape[2]), fmpz(2 - DIGIT_BITS * (count + 1 + more))
-    own = [(x, 1) for x in (*digits[:, :3].sum(2).T, digits[:, 3].sum(1))] + [(digits[:, 3] @ n, 2 * orders)]
+    last = fmpz(2 - DIGIT_BITS * (count + 1 + more))
+    own = [(x, 1) for x in digits.sum(2).T] + [(digits[:, 3] @ np.arange(digits.shape[2]), 2 * orders)]
     return [arb((fmpz_poly(x[::-1].tolist())(1 << DIGIT_BITS) + cut * k, last)) for x, k in own]

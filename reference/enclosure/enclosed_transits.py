@@ -95,8 +95,7 @@ class Scan:
     def _close(self, right: int) -> None:
         leaves, sides, self.cluster, self.left = self.cluster, (self.left, right), [], right
         steady, product = {leaf.bend for leaf in leaves} in ({1}, {-1}), sides[0] * right
-        fits = product >= 0 or (leaves[0].bend == right if steady else bool(leaves))
-        demand(fits, "two enclosures contradict each other")
+        demand(product >= 0 or (leaves[0].bend == right if steady else bool(leaves)), "two enclosures contradict")
         if not leaves or (steady and product > 0):
             return
         ends = ((leaves[0].slope, leaves[0].low), (leaves[-1].slope, leaves[-1].high))

@@ -150,7 +150,7 @@ def test_trusted_code_reads_the_same_inputs_and_times_as_the_solver(reading):
     scenes = [reference.load_scene(name, [f"inputs={reading}"]) for name in scene_ids()]
     scenes += [parse_scene({**random_scene(seed), "inputs": reading}) for seed in range(100)]
     for scene in scenes:
-        assert asked(scene_inputs(scene), reading) == (scene.exact, tuple(scene.exact.grid))
+        assert asked({"scene": scene_inputs(scene), "inputs": reading}) == (scene.exact, tuple(scene.exact.grid))
 
 
 def test_a_proof_ships_only_when_it_was_audited(solution, tmp_path, monkeypatch):

@@ -277,7 +277,7 @@ def driven(rng, inputs, proposed, columns):
             raise RuntimeError
 
     for step in proposed:
-        with suppress(ArithmeticError, RuntimeError, ValueError, TypeError, IndexError):
+        with suppress(ArithmeticError, RuntimeError, RuntimeWarning, ValueError, TypeError, IndexError):
             course.advance(step, (source.propose(step, [0.0] * 6),) if source else (), lap)
     return course.finish()
 
