@@ -313,7 +313,7 @@ def test_an_audit_that_proves_other_digits_is_refused(transits):
     digits = proved_digits(solution)
     assert audited(solution, digits).proof.audited
     others = [replace(solution, directions=[*solution.directions, 1])]
-    for name in ("grid", "transits") if transits else ("grid",):
+    for name in ("grid", "zeros") if transits else ("grid",):
         table = getattr(solution, name)
         *rows, last = table.values
         spoilt = replace(table, values=[*rows, (*last[:-1], last[-1] + (1 << table.bits))])
