@@ -1,0 +1,236 @@
+"""docs/checker: compiled where cc and FLINT's headers are, it proves shipped datasets, and finds every forgery."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import shutil
+import subprocess
+from decimal import Decimal, localcontext
+
+import pytest
+from forgery import forge, seal
+from places import ROOT
+
+from reference.dataset.golden import read_files
+from reference.dataset.manifest import MANIFEST
+
+SOURCE = ROOT / "docs/checker/check.c"
+GOLDEN = ROOT / "data/golden"
+LIBRARIES = (["-lflint-arb", "-lflint"], ["-lflint"])  # FLINT 2.9 and Arb; FLINT 3
+QUICK = ("conical", "damped", "inverted_rest", "nanometre", "over_top", "separatrix", "weightless")
+FORGED = ("barely_over", "damped", "nanometre_paris", "vertical_picometre", "weightless")
+GENERIC = ("barely_over", "damped", "nanometre_paris")  # their motion depends on every input
+MOST_LINES = 1330
+
+
+@pytest.fixture(scope="session")
+def check(tmp_path_factory):
+    """Run the checker on a folder."""
+    if shutil.which("cc") is None:
+        pytest.skip("no C compiler")
+    program = tmp_path_factory.mktemp("checker") / "check"
+    for libraries in LIBRARIES:
+        command = ["cc", "-O2", "-Wall", "-o", program, SOURCE, *libraries, "-lmpfr", "-lgmp", "-lm"]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode == 0:
+            assert not done.stderr
+            return lambda folder: subprocess.run([program, folder], capture_output=True, text=True, check=False)
+        if not re.search(r"\.h: No such file|cannot find -lflint", done.stderr):
+            pytest.fail(done.stderr)
+    return pytest.skip("no FLINT: apt install libflint-dev libflint-arb-dev")
+
+
+def test_the_program_stays_readable_in_an_evening():
+    lines = SOURCE.read_text().splitlines()
+    assert len(lines) <= MOST_LINES
+    assert max(map(len, lines)) <= 130
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_shipped_datasets_are_proved(check, name):
+    done = check(GOLDEN / name)
+    assert done.returncode == 0, done.stdout
+    assert "every printed number is proved" in done.stdout
+
+
+def test_what_is_not_a_dataset_is_refused(check, tmp_path):
+    assert check(tmp_path).returncode == 2
+    copy = shutil.copytree(GOLDEN / "weightless", tmp_path / "copy")
+    text = (copy / MANIFEST).read_text()
+    (copy / MANIFEST).write_text(text.replace('"length": "1"', '"length": "1" "2"'))
+    assert check(copy).returncode == 2
+
+
+def by_one_unit(text: str, draw: random.Random) -> str:
+    """Return a decimal changed by one unit of its last digit."""
+    with localcontext() as context:
+        context.prec = 200
+        unit = Decimal(1).scaleb(-len(text.partition(".")[2]))
+        changed = Decimal(text) + draw.choice((-1, 1)) * unit
+    return f"{changed if changed else abs(changed):f}"
+
+
+def grid_digit(folder, draw):
+    def change(rows, header):
+        row, column = draw.choice(rows), draw.randrange(len(header))
+        row[column] = by_one_unit(row[column], draw)
+
+    forge(folder, grid=change)
+
+
+def transit_digit(folder, draw):
+    def change(rows, header):
+        row, column = draw.choice(rows), header.index(draw.choice(("t", "x", "y", "z", "vy", "ax")))
+        row[column] = by_one_unit(row[column], draw)
+
+    forge(folder, transits=change)
+
+
+def direction(folder, draw):
+    def change(rows, header):
+        row, column = draw.choice(rows), header.index("direction")
+        row[column] = "-1" if row[column] == "+1" else "+1"
+
+    forge(folder, transits=change)
+
+
+def numbered(rows):
+    for k, row in enumerate(rows, 1):
+        row[0] = str(k)
+
+
+def order(folder, draw):
+    def change(rows, header):
+        i = draw.randrange(len(rows) - 1)
+        rows[i], rows[i + 1] = rows[i + 1], rows[i]
+        numbered(rows)
+
+    forge(folder, transits=change)
+
+
+def missing(folder, draw):
+    def change(rows, header):
+        del rows[draw.randrange(len(rows))]
+        numbered(rows)
+
+    forge(folder, transits=change)
+
+
+def missing_pair(folder, draw):
+    def change(rows, header):
+        i = draw.randrange(len(rows) - 1)
+        del rows[i : i + 2]
+        numbered(rows)
+
+    forge(folder, transits=change)
+
+
+def doubled(folder, draw):
+    def change(rows, header):
+        i = draw.randrange(len(rows))
+        rows.insert(i, list(rows[i]))
+        numbered(rows)
+
+    forge(folder, transits=change)
+
+
+def missing_row(folder, draw):
+    forge(folder, grid=lambda rows, header: rows.pop(draw.randrange(len(rows))))
+
+
+def inputs_of(scene):
+    """Yield the inputs that the motion depends on, section by section."""
+    for section, fields in scene.items():
+        for name, text in fields.items():
+            if name not in ("gravity_is", "digits", "level", "transits") and text != "inf":
+                yield section, name
+
+
+def an_input(folder, draw):
+    def change(document):
+        section, name = draw.choice(list(inputs_of(document["scene"])))
+        with localcontext() as context:
+            context.prec = 200
+            document["scene"][section][name] = f"{Decimal(document['scene'][section][name]) + Decimal('1e-18'):f}"
+
+    forge(folder, manifest=change)
+
+
+def meaning_of_gravity(folder, draw):
+    def change(document):
+        site = document["scene"]["site"]
+        site["gravity_is"] = "effective" if site["gravity_is"] == "ellipsoid" else "ellipsoid"
+
+    forge(folder, manifest=change)
+
+
+def reading_of_inputs(folder, draw):
+    forge(folder, manifest=lambda document: document.update(inputs="binary64"))
+
+
+def another_file(folder, draw):
+    """Change one digit in a file that follows from the tables, or a number of the manifest that does."""
+    texts = dict(read_files(folder).texts)
+    name = draw.choice([name for name in texts if name not in ("grid.csv", "transits.csv", MANIFEST)])
+    pattern = r"State at .*\n  x .*\n  y .*" if name.endswith(".txt") else r"0x[01]\.[0-9a-f]{13}|\d\.\d{15,}"
+    found = draw.choice(list(re.finditer(pattern, texts[name])))
+    place = found.end() - 1
+    text = texts[name]
+    texts[name] = text[:place] + ("1" if text[place] == "0" else "0") + text[place + 1 :]
+    seal(folder, json.loads((folder / MANIFEST).read_text()), {k: v for k, v in texts.items() if k != MANIFEST})
+
+
+KINDS = (
+    grid_digit,
+    transit_digit,
+    direction,
+    order,
+    missing,
+    missing_pair,
+    doubled,
+    missing_row,
+    an_input,
+    meaning_of_gravity,
+    reading_of_inputs,
+    another_file,
+)
+OF_MOTION = (an_input, meaning_of_gravity, reading_of_inputs)
+
+
+def forgery(draw, number):
+    """Return a kind of forgery, each in turn, and a dataset that it fits."""
+    kind = KINDS[number % len(KINDS)]
+    return kind, draw.choice(GENERIC if kind in OF_MOTION else FORGED)
+
+
+@pytest.mark.parametrize(("parity", "status"), [("odd", 0), ("even", 1), ("unknown", 0)])
+def test_an_interval_that_may_hold_a_transit_is_left_out_and_its_parity_is_proved(check, tmp_path, parity, status):
+    folder = shutil.copytree(GOLDEN / "damped", tmp_path / "forged")
+
+    def change(document):
+        document["transits"], document["counts"]["possible"] = "undecided intervals", 1
+        document["possible"] = [{"from_s": "24.7", "to_s": "24.8", "parity": parity}]
+
+    def without_third(rows, header):
+        assert rows.pop(2)[1].startswith("24.7")
+        numbered(rows)
+
+    forge(folder, transits=without_third, manifest=change)
+    done = check(folder)
+    assert done.returncode == status, done.stdout
+
+
+def test_forgeries_are_found(check, tmp_path, size, tally):
+    draw, missed, tried = random.Random(32), [], size(len(KINDS), 300)
+    for number in range(tried):
+        kind, name = forgery(draw, number)
+        folder = shutil.copytree(GOLDEN / name, tmp_path / "forged")
+        kind(folder, draw)
+        done = check(folder)
+        if done.returncode != 1 or (kind in OF_MOTION and not re.search(r"(grid|transits)\.csv", done.stdout)):
+            missed.append((number, kind.__name__, name, done.returncode, done.stdout))
+        shutil.rmtree(folder)
+    assert not missed, missed
+    tally(f"checker: {tried} forgeries, all found")
