@@ -17,6 +17,7 @@ from typing import Any
 import dask
 import distributed
 from distributed.scheduler import KilledWorker
+from distributed.versions import get_package_info
 
 from ..errors import FoucaultError, InputError
 from ..system.workers import Pool, WorkerDied
@@ -45,15 +46,16 @@ class Scheduler:
     Args:
         client: of dask.
         workers: threads that the workers have together.
+        versions: of the packages, which every worker must have.
     """
 
-    def __init__(self, client: Any, workers: int) -> None:
-        self.client, self.workers = client, workers
+    def __init__(self, client: Any, workers: int, versions: dict[str, Any]) -> None:
+        self.client, self.workers, self.versions = client, workers, versions
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Begin a call on some worker; its future may raise `WorkerDied` or `ClusterError`."""
         future: Future[Any] = Future()
-        there = self.client.submit(function, *arguments, pure=False, retries=RETRIES)
+        there = self.client.submit(_called, self.versions, function, *arguments, pure=False, retries=RETRIES)
         there.add_done_callback(partial(_settle, future))
         return future
 
@@ -87,8 +89,11 @@ def scheduler_at(address: str) -> Iterator[Scheduler]:
             advice = "Start them: `dask worker ADDRESS`."
             raise InputError("--cluster", address, "a scheduler with workers", advice) from None
         workers = sum(client.nthreads().values())
-        _check_versions(client)
-        yield Scheduler(client, workers)
+        versions = client.get_versions(packages=PACKAGES)
+        here = versions["client"]["packages"]
+        for worker, there in versions["workers"].items():
+            _check_versions(there["packages"], here, worker)
+        yield Scheduler(client, workers, here)
 
 
 def _connected(address: str, stack: ExitStack) -> Any:
@@ -117,14 +122,17 @@ def _connected(address: str, stack: ExitStack) -> Any:
         raise InputError("--cluster", address, "certificates in dask's configuration", f"{error}.") from None
 
 
-def _check_versions(client: Any) -> None:
-    versions = client.get_versions(packages=PACKAGES)
-    here = versions["client"]["packages"]
-    for worker, there in versions["workers"].items():
-        for name in PACKAGES:
-            if (got := there["packages"][name]) != here[name]:
-                advice = "Install the same versions everywhere."
-                raise InputError("--cluster", f"{name} {got} on {worker}", f"{name} {here[name]}, as here", advice)
+def _check_versions(there: dict[str, Any], here: dict[str, Any], worker: str) -> None:
+    for name in PACKAGES:
+        if (got := there[name]) != here[name]:
+            advice = "Install the same versions everywhere."
+            raise InputError("--cluster", f"{name} {got} on {worker}", f"{name} {here[name]}, as here", advice)
+
+
+def _called(versions: dict[str, Any], function: Callable[..., Any], *arguments: Any) -> Any:
+    """Call a function on a worker, which may have come since the versions of the others were checked."""
+    _check_versions(get_package_info(PACKAGES), versions, distributed.get_worker().address)
+    return function(*arguments)
 
 
 def _settle(future: Future[Any], there: Any) -> None:

@@ -106,6 +106,17 @@ def test_other_versions_are_refused_before_any_work(cluster, tmp_path, monkeypat
     assert list((tmp_path / "out/rows").iterdir()) == []
 
 
+def test_a_worker_that_comes_later_with_other_versions_does_no_work(cluster):
+    """It is asked with each part; here it is the client that has changed since it checked all."""
+    from reference.sweeps.cluster import scheduler_at
+
+    with scheduler_at(cluster.scheduler_address) as scheduler:
+        assert scheduler.submit(abs, -1).result() == 1
+        scheduler.versions["heyoka"] = "1.0"
+        with pytest.raises(InputError, match=r"heyoka \d.* on tcp:.*, expected heyoka 1\.0, as here"):
+            scheduler.submit(abs, -1).result()
+
+
 @pytest.mark.parametrize(
     ("address", "said"),
     [
