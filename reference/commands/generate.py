@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Sequence
-from contextlib import ExitStack, closing
+from contextlib import ExitStack, closing, suppress
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -173,10 +173,14 @@ def _generate_all(
     """
     from ..dataset.shipping import is_done, jobs
     from ..dataset.write import check_target
+    from ..system.workspace import clear
 
     check_workers(workers, cluster)
     every = jobs(replaced, out)
     with stoppable("what is done stays, and the same command goes on"), progress() as show:
+        for job in every:
+            with suppress(OSError):  # no such folder yet
+                clear(job.folder.parent, job.folder.name)  # a dataset that is done is not written again
         undone = [job for job in every if not is_done(job)]
         for job in undone:
             check_target(job.folder)

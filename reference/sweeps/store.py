@@ -16,7 +16,7 @@ from typing import Any
 
 from ..errors import InputError, plain_json
 from ..system.documents import json_document, regular
-from ..system.workspace import replace_file
+from ..system.workspace import clear, replace_file
 from .parquet import TRANSIT_COLUMNS, arrays, is_sealed, need_pyarrow, parquet, pyarrow_version
 from .part import Part
 from .request import Request
@@ -57,6 +57,8 @@ class Store:
             store = cls(folder, request, pyarrow_version())
         for kind in store._kinds:
             (folder / kind).mkdir(parents=True, exist_ok=True)
+            clear(folder / kind)  # a part that is there is not written again, which would clear it
+        clear(folder)
         if not (folder / PLAN).exists():
             _write_json(folder / PLAN, {"hash": request.hash, "pyarrow": store.pyarrow, **request.document()})
         return store
@@ -150,9 +152,9 @@ class Store:
         chosen = list(names) if names is not None else None
         return self._arrays([self.path(part, kind) for part in range(self.request.parts)], chosen)
 
-    def read_part(self, part: int) -> dict[str, Any]:
-        """Return the columns of one part as arrays; errors as of `read`."""
-        return self._arrays([self.path(part)])
+    def read_part(self, part: int, names: Iterable[str] | None = None) -> dict[str, Any]:
+        """Return columns of one part as arrays, all if no names are given; errors as of `read`."""
+        return self._arrays([self.path(part)], list(names) if names is not None else None)
 
     def _arrays(self, paths: list[Path], names: list[str] | None = None) -> dict[str, Any]:
         try:

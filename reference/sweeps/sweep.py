@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -60,13 +62,22 @@ class Swept:
     @cached_property
     def counts(self) -> dict[str, int]:
         """How many rows there are of each status."""
-        words, counts = np.unique(self["status"].astype(str), return_counts=True)
-        return dict(zip(words.tolist(), counts.tolist(), strict=True))
+        found = sum(map(Counter, self._statuses()), Counter[str]())
+        return dict(sorted(found.items()))
 
     @property
     def first_bad(self) -> int:
         """The first row that is not ok; only where there is one."""
-        return int(np.argmax(self["status"] != Status.OK.value))
+        statuses = chain.from_iterable(self._statuses())
+        return next(row for row, status in enumerate(statuses) if status != Status.OK.value)
+
+    def _statuses(self) -> Iterator[Any]:
+        """Yield the status of every row; of a folder part by part, so that memory does not grow with the rows."""
+        if self.store is None:
+            yield self["status"]
+            return
+        for part in range(self.request.parts):
+            yield self.store.read_part(part, ["status"])["status"]
 
     @property
     def names(self) -> tuple[str, ...]:

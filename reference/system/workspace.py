@@ -7,6 +7,7 @@ several machines share a disk. On a disk without locks none is cleared away.
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
@@ -16,6 +17,7 @@ from typing import BinaryIO
 
 OLD = "old"  # what stood in the place of the target, while it is moved out of the way
 _LOCK = "lock"
+_LEFT = re.compile(r"\.(.+)\.partial-\w+", re.DOTALL)
 
 
 @contextmanager
@@ -30,22 +32,26 @@ def workspace(parent: Path, name: str) -> Iterator[Path]:
     """
     from filelock import FileLock, Timeout  # here, as its import takes longer than the rest of a short command
 
-    _clear(parent, name)
+    clear(parent, name)
     while True:
-        folder = Path(tempfile.mkdtemp(prefix=_prefix(name), dir=parent))
+        folder = Path(tempfile.mkdtemp(prefix=f".{name}.partial-", dir=parent))
         lock = FileLock(folder / _LOCK, blocking=False)
         try:
-            lock.acquire()
-        except (Timeout, FileNotFoundError):  # another process took it for left behind
-            continue
-        except (OSError, NotImplementedError):  # this disk has no locks
-            pass
-        try:
+            try:
+                lock.acquire()
+            except (Timeout, FileNotFoundError):  # another process took it for left behind
+                continue
+            except (OSError, NotImplementedError):  # this disk has no locks
+                pass
             yield folder
             return
         finally:
-            lock.release()
-            _remove(folder, parent / name)
+            try:
+                lock.release()
+                _remove(folder, parent / name)
+            except BaseException:  # Ctrl-C, just now
+                _remove(folder, parent / name)
+                raise
 
 
 def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
@@ -63,17 +69,15 @@ def replace_file(path: Path, write: Callable[[BinaryIO], object]) -> None:
         os.replace(work / "new", target)
 
 
-def _prefix(name: str) -> str:
-    return f".{name}.partial-"
-
-
-def _clear(parent: Path, name: str) -> None:
-    """Remove the folders that no living process holds."""
+def clear(parent: Path, name: str | None = None) -> None:
+    """Remove from a folder what killed processes left behind for a name, or for any: no living process holds it."""
     from filelock import FileLock
 
-    for path in [path for path in parent.iterdir() if path.name.startswith(_prefix(name))]:
-        with suppress(OSError, NotImplementedError), FileLock(path / _LOCK, blocking=False):
-            _remove(path, parent / name)
+    for path in list(parent.iterdir()):
+        left = _LEFT.fullmatch(path.name)
+        if left and name in (None, left[1]):
+            with suppress(OSError, NotImplementedError), FileLock(path / _LOCK, blocking=False):
+                _remove(path, parent / left[1])
 
 
 def _remove(folder: Path, target: Path) -> None:

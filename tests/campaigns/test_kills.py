@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import json
+import random
 import shutil
 import signal
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import pytest
 from interruption import gone_within
-from moments import Ended, chosen, ended_at, undisturbed
+from moments import Ended, chosen, ended_after, ended_at, undisturbed
 from small_scenes import make_scene
 
 import reference
+from reference.scenes.shipped import golden_root
 from reference.system.workspace import workspace
 
 pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="counts processes in /proc")
@@ -44,9 +47,9 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def put_back(place: Path) -> None:
+def put_back(target: Path) -> None:
     """Do what the next run begins with, in case that a dataset was just moved aside."""
-    with workspace(place, "p"):
+    with workspace(target.parent, target.name):
         pass
 
 
@@ -75,7 +78,7 @@ def test_a_dataset_is_the_old_or_the_new_one_and_whole(tmp_path: Path, size: Siz
         hits += killed(words, event).status == -signal.SIGKILL
         assert len(litter(place)) <= 1
         litters += len(litter(place))
-        put_back(place)
+        put_back(place / "p")
         seen[whole.index(contents(place / "p"))] += 1  # an error if it is neither
         reference.load(place / "p")
     assert finished(words).status == 0
@@ -83,6 +86,74 @@ def test_a_dataset_is_the_old_or_the_new_one_and_whole(tmp_path: Path, size: Siz
     assert [path.name for path in place.iterdir()] == ["p"]
     assert hits >= count + 0.9 * len(last)  # the number of events varies by a few
     tally(f"generate: {hits} kills, dataset whole {seen[0]} old {seen[1]} new, {litters} left a folder, which went")
+
+
+SHORT = ["--level", "computed", "--workers", 2, "--digits"]
+MANY: dict[str, tuple[list[object], list[object], list[object]]] = {  # command, and what makes old and new ones differ
+    "generate --all": (["generate", "--all", *SHORT], [6, "--t-end", 30], [10, "--t-end", 60]),
+    "atlas": (["atlas", "--data", "DATA", "--files"], ["https://example.org/old"], ["https://example.org/new"]),
+}
+
+
+def units(folder: Path) -> dict[str, object]:
+    """Return the datasets or the pages of a folder."""
+    shown = [path for path in folder.iterdir() if path.name not in litter(folder)]
+    return {path.name: contents(path) if path.is_dir() else path.read_bytes() for path in shown}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+@pytest.mark.parametrize("name", MANY)
+def test_each_of_many_is_the_old_or_the_new_one_and_the_same_command_goes_on(
+    name: str, number: signal.Signals, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, tally: Tally
+) -> None:
+    """At events, at the last of which files are put in place, and at any moment from outside."""
+    pytest.importorskip("matplotlib")
+    few, out, old, data = ["conical", "pantheon", "paris"], tmp_path / "out", tmp_path / "old", tmp_path / "data"
+    (temporary := tmp_path / "temporary").mkdir()
+    for variable, value in (("SCENES_THAT_SHIP", " ".join(few)), ("TMPDIR", str(temporary))):
+        monkeypatch.setenv(variable, value)
+    for scene in few:
+        shutil.copytree(golden_root() / scene, data / scene)
+    first, *differences = [[data if word == "DATA" else word for word in part] for part in MANY[name]]
+    before, words = ([*first, *difference, "--out", out] for difference in differences)
+    assert finished(before).status == 0
+    out.rename(old)
+    assert finished(words).status == 0
+    whole, earlier = units(out), units(old)
+    assert whole.keys() == earlier.keys() and all(whole[unit] != earlier[unit] for unit in whole)
+    shutil.rmtree(out)
+    shutil.copytree(old, out)
+    _, times = undisturbed(tmp_path / "note", words)
+    source, last = random.Random(f"{name} {number}"), [len(times) - 6 - 5 * i for i in range(4)]
+    stops = [partial(ended_at, event) for event in [*chosen(times, 3, 7), *last]]
+    stops += [partial(ended_after, source.uniform(0.3, 1.0) * (times[-1] - times[0])) for _ in range(3)]
+    hits = news = left = 0
+    for stop in stops:
+        shutil.rmtree(out)
+        shutil.copytree(old, out)
+        ended = stop(number, words)
+        assert ended.status in (0, -number, 128 + number), ended.err
+        assert "Traceback" not in ended.err
+        assert gone_within(ended.group, ORPHANS_END_S), "processes run on"
+        assert len(litter(out)) <= (number == signal.SIGKILL)
+        assert list(temporary.iterdir()) == []
+        seen = Path(shutil.copytree(out, tmp_path / "seen"))
+        for unit in earlier:
+            put_back(seen / unit)
+        for unit, content in units(seen).items():
+            assert content in (earlier[unit], whole[unit])
+            news += content == whole[unit]
+        assert units(seen).keys() == earlier.keys()
+        shutil.rmtree(seen)
+        hits, left = hits + (ended.status != 0), left + len(litter(out))
+        again = finished(words)
+        assert again.status == 0, again.err
+        assert units(out) == whole
+        assert litter(out) == []
+    tally(
+        f"{name}: {hits} of {len(stops)} {number.name} at work, {news} units were new, {left} left a folder, which went"
+    )
 
 
 CAMPAIGNS = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -71,13 +72,14 @@ WAYS = {
     "threads": ["--over", "site.latitude=-90:90:1", "--engine", "heyoka"],
     "processes": ["--over", "site.latitude=-80:80:4", "--digits", "16", "--want", "transits", "--workers", "2"],
 }
+MANY_DIGITS = {"many digits": ["--over", "site.latitude=-80:80:4", "--digits", "32", "--workers", "2"]}
 
 
 @pytest.fixture(scope="module", params=WAYS)
 def way(request, tmp_path_factory):
     """A sweep of many parts: its command, and the folder that it fills when nothing stops it."""
     whole = tmp_path_factory.mktemp(request.param) / "whole"
-    command = [sys.executable, "-c", SMALL_PARTS, *WORDS, *WAYS[request.param]]
+    command = [sys.executable, "-c", SMALL_PARTS, *WORDS, *(WAYS | MANY_DIGITS)[request.param]]
     subprocess.run([*command, "--out", whole], check=True, cwd=ROOT, capture_output=True)
     return command, whole
 
@@ -109,3 +111,58 @@ def test_what_a_sweep_started_ends_with_it_and_the_same_command_goes_on(way, num
     subprocess.run([*command[:4], "--out", folder], check=True, cwd=ROOT, capture_output=True)
     assert contents(folder) == contents(whole)
     assert (folder / "summary.json").read_bytes() == (whole / "summary.json").read_bytes()
+
+
+def children(parent: int) -> list[int]:
+    """Return the processes that a process has started."""
+    return [int(word) for path in Path(f"/proc/{parent}/task").glob("*/children") for word in path.read_text().split()]
+
+
+@pytest.mark.skipif(not Path(f"/proc/self/task/{os.getpid()}/children").exists(), reason="lists processes in /proc")
+@pytest.mark.long
+@pytest.mark.parametrize("way", MANY_DIGITS, indirect=True)
+def test_a_worker_that_is_killed_at_work_costs_no_row_and_no_byte(way, tally, tmp_path):
+    command, whole = way
+    source, count, killed = random.Random(8), 5, []
+    for number in range(count):
+        folder, at = tmp_path / str(number), source.randrange(4)
+        with subprocess.Popen([*command, "--out", folder], cwd=ROOT, stdout=subprocess.DEVNULL) as process:
+            while process.poll() is None and len(killed) == number:
+                if folder.exists() and len(contents(folder)) >= at and (workers := children(process.pid)):
+                    time.sleep(source.uniform(0.0, 0.3))
+                    os.kill(source.choice(workers), signal.SIGKILL)  # its parent still waits for it
+                    killed.append(len(contents(folder)))
+                time.sleep(0.01)
+        assert process.returncode == 0
+        assert contents(folder) == contents(whole)
+        assert (folder / "summary.json").read_bytes() == (whole / "summary.json").read_bytes()
+    assert len(killed) == count
+    tally(f"sweeps in processes: {count} workers killed when {killed} parts were done, the same bytes")
+
+
+GROWTH_MIB = 16  # of the memory of a sweep into a folder: the noise of two runs, and not a byte for each row
+PEAK = """import atexit, resource, sys
+atexit.register(lambda: print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024, file=sys.stderr))
+"""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("want", ["all", "all,transit-times"])
+@pytest.mark.parametrize("engine", ["heyoka", "octet"])
+def test_the_memory_of_a_sweep_into_a_folder_does_not_grow_with_its_rows(engine, want, tally, tmp_path):
+    """Of rows of many parts, each of a tenth of a second, whose fields have few values."""
+    pytest.importorskip("resource")
+    program, peaks = PEAK + SMALL_PARTS.replace("0.0", "0.1"), {}
+    for values in (125, 125, {"heyoka": 1250, "octet": 5000}[engine]):  # the first compiles
+        over = ["--over", "site.latitude=1:80:1", "--over", f"release.x=0.1:{0.1 + 0.0001 * (values - 1):.4f}:0.0001"]
+        words = ["sweep", "paris", "--t-end", "2", "--audit", "0", "--workers", "1", "--engine", engine, *over]
+        out = tmp_path / "out"
+        ended = subprocess.run(
+            [sys.executable, "-c", program, *words, "--want", want, "--out", out],
+            cwd=ROOT, capture_output=True, text=True, check=True,
+        )  # fmt: skip
+        peaks[80 * values] = int(ended.stderr.splitlines()[-1])
+        shutil.rmtree(out)
+    few, many = peaks.values()
+    tally(f"memory of a sweep into a folder, {engine}, {want}: {peaks} (MiB by rows)")
+    assert many - few < GROWTH_MIB

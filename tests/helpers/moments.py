@@ -14,6 +14,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,6 +38,11 @@ def ended_at(event: int, number: signal.Signals, words: Sequence[object]) -> End
     return _run([str(event), str(int(number)), "-"], words)
 
 
+def ended_after(wait_s: float, number: signal.Signals, words: Sequence[object]) -> Ended:
+    """Run `foucault words`; after some seconds it gets a signal from outside, as `ended_at` sends it."""
+    return _run(["-1", "0", "-"], words, (wait_s, number))
+
+
 def undisturbed(note: Path, words: Sequence[object]) -> tuple[Ended, list[float]]:
     """Run `foucault words` to its end; return it, and the time of each of its events in s."""
     ended = _run(["-1", "0", str(note)], words)
@@ -51,7 +57,7 @@ def chosen(times: list[float], count: int, seed: int) -> list[int]:
     return [next(i for i, time_s in enumerate(times) if time_s >= moment) for moment in moments]
 
 
-def _run(how: list[str], words: Sequence[object]) -> Ended:
+def _run(how: list[str], words: Sequence[object], stopped: tuple[float, signal.Signals] | None = None) -> Ended:
     command = [sys.executable, __file__, *how, *map(str, words)]
     with subprocess.Popen(
         command,
@@ -62,6 +68,12 @@ def _run(how: list[str], words: Sequence[object]) -> Ended:
         start_new_session=True,
     ) as process:
         try:
+            if stopped is not None:
+                wait_s, number = stopped
+                with suppress(subprocess.TimeoutExpired):
+                    process.wait(wait_s)
+                if process.poll() is None:
+                    (os.kill if number == signal.SIGKILL else os.killpg)(process.pid, number)
             out, err = process.communicate(timeout=PATIENCE_S)
         except BaseException:
             os.killpg(process.pid, signal.SIGKILL)
@@ -73,6 +85,10 @@ def _foucault(event: int, number: int, note: str, words: list[str]) -> None:
     sys.path.insert(0, str(ROOT))
     from foucault import main
 
+    if few := os.environ.get("SCENES_THAT_SHIP"):  # instead of all that do
+        from reference.dataset import shipping
+
+        shipping.scene_ids, shipping.seals = few.split, dict
     times: list[float] = []
     done = False
 

@@ -76,11 +76,13 @@ def test_it_goes_on_with_what_is_missing_or_damaged(foucault, made, tmp_path, mo
     out = Path(shutil.copytree(made[0], tmp_path / "all"))
     before = contents(out / "paris"), contents(out / "conical")
     (out / "paris" / "grid.csv").write_text("t,x\n")
+    (out / ".conical.partial-abc").mkdir()  # of a command that was killed once it had put the dataset in place
     kept = (out / "conical" / "manifest.json").stat()
     status, text, _ = foucault("generate", "--all", *SHORT, "--out", out)
     assert status == 0
     assert "3 datasets: 2 were there, 1 made, 0 failed" in text
     assert (contents(out / "paris"), contents(out / "conical")) == before
+    assert sorted(path.name for path in out.iterdir()) == FEW
     assert (out / "conical" / "manifest.json").stat().st_mtime_ns == kept.st_mtime_ns
     # other inputs are another dataset
     monkeypatch.setattr("reference.dataset.shipping.scene_ids", lambda: FEW[2:])

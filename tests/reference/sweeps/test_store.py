@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +13,11 @@ import poisoned_sweep
 import pytest
 
 from reference import InputError, load_scene, load_sweep, sweep
+from reference.status import Status
 from reference.sweeps import driver
 from reference.sweeps.parquet import COLUMNS
+from reference.sweeps.part import Part
+from reference.sweeps.store import Store
 from reference.sweeps.sweep import asked_for, run
 
 pytest.importorskip("pyarrow")
@@ -64,7 +68,7 @@ def test_any_number_of_workers_and_any_interruption_give_the_same_bytes(whole, t
     done = []
     run(asked(folder), folder, workers=2, report=done.append)
     assert sum(done) == ROWS
-    (folder / "rows/.part-00000002.parquet.partial-abc").rmdir()
+    assert list(folder.rglob(".*")) == []
     assert contents(folder) == contents(whole)
 
 
@@ -154,3 +158,23 @@ def test_a_process_that_dies_is_replaced_and_its_row_crashes_alone(tmp_path, mon
     assert swept.first_bad == poisoned_sweep.POISON
     assert "alone as well: a child process" in swept["reason"][poisoned_sweep.POISON]
     assert swept["site.latitude"].tolist() == list(range(39))
+
+
+def test_what_became_of_the_rows_is_counted_in_the_memory_of_one_part(tmp_path):
+    whole = asked_for(load_scene("paris"), ["site.latitude=1:80:1", "release.x=0.1:0.6:0.001"], None, tmp_path, audit=0)
+    request = replace(whole, rows_per_part=1024)
+    store = Store.begun(tmp_path, request)
+    for number in range(request.parts):
+        part = Part.unsolved(request, request.rows_of(number))
+        part.fill(slice(None), {"status": "ok"})
+        if number == request.parts - 1:
+            part.fail(-1, Status.CRASHED, "told")
+        store.save(number, part)
+    store.read_part(0)  # imports what reads
+    swept = load_sweep(tmp_path)
+    tracemalloc.start()
+    assert swept.counts == {"crashed": 1, "ok": len(swept) - 1}
+    assert swept.first_bad == len(swept) - 1
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 8 * len(swept)  # a pointer for each row is too much

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import pkgutil
 import signal
 import subprocess
 import sys
@@ -36,6 +37,22 @@ def test_the_folder_is_there_for_the_work_and_gone_after_it(tmp_path):
     with pytest.raises(KeyboardInterrupt), workspace(tmp_path, "pp") as work:
         (work / "half").write_text("done")
         raise KeyboardInterrupt
+    assert left(tmp_path) == []
+
+
+@pytest.mark.parametrize("place", ["filelock.FileLock.acquire", "filelock.FileLock.release", "shutil.rmtree"])
+def test_an_interruption_as_it_begins_or_ends_leaves_nothing(tmp_path, monkeypatch, place):
+    usual, calls = pkgutil.resolve_name(place), []
+
+    def interrupted(*arguments: object, **options: object) -> object:
+        calls.append(place)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return usual(*arguments, **options)
+
+    monkeypatch.setattr(place, interrupted)
+    with pytest.raises(KeyboardInterrupt), workspace(tmp_path, "pp"):
+        pass
     assert left(tmp_path) == []
 
 
