@@ -10,10 +10,11 @@ static double l = 67, g = 9.80665, lat = 45, rate = 7.292115e-5, radius = 637813
 static double xs = 1, ys = 0, vx0 = 0, vy0 = 0, stars = 0, tend = 600, out = 2, h = 0.01;
 static double half = 1, north_factor = 1, up_factor = 1, corlat = 1e9, turnby = 0, point = 0;
 static double scale = 1, tscale = 1, toffset = 0, zsign = 1, zshift = 0;
-static int model = 0;   /* 0 sphere, 1 linear, 2 linear in the angle */
+static double xsign = 1, ysign = 1, fast = 1, outward = -1;
+static int model = 0;   /* 0 sphere, 1 linear, 2 linear in the angle, 3 linear with the centrifugal force */
 static int reading = 0; /* 0 centrifugal force added, 1 none, 2 effective g */
-static int method = 4;  /* 4 Runge-Kutta, 2 midpoint, 1 Euler, 0 semi-implicit Euler */
-static int decimals = -1, swap = 0, reversed = 0;
+static int method = 4;  /* 4 Runge-Kutta, 3 velocity Verlet, 2 midpoint, 1 Euler, 0 semi-implicit Euler, 5 position first */
+static int decimals = -1, swap = 0, reversed = 0, single = 0;
 static double north, up, cnorth, cup, cy, cz;
 
 static void force(const double *r, const double *v, double *f) {
@@ -48,6 +49,10 @@ static void rates(const double *s, double *d) {
     }
     d[3] = -g / l * s[0] + 2 * half * cup * v[1] - drag * v[0];
     d[4] = -g / l * s[1] - 2 * half * cup * v[0] - drag * v[1];
+    if (model == 3) {
+        d[3] += rate * rate * s[0];
+        d[4] += up * up * s[1] + up * l * north + cy;
+    }
     d[2] = d[5] = 0;
 }
 
@@ -60,6 +65,15 @@ static void step(double *s) {
     } else if (method == 0) {
         for (i = 3; i < 6; i++) s[i] += h * a[i];
         for (i = 0; i < 3; i++) s[i] += h * s[3 + i];
+    } else if (method == 5) {
+        for (i = 0; i < 3; i++) s[i] += h * s[3 + i];
+        rates(s, a);
+        for (i = 3; i < 6; i++) s[i] += h * a[i];
+    } else if (method == 3) {
+        for (i = 3; i < 6; i++) s[i] += h / 2 * a[i];
+        for (i = 0; i < 3; i++) s[i] += h * s[3 + i];
+        rates(s, a);
+        for (i = 3; i < 6; i++) s[i] += h / 2 * a[i];
     } else if (method == 2) {
         for (i = 0; i < 6; i++) m[i] = s[i] + h / 2 * a[i];
         rates(m, b);
@@ -81,10 +95,11 @@ int main(int argc, char **argv) {
         {"x0", &xs}, {"y0", &ys}, {"vx0", &vx0}, {"vy0", &vy0}, {"stars", &stars}, {"tend", &tend}, {"out", &out},
         {"h", &h}, {"half", &half}, {"north", &north_factor}, {"up", &up_factor}, {"corlat", &corlat},
         {"turnby", &turnby}, {"point", &point}, {"scale", &scale}, {"tscale", &tscale}, {"toffset", &toffset},
-        {"zsign", &zsign}, {"zshift", &zshift}};
+        {"zsign", &zsign}, {"zshift", &zshift}, {"xsign", &xsign}, {"ysign", &ysign}, {"fast", &fast},
+        {"outward", &outward}};
     struct { const char *name; int *value; } flags[] = {
         {"model", &model}, {"reading", &reading}, {"method", &method}, {"decimals", &decimals}, {"swap", &swap},
-        {"reversed", &reversed}};
+        {"reversed", &reversed}, {"single", &single}};
     int i, k;
     for (i = 1; i < argc; i++) {
         char *eq = strchr(argv[i], '=');
@@ -103,6 +118,7 @@ int main(int argc, char **argv) {
     double axis = radius / sqrt(1 - e2 * sin(p) * sin(p)) * cos(p);
     north = rate * cos(p), up = rate * sin(p);
     cnorth = north_factor * rate * cos(cp), cup = up_factor * rate * sin(cp);
+    if (outward >= 0) axis = outward * cos(p); /* a sphere of its own */
     if (reading == 0) cy = -rate * rate * axis * sin(p), cz = rate * rate * axis * cos(p);
     double s[6] = {xs, ys, 0, vx0 + stars * cup * ys, vy0 - stars * cup * xs, 0};
     if (model == 2) {
@@ -122,14 +138,17 @@ int main(int argc, char **argv) {
             x *= shrink, y *= shrink;
         }
         if (model != 0) z = -sqrt(l * l - x * x - y * y);
+        x *= xsign, y *= ysign;
         all[3 * row] = swap ? y : x, all[3 * row + 1] = swap ? x : y, all[3 * row + 2] = zsign * z + zshift;
         if (row < rows)
             for (long j = 0; j < many; j++) step(s);
     }
     printf("t,x,y,z\n");
     for (long row = 0; row <= rows; row++) {
-        double *r = all + 3 * (reversed ? rows - row : row), t = row * out / tscale + toffset;
-        if (decimals >= 0)
+        double *r = all + 3 * (reversed ? rows - row : row), t = row * out * fast / tscale + toffset;
+        if (single)
+            printf("%.9g,%.9g,%.9g,%.9g\n", (float)t, (float)r[0], (float)r[1], (float)r[2]);
+        else if (decimals >= 0)
             printf("%.17g,%.*f,%.*f,%.*f\n", t, decimals, scale * r[0], decimals, scale * r[1], decimals, scale * r[2]);
         else
             printf("%.17g,%.17g,%.17g,%.17g\n", t, scale * r[0], scale * r[1], scale * r[2]);

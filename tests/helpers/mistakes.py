@@ -1,47 +1,57 @@
-"""Programs with one to three mistakes at values drawn at random, and what an explanation ought to name of each."""
+"""Programs with one to three mistakes at values drawn at random, and what an explanation may name of each."""
 
 from __future__ import annotations
 
+import math
 import subprocess
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 from small_scenes import make_scene
 
+from compare.score.explanation.findings import Explanation
 from reference import Scene
 
-OFF = 1e-7  # of the cord: a distance from the suspension that changes by more is to be said
+SAME = {"effective_gravity": "no_centrifugal", "decimals": "digits", "single_precision": "digits"}
+UNTOLD = {"digits", "off_the_sphere", "stretched_cord"}  # said of the file, whatever made it
+FLATTENING = 1 / 298.257223563
 
 
 @dataclass
 class Case:
-    """A scene, the arguments of `mistaken.c`, and the causes and numbers that ought to be named."""
+    """A scene, the arguments of `mistaken.c`, and the words that are true of the program."""
 
     number: int
     scene: Scene
+    period: float
+    rng: np.random.Generator
     arguments: dict[str, float]
-    expected: set[str] = field(default_factory=set)
-    values: dict[str, float] = field(default_factory=dict)
+    true: set[str] = field(default_factory=set)
 
     def rows(self, program: Path) -> tuple[np.ndarray, dict[str, np.ndarray]]:
         """Return times and columns that the program writes."""
-        words = [f"{key}={value!r}" for key, value in self.arguments.items()]
+        words = [f"{key}={float(value)!r}" for key, value in self.arguments.items()]
         text = subprocess.run([str(program), *words], check=True, capture_output=True, text=True).stdout
         table = np.loadtxt(text.splitlines(), delimiter=",", skiprows=1)
         return table[:, 0], {name: np.ascontiguousarray(table[:, i + 1]) for i, name in enumerate("xyz")}
 
-    def said(self, columns: dict[str, np.ndarray]) -> set[str]:
-        """Return the words that ought to be said of what the program wrote, programs with the same motion being one."""
-        words = one_word_for_one_motion(self.expected)
-        if max(np.abs(column).max() for column in columns.values()) > 1e12 * 0.5e-9:  # no double has such decimals
-            words = words - {"decimals"}
-        if "scale" in self.arguments:  # heights are made anew in another unit
-            return words
-        places = np.array([columns[name] for name in ("x", "y", "z")])
-        places[2] = (places[2] - self.arguments.get("zshift", 0.0)) * self.arguments.get("zsign", 1.0)
-        reach = np.linalg.norm(places, axis=0)
-        return words | ({"off_the_sphere"} if np.ptp(reach) > OFF * self.arguments["l"] else set())
+    @property
+    def allowed_m(self) -> float:
+        """Distance in m that counts as agreement."""
+        return 1e-6 * math.hypot(self.arguments["x0"], self.arguments["y0"])
+
+    def wrong(self, found: Explanation) -> set[str]:
+        """Return the words that are said and are not true, programs with the same motion being one."""
+        said = one_word_for_one_motion(words_of(found)) - one_word_for_one_motion(self.true) - UNTOLD
+        steps = {"integrator_loose"} if any(word.startswith("integrator") for word in self.true) else set()
+        return said - steps
+
+
+def words_of(found: Explanation) -> set[str]:
+    """Return the words of what is said for certain."""
+    return {part.id for part in (*found.known, *found.conventions)}
 
 
 def one_word_for_one_motion(words: set[str]) -> set[str]:
@@ -50,7 +60,7 @@ def one_word_for_one_motion(words: set[str]) -> set[str]:
     A motion in the plane knows only the sign of Ω's vertical part, and without any of the forces of rotation there is
     no rotation.
     """
-    found = set(words)
+    found = {"site.gravity" if word.startswith("gravity_") else SAME.get(word, word) for word in words}
     if found & {"linear_g", "linear_in_angle"} and "hemisphere" in found:
         found = found ^ {"hemisphere", "coriolis_sign"}
     if {"no_centrifugal", "no_coriolis"} <= found:
@@ -58,144 +68,172 @@ def one_word_for_one_motion(words: set[str]) -> set[str]:
     return found
 
 
-def case(number: int) -> Case:
-    """Return the case of a number: the same at every call."""
-    rng = np.random.default_rng([17, number])
-    length = float(np.round(rng.uniform(2, 70), 2))
-    latitude = float(np.round(rng.uniform(20, 70), 4)) * (1 if rng.random() < 0.8 else -1)
-    amplitude, azimuth = length * rng.uniform(0.01, 0.08), rng.uniform(0.2, 1.3)
+def case(number: int, seed: int = 17, most: int = 3) -> Case:
+    """Return the case of a number, with `most` mistakes at most: the same at every call."""
+    rng = np.random.default_rng([seed, number])
+    length = float(np.round(np.exp(rng.uniform(np.log(0.5), np.log(70))), 2))
+    latitude = float(np.round(rng.uniform(15, 75), 4)) * (1 if rng.random() < 0.8 else -1)
+    wide = math.sin(math.radians(rng.uniform(10, 70)))
+    amplitude, azimuth = length * (wide if rng.random() < 0.3 else rng.uniform(0.01, 0.08)), rng.uniform(0.2, 1.3)
     x, y = (float(np.round(amplitude * part, 4)) for part in (np.cos(azimuth), np.sin(azimuth)))
-    period = 2 * np.pi * np.sqrt(length / 9.80665)
-    out = float(np.round(period / rng.uniform(5, 12), 2))
-    rows = int(rng.integers(250, 400))
-    end = out * rows
+    period = 2 * math.pi * math.sqrt(length / 9.80665)
+    # rows dense, as usual, or sparse
+    low, high = ((15, 60), (5, 12), (0.6, 3))[int(rng.choice(3, p=[0.3, 0.5, 0.2]))]
+    out = float(f"{period / rng.uniform(low, high):.2g}")
+    rows = int(rng.integers(250, 600))
+    effective = rng.random() < 0.3
+    site = {"latitude": repr(latitude)} | ({"gravity_is": "effective"} if effective else {})
     scene = make_scene(
-        f"mistaken_{number}", pendulum={"length": repr(length)}, site={"latitude": repr(latitude)},
-        release={"x": repr(x), "y": repr(y)}, run={"t_end": repr(end), "grid_step": repr(out), "digits": 20},
+        f"mistaken_{number}", pendulum={"length": repr(length)}, site=site, release={"x": repr(x), "y": repr(y)},
+        run={"t_end": repr(out * rows), "grid_step": repr(out), "digits": 20},
     ).with_values(["inputs=binary64"])  # fmt: skip
-    steps = int(np.ceil(out / (period / 900)))
-    made = Case(
-        number, scene, {"l": length, "lat": latitude, "x0": x, "y0": y, "tend": end, "out": out, "h": out / steps}
-    )
-    count = int(rng.choice([1, 2, 3], p=[0.4, 0.35, 0.25]))
-    groups: set[str] = set()
-    kinds = list(rng.permutation(len(_KINDS)))
-    linear = False
-    while count and kinds:
-        group, words, change = _KINDS[kinds.pop()]
-        if group in groups or (linear and "sphere" in words) or ("linear" in words and groups & _NEVER_LINEAR):
-            continue
-        groups |= {group} | ({"gravity", "model", "earth", "integrator"} if "linear" in words else set())
-        groups |= {"gravity", "earth"} if group in ("gravity", "earth") else set()
-        linear = linear or "linear" in words
-        change(made, rng)
-        count -= 1
+    step = out / math.ceil(out / (period / 900))
+    made = Case(number, scene, period, rng, {"l": length, "lat": latitude, "x0": x, "y0": y, "out": out, "h": step})
+    made.arguments |= {"tend": out * rows, "reading": 2.0 if effective else 0.0}
+    _mistaken(made, effective, int(rng.choice([1, 2, 3], p=[0.4, 0.35, 0.25])) if most else 0)
     return made
 
 
-_NEVER_LINEAR = {"gravity", "earth", "integrator", "model"}
+def _mistaken(made: Case, effective: bool, count: int) -> None:
+    """Make mistakes that exclude no other."""
+    kinds = [*_KINDS, *(_EFFECTIVE if effective else _ELLIPSOID)]
+    order, groups = list(made.rng.permutation(len(kinds))), set()
+    while count and order:
+        group, change = kinds[order.pop()]
+        excluded = _EXCLUDED.get(group, {group})
+        if not groups & excluded:
+            groups |= excluded
+            change(made)
+            count -= 1
 
 
-def _mistake(word: str, **arguments: float):
-    def change(made: Case, rng: np.random.Generator) -> None:
+_EXCLUDED = {
+    "linear": {"gravity", "earth", "linear", "integrator", "coriolis", "latitude", "length"},
+    "gravity": {"gravity", "earth", "linear"},
+    "earth": {"gravity", "earth", "linear"},
+}
+Change = Callable[[Case], None]
+
+
+def _mistake(word: str, **arguments: float) -> Change:
+    def change(made: Case) -> None:
         made.arguments |= arguments
-        made.expected.add(word)
+        made.true.add(word)
 
     return change
 
 
-def _model(number: int, word: str):
-    def change(made: Case, rng: np.random.Generator) -> None:
-        made.arguments |= {"model": number, "reading": 1}
-        made.expected |= {word, "no_centrifugal"}
+def _linear(model: int, reading: int, *words: str) -> Change:
+    def change(made: Case) -> None:
+        made.arguments |= {"model": model, "reading": reading}
+        made.true |= set(words)
 
     return change
 
 
-def _shifted(key: str, word: str, low: float, high: float):
-    def change(made: Case, rng: np.random.Generator) -> None:
-        before = made.arguments.get(key, 9.80665)
-        shift = float(np.exp(rng.uniform(np.log(low), np.log(high)))) * float(rng.choice([-1, 1]))
-        value = before * (1 + shift)
-        made.arguments[key] = value
-        made.expected.add(word)
-        made.values[word] = value - before
+def _shifted(key: str, word: str, low: float, high: float) -> Change:
+    """Change an input; of ten people seven type it, with three to five digits, three compute it."""
+
+    def change(made: Case) -> None:
+        rng, before = made.rng, made.arguments.get(key, 9.80665)
+        value = before * (1 + math.exp(rng.uniform(math.log(low), math.log(high))) * rng.choice([-1, 1]))
+        made.arguments[key] = float(f"{value:.{rng.integers(3, 6)}g}") if rng.random() < 0.7 else value
+        made.true.add(word)
 
     return change
 
 
-def _drag(made: Case, rng: np.random.Generator) -> None:
-    made.arguments["drag"] = value = float(np.exp(rng.uniform(np.log(1e-5), np.log(1e-2))))
-    made.expected.add("pendulum.drag")
-    made.values["pendulum.drag"] = value
+def _drag(made: Case) -> None:
+    made.arguments["drag"] = float(f"{math.exp(made.rng.uniform(math.log(1e-5), math.log(1e-2))):.2g}")
+    made.true.add("pendulum.drag")
 
 
-def _radians(made: Case, rng: np.random.Generator) -> None:
-    made.arguments["corlat"] = float(np.degrees(made.arguments["lat"]))
-    made.expected.add("radians")
+def _radians(made: Case) -> None:
+    made.arguments["corlat"] = math.degrees(made.arguments["lat"])
+    made.true.add("radians")
 
 
-def _turned(made: Case, rng: np.random.Generator) -> None:
+def _geocentric(made: Case) -> None:
+    tangent = (1 - FLATTENING) ** 2 * math.tan(math.radians(made.arguments["lat"]))
+    made.arguments["corlat"] = math.degrees(math.atan(tangent))
+    made.true.add("geocentric")
+
+
+def _turned(made: Case) -> None:
     made.arguments["lat"] = -made.arguments["lat"]
-    made.expected.add("hemisphere")
+    made.true.add("hemisphere")
 
 
-def _rate(value: float, word: str):
-    def change(made: Case, rng: np.random.Generator) -> None:
-        made.arguments["rate"] = value
-        made.expected.add(word)
-
-    return change
+def _clock(made: Case) -> None:
+    made.arguments["fast"] = 1 + made.arguments["out"] / made.arguments["tend"]
+    made.true.add("linspace_clock")
 
 
-def _euler(method: int, word: str, low: float, high: float):
-    def change(made: Case, rng: np.random.Generator) -> None:
-        period = 2 * np.pi * np.sqrt(made.arguments["l"] / 9.80665)
-        steps = max(1, round(made.arguments["out"] / (period / rng.uniform(low, high))))
+def _from_lowest(made: Case) -> None:
+    made.arguments["zshift"] = made.arguments["l"]
+    made.true.add("z_from_lowest")
+
+
+def _step(method: int, word: str, low: float, high: float) -> Change:
+    """Take a method at `low` to `high` steps a swing, a whole number of them from row to row."""
+
+    def change(made: Case) -> None:
+        steps = max(1, round(made.arguments["out"] / (made.period / made.rng.uniform(low, high))))
         made.arguments |= {"method": method, "h": made.arguments["out"] / steps}
-        made.expected.add(word)
-        made.values[word] = made.arguments["h"]
+        made.true.add(word)
 
     return change
 
 
-def _z(sign: float, from_lowest: bool, word: str):
-    def change(made: Case, rng: np.random.Generator) -> None:
-        made.arguments |= {"zsign": sign, "zshift": made.arguments["l"] if from_lowest else 0.0}
-        made.expected.add(word)
-
-    return change
-
-
-_KINDS = (
-    ("gravity", "", _mistake("no_centrifugal", reading=1)),
-    ("gravity", "", _mistake("effective_gravity", reading=2)),
-    ("gravity", "", _mistake("no_centrifugal", reading=1)),
-    ("model", "linear", _model(1, "linear_g")),
-    ("model", "linear", _model(1, "linear_g")),
-    ("model", "linear", _model(2, "linear_in_angle")),
-    ("earth", "sphere", _mistake("sphere", invf=1e9)),
-    ("rate", "", _rate(2 * np.pi / 86400, "solar_day")),
-    ("coriolis", "", _mistake("coriolis_sign", half=-1)),
-    ("coriolis", "", _mistake("coriolis_half", half=0.5)),
-    ("coriolis", "", _mistake("no_coriolis", half=0)),
-    ("latitude", "", _radians),
-    ("latitude", "sphere", _turned),
-    ("stars", "", _mistake("inertial_rest", stars=1)),
-    ("g", "", _shifted("g", "site.gravity", 1e-5, 1e-2)),
-    ("g", "sphere", _shifted("l", "pendulum.length", 1e-4, 1e-2)),
-    ("start", "", _shifted("x0", "release.x", 1e-3, 1e-2)),
-    ("start", "", _shifted("y0", "release.y", 1e-3, 1e-2)),
-    ("drag", "", _drag),
-    ("integrator", "", _euler(0, "integrator_semi_implicit_euler", 100, 400)),
-    ("integrator", "", _euler(4, "integrator_rk4", 30, 60)),
-    ("rows", "", _mistake("unit_of_length", scale=100)),
-    ("rows", "", _mistake("unit_of_length", scale=1000)),
-    ("clock", "", _mistake("unit_of_time", tscale=60)),
-    ("clock", "", _mistake("clock_offset", toffset=1000)),
-    ("clock", "", _mistake("rows_reversed", reversed=1)),
-    ("rows", "", _mistake("xy_swapped", swap=1)),
-    ("rows", "", _z(-1, False, "z_down")),
-    ("rows", "", _z(1, True, "z_from_lowest")),
-    ("digits", "", _mistake("decimals", decimals=9)),
+_KINDS: tuple[tuple[str, Change], ...] = (
+    ("gravity", _mistake("no_centrifugal", reading=1)),
+    ("gravity", _mistake("no_centrifugal", reading=1)),
+    ("linear", _linear(1, 1, "linear_g", "no_centrifugal")),
+    ("linear", _linear(2, 1, "linear_in_angle", "no_centrifugal")),
+    ("rate", _mistake("solar_day", rate=2 * math.pi / 86400)),
+    ("rate", _mistake("rounded_rate", rate=7.29e-5)),
+    ("coriolis", _mistake("coriolis_sign", half=-1)),
+    ("coriolis", _mistake("coriolis_half", half=0.5)),
+    ("coriolis", _mistake("no_coriolis", half=0)),
+    ("coriolis", _mistake("vertical_only", north=0)),
+    ("latitude", _radians),
+    ("latitude", _turned),
+    ("latitude", _geocentric),
+    ("stars", _mistake("inertial_rest", stars=1)),
+    ("g", _shifted("g", "site.gravity", 1e-5, 1e-2)),
+    ("g", _shifted("g", "site.gravity", 1e-4, 1e-2)),
+    ("length", _shifted("l", "pendulum.length", 1e-4, 1e-2)),
+    ("start", _shifted("x0", "release.x", 1e-3, 1e-2)),
+    ("start", _shifted("y0", "release.y", 1e-3, 1e-2)),
+    ("drag", _drag),
+    ("integrator", _step(0, "integrator_semi_implicit_euler", 50, 400)),
+    ("integrator", _step(5, "integrator_semi_implicit_euler_drift", 50, 400)),
+    ("integrator", _step(3, "integrator_leapfrog", 20, 200)),
+    ("integrator", _step(1, "integrator_explicit_euler", 2000, 5000)),
+    ("integrator", _step(4, "integrator_rk4", 20, 60)),
+    ("integrator", _step(2, "integrator_rk2", 60, 300)),
+    ("clock", _clock),
+    ("clock", _mistake("unit_of_time", tscale=60)),
+    ("clock", _mistake("clock_offset", toffset=1000)),
+    ("clock", _mistake("rows_reversed", reversed=1)),
+    ("rows", _mistake("unit_of_length", scale=100)),
+    ("rows", _mistake("unit_of_length", scale=1000)),
+    ("rows", _mistake("xy_swapped", swap=1)),
+    ("rows", _mistake("y_south", ysign=-1)),
+    ("rows", _mistake("x_west", xsign=-1)),
+    ("heights", _mistake("z_down", zsign=-1)),
+    ("heights", _from_lowest),
+    ("digits", _mistake("decimals", decimals=9)),
+    ("digits", _mistake("single_precision", single=1)),
+)
+_ELLIPSOID: tuple[tuple[str, Change], ...] = (
+    ("gravity", _mistake("effective_gravity", reading=2)),
+    ("gravity", _mistake("point_mass", point=1)),
+    ("earth", _mistake("sphere", invf=1e9)),
+    ("earth", _mistake("mean_sphere", outward=6371000)),
+    ("linear", _linear(3, 0, "linear_g", "no_lift")),
+)
+_EFFECTIVE: tuple[tuple[str, Change], ...] = (
+    ("gravity", _mistake("ellipsoid_gravity", reading=0)),
+    ("gravity", _mistake("ellipsoid_gravity", reading=0, outward=6371000)),
 )

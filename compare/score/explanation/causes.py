@@ -75,6 +75,12 @@ def causes_of(case: Case, kind: str) -> Iterator[Cause]:
     if cord is not None:
         text = f"has a cord of {cord:.10g} m on average: a spring for a cord, or an integrator that leaves the sphere"
         yield Cause("stretched_cord", "pendulum.length", text, _set(length=cord), NAMED)
+    intervals = round(float(case.rows.times[-1] / case.rows.times[1])) if case.rows.times[0] == 0 else 0
+    for pace, way in (
+        ((intervals / (intervals + 1), "slow"), ((intervals + 1) / intervals, "fast")) if intervals else ()
+    ):
+        text = f"has a clock too {way} by one part in its {intervals + 1} rows (a linspace that counts its ends)"
+        yield Cause("linspace_clock", "clock", text, _set(pace=pace), NAMED, stage="clock")
     if not released:
         yield _fitted("late", "clock", "writes its rows {value} late", "late", stage="clock")
     for method in METHODS:
@@ -112,12 +118,22 @@ def _gravity(right: Program) -> Iterator[Cause]:
             yield reading(
                 "no_tilt", "no_tilt", "leaves out the horizontal centrifugal force but keeps the vertical one"
             )
+            text = "keeps the horizontal centrifugal force but leaves out the vertical one"
+            yield reading("tilt", "no_lift", text)
+            text = "takes the horizontal centrifugal force without the sine of the latitude, and no vertical one"
+            yield reading("tilt_no_sine", "tilt_no_sine", text, RARE)
             yield reading("uniform", "uniform_gravity", "treats the centrifugal force as constant along the swing")
         else:
             yield reading("none", "no_centrifugal", "leaves out the centrifugal force", 0.2)
             if right.gravity_reading == "effective":
                 text = "adds the centrifugal force to a g that contains it already (--set site.gravity_is=ellipsoid)"
                 yield reading("ellipsoid", "ellipsoid_gravity", text)
+                text = (
+                    "adds the centrifugal force, on a sphere of 6371000 m, to a g that contains it already "
+                    "(--set site.gravity_is=ellipsoid)"
+                )
+                on_sphere = _set(gravity_reading="ellipsoid", flattening=0.0, radius=MEAN_RADIUS)
+                yield Cause("ellipsoid_gravity", "gravity", text, on_sphere, RARE, stage="gravity")
     if right.radius:
         text = "has gravity fall off with the distance from the Earth's centre and point there (1/r²)"
         yield Cause("point_mass", "point_mass", text, _set(point_mass=1.0), stage="gravity")

@@ -71,7 +71,8 @@ def digits(rows: Rows) -> Rows:
                 break
             text = f"prints {decimals} decimals: no more than {noise:g} of its unit can be judged"
             return rows.changed(Deviation("decimals", text, noise), noise=noise)
-    if (values.astype(np.float32).astype(float) == values).all():
+    single = values.astype(np.float32).astype(float)
+    if same(single) or same(np.array([float(f"{value:.8e}") for value in single])):
         noise = size * float(np.finfo(np.float32).eps)
         text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
         return rows.changed(Deviation("single_precision", text, noise), noise=noise)
@@ -141,6 +142,9 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
         near = np.abs(row[:2] / scale - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2]))
         if near:  # another unit, and a release that is a little off
             return _scaled_height(_in_metres(rows, scale, text), scale, length)
+    for order, signs in ways[1:] if rename else ():
+        if np.abs(row[[*order]] * np.array(signs) - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2])):
+            return _renamed(rows, order, signs)  # other axes, and a release that is a little off
     angles = np.arcsin(np.clip(release[:2] / length, -1, 1))
     tilt = math.asin(min(1.0, float(np.hypot(*release[:2])) / length))
     polar = release[:2] / max(float(np.hypot(*release[:2])), 1e-300) * tilt
@@ -228,8 +232,11 @@ def unit_of_time(rows: Rows, frequency: float) -> Rows:
     as_printed = ratio(1.0)
     if as_printed is not None and 0.5 < as_printed < 2:
         return rows
+    spacing, span = float(np.median(np.diff(rows.times))), float(rows.times[-1] - rows.times[0])
     for unit in ("min", "h", "ms", "d"):
         scale = float(TIMES[unit])
+        if not spacing * scale * frequency < math.pi < span * scale * frequency:
+            continue  # farther apart, rows of any frequency look like those of another; closer, they show none
         scaled = ratio(scale)
         if scaled is not None and abs(scaled - 1) < 0.1:
             convention = Deviation("unit_of_time", f"counts time in {LONG_NAMES[unit]}", size)

@@ -15,7 +15,7 @@ from ...approximations import APPROXIMATIONS, Motion
 from ...candidates.candidate import Deviation
 from .causes import NAMED
 from .conventions import made_right
-from .findings import HARMLESS, Explanation, Model
+from .findings import AS_IF, HARMLESS, Explanation, Model
 from .fitted import MODELS, of_causes
 from .formulas import of_formula
 from .programs import Pendulum, Program
@@ -67,7 +67,7 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
         # the release may be at fault, and not the names of the columns
         other = of_rows(made_right(times, columns, start, right.length, frequency, rename=False))
         best = min(best, other, key=lambda explanation: explanation.score)
-    unknown = not best.causes and best.corrected_m > max(allowed_m, 1.5 * rows.noise)
+    unknown = not best.known and best.corrected_m > max(allowed_m, 1.5 * rows.noise)
     if not best.slip and (unknown or any(cause.id == "integrator_loose" for cause in best.causes)):
         wrong_term = slip(rows.times, rows.positions, scene)
         if wrong_term:  # one term of a formula, as no integrator changes it
@@ -83,7 +83,7 @@ def _of_case(case: Case, scene: Scene) -> Explanation:
     if named is not None and named.corrected_m <= case.enough:
         return named
     second = None
-    if named is None or any(cause.stage == "integrator" for cause in named.causes):
+    if named is None or any(cause.stage in ("integrator", AS_IF) for cause in named.causes):
         linear = named is not None and any(cause.id in dict(MODELS.values()) for cause in named.causes)
         second = None if linear and case.rows.cord is None else of_steps(case)
         second = second or of_formula(case)
@@ -93,7 +93,8 @@ def _of_case(case: Case, scene: Scene) -> Explanation:
 def _plain(case: Case) -> Explanation:
     """Return the explanation that has no cause."""
     left = largest(case.rows.positions - case.truth)
-    return Explanation(case.rows.conventions, corrected_m=left, score=case.score_of(left))
+    score = case.score_of(left)
+    return Explanation(case.rows.conventions, corrected_m=left, score=score, allowed_m=case.allowed_m)
 
 
 def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Explanation | None:

@@ -99,12 +99,13 @@ def _sphere(case: Case, phasors: Phasors | None, rest: float) -> Fit | None:
 
 def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
     """Return two phasors as a fit of theta, with the slopes by central differences."""
-    theta = theta_of(phasors, np.zeros(len(NAMES)))
+    theta = np.zeros(len(NAMES))
     theta[11] = right.length
+    theta = theta_of(phasors, theta)
     free = tuple(NAMES.index(name) for name in LINEAR)
     omega = abs(phasors.square) ** 0.5
     size = max(abs(phasors.start), abs(phasors.speed) / omega if omega else 0.0) or 1.0
-    sizes = {2: omega, 3: omega**2 * size, 4: omega**2 * size, 5: omega**2, 6: omega}
+    sizes = {2: omega, 3: omega**2 * size / right.length, 4: omega**2 * size / right.length, 5: omega**2, 6: omega}
     columns = []
     for i in free:
         nudge = 1e-6 * sizes.get(i, size * omega if i > 8 else size) / (1 + omega * times[-1] * (i in (2, 5, 6)))

@@ -10,6 +10,7 @@ from ...candidates.candidate import Deviation
 
 HARMLESS = ("z_constant", "decimals", "digits", "single_precision")  # conventions that a model may go with
 UNCORRECTED = (*HARMLESS, "off_the_sphere")  # conventions of which nothing is put right
+AS_IF = "as_if"  # stage of a number that no person typed: the motion is like that, the cause is not known
 BEGIN = "It seems that your program"
 
 
@@ -61,6 +62,7 @@ class Explanation:
         slip: where none is known, which part of the force is off: a sentence.
         explained: share of the root mean square error that is gone with them.
         score: decades, as in `readings`: of two explanations the lower one is the better.
+        allowed_m: distance in m that counts as agreement.
     """
 
     conventions: tuple[Deviation, ...] = ()
@@ -70,16 +72,23 @@ class Explanation:
     slip: str = ""
     explained: float = 0.0
     score: float = 0.0
+    allowed_m: float = math.inf
+
+    @property
+    def known(self) -> list[Deviation]:
+        """The causes but those that the motion is merely like."""
+        return [cause for cause in self.causes if cause.stage != AS_IF]
 
     @property
     def diagnosis(self) -> Diagnosis | None:
         """The cause that matters most, a simpler model before all; None if none is known."""
-        if not self.causes:
+        known = self.known
+        if not known:
             return None
-        models = [cause for cause in self.causes if cause.stage == "model"]
-        first = (models or sorted(self.causes, key=lambda cause: -cause.size_m))[0]
-        texts = "; it ".join(cause.text for cause in self.causes)
-        others = tuple(cause.id for cause in self.causes if cause is not first)
+        models = [cause for cause in known if cause.stage == "model"]
+        first = (models or sorted(known, key=lambda cause: -cause.size_m))[0]
+        texts = "; it ".join(cause.text for cause in known)
+        others = tuple(cause.id for cause in known if cause is not first)
         return Diagnosis(first.id, self.explained, f"{BEGIN} {texts}.", first.shift, others)
 
     def lines(self) -> Iterator[str]:
@@ -95,13 +104,14 @@ class Explanation:
             )
         elif len(self.causes) > 1:
             begin = "- "
-            yield f"{BEGIN}, most fundamental first,"
-        for cause in self.causes:
+            yield f"{BEGIN}, largest first,"
+        for cause in sorted(self.causes, key=lambda cause: -cause.size_m):
             yield f"{begin}{cause.text}: {cause.size_m:.3g} m"
         if self.slip:
             yield self.slip
         if self.causes or any(convention.id not in UNCORRECTED for convention in self.conventions):
             these = "this" if len(self.causes) == 1 else "all this"
-            yield f"With {these} put right, {self.corrected_m:.2g} m are left."
+            left, many = f"With {these} put right, {self.corrected_m:.2g} m are left", self.corrected_m / self.allowed_m
+            yield f"{left}, {many:.2g} tolerances: no known mistake explains them." if many > 1 else f"{left}."
         elif not self.slip:
             yield "No mistake known to foucault explains the error."

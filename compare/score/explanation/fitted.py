@@ -15,7 +15,8 @@ from ...observed.least_squares import by_differences, gauss_newton
 from .causes import causes_of
 from .families import fits_of
 from .findings import HARMLESS, Explanation, Model
-from .readings import SAME, Reader, Reading
+from .gate import loose, may_be_told
+from .readings import Reader, Reading
 from .unexplained import Case, largest, rms
 
 TRIED = 6  # readings of a family that are run
@@ -25,7 +26,6 @@ EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}  # decades by which a simpl
 NAMED_SHARE = 0.03  # of the error that may be left if causes are to be named
 FITTED_SHARE = 0.01  # and if one of them is a fitted number
 ORDER = ("gravity", "model", "input", "release", "frame", "clock", "integrator")
-LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
 STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
 CLEAN = 1e-3  # of what an integrator does: a named one leaves less
 WIDE = 2.0  # times the square of the swing: what the leading error of a step leaves of the whole one
@@ -119,15 +119,13 @@ def explanation_of(case: Case, reading: Reading) -> Explanation:
     corrected = largest(left)
     width = float(np.hypot(*rows.plane.T).max()) / case.right.length if kind == "sphere" else 0.0
     clean = max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
-    causes = list(in_whole_steps(causes, float(rows.times[1] - rows.times[0]), clean))
-    causes = [
-        cause
-        for cause in as_loose(causes, max(corrected - 5 * rows.noise, 0.0), case.frequency, clean)
-        if len(causes) == 1 or not trifling(cause, case.allowed_m)
-    ]
+    spacing = float(rows.times[1] - rows.times[0])
+    causes = list(in_whole_steps(causes, spacing, clean))
+    causes = list(as_loose(causes, max(corrected - 5 * rows.noise, 0.0), case.frequency, clean))
+    causes = list(may_be_told(causes, corrected, case.allowed_m, max(case.allowed_m, 2 * rows.noise), spacing))
     more = corrected > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
     if more and reader.like_a_step(reading, causes_of(case, kind)):
-        causes.append(_loose(corrected))
+        causes.append(loose(corrected))
     model = None
     simple = {cause.stage for cause in causes} <= {"gravity", "model"}
     if simple and corrected <= case.allowed_m and all(convention.id in HARMLESS for convention in rows.conventions):
@@ -213,35 +211,22 @@ def as_loose(causes: Sequence[Deviation], left: float, frequency: float, clean: 
         if _like_a_step(other) and abs(drag.shift) < 0.1 * STEP_LIKE * frequency:
             # frequency and amplitude off together and by this little: no input does that, a step does
             yield from (cause for cause in causes if cause not in (drag, other))
-            yield _loose(drag.size_m + other.size_m)
+            yield loose(drag.size_m + other.size_m)
             return
     size = max((cause.size_m for cause in causes if cause.stage == "integrator"), default=0.0)
-    loose = size > 0 and left > clean * size
+    unclear = size > 0 and left > clean * size
     for cause in causes:
         if cause.id in ("site.gravity", "pendulum.length") and _like_a_step(cause) and left > CLEAN * cause.size_m:
             if not size:
-                yield _loose(cause.size_m, cause.stage)
-        elif loose and cause.stage == "integrator":
-            yield _loose(cause.size_m)
-        elif not (loose and cause.value is not None and cause.size_m < size):
+                yield loose(cause.size_m, cause.stage)
+        elif unclear and cause.stage == "integrator":
+            yield loose(cause.size_m)
+        elif not (unclear and cause.value is not None and cause.size_m < size):
             yield cause
-
-
-def _loose(size_m: float, stage: str = "integrator") -> Deviation:
-    return Deviation("integrator_loose", LOOSE, size_m, stage)
 
 
 def _like_a_step(cause: Deviation) -> bool:
     return cause.value is not None and cause.shift is not None and abs(cause.shift) < STEP_LIKE * abs(cause.value)
-
-
-def trifling(cause: Deviation, allowed_m: float) -> bool:
-    """Return whether a cause moves nothing that counts: a small step, or the scene's own number but for such a step."""
-    if cause.stage == "integrator":
-        return cause.size_m <= allowed_m
-    if cause.value is None or cause.shift is None:
-        return False
-    return abs(cause.shift) < SAME * abs(cause.value) and cause.size_m < 10 * allowed_m
 
 
 def _model_of(kind: str, causes: Sequence[Deviation], exact: float, costs: float) -> Model | None:

@@ -25,6 +25,7 @@ NAMES = (
     "turn_x", "turn_y", "turn_z", "pull_x", "pull_y", "pull_z", "drag", "x", "y", "vx", "vy", "length", "gradient",
     "point_mass",
 )  # fmt: skip
+PER_SECOND, PER_SECOND_SQUARED = [0, 1, 2, 6, 9, 10], [3, 4, 5]
 HIGHEST = 12000.0  # m, above and below the ellipsoid: nobody hangs a pendulum farther out
 
 
@@ -34,7 +35,8 @@ class Program:
 
     Attributes:
         gravity_reading: what it makes of g: ellipsoid (the centrifugal force added), effective (it is within, its
-            change along the swing kept), none (no centrifugal force), no_tilt, uniform (no change along the swing).
+            change along the swing kept), none (no centrifugal force), no_tilt (its vertical part alone), tilt (its
+            horizontal part alone), tilt_no_sine (that without sin φ), uniform (no change along the swing).
         coriolis: factors of the Coriolis force's Ωy and Ωz, and of both.
         coriolis_latitude: the latitude of the Coriolis force in degrees, if it is another one; of any size.
         turned_plane: a pendulum that does not feel the rotation, its plane turned by hand.
@@ -43,6 +45,7 @@ class Program:
         point_mass: gravity falls off with 1/r² and points to the centre.
         kind: sphere; linear, whose restoring force is that of small swings; or angle, linear in the angle.
         late: time in s by which the rows are late.
+        pace: of its time over that of its clock.
         method: its integrator, with the `step` in s.
         nominal_rate: the scene's rotation rate, of which the gradient in theta is a part.
     """
@@ -68,6 +71,7 @@ class Program:
     point_mass: float = 0.0
     kind: str = "sphere"
     late: float = 0.0
+    pace: float = 1.0
     method: Method | None = None
     step: float = 0.0
     nominal_rate: float = 0.0
@@ -111,7 +115,7 @@ class Program:
     @property
     def gradient(self) -> float:
         """Share of the centrifugal force's change along the swing that it takes into account: 1 or 0."""
-        return float(self.gravity_reading in ("ellipsoid", "effective"))
+        return float(self.gravity_reading in ("ellipsoid", "effective", "tilt", "tilt_no_sine"))
 
     @property
     def gradient_square(self) -> tuple[float, float, float, float]:
@@ -133,20 +137,27 @@ class Program:
             pull_y, pull_z = -outward * sin, outward * cos - self.g
         elif self.gravity_reading == "no_tilt":
             pull_z = outward * cos - self.g
+        elif self.gravity_reading in ("tilt", "tilt_no_sine"):
+            pull_y = -outward * (sin if self.gravity_reading == "tilt" else 1.0)
         if self.nominal_rate:
             gradient *= (self.rate / self.nominal_rate) ** 2
-        vx, vy = self.vx + self.released * up * self.y, self.vy - self.released * up * self.x
+        stars = self.released * self.rate * math.sin(turned) * self.coriolis[1]  # no factor of the Coriolis force
+        vx, vy = self.vx + stars * self.y, self.vy - stars * self.x
         if self.turned_plane:
             north = 0.0
         a, b, c, d = self.frame
         hand = a * d - b * c
-        return np.array(
+        theta = np.array(
             [
                 hand * b * north, hand * d * north, hand * up,
                 b * pull_y / self.length, d * pull_y / self.length, pull_z / self.length,
                 self.drag, self.x, self.y, vx, vy, self.length, gradient, self.point_mass * self.g / abs(pull_z or 1.0),
             ]
         )  # fmt: skip
+        if self.pace != 1:
+            theta[PER_SECOND] *= self.pace
+            theta[PER_SECOND_SQUARED] *= self.pace**2
+        return theta
 
     def _as_computed(self, theta: Array) -> Array:
         """Return theta as the integrator, the clock and a linear model make of it."""
@@ -191,13 +202,13 @@ class Program:
 
 def phasors_of(theta: Array, square: float, start: complex) -> Phasors:
     """Return the two phasors of a linear model with the numbers of theta, but for ω² and the position at t = 0."""
-    centre = complex(theta[3], theta[4]) / square if square else 0j
+    centre = complex(theta[3], theta[4]) * theta[11] / square if square else 0j
     return Phasors.of(theta[2], square, theta[6], centre, start, complex(theta[9], theta[10]))
 
 
 def theta_of(phasors: Phasors, theta: Array) -> Array:
     """Return theta with the numbers that two phasors tell in place of its own."""
-    changed, pull = theta.copy(), phasors.centre * phasors.square.real
+    changed, pull = theta.copy(), phasors.centre * phasors.square.real / theta[11]
     changed[2], changed[6], changed[5] = phasors.beta, phasors.drag, -phasors.square.real
     changed[3:5] = pull.real, pull.imag
     changed[7:11] = phasors.start.real, phasors.start.imag, phasors.speed.real, phasors.speed.imag

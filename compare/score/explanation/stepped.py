@@ -1,4 +1,4 @@
-"""Euler's methods on the sphere, run as a program would: the Cartesian equations at a fixed step that divides the rows.
+"""Euler's methods and leapfrog on the sphere, run as a program would: at a fixed step that divides the rows.
 
 What the leading error of a step does to a wide swing is known; what Euler's first order does beside that, leaving the
 sphere on its way, is not. So the equations of a program are stepped in the same way, and what that does to the rows is
@@ -24,7 +24,8 @@ from .phasors import METHODS
 from .programs import Program
 from .unexplained import Case, largest, rms
 
-TITLES = {method.id: method.title for method in METHODS if "euler" in method.id}
+TITLES = {method.id: method.title for method in METHODS if "euler" in method.id or method.id == "leapfrog"}
+DRIFT_FIRST = ("semi_implicit_euler_drift", "leapfrog")  # before the kick at the new place
 IntArray = npt.NDArray[np.int64]
 LONGEST = 15_000  # steps that are run
 FINEST = 0.004  # ωh: the shortest step that is tried
@@ -37,7 +38,7 @@ STEP_LEFT = 1e-3  # of what the steps do that may be left
 
 @dataclass(frozen=True)
 class Steps:
-    """A method of Euler's and its number of steps from row to row, with the reading of g that it was found with."""
+    """A method and its number of steps from row to row, with the reading of g that it was found with."""
 
     method: str
     every: int
@@ -45,7 +46,7 @@ class Steps:
 
 
 def of_steps(case: Case) -> Explanation | None:
-    """Return what is known of rows that a method of Euler's made on the sphere; None if none did.
+    """Return what is known of rows that such a method made on the sphere; None if none did.
 
     The step's effect is that on a right program at first, then that on the program which the rest is read as.
     """
@@ -129,12 +130,17 @@ def _rows(case: Case, program: Program, method: str, spacing: float, every: IntA
     rows = np.full((count + 1, 2, len(every)), np.nan)
     rows[0] = np.reshape(place[:2], (2, -1))
     for done in range(1, count * int(every.max()) + 1):
-        if method == "semi_implicit_euler_drift":
+        kick = h
+        if method == "leapfrog":
+            kick = h / 2
+            rates = acceleration(tuple(place), tuple(speed), k)
+            speed = [v + kick * a for v, a in zip(speed, rates, strict=True)]
+        if method in DRIFT_FIRST:
             place = [p + h * v for p, v in zip(place, speed, strict=True)]
         rates = acceleration(tuple(place), tuple(speed), k)
         before = speed
-        speed = [v + h * a for v, a in zip(speed, rates, strict=True)]
-        if method != "semi_implicit_euler_drift":
+        speed = [v + kick * a for v, a in zip(speed, rates, strict=True)]
+        if method not in DRIFT_FIRST:
             moved = before if method == "explicit_euler" else speed
             place = [p + h * v for p, v in zip(place, moved, strict=True)]
         row = np.flatnonzero((done % every == 0) & (done // every <= count))

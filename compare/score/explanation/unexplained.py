@@ -130,7 +130,7 @@ class Case:
             slip: as in `Explanation`.
         """
         explained, score = 1 - rest / self.error, self.score_of(corrected_m) + price
-        return Explanation(self.rows.conventions, causes, model, corrected_m, slip, explained, score)
+        return Explanation(self.rows.conventions, causes, model, corrected_m, slip, explained, score, self.allowed_m)
 
     def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:
         """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""

@@ -9,7 +9,6 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy.linalg
-from mistakes import case, one_word_for_one_motion
+from mistakes import Case, case, one_word_for_one_motion, words_of
 from places import MISTAKEN_C, PENDULUM_C
 from small_scenes import make_scene
 from typer.testing import CliRunner
@@ -25,6 +24,7 @@ from typer.testing import CliRunner
 from compare.approximations import APPROXIMATIONS
 from compare.candidates.candidate import Candidate
 from compare.score.explanation.explain import explain
+from compare.score.explanation.findings import Explanation
 from compare.score.judge import judge
 from compare.score.scored import Score
 from foucault import commands
@@ -152,60 +152,50 @@ def test_a_simplification_is_a_grade_of_its_own(program: Path) -> None:
     assert scored(program, "solar_day", "--as-model")[0] == 1
 
 
-@dataclass(frozen=True)
-class Told:
-    """What ought to be said of a case, what is said, and whether its first cause and its numbers are right."""
-
-    expected: set[str]
-    said: set[str]
-    first: str | None
-    numbers: bool
-
-    @property
-    def right(self) -> bool:
-        return self.said == self.expected and self.numbers
-
-    @property
-    def wrong(self) -> bool:
-        return self.first is not None and self.first not in self.expected
+def told(made: Case, times: np.ndarray, columns: dict[str, np.ndarray]) -> Explanation:
+    return explain(times, columns, made.scene, made.allowed_m)
 
 
-def table_case(program: Path, number: int) -> Told:
-    """Explain the output of a case; numbers are right within 1 % or the uncertainty that is stated."""
-    made = case(number)
-    times, columns = made.rows(program)
-    position = made.scene.exact.position
-    assert position is not None
-    found = explain(times, columns, made.scene, 1e-6 * float(np.hypot(float(position[0]), float(position[1]))))
-    said = one_word_for_one_motion({one.id for one in (*found.causes, *found.conventions)})
-    numbers = all(
-        abs(one.shift - made.values[one.id]) <= max(0.01 * abs(made.values[one.id]), one.uncertainty or 0.0)
-        for one in found.causes
-        if one.shift is not None and one.id in made.values
-    )
-    expected = made.said(columns)
-    largest = max(found.causes, key=lambda one: one.size_m, default=None)
-    first = None if largest is None else largest.id
-    if first in ("no_centrifugal", "no_coriolis") and first not in said:
-        first = "no_rotation"
-    return Told(expected, said, first, numbers)
-
-
-def test_one_to_three_mistakes_drawn_at_random_are_named(
+def test_no_word_is_wrong_of_programs_with_one_to_three_mistakes(
     mistaken: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
 ) -> None:
-    """Of this draw: every word right and none besides in 95 %, and never a wrong one first. Others reach 85 to 88 %."""
-    count = size(10, 60)
+    count, right, whole, wrong = size(20, 300), 0, 0, {}
     begun = time.process_time()
-    table = {number: table_case(mistaken, number) for number in range(count)}
-    missed = {number: one for number, one in table.items() if not one.right}
+    for number in range(count):
+        made = case(number)
+        found = told(made, *made.rows(mistaken))
+        if made.wrong(found):
+            wrong[number] = made.wrong(found)
+        elif one_word_for_one_motion(made.true) & one_word_for_one_motion(words_of(found)):
+            right += 1
+            whole += one_word_for_one_motion(made.true) <= one_word_for_one_motion(words_of(found))
     spent = time.process_time() - begun
-    tally(f"mistakes drawn at random: {count - len(missed)} of {count} right, {spent:.0f} CPU s")
-    assert not [one for one in table.values() if one.wrong]
-    assert len(missed) <= (1 - SHARE) * count, missed
+    named = f"{whole} named whole, {right} in part, {len(wrong)} wrong"
+    tally(f"mistakes drawn at random: of {count} {named}, {spent:.0f} CPU s")
+    assert not wrong
+    assert right >= SHARE * count
 
 
-SHARE = 0.95
+SHARE = 0.8
+
+
+def test_nothing_is_said_of_right_programs(mistaken: Path, size: Callable[[int, int], int]) -> None:
+    for number in range(size(4, 200)):
+        made = case(number, seed=18, most=0)
+        found = told(made, *made.rows(mistaken))
+        assert not found.causes and not made.wrong(found), number
+
+
+def test_nothing_is_named_of_a_smooth_random_error(mistaken: Path, size: Callable[[int, int], int]) -> None:
+    for number in range(size(4, 100)):
+        made = case(number, seed=19, most=0)
+        times, columns = made.rows(mistaken)
+        scale = 10 ** made.rng.uniform(-5, -1) * made.allowed_m * 1e6
+        for name in columns:
+            rates = made.rng.uniform(0.05, 3, 6) * 2 * np.pi / made.period
+            waves = np.sin(times[:, None] * rates + made.rng.uniform(0, 6, 6)).sum(axis=1)
+            columns[name] = columns[name] + scale * waves / 6
+        assert not made.wrong(told(made, times, columns)), number
 
 
 @pytest.mark.parametrize("noise_m", [0.0, 1e-3])
