@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,11 +17,11 @@ if TYPE_CHECKING:
 
 ROWS_OF_JSON = 10_000  # with a folder, no more are printed
 SHOWN = {
-    "frequency_hz": "frequency (Hz)",
+    "swing_hz": "frequency (Hz)",
     "precession_deg_per_h": "precession (°/h)",
     "transits": "transits",
     "max_angle_deg": "angle (°)",
-    "position_error_m": "error (m)",
+    "position_error_m": "estimated error (m)",
 }  # columns of the table, and their heads
 
 
@@ -77,15 +78,16 @@ def text(swept: Swept, out: Path | None) -> str:
     cost = f"CPU {tally.cpu_s + tally.store_s:.2f} s, compiling {swept.compile_s:.2f} s; {swept.request.engine}"
     lines = []
     if out is None:
-        names = [name for name in SHOWN if name in swept.names]
+        columns = {column.name: column for column in swept.request.columns}
+        shown = [columns[name] for name in SHOWN if name in columns]
         keys = list(swept.request.table.values)
         rows = []
         for number, row in enumerate(swept.rows()):
             texts = swept.request.table.texts(number)
             ok = row["status"] == Status.OK.value
-            results = [_cell(name, row[name]) if ok else "" for name in names]
+            results = [_cell(row[column.name], row.get(column.error)) if ok else "" for column in shown]
             rows.append((*(texts[key] for key in keys), *results, "" if ok else f"{row['status']}: {row['reason']}"))
-        heads = (*keys, *(SHOWN[name] for name in names))
+        heads = (*keys, *(SHOWN[column.name] for column in shown))
         lines += Table({**dict.fromkeys(heads, "number"), "": ""}, rows).lines()
     else:
         lines.append(f"{out}: {swept.request.parts} parts in Parquet")
@@ -95,9 +97,14 @@ def text(swept: Swept, out: Path | None) -> str:
     return "\n".join([*lines, total, cost])
 
 
-def _cell(name: str, value: Any) -> str:
+def _cell(value: Any, error: float | None) -> str:
+    """Return a number with the digits that its error leaves, or ± the error where that is larger; an error with two."""
     if value is None:
         return "–"
     if isinstance(value, int):
         return str(value)
-    return f"{value:.1e}" if name.endswith("error_m") else f"{value:.12g}"
+    if error is None:
+        return f"{value:.1e}"
+    if error >= abs(value):
+        return f"± {error:.1e}"
+    return f"{value:.{math.floor(math.log10(abs(value))) - math.ceil(math.log10(error)) + 1}g}"

@@ -22,8 +22,7 @@ from ..system.imports import missing, switched_off
 
 OK, DOUBTFUL, STOPPED = 0, 1, 2  # what became of a row, in `Outcomes.fate`
 CLOSE_PAIR = 0.25  # of the period 2π/√|c| of a small swing, in which ordinary transits are half a period apart
-LEAST_BEND = 1e-6
-_SAME = 2.0**-94  # of a row's velocities: u' that is less at the release is zero
+LEAST_BEND = 1e-6  # of a highest point: below it the orbit is conical
 
 
 @dataclass(frozen=True)
@@ -42,6 +41,8 @@ class Rows:
         n: position over l at t = 0, a unit vector, shape (n, 3, 2).
         V: n' + Ω × n at t = 0, in 1/s, shape (n, 3, 2).
         zeros_at_release: multiplicity of xdot's zero at t = 0 by the exact inputs, 0, 1 or 2, shape (n,), int64.
+        rising: sign of u', the rate at which the bob rises along the plumb line, at t = 0 by the exact inputs: -1, 0 or
+            1, shape (n,), int64.
         still: whether xdot is zero at all times by the exact inputs, shape (n,): such a row has no transits.
     """
 
@@ -53,6 +54,7 @@ class Rows:
     n: Array
     V: Array
     zeros_at_release: Any
+    rising: Any
     still: Any
 
     def __len__(self) -> int:
@@ -129,7 +131,9 @@ class Outcomes:
         least_bend: smallest -u''/(|c| (1 - u²)) at a highest point, u = -n·c/|c|: about 1 for a swing in a plane, 0
             for a conical orbit; where it is below `LEAST_BEND` there are no highest points to speak of, and none
             are counted.
-        largest_angle: largest angle from the plumb line at a highest point or the release, in rad.
+        least_fall: smallest -u'' at a highest point, in 1/s².
+        largest_angle: largest angle from the plumb line in the whole span, in rad: at a highest point, the release or
+            the end.
         transit_row, transit_t, transit_direction: of every transit, ordered by row and time; empty if not wanted.
     """
 
@@ -146,6 +150,7 @@ class Outcomes:
     apsis_last: Array
     turn: Array
     least_bend: Array
+    least_fall: Array
     largest_angle: Array
     transit_row: Any
     transit_t: Array
@@ -232,9 +237,7 @@ class PlumbAxes:
         sin, cos: the direction up, north and up.
         turn: Ω without its part to the east, which is 0.
         n, V: as in `Rows`.
-        udot: u', the rate at which the bob rises at the release, over l.
         speed: a bound of the velocities over l.
-        level: whether u' is exactly zero at the release.
     """
 
     size: DoubleDouble
@@ -243,9 +246,7 @@ class PlumbAxes:
     turn: tuple[DoubleDouble, DoubleDouble]
     n: tuple[DoubleDouble, DoubleDouble, DoubleDouble]
     V: tuple[DoubleDouble, DoubleDouble, DoubleDouble]
-    udot: DoubleDouble
     speed: Array
-    level: Any
 
     @classmethod
     def of(cls, rows: Rows) -> Self:
@@ -256,9 +257,8 @@ class PlumbAxes:
         sin, cos = plumb_line(north, up, size, np.where(size.vanishes, 1.0, 0.0))
         turn = turned(of(rows.turn[:, 1]), of(rows.turn[:, 2]), sin, cos)
         n, V = ((of(part[:, 0]), *turned(of(part[:, 1]), of(part[:, 2]), sin, cos)) for part in (rows.n, rows.V))
-        udot = V[2] + turn[0] * n[0]
         speed = np.abs(rows.V[:, :, 0]).sum(1) + np.abs(rows.turn[:, :, 0]).sum(1)
-        return cls(size, sin, cos, turn, n, V, udot, speed, np.abs(udot.high) <= _SAME * speed)
+        return cls(size, sin, cos, turn, n, V, speed)
 
 
 def moved(numbers: Array, way: int) -> Array:
@@ -267,7 +267,7 @@ def moved(numbers: Array, way: int) -> Array:
     return np.where(numbers == 0, 0.0, np.nextafter(numbers, beyond)) if way else numbers
 
 
-def plumb_line(north: Any, up: Any, size: Any, none: Array) -> tuple[Any, Any]:
+def plumb_line(north: Any, up: Any, size: Any, none: Array | int) -> tuple[Any, Any]:
     """Return the unit vector up along -c; the vertical where there is no force, `none` 1 instead of 0."""
     return -north / (size + none), (none - up) / (size + none)
 

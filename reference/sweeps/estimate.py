@@ -26,6 +26,9 @@ WILD_FACTOR = 64.0  # where there are three runs
 LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
 HALF_ULP = 2.0**-53  # of a number just above 1, relative
 GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
+OFFSETS = 2.5  # of the rest position: beyond 2 there are no highest points near the plumb line that signs may miss
+LATE = 0.25  # of a swing's half: highest points that may be as late cannot be counted
+HEIGHT = FACTOR * LEAST_ULPS * HALF_ULP  # what rounding may do to a height over the cord length
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
 MOVED, MOVED_BACK = (Wanted(transits=False, apsides=False, moved=way) for way in (1, -1))
 
@@ -42,6 +45,7 @@ class Errors:
         precession: in degrees an hour.
         angle: of the largest angle, in degrees.
         undecided: where the number of transits hangs on these errors.
+        unsure_of_highest: where that of highest points does.
     """
 
     position: Array
@@ -52,12 +56,13 @@ class Errors:
     precession: Array
     angle: Array
     undecided: Array
+    unsure_of_highest: Array
 
 
 def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     """Return the errors of a run, and which rows stop where they are moved: at least one more run, by its engine."""
     moved = engine.solve(rows, MOVED)
-    estimated, stopped = errors(rows, run, moved), moved.fate == STOPPED
+    estimated, stopped = errors(rows, run, *_of_state(rows, run, moved)), moved.fate == STOPPED
     wild = ~(estimated.position <= GROWN * rows.length[:, 0]) | _reaches_the_pivot(rows)
     grown = np.flatnonzero(~stopped & wild)
     if not len(grown):
@@ -68,7 +73,8 @@ def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     near, far = (np.linalg.norm(rate * gap[:, :3], axis=1) + np.linalg.norm(gap[:, 3:], axis=1) for gap in gaps)
     state[grown[far > near]] = back.state[far > near]
     stopped[grown] |= back.fate == STOPPED
-    return errors(rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR)), stopped
+    of_state = _of_state(rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR))
+    return errors(rows, run, *of_state), stopped
 
 
 def _reaches_the_pivot(rows: Rows) -> Any:
@@ -77,8 +83,8 @@ def _reaches_the_pivot(rows: Rows) -> Any:
     return (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
 
 
-def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> Errors:
-    """Return the errors of a run, from the run that was moved, and what their difference is multiplied by."""
+def _of_state(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> tuple[Array, Array]:
+    """Return the errors of position and velocity, from the run that was moved, and what their difference counts."""
     length, rate = rows.length[:, 0], rows.rate
     gap = run.state - moved.state
     position, velocity = np.linalg.norm(gap[:, :3], axis=1), np.linalg.norm(gap[:, 3:], axis=1)
@@ -87,10 +93,18 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
     with np.errstate(divide="ignore", invalid="ignore"):
         # where a swing is late its position tells at the lowest point, its velocity at the highest
         position = factor * np.fmax(position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp))
-        velocity = factor * np.fmax(velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed)))
+        return position, factor * np.fmax(velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed)))
+
+
+def errors(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Errors:
+    """Return the errors of a run that follow from those of position and velocity, in m and m/s."""
+    length, speed = rows.length[:, 0], np.linalg.norm(run.state[:, 3:], axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
         transit = velocity / run.least_ax + np.spacing(run.t_last)
         frequency = (run.transits - 1) * transit / (run.t_last - run.t_first) ** 2
         swing, precession = _of_swing(rows, run, position, velocity)
+        late = swing * (run.apsis_last - run.apsis_first) > LATE
+        unsure_of_highest = np.logical_or(late, _unsure_of_highest(rows, run, position, velocity))
     return Errors(
         position=position,
         velocity=velocity,
@@ -99,8 +113,9 @@ def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = F
         swing=swing,
         precession=precession,
         # the height, which rounds to about an ulp, tells little of an angle next to the top
-        angle=np.degrees(position / length + factor * LEAST_ULPS * HALF_ULP * np.tan(run.largest_angle / 2)),
+        angle=np.degrees(position / length + np.fmin(HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * HEIGHT))),
         undecided=_undecided(rows, run, velocity, speed),
+        unsure_of_highest=unsure_of_highest,
     )
 
 
@@ -125,20 +140,30 @@ def _of_swing(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> tu
 
     With u the height of the bob over l, u' is wrong at a highest point by the velocity's error times sin θ, and where
     the bob passes, by its speed times the position's error; that over u'' is how late the point is, and the bob turns
-    about the plumb line meanwhile. Over the top, sin θ may be next to nothing.
+    about the plumb line meanwhile. Over the top, sin θ may be next to nothing, and u'' is not.
     """
-    length, rate = rows.length[:, 0], rows.rate
-    shrunk = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)  # amplitude at the end, over the largest
+    length, rate, turn = rows.length[:, 0], rows.rate, np.linalg.norm(rows.turn[..., 0], axis=1)
     highest = np.sin(run.largest_angle)
-    sine = np.fmin(highest, np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk)
-    passing = (_fastest(rows) + np.linalg.norm(rows.turn[..., 0], axis=1)) / highest  # about the plumb line, in rad/s
+    sine = np.fmin(highest, np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk(rows))
+    weakest = rate * np.sqrt(run.least_fall * run.least_bend)  # u'' over sin θ
+    # a point that is not high passes no faster than on a cone, seen from the Earth: seldom as fast as the energy allows
+    low, round_, offset = run.largest_angle < np.pi / 4, 2 * (rate + 2 * turn), 2 * turn**2 / rate
+    fastest = _fastest(rows) + turn
+    passing = np.where(low, round_ / weakest + offset / run.least_fall, fastest / run.least_fall)
     span = run.apsis_last - run.apsis_first
-    late = (velocity + passing * position) / (rate**2 * length * sine * run.least_bend) + np.spacing(run.apsis_last)
-    turned = position / (length * sine) + passing * late
+    slow = velocity * np.fmin(1 / weakest, 1 / run.least_fall)
+    late = (slow + passing * position) / length + np.spacing(run.apsis_last)
+    turned = position / (length * sine) + np.where(low, round_ + offset / sine, fastest / highest) * late
     several = run.apsides > 1
     swing = np.where(several, (run.apsides - 1) * late / span**2, np.nan)
     drift = 2 * turned / span + np.abs(run.turn) * 2 * late / span**2
     return swing, np.where(several, drift * DEGREES_PER_HOUR, np.nan)
+
+
+def shrunk(rows: Rows) -> Array:
+    """Return the amplitude at the end over the largest, where drag makes it smaller."""
+    share: Array = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)
+    return share
 
 
 def _undecided(rows: Rows, run: Outcomes, velocity: Array, speed: Array) -> Array:
@@ -151,3 +176,19 @@ def _undecided(rows: Rows, run: Outcomes, velocity: Array, speed: Array) -> Arra
     pair = (run.close_pairs > 0) & (run.least_ax**2 < 4 * jerk * velocity)
     undecided: Array = ~rows.still & (at_end | pair)
     return undecided
+
+
+def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
+    """Return where a highest point may lie on either side of the end, or near the plumb line and be missed.
+
+    There are such where the rest position, which is not quite on that line, is as far from it as the swing reaches.
+    """
+    length, down = rows.length[:, 0], rows.pull[..., 0] / rows.rate[:, None] ** 2
+    n, v = run.state[:, :3] / length[:, None], run.state[:, 3:]
+    sine, speed = np.linalg.norm(np.cross(n, down), axis=1) + position / length, np.linalg.norm(v, axis=1)
+    at_end = np.abs((v * down).sum(axis=1)) <= velocity * sine + speed * position / length
+    turn = rows.turn[..., 0]
+    offset = np.abs((turn * down).sum(axis=1)) * np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
+    near = run.least_bend * np.sin(run.largest_angle) < OFFSETS * offset
+    unsure: Array = (run.apsides > 0) & (at_end | near)
+    return unsure

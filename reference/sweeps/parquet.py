@@ -21,6 +21,7 @@ from ..system.imports import missing
 FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE = "frequency", "precession", "transits", "state", "amplitude"
 TIMES = "transit-times"
 WANTS = (FREQUENCY, PRECESSION, TRANSITS, STATE, AMPLITUDE)  # what `all` means; the times of the transits are more
+SWING = (FREQUENCY, PRECESSION)
 WORDS = "dictionary"  # the kind of a column of words that repeat
 
 _PART, _SEAL = "foucault.part", "foucault.seal"  # keys of a file's metadata
@@ -35,6 +36,7 @@ class Column:
     kind: str
     meaning: str
     wants: tuple[str, ...] = ()  # present where one of these is wanted; always if empty
+    error: str = ""  # the column of its error
 
     def empty(self, count: int) -> Any:
         """Return the column of some rows with nothing known: NaN, 0, or None."""
@@ -57,20 +59,22 @@ COLUMNS = (
     Column("steps", "int32", "steps taken"),
     Column("transits", "int32", "zeros of xdot in 0 < t <= t_end", (TRANSITS, FREQUENCY)),
     Column("close_pairs", "int32", "pairs of transits nearer than a quarter of a swing", (TRANSITS, FREQUENCY)),
-    Column("t_first_s", "float64", "time of the first transit", (TRANSITS, FREQUENCY)),
-    Column("t_last_s", "float64", "time of the last transit", (TRANSITS, FREQUENCY)),
+    Column("t_first_s", "float64", "time of the first transit", (TRANSITS, FREQUENCY), "transit_error_s"),
+    Column("t_last_s", "float64", "time of the last transit", (TRANSITS, FREQUENCY), "transit_error_s"),
     Column("transit_error_s", "float64", "error of the worst transit's time", (TRANSITS, FREQUENCY)),
-    Column("frequency_hz", "float64", "(n - 1)/(2 (t_n - t_1)) over the transits", (FREQUENCY,)),
+    Column("frequency_hz", "float64", "(n - 1)/(2 (t_n - t_1)) over the transits", (FREQUENCY,), "frequency_error_hz"),
     Column("frequency_error_hz", "float64", "its error", (FREQUENCY,)),
-    Column("swing_hz", "float64", "(m - 1)/(2 (τ_m - τ_1)) over the highest points", (FREQUENCY, PRECESSION)),
-    Column("swing_error_hz", "float64", "its error", (FREQUENCY, PRECESSION)),
-    Column("precession_deg_per_h", "float64", "turn of the highest points' azimuth, east to north", (PRECESSION,)),
+    Column("swing_hz", "float64", "(m - 1)/(2 (τ_m - τ_1)) over the highest points", SWING, "swing_error_hz"),
+    Column("swing_error_hz", "float64", "its error", SWING),
+    Column("precession_deg_per_h", "float64", "its turn, east to north", (PRECESSION,), "precession_error_deg_per_h"),
     Column("precession_error_deg_per_h", "float64", "its error", (PRECESSION,)),
-    Column("precession_ratio", "float64", "precession over -Ω sin(latitude)", (PRECESSION,)),
-    *(Column(name, "float64", f"{name.split('_')[0]} at t_end", (STATE,)) for name in STATE_COLUMNS),
+    Column("precession_ratio", "float64", "precession over -Ω sin(latitude)", (PRECESSION,), "precession_ratio_error"),
+    Column("precession_ratio_error", "float64", "its error", (PRECESSION,)),
+    *(Column(f"{name}_m", "float64", f"{name} at t_end", (STATE,), "position_error_m") for name in POSITION),
+    *(Column(f"{name}_m_s", "float64", f"{name} at t_end", (STATE,), "velocity_error_m_s") for name in VELOCITY),
     Column("position_error_m", "float64", "error of the position at t_end"),
     Column("velocity_error_m_s", "float64", "error of the velocity at t_end", (STATE,)),
-    Column("max_angle_deg", "float64", "largest angle from the plumb line, at the release or a turn", (AMPLITUDE,)),
+    Column("max_angle_deg", "float64", "largest angle from the plumb line", (AMPLITUDE,), "max_angle_error_deg"),
     Column("max_angle_error_deg", "float64", "its error", (AMPLITUDE,)),
 )  # fmt: skip
 TRANSIT_COLUMNS = (

@@ -11,15 +11,16 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import OK, STOPPED, Batch, Outcomes, Rows
+from ..engines.batch_interface import OK, STOPPED, Batch, Rows
 from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
 from .axes import TEXTS
-from .estimate import DEGREES_PER_HOUR, Errors, judged
-from .parquet import COLUMNS, STATE_COLUMNS, TRANSIT_COLUMNS
+from .estimate import judged
+from .parquet import COLUMNS, TRANSIT_COLUMNS
 from .promote import Promoted, promoted
 from .request import Request
+from .row_columns import columns_of
 from .row_constants import engine_rows
 
 Promote = Callable[..., Promoted]
@@ -160,17 +161,17 @@ def _solve(request: Request, part: Part, places: Any, rows: Rows, promote: Promo
     rows, places = rows[sound], places[sound]
     if request.promotes:
         more |= dict.fromkeys(places.tolist(), "")
-    if len(places) and (request.wanted.apsides or not request.promotes):
+    elif len(places):
         more |= _side_by_side(request, part, places, rows)
     for place, reason in sorted(more.items()):
-        if reason == STOPPED_REASON and not request.promotes:
+        if reason == STOPPED_REASON:
             part.fail(place, Status.GAVE_UP, reason)
         else:
             _promote(request, part, place, reason, promote)
 
 
 def _promote(request: Request, part: Part, place: int, reason: str, promote: Promote) -> None:
-    """Have the solver solve a row; what it does not give stays as computed.
+    """Have the solver solve a row: all its columns are the solver's.
 
     The reason for it, empty if by request, stays the row's reason where the solver failed.
     """
@@ -195,13 +196,15 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
         of_engine, at = rows[chosen], places[chosen]
         run = engine.solve(of_engine, wanted)
         errors, lost = judged(engine, of_engine, run)
-        part.fill(at, _results(of_engine, run, errors))
+        columns, unknown = columns_of(of_engine, run, errors)
+        part.fill(at, {**columns, "status": Status.OK.value})
         part.columns["engine"][at] = engine.name
         if wanted.times:
             listed = part.columns["row"][at][run.transit_row]
             part.list_transits([], listed, run.transit_t, run.transit_direction)
         stopped = (run.fate == STOPPED) | lost
-        unsure = (run.fate != OK) | (errors.undecided if wanted.transits else False)
+        unsure = (run.fate != OK) | errors.unsure_of_highest | (errors.undecided if wanted.transits else False)
+        unsure |= unknown
         if request.tolerance is not None:
             unsure = unsure | ~(errors.position <= request.tolerance)
         more |= dict.fromkeys(at[unsure].tolist(), DOUBTFUL_REASON)
@@ -215,35 +218,6 @@ def _shared(name: str, rows: Rows) -> list[tuple[Batch, Any]]:
     chosen = np.full(len(rows), engine.drag) | (rows.drag[:, 0] == 0)
     shares = ((engine, chosen), (batches()["heyoka"], ~chosen))
     return [(solver, share) for solver, share in shares if share.any()]
-
-
-def _results(rows: Rows, run: Outcomes, errors: Errors) -> dict[str, Any]:
-    """Return the columns of rows that were solved side by side."""
-    span, swings = run.t_last - run.t_first, run.apsis_last - run.apsis_first
-    with np.errstate(divide="ignore", invalid="ignore"):
-        precession = np.where(run.apsides > 1, run.turn / swings * DEGREES_PER_HOUR, np.nan)
-        vertical = -rows.turn[:, 2, 0] * DEGREES_PER_HOUR
-        return {
-            "status": Status.OK.value,
-            "steps": run.steps,
-            "transits": run.transits,
-            "close_pairs": run.close_pairs,
-            "t_first_s": run.t_first,
-            "t_last_s": run.t_last,
-            "transit_error_s": errors.transit,
-            "frequency_hz": np.where(run.transits > 1, (run.transits - 1) / (2 * span), np.nan),
-            "frequency_error_hz": errors.frequency,
-            "swing_hz": np.where(run.apsides > 1, (run.apsides - 1) / (2 * swings), np.nan),
-            "swing_error_hz": errors.swing,
-            "precession_deg_per_h": precession,
-            "precession_error_deg_per_h": errors.precession,
-            "precession_ratio": np.where(vertical != 0, precession / vertical, np.nan),
-            **dict(zip(STATE_COLUMNS, run.state.T, strict=True)),
-            "position_error_m": errors.position,
-            "velocity_error_m_s": errors.velocity,
-            "max_angle_deg": np.degrees(run.largest_angle),
-            "max_angle_error_deg": errors.angle,
-        }
 
 
 def _finite(rows: Rows) -> Any:

@@ -8,18 +8,18 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..errors import FoucaultError
-from ..numbers.columns import POSITION, STATE, VELOCITY
 from ..scenes.scene import LEVELS, Level
 from ..status import Status
-from .parquet import STATE_COLUMNS
 from .request import Request
+from .row_columns import columns_of
+from .row_constants import engine_rows
+from .solved import outcomes_of
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 LEAST_LEVEL: Level = "self_consistent"  # that settles a doubt
 DIGITS = 17  # that show a double
 AUDIT_DIGITS = 28  # at about 110 bits
+COUNTS = ("transits", "close_pairs")  # that an audit compares as well
 
 
 @dataclass(frozen=True)
@@ -65,37 +66,18 @@ def promoted(
         solution = solve(scene, level=wished, digits=digits, transits=request.wanted.transits)
     except FoucaultError as error:
         return Promoted({}, ([], []), str(error))
-    return Promoted(_values(solution), _times(solution))
+    return Promoted(_values(request, row, solution), _times(solution))
 
 
-def _values(solution: Solution) -> dict[str, Any]:
-    """Return the columns that a solution gives."""
-    grid, transits = solution.grid, solution.transits
-    bounds = {name: grid.bound(name)[-1] for name in STATE}
-    values: dict[str, Any] = {
+def _values(request: Request, row: int, solution: Solution) -> dict[str, Any]:
+    """Return the columns of a row that was solved."""
+    rows = engine_rows(request.scene, request.table, [row])
+    columns, _ = columns_of(rows, *outcomes_of(solution, rows, request.wanted.apsides))
+    return {name: values[0] for name, values in columns.items()} | {
         "level": solution.level,
         "engine": solution.run.engine,
         "digits": solution.scene.run.digits,
-        "steps": solution.run.steps,
-        **{name: grid[column][-1] for name, column in zip(STATE_COLUMNS, STATE, strict=True)},
-        "position_error_m": _norm([bounds[name] for name in POSITION]),
-        "velocity_error_m_s": _norm([bounds[name] for name in VELOCITY]),
-        "transits": len(solution.directions),
     }
-    names = ("t_first_s", "t_last_s", "frequency_hz", "frequency_error_hz", "transit_error_s")
-    values |= dict.fromkeys(names, np.nan)
-    if solution.directions:
-        times, bound = transits.exact("t"), max(transits.bound("t"))
-        values |= {"t_first_s": float(times[0]), "t_last_s": float(times[-1]), "transit_error_s": float(bound)}
-        if len(times) > 1:
-            span, gaps = times[-1] - times[0], len(times) - 1
-            values["frequency_hz"] = float(Fraction(gaps) / (2 * span))
-            values["frequency_error_hz"] = float(gaps * bound / span**2)
-    return values
-
-
-def _norm(bounds: list[Any]) -> float:
-    return float(np.sqrt(sum(float(bound) ** 2 for bound in bounds)))
 
 
 def _times(solution: Solution) -> tuple[list[float], list[int]]:
@@ -143,23 +125,16 @@ def sample(request: Request) -> list[int]:
 
 
 def worst_ratio(request: Request, number: int, row: Mapping[str, Any]) -> float:
-    """Return the largest error of a row over its estimate; infinite where its transits are miscounted."""
+    """Return the largest error of a row over its estimate; infinite where a count is wrong, or a number not there."""
     truth = promoted(request, number, doubtful=False, level="computed", digits=AUDIT_DIGITS)
     if truth.failure:
         return np.inf
     values, ratios = truth.values, [0.0]
-    if "x_m" in row:
-        position = [row[name] - values[name] for name in STATE_COLUMNS[:3]]
-        velocity = [row[name] - values[name] for name in STATE_COLUMNS[3:]]
-        ratios += [
-            float(np.linalg.norm(position)) / row["position_error_m"],
-            float(np.linalg.norm(velocity)) / row["velocity_error_m_s"],
-        ]
-    if "transits" in row:
-        if row["transits"] != values["transits"]:
+    for column in request.columns:
+        name, error = column.name, column.error
+        if name in COUNTS and row[name] != values[name]:
             return np.inf
-        for name in ("t_first_s", "t_last_s") if row["transits"] else ():
-            ratios.append(abs(row[name] - values[name]) / row["transit_error_s"])
-        if row["transits"] > 1 and "frequency_hz" in row:
-            ratios.append(abs(row["frequency_hz"] - values["frequency_hz"]) / row["frequency_error_hz"])
+        if error and np.isfinite(values[name]):
+            ratio = abs(row[name] - values[name]) / (row[error] + values[error])
+            ratios.append(np.inf if np.isnan(ratio) else ratio)
     return max(ratios)

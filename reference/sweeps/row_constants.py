@@ -29,6 +29,7 @@ POSITION = ("x", "y", "vx", "vy")
 ANGLES = ("angle", "azimuth", "angle_rate", "azimuth_rate")
 _AT_ONCE = 8192  # rows whose working arrays fit into a processor's cache
 _NEARLY = 1e-9
+_SAME = 2.0**-94  # of two parts of u': if their sum is less, it is zero
 
 
 def columns_of(inputs: Inputs) -> dict[str, DoubleDouble]:
@@ -116,6 +117,8 @@ def _of_block(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
         centrifugal=(rate * rate, up * up, -(north * up), north * north),
     )
     at_rest = v[0].vanishes & v[1].vanishes & v[2].vanishes
+    falls = pull_north * v[1], pull_up * v[2]  # along c
+    fall, size = (falls[0] + falls[1]).high, abs(falls[0].high) + abs(falls[1].high)
     return Rows(
         length=_stacked((length,), count)[:, 0],
         drag=_stacked((columns["drag"],), count)[:, 0],
@@ -125,6 +128,7 @@ def _of_block(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
         n=_stacked(n, count),
         V=_stacked(add(v, cross(k.turn, n)), count),
         zeros_at_release=_spread(np.where(~v[0].vanishes, 0, np.where(n[0].vanishes & at_rest, 2, 1)), count),
+        rising=_spread(np.where(np.abs(fall) <= _SAME * size, 0, -np.sign(fall)).astype(np.int64), count),
         still=_spread(at_rest & _balanced(n, k) | rate.vanishes & n[0].vanishes & v[0].vanishes, count),
     )
 

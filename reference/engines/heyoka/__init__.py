@@ -5,7 +5,7 @@ it loses, which it tells its log alone, shows in signs; outcome codes are checke
 custom memory handler; the disk cache never hits beyond 128 bits and is switched off for `real`.
 
 - `engine`: its declaration; `run`: a plan integrated, and the polynomials of each step for a proof.
-- `batch`, `loop`: many scenes, one after the other; `row_zeros`: what the zeros in a row say, guarded.
+- `batch`, `loop`: many scenes, one after the other.
 - `system`: a formulation as its expressions and as text; its cache on disk.
 - `model`: its number types, with exact conversions; any system without events, in one call; a formulation with a
   scene's constants in a number type.

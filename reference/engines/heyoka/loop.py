@@ -13,7 +13,7 @@ import numpy as np
 from ...model.constants import Constants
 from ...numbers.precision import DOUBLE, Array
 from ..batch_interface import STOPPED, Outcomes, PlumbAxes, Rows, Wanted, moved, turned
-from .row_zeros import (
+from ..row_zeros import (
     HEIGHT,
     MODEL,
     TRANSIT,

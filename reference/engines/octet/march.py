@@ -11,8 +11,20 @@ import numpy as np
 import numpy.typing as npt
 
 from ...system.machine_code import kept
-from ..batch_interface import DOUBTFUL, STOPPED
-from ..limbs.lanes import LANES, OPTIONS, at_least, compiled, load, occupied, spread, store, where
+from ..batch_interface import DOUBTFUL, LEAST_BEND, STOPPED
+from ..limbs.lanes import (
+    LANES,
+    OPTIONS,
+    at_least,
+    compiled,
+    larger,
+    load,
+    magnitude,
+    occupied,
+    spread,
+    store,
+    where,
+)
 from ..limbs.limb import Array, aligned
 from . import rows
 from .lane_zeros import (
@@ -32,6 +44,7 @@ from .lane_zeros import (
 )
 from .series import Series, empty_series, step_length, sum_series, taylor_coefficients, udot_of, xdot_of
 
+LEAST_RATE = 1e-300  # of u' at a release that rises or falls: it keeps its sign
 SHORTEST = 2.0**-40  # of a row's unit of time: a step that is shorter stops the row
 NEXT, DONE, ROW = range(3)  # in `March.counts`
 
@@ -67,18 +80,20 @@ def note_transit(out: Array, at: int, row: int, moments: Moments, time: float, s
 
 
 @compiled
-def note_highest(out: Array, at: int, time: float, x: float, p: float, u: float, bend: float) -> None:
+def note_highest(out: Array, at: int, time: float, x: float, p: float, u: float, fall: float, pull: float) -> None:
     """Note a highest point (x, p, u); half turns are counted where the direction, less a half turn, passes east."""
+    bend = fall / (pull * u * (2.0 - u))
     if p < 0.0 or (p == 0.0 and x < 0.0):
         x, p = -x, -p
     if out[at + rows.APSIDES] == 0.0:
-        out[at + rows.A_FIRST], out[at + rows.LEAST_BEND] = time, bend
+        out[at + rows.A_FIRST], out[at + rows.LEAST_BEND], out[at + rows.LEAST_FALL] = time, bend, fall
         out[at + rows.X_FIRST], out[at + rows.P_FIRST] = x, p
     elif out[at + rows.X_LAST] * x + out[at + rows.P_LAST] * p < 0.0:
         out[at + rows.HALF_TURNS] += 1.0 if out[at + rows.X_LAST] * p - out[at + rows.P_LAST] * x < 0.0 else -1.0
     out[at + rows.APSIDES] += 1.0
     out[at + rows.A_LAST], out[at + rows.X_LAST], out[at + rows.P_LAST] = time, x, p
     out[at + rows.LEAST_BEND] = min(out[at + rows.LEAST_BEND], bend)
+    out[at + rows.LEAST_FALL] = min(out[at + rows.LEAST_FALL], fall)
     out[at + rows.HIGHEST] = max(out[at + rows.HIGHEST], u)
 
 
@@ -162,6 +177,7 @@ def _advance_time(m: March) -> None:
 def _leave(m: March, lane: int, numbers: Array, results: Array, fate: int) -> None:
     """Write a row's end, and take the next row."""
     at = m.counts[ROW + lane] * rows.RESULTS
+    results[at + rows.HIGHEST] = max(results[at + rows.HIGHEST], m.state[LANES * rows.U + lane])
     for column in range(rows.S + 1):
         results[at + column] = m.state[LANES * column + lane]
     results[at + rows.FATE] = fate
@@ -171,11 +187,13 @@ def _leave(m: March, lane: int, numbers: Array, results: Array, fate: int) -> No
 
 @compiled
 def _begin(m: March) -> None:
-    """Set the rates at the release of rows that begin: where u' is exactly zero, its slope gives the sign."""
+    """Set the rates at the release of rows that begin: the exact inputs give the sign of u' or, at 0, its slope."""
     fresh = at_least(spread(0.0), load(m.time, 0))
-    level = where(load(m.state, LANES * rows.ZEROS_U), load(m.c.udot, LANES), load(m.c.udot, 0))
+    rising = load(m.state, LANES * rows.RISING)
+    udot = rising * larger(magnitude(load(m.c.udot, 0)), spread(LEAST_RATE))
+    udot = where(magnitude(rising), udot, load(m.c.udot, LANES))
     store(m.transits.before, 0, where(fresh, load(m.c.xdot, 0), load(m.transits.before, 0)))
-    store(m.highest.before, 0, where(fresh, level, load(m.highest.before, 0)))
+    store(m.highest.before, 0, where(fresh, udot, load(m.highest.before, 0)))
 
 
 @compiled
@@ -195,7 +213,7 @@ def _place_zeros(m: March, order: int) -> None:
 
 @compiled
 def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Moments) -> bool:
-    """Note what a lane has passed; return false if its transits stay in doubt."""
+    """Note what a lane has passed; return false if its transits or highest points stay in doubt."""
     at, unit, close = row * rows.RESULTS, m.state[LANES * rows.UNIT + lane], m.state[LANES * rows.CLOSE_S + lane]
     since, low, n = m.time[lane], m.time_low[lane], 0
     results[at + rows.STEPS] += 1.0
@@ -208,13 +226,17 @@ def _note(m: March, order: int, lane: int, row: int, results: Array, moments: Mo
         m.w.places[0], m.w.slopes[0], n = m.transits.place[lane], m.transits.slope[lane], 1
     for i in range(n):
         note_transit(results, at, row, moments, since + (low + m.w.places[i] * unit), m.w.slopes[i], close)
-    if m.highest.hit[lane] != 0.0:
-        x, p, u = m.top[lane], m.top[LANES + lane], m.top[2 * LANES + lane]
-        sharpness = -m.highest.slope[lane] / (m.state[LANES * rows.PULL + lane] * u * (2.0 - u))
-        bend = sharpness if m.highest.doubt[lane] == 0.0 else 0.0
-        note_highest(results, at, since + (low + m.highest.place[lane] * unit), x, p, u, bend)
-    elif m.highest.doubt[lane] != 0.0:
+    pull = m.state[LANES * rows.PULL + lane]
+    if m.highest.doubt[lane] != 0.0:
+        # of a conical orbit u' is but rounding
+        u = m.c.u[lane]
+        if not abs(m.c.udot[LANES + lane]) < LEAST_BEND * pull * u * (2.0 - u):
+            return False
         results[at + rows.LEAST_BEND], results[at + rows.APSIDES] = 0.0, max(results[at + rows.APSIDES], 1.0)
+    elif m.highest.hit[lane] != 0.0:
+        x, p, u = m.top[lane], m.top[LANES + lane], m.top[2 * LANES + lane]
+        place, fall = m.highest.place[lane], -m.highest.slope[lane]
+        note_highest(results, at, since + (low + place * unit), x, p, u, fall, pull)
     return True
 
 

@@ -11,12 +11,12 @@ from ...numbers.precision import Array
 from ..batch_interface import CLOSE_PAIR, OK, Outcomes, PlumbAxes, Rows, Wanted, moved, plumb_line, turned
 from ..batch_interface import LEAST_BEND as LEAST
 
-# of a row's numbers: state and constants in its unit of time, unit and span in s, multiplicities of zeros at release
-X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, ZEROS_U, CLOSE_S, SEEKS_X, SEEKS_U = range(17)
+# of a row's numbers: state and constants in its unit of time, unit and span in s, what the release says of zeros
+X, P, U, W, V, S, TURN_P, TURN_U, PULL, UNIT, END, END_LOW, ZEROS_X, RISING, CLOSE_S, SEEKS_X, SEEKS_U = range(17)
 COLUMNS = 17
 # of what comes out: the state, and what was found on the way
 STEPS, FATE, COUNT, T_FIRST, T_LAST, CLOSE, LEAST_SLOPE = range(6, 13)
-APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND = range(13, 23)
+APSIDES, A_FIRST, A_LAST, HALF_TURNS, HIGHEST, X_FIRST, P_FIRST, X_LAST, P_LAST, LEAST_BEND, LEAST_FALL = range(13, 24)
 RESULTS = 24
 TOLERANCE = 2.0**-54  # the size that a step's last coefficients have, against the motion
 _ENGINES = Path(__file__).parents[1]
@@ -43,9 +43,9 @@ def packed(rows: Rows, wanted: Wanted) -> Array:
     numbers[:, [TURN_P, TURN_U, W, V, S]] *= unit[:, None]
     numbers[:, PULL] *= unit * unit
     numbers[:, UNIT], numbers[:, END : END + 2] = unit, rows.t_end
-    numbers[:, ZEROS_X], numbers[:, ZEROS_U] = rows.zeros_at_release, axes.level
+    numbers[:, ZEROS_X], numbers[:, RISING] = rows.zeros_at_release, rows.rising
     numbers[:, SEEKS_X] = (wanted.transits or wanted.times) & ~rows.still
-    numbers[:, SEEKS_U] = wanted.apsides
+    numbers[:, SEEKS_U] = wanted.apsides & (size.high > 0)
     with np.errstate(divide="ignore"):
         numbers[:, CLOSE_S] = CLOSE_PAIR * 2.0 * np.pi / np.sqrt(size.high)
     return numbers
@@ -72,6 +72,7 @@ def outcomes(rows: Rows, numbers: Array, results: Array, moments: tuple[Array, A
     result.least_bend[:] = np.where(r[APSIDES] > 0, r[LEAST_BEND], np.nan)
     result.apsides[:] = np.where(result.least_bend >= LEAST, r[APSIDES], 0)
     some = result.apsides > 0
+    result.least_fall[:] = np.where(some, r[LEAST_FALL] / (unit * unit), np.nan)
     result.apsis_first[:], result.apsis_last[:] = np.where(some, r[A_FIRST : A_LAST + 1], np.nan)
     first, last = np.arctan2(r[P_FIRST], r[X_FIRST]), np.arctan2(r[P_LAST], r[X_LAST])
     result.turn[:] = np.where(some, last - first + np.pi * r[HALF_TURNS], np.nan)

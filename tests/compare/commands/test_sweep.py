@@ -6,6 +6,8 @@ import json
 
 import pytest
 
+from compare.report.sweep_report import _cell
+
 pytest.importorskip("pyarrow")
 SMALL = ["paris", "--t-end", "60", "--engine", "heyoka"]
 
@@ -17,6 +19,12 @@ def test_a_small_sweep_prints_a_table(foucault):
     assert lines[0].split()[0] == "site.latitude"
     assert [line.split()[0] for line in lines[1:4]] == ["0", "10", "20"]
     assert lines[4] == "3 rows: 3 ok"
+
+
+def test_a_table_shows_no_digit_beyond_its_error():
+    assert [_cell(*pair) for pair in ((0.0608436338, 2e-7), (-5.66254630543, 4e4), (-11.3426, 1e-2), (73, None))] == [
+        "0.060844", "± 4.0e+04", "-11.34", "73"
+    ]  # fmt: skip
 
 
 def test_json_holds_every_row_and_the_costs(foucault):

@@ -10,8 +10,8 @@ from small_scenes import make_scene
 from reference.engines.batch_interface import DOUBTFUL, OK, STOPPED, Wanted
 from reference.engines.heyoka import loop
 from reference.engines.heyoka.batch import BATCH
-from reference.engines.heyoka.row_zeros import HEIGHT, TRANSIT, Zeros
 from reference.engines.octet.batch import BATCH as OCTET
+from reference.engines.row_zeros import HEIGHT, TRANSIT, Zeros
 
 CLOSE_PAIRS = make_scene(
     pendulum={"length": "1"},

@@ -1,7 +1,8 @@
-"""The zeros that heyoka finds in a row, guarded: what they say of its transits and highest points.
+"""The zeros found in a row, guarded: what they say of its transits and highest points.
 
-Its root finder may lose a zero. A single one shows in the directions, which have to alternate from the release to the
-end. Of two close together the rate itself tells, at samples of the run: between two of them it may dip through zero.
+A root finder such as heyoka's may lose a zero. A single one shows in the directions, which have to alternate from the
+release to the end. Of two close together the rate itself tells, at samples of the run: between two of them it may dip
+through zero.
 """
 
 from __future__ import annotations
@@ -12,11 +13,11 @@ from typing import Any, Self
 
 import numpy as np
 
-from ...model.algebra import add, cross, subtract
-from ...model.constants import Constants
-from ...model.formulations import FORMULATIONS
-from ...numbers.precision import Array
-from ..batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAxes, Rows
+from ..model.algebra import add, cross, subtract
+from ..model.constants import Constants
+from ..model.formulations import FORMULATIONS
+from ..numbers.precision import Array
+from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAxes, Rows
 
 MODEL = FORMULATIONS["momentum"]
 TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot, and of the rate of the height over the plumb line
@@ -91,7 +92,7 @@ class Release:
     @classmethod
     def of(cls, rows: Rows, axes: PlumbAxes, row: int, motion: Motion) -> Self:
         """Return what is known of a row whose motion at the release is given."""
-        rate, multiplicity, level = np.sqrt(axes.size.high[row]), rows.zeros_at_release[row], bool(axes.level[row])
+        rate, multiplicity, rising = np.sqrt(axes.size.high[row]), rows.zeros_at_release[row], rows.rising[row]
         turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])
         east = (motion.v[0], motion.a[0], -2 * cross(turn, motion.a)[0])[multiplicity]
         x, p, u = motion.n
@@ -101,8 +102,8 @@ class Release:
             rate=rate,
             quiet=QUIET * 2 * np.pi / (rate + axes.speed[row]),
             still=bool(rows.still[row]),
-            zero=(multiplicity > 0, level),
-            signs=(np.sign(east), np.sign(motion.a[2] if level else axes.udot.high[row])),
+            zero=(multiplicity > 0, rising == 0),
+            signs=(np.sign(east), rising or np.sign(motion.a[2]) or 1),  # at rest on the plumb line it can but rise
             angle=np.arctan2(np.hypot(x, p), -u),
         )
 
@@ -165,18 +166,20 @@ def describe_transits(
 def describe_highest_points(
     outcomes: Outcomes, row: int, release: Release, zeros: Zeros, at: Motion, samples: Samples
 ) -> None:
-    """Fill in a row's highest points, the zeros at which the height begins to fall."""
+    """Fill in a row's highest points, the zeros at which the height begins to fall, and its largest angle."""
     high = zeros.directions < 0
     t, fall, (x, p, u) = zeros.times[high], -at.a[2][high], (part[high] for part in at.n)
     across = np.hypot(x, p)
-    outcomes.largest_angle[row] = np.max(np.arctan2(across, -u), initial=release.angle)
+    east, north, up = (part[-1] for part in samples.motion.n)
+    ends = max(release.angle, np.arctan2(np.hypot(east, north), -up))
+    outcomes.largest_angle[row] = np.max(np.arctan2(across, -u), initial=ends)
     bend = np.min(fall / (release.rate * across) ** 2, initial=np.inf)
-    if not len(t) or not bend >= LEAST_BEND:
+    if not (len(t) and release.rate and bend >= LEAST_BEND):
         return
     if samples.lost(zeros, release.signs[HEIGHT], 2):
         outcomes.fate[row] = DOUBTFUL
         return
     azimuth = np.arctan2(p, x)
-    outcomes.apsides[row], outcomes.least_bend[row] = len(t), bend
+    outcomes.apsides[row], outcomes.least_bend[row], outcomes.least_fall[row] = len(t), bend, fall.min()
     outcomes.apsis_first[row], outcomes.apsis_last[row] = t[0], t[-1]
     outcomes.turn[row] = azimuth[-1] - azimuth[0] - np.pi * np.sum(np.round(np.diff(azimuth) / np.pi))
