@@ -36,6 +36,7 @@ FLOORS = {
         ["registry", "trajectory"],
         ["octet"],
         [*engine_names()],
+        ["row_zeros"],
         ["interface"],
         ["plan", "batch_interface"],
     ],
