@@ -5,10 +5,8 @@ It may be smaller by chance: therefore the factor, and a least difference, what 
 Where errors have grown to many ulps, or where the bob has the energy to rise to the pivot and they may grow, they point
 one way, and the two may cancel. There a third run is moved the other way, and the factor is larger.
 
-tests/campaigns/test_sweeps.py holds 3,500 random rows of 600 s, 500 of them over the top or beyond the horizontal,
-against limbs at 110 bits. In octet and in heyoka no error was above its estimate; the largest came to 0.26 of it for a
-position, 0.61 for a velocity, 0.21 for a transit, 0.10 for a frequency, 0.07 for the swing's frequency and the largest
-angle, 0.01 for the precession.
+`pytest --long tests/campaigns/test_sweeps.py -k error` holds 3,500 random rows of 600 s, 500 of them over the top or
+beyond the horizontal, against limbs at 110 bits.
 """
 
 from __future__ import annotations
@@ -27,7 +25,7 @@ LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
 HALF_ULP = 2.0**-53  # of a number just above 1, relative
 GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
 OFFSETS = 2.5  # of the rest position: beyond 2 there are no highest points near the plumb line that signs may miss
-LATE = 0.25  # of a swing's half: highest points that may be as late cannot be counted
+LATE = 0.25  # of half a swing or turn: transits and highest points that may be as far off have no frequency
 HEIGHT = FACTOR * LEAST_ULPS * HALF_ULP  # what rounding may do to a height over the cord length
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
 MOVED, MOVED_BACK = (Wanted(transits=False, apsides=False, moved=way) for way in (1, -1))
@@ -62,7 +60,7 @@ class Errors:
 def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     """Return the errors of a run, and which rows stop where they are moved: at least one more run, by its engine."""
     moved = engine.solve(rows, MOVED)
-    estimated, stopped = errors(rows, run, *_of_state(rows, run, moved)), moved.fate == STOPPED
+    estimated, stopped = errors(rows, run, moved), moved.fate == STOPPED
     wild = ~(estimated.position <= GROWN * rows.length[:, 0]) | _reaches_the_pivot(rows)
     grown = np.flatnonzero(~stopped & wild)
     if not len(grown):
@@ -73,8 +71,7 @@ def judged(engine: Batch, rows: Rows, run: Outcomes) -> tuple[Errors, Any]:
     near, far = (np.linalg.norm(rate * gap[:, :3], axis=1) + np.linalg.norm(gap[:, 3:], axis=1) for gap in gaps)
     state[grown[far > near]] = back.state[far > near]
     stopped[grown] |= back.fate == STOPPED
-    of_state = _of_state(rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR))
-    return errors(rows, run, *of_state), stopped
+    return errors(rows, run, replace(moved, state=state), np.where(wild, WILD_FACTOR, FACTOR)), stopped
 
 
 def _reaches_the_pivot(rows: Rows) -> Any:
@@ -83,8 +80,8 @@ def _reaches_the_pivot(rows: Rows) -> Any:
     return (V * V).sum(axis=1) / 2 >= (n * pull).sum(axis=1)
 
 
-def _of_state(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> tuple[Array, Array]:
-    """Return the errors of position and velocity, from the run that was moved, and what their difference counts."""
+def errors(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float = FACTOR) -> Errors:
+    """Return the errors of a run, from the run that was moved, and what their difference is multiplied by."""
     length, rate = rows.length[:, 0], rows.rate
     gap = run.state - moved.state
     position, velocity = np.linalg.norm(gap[:, :3], axis=1), np.linalg.norm(gap[:, 3:], axis=1)
@@ -93,29 +90,22 @@ def _of_state(rows: Rows, run: Outcomes, moved: Outcomes, factor: Array | float 
     with np.errstate(divide="ignore", invalid="ignore"):
         # where a swing is late its position tells at the lowest point, its velocity at the highest
         position = factor * np.fmax(position, np.fmax(np.where(rate > 0, velocity / rate, 0.0), ulp))
-        return position, factor * np.fmax(velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed)))
-
-
-def errors(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Errors:
-    """Return the errors of a run that follow from those of position and velocity, in m and m/s."""
-    length, speed = rows.length[:, 0], np.linalg.norm(run.state[:, 3:], axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
+        velocity = factor * np.fmax(velocity, np.fmax(rate * position / factor, LEAST_ULPS * np.spacing(speed)))
         transit = velocity / run.least_ax + np.spacing(run.t_last)
-        frequency = (run.transits - 1) * transit / (run.t_last - run.t_first) ** 2
+        span = run.t_last - run.t_first
+        share = (run.transits - 1) * transit / span
         swing, precession = _of_swing(rows, run, position, velocity)
-        late = swing * (run.apsis_last - run.apsis_first) > LATE
-        unsure_of_highest = np.logical_or(late, _unsure_of_highest(rows, run, position, velocity))
     return Errors(
         position=position,
         velocity=velocity,
         transit=transit,
-        frequency=np.where(run.transits > 1, frequency, np.nan),
+        frequency=np.where((run.transits > 1) & (share < LATE), share / span, np.nan),
         swing=swing,
         precession=precession,
         # the height, which rounds to about an ulp, tells little of an angle next to the top
         angle=np.degrees(position / length + np.fmin(HEIGHT * np.tan(run.largest_angle / 2), np.sqrt(2 * HEIGHT))),
         undecided=_undecided(rows, run, velocity, speed),
-        unsure_of_highest=unsure_of_highest,
+        unsure_of_highest=_unsure_of_highest(rows, run, position, velocity),
     )
 
 
@@ -143,27 +133,29 @@ def _of_swing(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> tu
     about the plumb line meanwhile. Over the top, sin θ may be next to nothing, and u'' is not.
     """
     length, rate, turn = rows.length[:, 0], rows.rate, np.linalg.norm(rows.turn[..., 0], axis=1)
+    shrunk = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)  # amplitude at the end, over the largest
     highest = np.sin(run.largest_angle)
-    sine = np.fmin(highest, np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk(rows))
+    sine = np.fmin(highest, np.sin(np.fmin(run.largest_angle, np.pi / 2)) * shrunk)
     weakest = rate * np.sqrt(run.least_fall * run.least_bend)  # u'' over sin θ
     # a point that is not high passes no faster than on a cone, seen from the Earth: seldom as fast as the energy allows
     low, round_, offset = run.largest_angle < np.pi / 4, 2 * (rate + 2 * turn), 2 * turn**2 / rate
     fastest = _fastest(rows) + turn
     passing = np.where(low, round_ / weakest + offset / run.least_fall, fastest / run.least_fall)
-    span = run.apsis_last - run.apsis_first
     slow = velocity * np.fmin(1 / weakest, 1 / run.least_fall)
     late = (slow + passing * position) / length + np.spacing(run.apsis_last)
     turned = position / (length * sine) + np.where(low, round_ + offset / sine, fastest / highest) * late
-    several = run.apsides > 1
-    swing = np.where(several, (run.apsides - 1) * late / span**2, np.nan)
-    drift = 2 * turned / span + np.abs(run.turn) * 2 * late / span**2
-    return swing, np.where(several, drift * DEGREES_PER_HOUR, np.nan)
+    return of_swing(run, late, turned)
 
 
-def shrunk(rows: Rows) -> Array:
-    """Return the amplitude at the end over the largest, where drag makes it smaller."""
-    share: Array = np.exp(-rows.drag[:, 0] * rows.t_end[:, 0] / 2)
-    return share
+def of_swing(run: Outcomes, late: Array, turned: Array) -> tuple[Array, Array]:
+    """Return the errors of frequency and precession of highest points that may be so late, in s, and turned, in rad.
+
+    Both are NaN where a point may be so late that it cannot be counted, that of precession where it cannot be followed.
+    """
+    span, gaps = run.apsis_last - run.apsis_first, run.apsides - 1
+    counted = (gaps > 0) & (gaps * late < LATE * span)
+    drift = np.where(turned < LATE * np.pi, 2 * turned / span + np.abs(run.turn) * 2 * late / span**2, np.nan)
+    return np.where(counted, gaps * late / span**2, np.nan), np.where(counted, drift * DEGREES_PER_HOUR, np.nan)
 
 
 def _undecided(rows: Rows, run: Outcomes, velocity: Array, speed: Array) -> Array:
@@ -189,6 +181,7 @@ def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Arr
     at_end = np.abs((v * down).sum(axis=1)) <= velocity * sine + speed * position / length
     turn = rows.turn[..., 0]
     offset = np.abs((turn * down).sum(axis=1)) * np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
-    near = run.least_bend * np.sin(run.largest_angle) < OFFSETS * offset
-    unsure: Array = (run.apsides > 0) & (at_end | near)
+    some = run.apsides > 0
+    near = np.where(some, run.least_bend, 1) * np.sin(run.largest_angle) < OFFSETS * offset
+    unsure: Array = some & at_end | near
     return unsure

@@ -203,8 +203,8 @@ def _side_by_side(request: Request, part: Part, places: Any, rows: Rows) -> dict
             listed = part.columns["row"][at][run.transit_row]
             part.list_transits([], listed, run.transit_t, run.transit_direction)
         stopped = (run.fate == STOPPED) | lost
-        unsure = (run.fate != OK) | errors.unsure_of_highest | (errors.undecided if wanted.transits else False)
-        unsure |= unknown
+        unsure = (run.fate != OK) | unknown | errors.unsure_of_highest
+        unsure |= errors.undecided if wanted.transits else False
         if request.tolerance is not None:
             unsure = unsure | ~(errors.position <= request.tolerance)
         more |= dict.fromkeys(at[unsure].tolist(), DOUBTFUL_REASON)

@@ -1,44 +1,42 @@
 """A row that the solver solved, described as an engine describes its own.
 
-Highest points are zeros of the height's rate in the Taylor steps of one more run. Between its extremes the rate is
-monotone, so that signs miss none; they are zeros of its derivative, and found alike.
+Highest points are zeros of the height's rate in the Taylor steps of further runs: the finer of two gives them, the
+coarser their errors. Between its extremes the rate is monotone, so that signs miss none; they are zeros of its
+derivative, and found alike.
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from math import factorial
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
 from ..engines.batch_interface import CLOSE_PAIR, Outcomes, PlumbAxes, Rows, plumb_line
-from ..engines.plan import Run
 from ..engines.registry import fastest
 from ..engines.row_zeros import HEIGHT, Motion, Release, Samples, Zeros, describe_highest_points
 from ..errors import IntegrationError
 from ..model.constants import constants
-from ..numbers.columns import GRID, POSITION, STATE, VELOCITY
+from ..numbers.columns import POSITION, STATE, VELOCITY
 from ..numbers.precision import GUARD_BITS, Array, context
 from ..numbers.taylor_step import EARTH, TaylorStep
 from ..scenes.inputs import Inputs
 from ..solver.proof_steps import COEFFICIENT_BITS
-from .estimate import Errors, errors, shrunk
+from .estimate import Errors, of_swing
 
 if TYPE_CHECKING:
     from ..solver.solution import Solution
 
-PRECS = (128, 384)  # bits of that run: the second where errors grow too large in the first, or the swing dies down
-DIES = 2.0**-8  # of the amplitude: what is left of it
-AGREED = 2.0**-60  # of the cord length: the largest distance from the solver's state at the end
-SAFETY = 4  # errors inside the span may exceed the one at its end
+PRECS = (128, 256, 384)  # bits of the runs: two in turn, until they differ by rounding alone
+SAFETY = 4  # times what two runs differ by
 SAMPLES = 8  # of a step, at which signs of the derivative `TOP` of the height are compared
 TOP = 4
 MOST_REFINEMENTS = 60  # of a zero: a step of Newton's method that leaves its bracket halves it
 NEGLIGIBLE = 2.0**-64  # coefficients beside the largest, in double
-ROUNDING = 2.0**-49  # of the motion, where a polynomial is summed in double
+ROUNDING = 2.0**-48  # of the sum of a polynomial's terms in double
 
 
 @dataclass(frozen=True)
@@ -77,6 +75,12 @@ class Course:
             sums = [total * s + lower for total, lower in zip(sums, [self.series[step, :, k].T, *sums], strict=False)]
         return [part * factorial(i) / h**i for i, part in enumerate(sums)]
 
+    def rounding(self, times: Array) -> tuple[Array, Array]:
+        """Return what sums in double may leave out of the distance from the plumb line over l, and of the rate u'."""
+        step = np.maximum(np.searchsorted(self.starts, times, "right") - 1, 0)
+        sizes = ROUNDING * np.abs(self.series[step])
+        return sizes[:, :2].sum(axis=(1, 2)), sizes[:, 2] @ np.arange(sizes.shape[2]) / self.h[step]
+
     def at(self, times: Array) -> Motion:
         """Return the motion at some times."""
         return Motion(*map(tuple, self.derivatives(times)[:3]))
@@ -102,39 +106,45 @@ class Course:
 def outcomes_of(solution: Solution, rows: Rows, apsides: bool) -> tuple[Outcomes, Errors]:
     """Return what became of a row, and its errors; `apsides` says whether its highest points are wanted."""
     grid, transits, run = solution.grid, solution.transits, Outcomes.empty(1)
-    run.steps[0], run.state[0] = solution.run.steps, [grid[name][-1] for name in STATE]
-    bounds = grid.largest_bounds()
-    position, velocity = (_norm(bounds, kind) for kind in (POSITION, VELOCITY))
-    late, frequency = np.full(1, np.nan), np.full(1, np.nan)
+    late = turned = leaning = transit = frequency = np.full(1, np.nan)
     with np.errstate(all="ignore"):
+        if apsides and 0 < rows.rate < np.inf:
+            run, (late, turned, leaning) = _highest(rows, solution)
+        run.steps[0], run.state[0] = solution.run.steps, [grid[name][-1] for name in STATE]
         if transits is not None and solution.directions:
             t = transits["t"]
             run.transits[0], run.t_first[0], run.t_last[0] = len(t), t[0], t[-1]
             run.close_pairs[0] = np.count_nonzero(np.diff(t) < CLOSE_PAIR * 2 * np.pi / rows.rate)
-            late = float(max(transits.bound("t"))) + np.spacing(run.t_last)
-            frequency = np.where(len(t) > 1, (len(t) - 1) * late / (t[-1] - t[0]) ** 2, np.nan)
-        gaps = _find_highest(run, rows, solution) if apsides and 0 < rows.rate < np.inf else (0.0, 0.0)
-        reach = ROUNDING * shrunk(rows) * np.sin(np.fmin(run.largest_angle, np.pi / 2)) * rows.length[:, 0]
-        lean = run.largest_angle + np.arctan2(np.abs(rows.pull[:, 1, 0]), -rows.pull[:, 2, 0])
-        on_sphere = np.where(lean < np.pi / 3, 2 * _norm(bounds, POSITION[:2]), position)  # z follows from x and y
-        inside = (on_sphere + SAFETY * gaps[0] + reach, velocity + SAFETY * gaps[1] + reach * rows.rate)
-        found = errors(rows, run, *inside)
-    return run, replace(found, position=position, velocity=velocity, transit=late, frequency=frequency)
+            transit = float(max(transits.bound("t"))) + np.spacing(run.t_last)
+            frequency = np.where(len(t) > 1, (len(t) - 1) * transit / (t[-1] - t[0]) ** 2, np.nan)
+        swing = of_swing(run, late, turned)
+    none = np.zeros(1, bool)
+    position, velocity = (_norm(grid.largest_bounds(), kind) for kind in (POSITION, VELOCITY))
+    return run, Errors(position, velocity, transit, frequency, *swing, np.degrees(leaning), none, none)
 
 
-def _find_highest(run: Outcomes, rows: Rows, solution: Solution) -> tuple[Any, Any]:
-    """Fill in the highest points, if that can be; return how far their run ends from the solver's, in m and m/s."""
-    inputs = solution.scene.exact
-    for prec in PRECS[int(shrunk(rows)[0] < DIES) :]:
+def _highest(rows: Rows, solution: Solution) -> tuple[Outcomes, Array]:
+    """Return the highest points, and how late, turned and leaning they may be, in s and rad, shape (3, 1)."""
+    run, errors, before = Outcomes.empty(1), np.full((3, 1), np.nan), np.full((5, 1), np.inf)
+    for prec in PRECS:
         try:
-            steps, own = _steps(inputs, solution, prec)
+            run, rounding = _of_run(rows, solution, prec)
         except IntegrationError:
             continue
-        gap = own.grid.only(GRID).distance(solution.grid).largest()
-        if max(gap[name] for name in POSITION) <= AGREED * inputs.length:
+        seen = np.array([run.apsides, run.apsis_first, run.apsis_last, run.turn, run.largest_angle])
+        (count, first, *others), before = np.abs(seen - before), seen
+        gaps = np.array([np.fmax(first, others[0]), *others[1:]])
+        errors = SAFETY * gaps + rounding + np.where(count > 0, np.inf, 0.0)
+        if not (count > 0) and not (gaps > rounding).any():
             break
-    else:
-        return 0.0, 0.0
+    return run, errors
+
+
+def _of_run(rows: Rows, solution: Solution, prec: int) -> tuple[Outcomes, Array]:
+    """Return the highest points of a run, and what rounding may do to their times, their turn and the largest angle."""
+    run, inputs = Outcomes.empty(1), solution.scene.exact
+    engine = fastest(prec, steps=solution.run.steps)
+    steps = list(engine.taylor_steps(inputs, solution.times, prec, prec + COEFFICIENT_BITS))
     course = Course.of(steps, inputs)
     release = Release.of(rows, PlumbAxes.of(rows), 0, course.at(np.zeros(1))[0])
     times = np.linspace(0, release.end, SAMPLES * len(steps) + 1)
@@ -143,18 +153,13 @@ def _find_highest(run: Outcomes, rows: Rows, solution: Solution) -> tuple[Any, A
         times = np.sort(np.concatenate([times, course.crossings(order, times).times]))
     zeros = course.crossings(1, times, release.signs[HEIGHT])
     describe_highest_points(run, 0, release, zeros, course.at(zeros.times), samples)
-    return _norm(gap, POSITION), _norm(gap, VELOCITY)
-
-
-def _steps(inputs: Inputs, solution: Solution, prec: int) -> tuple[list[TaylorStep], Run]:
-    """Return the Taylor steps of a run, and the run."""
-    runs = []
-
-    def collect() -> Generator[TaylorStep]:
-        engine = fastest(prec, steps=solution.run.steps)
-        runs.append((yield from engine.taylor_steps(inputs, solution.times, prec, prec + COEFFICIENT_BITS)))
-
-    return list(collect()), runs[0]
+    t = zeros.times[zeros.directions < 0]
+    reach, slow = course.rounding(t)
+    (x, p, _), (vx, vp, _), (*_, fall) = course.derivatives(t)[:3]
+    late = slow / -fall + 2 * np.spacing(t)
+    turned = reach / np.hypot(x, p) + np.abs(x * vp - p * vx) / (x * x + p * p) * late
+    leaning = course.rounding(course.starts)[0]
+    return run, np.array([[2 * np.max(late, initial=0)], [4 * np.max(turned, initial=0)], [2 * leaning.max()]])
 
 
 def _norm(parts: Mapping[str, Fraction], names: Iterable[str]) -> Array:

@@ -95,7 +95,7 @@ def not_integration(count: int) -> float:
         own = row_constants(columns, "ellipsoid", count)
         for moved in (0, 1):
             outcomes(own, packed(own, Wanted(moved=moved)), results, (results[:0, 0],) * 3)
-        errors(own, several, np.zeros(count), np.zeros(count))
+        errors(own, several, several)
 
     with np.errstate(all="ignore"):
         return statistics.median(cpu_s(once) for _ in range(5)) / count * 1e6

@@ -1,0 +1,75 @@
+"""Rows that sweeps once had wrong: values of a solver of another origin (tests/bench/sweep_truth.cpp, 37 digits)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from reference.scenes.scene import load_scene
+from reference.sweeps.parquet import COLUMNS
+from reference.sweeps.sweep import sweep
+
+ERRORS = {column.name: column.error for column in COLUMNS if column.error}
+AT_REST = "release.vx=0 release.vy=0"
+KNOWN = {
+    "strongly damped": (
+        "paris pendulum.length=0.630270629822314 pendulum.drag=0.938626 site.latitude=-90 site.gravity_is=effective"
+        " site.rotation_rate=0.001783018226 site.equatorial_radius=141751.290037 release.x=3.404725329e-10"
+        f" release.y=1.354621685e-09 {AT_REST} run.t_end=60",
+        {"swing_hz": 0.62333445932526297, "precession_deg_per_h": 373.05537641608231},
+    ),
+    "over the top": (
+        "two_radians pendulum.length=0.675770361502986 site.latitude=0 site.rotation_rate=-0.001468567792"
+        " site.equatorial_radius=630367.831885 release.azimuth=180 release.angle_rate=51.3 release.azimuth_rate=0"
+        " release.angle=169.34418476 run.t_end=86.122",
+        {"swing_hz": 0.23057138172705987, "max_angle_deg": 180.0},
+    ),
+    "highest points at the top": (
+        "two_radians pendulum.length=1.596875302 site.latitude=90 site.gravity_is=effective"
+        " site.rotation_rate=-0.07702401843 site.equatorial_radius=122.620739085 release.azimuth=139"
+        " release.angle_rate=33.7473 release.azimuth_rate=0 release.angle=179.999983131 run.t_end=60",
+        {"swing_hz": 0.17663335806769587, "precession_deg_per_h": None},
+    ),
+    "close pairs": (
+        "paris pendulum.length=22.82912463 site.latitude=0 site.gravity=13.84735298 release.x=0"
+        f" release.y=1.333445681e-05 {AT_REST} run.t_end=132.45",
+        {"close_pairs": 16},
+    ),
+    "within the tilt of the plumb line": (
+        "paris pendulum.length=0.53666 site.latitude=-5.3746786 site.gravity_is=effective release.x=2.15678e-13"
+        " release.y=1.9993e-12 release.vx=9.39229e-13 release.vy=3.17567e-12 run.t_end=60",
+        {"swing_hz": 0.68035112856042339, "precession_deg_per_h": 361.84105638503434},
+    ),
+}
+
+
+@pytest.mark.parametrize("engine", ["heyoka", "octet"])
+@pytest.mark.parametrize("name", KNOWN)
+def test_a_row_is_right_and_its_errors_are_small(name, engine):
+    (scene, *values), known = KNOWN[name][0].split(), KNOWN[name][1]
+    row = next(sweep(load_scene(scene, values[1:]), values[:1], engine=engine, audit_rows=0).rows())
+    assert row["status"] == "ok"
+    for column, true in known.items():
+        error = row[ERRORS[column]] if column in ERRORS else 0
+        if true is None:
+            assert row[column] is error is None
+        else:
+            assert abs(row[column] - true) <= error <= 1e-9 * abs(true), column
+
+
+@pytest.mark.parametrize("engine", ["heyoka", "octet"])
+@pytest.mark.parametrize("options", [{}, {"level": "self_consistent"}])
+def test_the_largest_angle_may_be_that_of_the_end(engine, options):
+    scene = load_scene("paris", ["site.latitude=90", "release.x=0", "release.y=0", "release.vx=0.1", "run.t_end=2"])
+    swept = sweep(scene, ["pendulum.length=67"], engine=engine, **options)
+    angle = np.degrees(np.arcsin(np.hypot(swept["x_m"], swept["y_m"]) / 67))
+    assert (np.abs(swept["max_angle_deg"] - angle) < 1e-12).all()
+
+
+@pytest.mark.parametrize("engine", ["heyoka", "octet"])
+def test_the_least_rise_at_the_release_is_a_highest_point(engine):
+    """u' is 1e-36 of a radian a second and no rounding of 0: the bob rises, and the time is above 0."""
+    scene = load_scene("paris", ["run.t_end=100"])
+    swept = sweep(scene, ["release.vx=1e-32,1e-20"], engine=engine, want=("precession",))
+    for column in ("swing_hz", "precession_deg_per_h", "precession_ratio"):
+        assert abs(np.diff(swept[column])[0]) <= swept[ERRORS[column]].sum(), column
