@@ -40,7 +40,7 @@ class Rows:
         pull: c, gravity and the centrifugal force at the pivot over l, in 1/s², shape (n, 3, 2).
         n: position over l at t = 0, a unit vector, shape (n, 3, 2).
         V: n' + Ω × n at t = 0, in 1/s, shape (n, 3, 2).
-        zeros_at_release: multiplicity of xdot's zero at t = 0 by the exact inputs, 0, 1 or 2, shape (n,), int64.
+        zeros_at_release: multiplicity of xdot's zero at t = 0 by the exact inputs, 0 to 4, shape (n,), int64.
         rising: sign of u', the rate at which the bob rises along the plumb line, at t = 0 by the exact inputs: -1, 0 or
             1, shape (n,), int64.
         still: whether xdot is zero at all times by the exact inputs, shape (n,): such a row has no transits.

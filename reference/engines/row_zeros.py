@@ -94,8 +94,8 @@ class Release:
         """Return what is known of a row whose motion at the release is given."""
         rate, multiplicity, rising = np.sqrt(axes.size.high[row]), rows.zeros_at_release[row], rows.rising[row]
         turn = (0, axes.turn[0].high[row], axes.turn[1].high[row])
-        east = (motion.v[0], motion.a[0], -2 * cross(turn, motion.a)[0])[multiplicity]
         x, p, u = motion.n
+        east = (motion.v[0], motion.a[0], -2 * cross(turn, motion.a)[0], -x, -turn[2] * p)[multiplicity]
         return cls(
             length=rows.length[row, 0],
             end=rows.t_end[row, 0],

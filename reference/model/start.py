@@ -130,7 +130,18 @@ def xdot_vanishes(start: Start) -> bool:
 
 
 def zero_at_release(start: Start) -> int:
-    """Return the multiplicity of xdot's zero at t = 0 by the exact inputs: 0, 1, or 2 (at rest in the meridian)."""
-    if start.v[0] != 0:
+    """Return the multiplicity of xdot's zero at t = 0 by the exact inputs, 0 to 4.
+
+    It is 1 where the bob is released with vx = 0, and more where the force has no x component either: 2 in the meridian
+    at rest, or along the Earth's axis. Released at rest with a horizontal cord, to the east or at a pole, the bob falls
+    straight down, and x shrinks like t⁴; at a pole in the meridian it is the Coriolis force of that which moves x.
+    """
+    n, v, turn = start.n, start.v, start.k.turn
+    at_pole = turn[1] == 0 and start.k.pull[1] == 0
+    if v[0] != 0:
         return 0
-    return 2 if start.n[0] == 0 and not any(start.v) else 1
+    if any(v):
+        return 2 if n[0] == 0 and cross(turn, v)[0] == 0 else 1
+    if n[2] == 0 and (at_pole or n[1] == 0):
+        return 4 if n[0] == 0 else 3
+    return 2 if n[0] == 0 else 1

@@ -127,7 +127,7 @@ def _of_block(columns: Columns, gravity_is: GravityIs, count: int) -> Rows:
         pull=_stacked((zero, pull_north, pull_up), count),
         n=_stacked(n, count),
         V=_stacked(add(v, cross(k.turn, n)), count),
-        zeros_at_release=_spread(np.where(~v[0].vanishes, 0, np.where(n[0].vanishes & at_rest, 2, 1)), count),
+        zeros_at_release=_spread(_zeros_at_release(n, v, k), count),
         rising=_spread(np.where(np.abs(fall) <= _SAME * size, 0, -np.sign(fall)).astype(np.int64), count),
         still=_spread(at_rest & _balanced(n, k) | rate.vanishes & n[0].vanishes & v[0].vanishes, count),
     )
@@ -142,6 +142,15 @@ def _release(columns: Columns) -> tuple[Vector, Vector]:
         return (x, y, z), (vx, vy, -(x * vx + y * vy) / z)
     (sa, ca), (sl, cl) = (sine_and_cosine(columns[name]) for name in ANGLES[:2])
     return at_angles(1, sa, ca, sl, cl, *(in_radians(columns[name]) for name in ANGLES[2:]))
+
+
+def _zeros_at_release(n: Vector, v: Vector, k: Constants) -> Any:
+    """Return the multiplicities of xdot's zeros at t = 0: see `model.start.zero_at_release`."""
+    at_pole, in_meridian = k.turn[1].vanishes & k.pull[1].vanishes, n[0].vanishes
+    falls = n[2].vanishes & (at_pole | n[1].vanishes)
+    at_rest = np.where(falls, np.where(in_meridian, 4, 3), np.where(in_meridian, 2, 1))
+    moving = np.where(in_meridian & cross(k.turn, v)[0].vanishes, 2, 1)
+    return np.where(v[0].vanishes, np.where(v[1].vanishes & v[2].vanishes, at_rest, moving), 0)
 
 
 def _balanced(n: Vector, k: Constants) -> Any:

@@ -170,7 +170,8 @@ def _first_contradiction(steps: Sequence[_Step]) -> tuple[int, str] | None:
         if signs[-1] != signs[-2]:
             return i, "the sign of xdot at the step's ends does not fit the crossings between"
         if (count := _count_zeros(x[i] * k, forms[i], *ends[i : i + 2])) != found[i]:
-            return i, f"xdot crosses zero {count} times, and {found[i]} crossings were found"
+            times = "too closely to be counted" if count != count else f"{count} times"
+            return i, f"xdot comes to zero {times}, and {found[i]} crossings were found"
     return None
 
 

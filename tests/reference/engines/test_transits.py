@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from small_scenes import make_scene, start_for, stepper_of
 
+from reference import solve, sweep
 from reference.engines.heyoka.events import _first_contradiction, _Step, march, quiet_start
 from reference.engines.heyoka.model import Numbers
 from reference.engines.heyoka.stepper import Stepper
@@ -273,17 +274,42 @@ def test_the_time_of_a_transit_near_the_north_south_passage_is_worse_than_the_ot
 
 
 @pytest.mark.parametrize(
-    ("release", "multiplicity"),
+    ("release", "latitude", "multiplicity"),
     [
-        ({"x": "0.3", "y": "0.4"}, 1),
-        ({"x": "0", "y": "0.5"}, 2),
-        ({"x": "0", "y": "0.5", "vy": "0.1"}, 1),
-        ({"x": "0.3", "y": "0.4", "vx": "0.067"}, 0),
+        ({"x": "0.3", "y": "0.4"}, "45", 1),
+        ({"x": "0", "y": "0.5"}, "45", 2),
+        ({"x": "0", "y": "0.5", "vy": "0.1"}, "45", 1),
+        ({"x": "0.3", "y": "0.4", "vx": "0.067"}, "45", 0),
+        ({"x": "0", "y": "0", "vy": "0.1"}, "0", 2),
+        ({"angle": "90", "azimuth": "33"}, "45", 1),
+        ({"angle": "90", "azimuth": "180"}, "45", 3),
+        ({"angle": "90", "azimuth": "33"}, "-90", 3),
+        ({"angle": "90", "azimuth": "90"}, "90", 4),
     ],
 )
-def test_the_order_of_the_zero_at_the_release_follows_from_the_inputs(release, multiplicity):
-    scene = make_scene(release=release)
+def test_the_order_of_the_zero_at_the_release_is_that_of_its_polynomial(release, latitude, multiplicity):
+    scene = make_scene(release=release, site={"latitude": latitude})
     assert zero_at_release(start_for(scene, DOUBLE)) == multiplicity
+    coefficients = [float(a) for a in stepper_of(scene, real(200)).coefficients()[0][0][1:]]
+    sizes = [abs(a) / max(map(abs, coefficients)) for a in coefficients]
+    assert max(sizes[:multiplicity], default=0.0) < 1e-40 < 1e-14 < sizes[multiplicity]
+
+
+@pytest.mark.parametrize(
+    ("release", "latitude"),
+    [({"angle": "90", "azimuth": "180"}, "45"), ({"angle": "90", "azimuth": "33"}, "-90"), ({"vy": "0.1"}, "0")],
+)
+@pytest.mark.parametrize("engine", ["octet", "heyoka"])
+def test_a_zero_of_higher_order_at_the_release_is_left_out_and_no_other(release, latitude, engine):
+    release = release if "angle" in release else {"x": "0", "y": "0", **release}
+    run = {"t_end": "60", "grid_step": "20", "digits": 15}
+    # with drag, so that it does not come back to the horizontal
+    scene = make_scene(release=release, site={"latitude": latitude}, run=run, pendulum={"drag": "0.01"})
+    proved, computed = (solve(scene.with_values([f"run.level={level}"])) for level in ("enclosed", "computed"))
+    row = sweep(scene, ["pendulum.length=67"], engine=engine, want=("transit-times",))
+    assert proved.directions == computed.directions == row.transits()["direction"].tolist() != []
+    assert row.transits()["t_s"] == pytest.approx(proved.transits["t"], rel=1e-8)
+    assert computed.transits["t"] == pytest.approx(proved.transits["t"], rel=1e-12)
 
 
 @pytest.mark.parametrize("number", [DOUBLE, real(160)], ids=str)
