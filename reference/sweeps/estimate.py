@@ -25,6 +25,9 @@ LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
 HALF_ULP = 2.0**-53  # of a number just above 1, relative
 GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
 OFFSETS = 2.5  # of the rest position: beyond 2 there are no highest points near the plumb line that signs may miss
+SWAYS = (
+    2.0  # of what the Coriolis force does to the height of a bob that goes round: it may make highest points of its own
+)
 LATE = 0.25  # of half a swing or turn: transits and highest points that may be as far off have no frequency
 HEIGHT = FACTOR * LEAST_ULPS * HALF_ULP  # what rounding may do to a height over the cord length
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
@@ -173,15 +176,20 @@ def _undecided(rows: Rows, run: Outcomes, velocity: Array, speed: Array) -> Arra
 def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
     """Return where a highest point may lie on either side of the end, or near the plumb line and be missed.
 
-    There are such where the rest position, which is not quite on that line, is as far from it as the swing reaches.
+    There are such where the rest position, which is not quite on that line, is as far from it as the swing reaches; and
+    on a cone whose height is swayed by the Coriolis force as much as by the swing.
     """
     length, down = rows.length[:, 0], rows.pull[..., 0] / rows.rate[:, None] ** 2
     n, v = run.state[:, :3] / length[:, None], run.state[:, 3:]
     sine, speed = np.linalg.norm(np.cross(n, down), axis=1) + position / length, np.linalg.norm(v, axis=1)
     at_end = np.abs((v * down).sum(axis=1)) <= velocity * sine + speed * position / length
-    turn = rows.turn[..., 0]
-    offset = np.abs((turn * down).sum(axis=1)) * np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
-    some = run.apsides > 0
-    near = np.where(some, run.least_bend, 1) * np.sin(run.largest_angle) < OFFSETS * offset
+    turn, some, lean = rows.turn[..., 0], run.apsides > 0, np.sin(np.fmin(run.largest_angle, np.pi / 2))
+    across = np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
+    offset = np.abs((turn * down).sum(axis=1)) * across
+    spun = np.abs(
+        (np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1)
+    )  # angular momentum about the plumb line
+    bend = np.where(some, run.least_bend, 1)
+    near = (bend * np.sin(run.largest_angle) < OFFSETS * offset) | (bend * lean**3 < 2 * SWAYS * across * spun)
     unsure: Array = some & at_end | near
     return unsure

@@ -35,6 +35,11 @@ KNOWN = {
         f" release.y=1.333445681e-05 {AT_REST} run.t_end=132.45",
         {"close_pairs": 16},
     ),
+    "nearly a cone": (
+        "two_radians pendulum.length=8.397282 site.latitude=-23.926417 site.gravity_is=effective"
+        " release.azimuth=-177.63 release.azimuth_rate=116.214147 release.angle_rate=0 release.angle=73.509 run.t_end=60",
+        {"swing_hz": 0.17961450830311792, "precession_deg_per_h": -12271.515613252097},
+    ),
     "within the tilt of the plumb line": (
         "paris pendulum.length=0.53666 site.latitude=-5.3746786 site.gravity_is=effective release.x=2.15678e-13"
         " release.y=1.9993e-12 release.vx=9.39229e-13 release.vy=3.17567e-12 run.t_end=60",
