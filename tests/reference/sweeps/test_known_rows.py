@@ -37,7 +37,8 @@ KNOWN = {
     ),
     "nearly a cone": (
         "two_radians pendulum.length=8.397282 site.latitude=-23.926417 site.gravity_is=effective"
-        " release.azimuth=-177.63 release.azimuth_rate=116.214147 release.angle_rate=0 release.angle=73.509 run.t_end=60",
+        " release.azimuth=-177.63 release.azimuth_rate=116.214147 release.angle_rate=0 release.angle=73.509"
+        " run.t_end=60",
         {"swing_hz": 0.17961450830311792, "precession_deg_per_h": -12271.515613252097},
     ),
     "within the tilt of the plumb line": (
