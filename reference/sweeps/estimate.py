@@ -190,6 +190,6 @@ def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Arr
         (np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1)
     )  # angular momentum about the plumb line
     bend = np.where(some, run.least_bend, 1)
-    near = (bend * np.sin(run.largest_angle) < OFFSETS * offset) | (bend * lean**3 < 2 * SWAYS * across * spun)
+    near = (bend * np.sin(run.largest_angle) < OFFSETS * offset) | (bend * lean < 2 * SWAYS * across * spun)
     unsure: Array = some & at_end | near
     return unsure
