@@ -30,11 +30,15 @@ NUDGES = {
 }
 
 
-class Changed:
-    """A scene with other exact inputs."""
+def changed(scene, name, value):
+    """Return a scene with another exact input, which need be no decimal."""
 
-    def __init__(self, exact):
-        self.exact = exact
+    class Changed(type(scene)):
+        @property
+        def exact(self):
+            return with_value(scene.exact, name, value)
+
+    return Changed.model_construct(**dict(scene))
 
 
 def inputs_of(name):
@@ -46,8 +50,7 @@ def test_a_derivative_is_the_limit_of_differences(scene, name):
     response = sensitivity(SCENES[scene], TIMES)
     value, nudge = response.values[name], Fraction(NUDGES.get(name, "1e-6"))
     ahead, behind = (
-        trajectory(Changed(with_value(SCENES[scene].exact, name, value + side * nudge)), TIMES, number=LONG_DOUBLE)
-        for side in (1, -1)
+        trajectory(changed(SCENES[scene], name, value + side * nudge), TIMES, number=LONG_DOUBLE) for side in (1, -1)
     )
     expected = (ahead - behind) / (2 * float(nudge))
     derivative = response.derivative(name)
