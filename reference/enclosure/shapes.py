@@ -43,7 +43,7 @@ class EnclosedTransit:
 
 @dataclass(frozen=True, eq=False)
 class Proved:
-    """What a proof returns: of these inputs, the true state at each of `times` and every transit up to the last."""
+    """The result of a proof: for these inputs, intervals of the state at each of `times` and of every transit."""
 
     inputs: Inputs
     times: tuple[Fraction, ...]

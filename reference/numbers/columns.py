@@ -27,7 +27,7 @@ HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair
 
 
 class GridColumns:
-    """What has a table `grid` of rows at `times`: its columns as attributes."""
+    """A solution or dataset whose table `grid` has a row for each of `times`: its columns are attributes."""
 
     grid: Any
     times: Any
