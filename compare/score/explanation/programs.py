@@ -141,7 +141,8 @@ class Program:
             pull_y = -outward * (sin if self.gravity_reading == "tilt" else 1.0)
         if self.nominal_rate:
             gradient *= (self.rate / self.nominal_rate) ** 2
-        stars = self.released * self.rate * math.sin(turned) * self.coriolis[1]  # no factor of the Coriolis force
+        # a plane turned by hand takes its own turn with it; else the Earth's, without a factor of the Coriolis force
+        stars = self.released * (up if self.turned_plane else self.rate * math.sin(turned) * self.coriolis[1])
         vx, vy = self.vx + stars * self.y, self.vy - stars * self.x
         if self.turned_plane:
             north = 0.0
