@@ -51,6 +51,14 @@ class InputError(FoucaultError):
         super().__init__(f"{text} {advice}".rstrip())
 
 
+def all_of(mistakes: Sequence[InputError]) -> InputError:
+    """Return the first of some mistakes; where there are several, its text tells all of them, one a line."""
+    first = mistakes[0]
+    if len(mistakes) > 1:
+        first.args = (plain_lines("\n  ".join((f"{len(mistakes)} mistakes:", *map(str, mistakes)))),)
+    return first
+
+
 def _shown(value: object) -> str:
     """Return the beginning of a value as text."""
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import shlex
 import shutil
@@ -11,6 +13,7 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 import typer
 from pages import PAGES, blocks, code_spans, commands, of_language, output, shows, write_files
@@ -19,9 +22,11 @@ from places import ROOT
 import compare
 import reference
 from foucault import commands as commands_of_foucault
+from reference.scenes.scene import Scene
 
-TUTORIAL, SWEEPS, STUDIES, CONTRIBUTING, API = (
+TUTORIAL, SCENE, SWEEPS, STUDIES, CONTRIBUTING, API = (
     "docs/tutorial.md",
+    "docs/scene.md",
     "docs/sweeps.md",
     "docs/studies.md",
     "CONTRIBUTING.md",
@@ -35,6 +40,7 @@ LANGUAGES = {
     "README.md": {"sh", "console", "pycon"},  # sh by .ci/run, the others by test_readme.py
     CONTRIBUTING: {"sh"},
     TUTORIAL: {"sh", "console", "python", "toml"},
+    SCENE: {"console", "toml"},
     SWEEPS: {"sh", "bash"},
     STUDIES: {"sh"},
     API: {"{eval-rst}", "python"},
@@ -55,6 +61,49 @@ def test_every_command_of_the_tutorial_in_its_turn_prints_what_it_shows(tmp_path
         got = output(command, tmp_path)
         assert shows(shown, got), f"{command}\n{got}"
     assert (tmp_path / "error.svg").is_file() and (tmp_path / "foucault.xml").is_file()
+
+
+def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path):
+    assert write_files(SCENE, tmp_path) == ["church.toml"]
+    for command, shown in commands(SCENE):
+        got = output(command, tmp_path)
+        assert shows(shown, got), f"{command}\n{got}"
+    template = reference.load_scene(tmp_path / "mine.toml")
+    assert (template.id, template.site.gravity_is, template.release.angle) == ("mine", "effective", "5")
+
+
+def test_the_page_on_scenes_has_every_field_with_its_default_unit_and_meaning():
+    rows = {}
+    for name, info in Scene.model_fields.items():
+        inside = getattr(info.annotation, "model_fields", None)
+        rows |= {f"{name}.{key}": field for key, field in inside.items()} if inside else {name: info}
+    page = (ROOT / SCENE).read_text(encoding="utf-8")
+    for name, info in rows.items():
+        default = "" if info.is_required() or info.default in (None, "", ()) else str(info.default)
+        default = {"True": "true"}.get(default, default)
+        unit = (info.json_schema_extra or {}).get("unit", "")
+        assert f"| `{name}` | {default} | {unit} | {info.description} |" in page
+
+
+def test_drag_and_azimuth_are_what_the_page_on_scenes_says(tmp_path):
+    """A cord of 12.3 m at 51.48 degrees, pulled 5 degrees to the south-west, half as wide after 20 minutes."""
+    path = tmp_path / "hall.toml"
+    path.write_text(
+        'pendulum = {length = "12.3", drag = "0.00115525"}\nsite = {latitude = "51.48", gravity_is = "effective"}\n'
+        'release = {angle = "5", azimuth = "-135"}\n'
+        'run = {t_end = "1200", grid_step = "0.2", level = "computed", digits = 10}\n',
+        encoding="utf-8",
+    )
+    solved = reference.solve(path)
+    x, y = (np.array(values, float) for values in (solved.x, solved.y))
+    assert x[0] == pytest.approx(y[0]) == pytest.approx(-12.3 * math.sin(math.radians(5)) / math.sqrt(2))
+    width = np.hypot(x, y)
+    swing = 36  # rows of one swing
+    assert width[-swing:].max() / width[:swing].max() == pytest.approx(0.5, rel=0.005)
+    motion = json.loads(output(f"foucault show {path} --json", tmp_path))["motion"]
+    sidereal = -15.0410671786 * math.sin(math.radians(51.48))
+    assert motion["precession_deg_per_h"] == pytest.approx(sidereal, rel=0.004)  # the rest is what Airy found
+    assert motion["full_turn_h"] == pytest.approx(360 / abs(motion["precession_deg_per_h"]))
 
 
 def test_what_the_tutorial_installs_can_be_had():

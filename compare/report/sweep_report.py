@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from reference.numbers.precision import digits_that_hold
 from reference.status import Status
 
 from .page import Table
@@ -105,6 +105,4 @@ def _cell(value: Any, error: float | None) -> str:
         return str(value)
     if error is None:
         return f"{value:.1e}"
-    if error >= abs(value):
-        return f"± {error:.1e}"
-    return f"{value:.{math.floor(math.log10(abs(value))) - math.ceil(math.log10(error)) + 1}g}"
+    return digits_that_hold(value, error)

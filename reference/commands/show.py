@@ -6,10 +6,12 @@ from typing import Annotated, Any
 
 import typer
 
-from ..errors import UnreachableError
+from ..errors import InputError, UnreachableError
+from ..numbers.precision import digits_that_hold
 from ..scenes.scene import Scene, load_scene
-from ..scenes.shipped import flag_meanings
-from .terminal import AsJson, Assignments, SceneWord, emit
+from ..scenes.shipped import flag_meanings, scene_ids
+from ..scenes.template import template as as_template
+from .terminal import AsJson, Assignments, completion, emit, refuse
 
 FORMS = {  # of the forms that an engine publishes: what its letters mean
     "momentum": "n = r/l, H = n × (n' + Ω × n), c = pull/l",
@@ -19,7 +21,17 @@ DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are show
 
 
 def command(
-    scene_word: SceneWord,
+    scene_word: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="SCENE",
+            help="A scene's id, or the path of a TOML file; may be left out with --template.",
+            autocompletion=completion(scene_ids),
+        ),
+    ] = None,
+    template: Annotated[
+        bool, typer.Option("--template", help="Print the scene as a TOML file to begin with, each field explained.")
+    ] = False,
     equations: Annotated[
         bool, typer.Option("--equations", help="Also show the compiled equations, and the terms left out.")
     ] = False,
@@ -29,13 +41,27 @@ def command(
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show the inputs of a scene and the derived quantities."""
+    """Show the inputs of a scene and what follows from them: gravity, period, precession, the time of a full turn.
+
+    `foucault show --template > mine.toml` begins a scene of your own.
+    """
+    if template:
+        refuse({"--equations": equations, "--sensitivity": sensitivity, "--json": as_json}, "together with --template")
+        if scene_word is None:
+            refuse({"--set": set_}, "without SCENE")
+        typer.echo(as_template(None if scene_word is None else load_scene(scene_word, set_ or ())), nl=False)
+        return
+    if scene_word is None:
+        raise InputError(
+            "SCENE", "nothing", "a scene's id or the path of a TOML file", "`foucault scenes` lists the ids."
+        )
     scene = load_scene(scene_word, set_ or ())
     flags = flag_meanings(scene.flags)
     document: dict[str, Any] = {
         **scene.model_dump(exclude_none=True),
         "flag_meanings": flags,
         "derived": _derived(scene),
+        "motion": _motion(scene),
     }
     if equations:
         document |= _compiled(scene)
@@ -57,6 +83,7 @@ def command(
     for section, table in scene_inputs(scene).items():
         typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
+    typer.echo(_motion_line(document["motion"], scene.run.t_end))
     if sensitivity:
         lost = document["digits_lost"]
         typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
@@ -109,3 +136,32 @@ def _derived(scene: Scene) -> dict[str, str]:
     except UnreachableError:
         return derived
     return derived | {"rest_y_m": text(y * k.length), "rest_z_m": text(z * k.length)}
+
+
+def _motion(scene: Scene) -> dict[str, Any]:
+    """Return period, precession and time of a full turn over the run, each with its estimated error, or the reason."""
+    from ..sweeps.sweep import sweep
+
+    solved = sweep(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession"], workers=1)
+    row = next(solved.rows())
+    swing, turn = row["swing_hz"], row["precession_deg_per_h"]
+    found: dict[str, Any] = {}
+    if swing:
+        found |= {"period_s": 1 / swing, "period_error_s": row["swing_error_hz"] / swing**2}
+    if turn is not None:
+        found |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": row["precession_error_deg_per_h"]}
+    if turn:
+        full = 360 / abs(turn)
+        found |= {"full_turn_h": full, "full_turn_error_h": full * row["precession_error_deg_per_h"] / abs(turn)}
+    return found or {"reason": row["reason"] or "the bob does not swing to and fro"}
+
+
+def _motion_line(motion: dict[str, Any], t_end: str) -> str:
+    """Return what the motion does in a line, its numbers with the digits that their errors leave."""
+    if "reason" in motion:
+        return f"[motion] no period: {motion['reason']}"
+    values = iter(motion.items())
+    told = [
+        f"{name} = {digits_that_hold(value, error)}" for (name, value), (_, error) in zip(values, values, strict=True)
+    ]
+    return f"[motion, over {t_end} s, errors estimated] " + ", ".join(told)

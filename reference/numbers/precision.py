@@ -131,3 +131,10 @@ def rounded_up(value: Fraction, significant: int = 2) -> str:
         digits, power = digits // 10, power + 1
     text = str(digits)
     return f"{text[0]}.{text[1:]}e{power:+03d}"
+
+
+def digits_that_hold(value: float, error: float) -> str:
+    """Return a number with the digits that its error leaves, or ± the error where that is larger."""
+    if error >= abs(value):
+        return f"± {error:.1e}"
+    return f"{value:.{math.floor(math.log10(abs(value))) - math.ceil(math.log10(error)) + 1}g}"

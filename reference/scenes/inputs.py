@@ -10,7 +10,8 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo
+from pydantic import AfterValidator, BeforeValidator, ValidationError, ValidationInfo, WithJsonSchema
+from pydantic_core import ErrorDetails
 
 from ..errors import InputError, did_you_mean, is_plain
 
@@ -146,8 +147,9 @@ def within(low: str, high: str | None = None, *, open_low: bool = False) -> Afte
 
 
 Line = Annotated[str, AfterValidator(_one_line)]
-Number = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal)]
-NumberOrInf = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal_or_inf)]
+_SCHEMA = {"type": ["string", "integer"], "pattern": f"^(inf|{_DECIMAL.pattern})$"}  # what an editor checks
+Number = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal), WithJsonSchema(_SCHEMA)]
+NumberOrInf = Annotated[str, BeforeValidator(_as_text), AfterValidator(_decimal_or_inf), WithJsonSchema(_SCHEMA)]
 Positive = Annotated[Number, within("0", open_low=True)]
 NotNegative = Annotated[Number, within("0")]
 
@@ -155,14 +157,17 @@ NotNegative = Annotated[Number, within("0")]
 _TEXTS = ("id", "title", "source", "flags")
 
 
-def explained(error: ValidationError, known: Iterable[str]) -> InputError:
-    """Return the error that a user reads: the first wrong field, what it got, what was expected.
+def explained(error: ValidationError, known: Iterable[str]) -> list[InputError]:
+    """Return the errors that a user reads: each wrong field, what it got, what was expected.
 
     Args:
         error: as pydantic raised it.
         known: names of the fields that there are.
     """
-    details = error.errors()[0]
+    return [_explained(details, known) for details in error.errors()]
+
+
+def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
     field = ".".join(str(part)[:_LONGEST_KEY] for part in details["loc"])
     kind, got = details["type"], details["input"]
     cause = details.get("ctx", {}).get("error")
@@ -172,6 +177,8 @@ def explained(error: ValidationError, known: Iterable[str]) -> InputError:
         return InputError(
             field, got, "a field that scenes have", did_you_mean(field, known, "`foucault show SCENE` lists them.")
         )
+    if kind == "missing" and field == "release":
+        return InputError(field, "nothing", "a table with x and y, or with angle and azimuth")
     if kind == "missing":
         return InputError(field, "nothing", "a value", "Add this field to the scene.")
     expected = {

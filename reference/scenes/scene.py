@@ -7,37 +7,23 @@ decimal 48.846111 and not the double next to it, unless the scene says `inputs =
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
 from pathlib import Path
-from typing import Annotated, Any, Literal, get_args
+from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, TypeAdapter, ValidationError
+from pydantic import AfterValidator, TypeAdapter, ValidationError
 
-from ..errors import InputError, unknown
+from ..errors import InputError, all_of, unknown
 from ..system.documents import toml_document
-from .inputs import (
-    GravityIs,
-    Inputs,
-    Line,
-    NotNegative,
-    Number,
-    NumberOrInf,
-    Positive,
-    Refused,
-    as_read,
-    explained,
-    within,
-)
+from .inputs import Inputs, Line, Refused, as_read, explained
 from .shipped import data_root, scene_ids
+from .tables import Pendulum, Release, RunTable, SceneTable, Site, field
 
-MAX_DIGITS = 1000
 MAX_ROWS = 2_000_000
 LEAST_T_END = Fraction(1, 10**300)
 
-Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
-LEVELS: tuple[Level, ...] = get_args(Level)
 Reading = Literal["decimal", "binary64"]
 
 _ID = re.compile(r"[a-z][a-z0-9_]*")
@@ -48,75 +34,23 @@ def is_scene_id(word: str) -> bool:
     return _ID.fullmatch(word) is not None and len(word) <= 64
 
 
-class _Table(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class Pendulum(_Table):
-    """Cord length in m, linear drag in 1/s."""
-
-    length: Positive = "67"
-    drag: NotNegative = "0"
-
-
-class Site(_Table):
-    """Where the suspension stands (degrees, m), gravity (m/s²), what it means, the Earth's rotation rate (rad/s)."""
-
-    latitude: Annotated[Number, within("-90", "90")] = "48.846111"
-    altitude: Number = "0"
-    gravity: NotNegative = "9.80665"
-    gravity_is: GravityIs = "ellipsoid"
-    rotation_rate: Number = "7.292115e-5"
-    equatorial_radius: NotNegative = "6378137"
-    inverse_flattening: Annotated[NumberOrInf, within("1", open_low=True)] = "298.257223564"
-
-
-class Release(_Table):
-    """Either x, y (m, below the suspension) with vx, vy (m/s), or angles (degrees) and their rates (degrees/s)."""
-
-    x: Number | None = None
-    y: Number | None = None
-    vx: Number | None = None
-    vy: Number | None = None
-    angle: Annotated[Number, within("0", "180")] | None = None
-    azimuth: Annotated[Number, within("-360", "360")] | None = None
-    angle_rate: Number | None = None
-    azimuth_rate: Number | None = None
-
-
-def _digits(value: int) -> int:
-    if not 1 <= value <= MAX_DIGITS:
-        raise Refused(f"a whole number from 1 to {MAX_DIGITS}")
-    return value
-
-
-class RunTable(_Table):
-    """Time span and grid (s), digits, level of trust, transits or not."""
-
-    t_end: Annotated[Number, within("0", "1e15", open_low=True)] = "86400"
-    grid_step: Positive = "60"
-    digits: Annotated[int, AfterValidator(_digits)] = 40
-    level: Level = "confirmed"
-    transits: bool = True
-
-
 def _identifier(text: str) -> str:
     if not is_scene_id(text):
         raise Refused("a lower-case letter followed by letters, digits or _ (at most 64)")
     return text
 
 
-class Scene(_Table):
+class Scene(SceneTable):
     """A pendulum, its site, its release and its run; frozen.
 
     `exact` gives the numbers as fractions, in the reading that `inputs` names.
     """
 
-    id: Annotated[str, AfterValidator(_identifier)]
-    title: Line = ""
-    source: Line = ""
-    flags: tuple[Line, ...] = ()
-    inputs: Reading = "decimal"
+    id: Annotated[str, AfterValidator(_identifier)] = field(..., "", "name of the scene and of its folder")
+    title: Line = field("", "", "what it is, in one line")
+    source: Line = field("", "", "where its numbers come from")
+    flags: tuple[Line, ...] = field((), "", "words for what is difficult in it")
+    inputs: Reading = field("decimal", "", "decimal: each number is exact; binary64: the double next to it")
     pendulum: Pendulum = Pendulum()
     site: Site = Site()
     release: Release
@@ -178,9 +112,9 @@ def _assign(document: dict[str, Any], assignment: str) -> None:
 def field_names() -> list[str]:
     """Return the names of a scene's fields, as `--set` takes them: inputs, site.latitude and so on."""
     names = []
-    for top, field in Scene.model_fields.items():
-        kind = field.annotation
-        inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, _Table) else ()
+    for top, info in Scene.model_fields.items():
+        kind = info.annotation
+        inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, SceneTable) else ()
         names += [f"{top}.{key}" for key in inside] or [top]
     return names
 
@@ -199,7 +133,7 @@ def checked_value(name: str, value: str, reading: Reading) -> str:
     try:
         _field(name).validate_python(value, context={"inputs": reading})
     except ValidationError as error:
-        wrong = explained(error, ())
+        wrong = explained(error, ())[0]
         raise InputError(name, value, wrong.expected, wrong.advice) from None
     return value
 
@@ -216,34 +150,35 @@ def parse_scene(document: Mapping[str, Any]) -> Scene:
     """Check a scene given as nested mappings.
 
     Raises:
-        InputError: names the first wrong field, what it got and what was expected.
+        InputError: names each wrong field, what it got and what was expected; the first one is its `field`.
     """
     try:
         scene = Scene.model_validate(dict(document), context={"inputs": document.get("inputs")})
     except ValidationError as error:
-        raise explained(error, [*Scene.model_fields, *field_names()]) from None
-    _check_release(scene)
-    _check_grid(scene)
+        raise all_of(explained(error, [*Scene.model_fields, *field_names()])) from None
+    if wrong := [*_wrong_in_release(scene), *_wrong_in_run(scene)]:
+        raise all_of(wrong)
     return scene
 
 
-def _check_release(scene: Scene) -> None:
+def _wrong_in_release(scene: Scene) -> Iterator[InputError]:
     release = scene.release
     fields = set(release.model_dump(exclude_none=True))
     cartesian, angular = fields & {"x", "y", "vx", "vy"}, fields & {"angle", "azimuth", "angle_rate", "azimuth_rate"}
     if cartesian and angular:
-        raise InputError(
-            "release", ", ".join(sorted(fields)), "either x, y (vx, vy) or angle, azimuth (and rates)", "Keep one kind."
-        )
-    for kind, needed in ((cartesian, ("x", "y")), (angular, ("angle", "azimuth"))):
-        for name in needed:
-            if kind and name not in kind:
-                raise InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
+        kinds = "either x, y (vx, vy) or angle, azimuth (and rates)"
+        yield InputError("release", ", ".join(sorted(fields)), kinds, "Keep one kind.")
+        return
     if not fields:
-        raise InputError("release", "nothing", "x and y, or angle and azimuth")
+        yield InputError("release", "nothing", "x and y, or angle and azimuth")
+        return
+    needed = ("x", "y") if cartesian else ("angle", "azimuth")
+    missing = [name for name in needed if name not in fields]
+    for name in missing:
+        yield InputError(f"release.{name}", "nothing", "a value", f"Give both {' and '.join(needed)}.")
     position, length = scene.exact.position, scene.exact.length
-    if position and position[0] ** 2 + position[1] ** 2 >= length**2:
-        raise InputError(
+    if not missing and position and position[0] ** 2 + position[1] ** 2 >= length**2:
+        yield InputError(
             "release",
             f"x = {release.x}, y = {release.y}",
             f"a point below the suspension: x² + y² less than length² = {scene.pendulum.length}²",
@@ -251,18 +186,20 @@ def _check_release(scene: Scene) -> None:
         )
 
 
-def _check_grid(scene: Scene) -> None:
+def _wrong_in_run(scene: Scene) -> Iterator[InputError]:
+    run = scene.run
     if scene.exact.t_end < LEAST_T_END:
-        raise InputError("run.t_end", scene.run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide")
-    rows = scene.exact.t_end / scene.exact.grid_step
-    if rows > MAX_ROWS:
-        raise InputError(
-            "run.grid_step", scene.run.grid_step, f"at most {MAX_ROWS} grid times up to t_end", "Take a longer step."
+        yield InputError("run.t_end", run.t_end, f"at least {float(LEAST_T_END):g} s, which doubles can divide")
+    elif scene.exact.t_end / scene.exact.grid_step > MAX_ROWS:
+        yield InputError(
+            "run.grid_step", run.grid_step, f"at most {MAX_ROWS} grid times up to t_end", "Take a longer step."
         )
 
 
 def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
     """Read a scene by id, or from the path of a TOML file, with `section.key=value` replacements.
+
+    A file without an id is named after itself: `My hall.toml` is `my_hall`.
 
     Raises:
         InputError: no such scene, broken TOML, or a wrong field.
@@ -275,6 +212,9 @@ def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
         document = toml_document(path, "SCENE")
     except FileNotFoundError:
         raise _no_scene(word) from None
+    own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
+    if "id" not in document and is_scene_id(own_name):
+        document["id"] = own_name
     for assignment in assignments:
         _assign(document, assignment)
     return parse_scene(document)

@@ -1,4 +1,4 @@
-"""The JSON Schemas in reference/dataset/schema/, written anew from the code: python tests/helpers/schemas.py."""
+"""The JSON Schemas of manifest, vectors and scene, written anew from the code: python tests/helpers/schemas.py."""
 
 from __future__ import annotations
 
@@ -11,13 +11,15 @@ from pydantic import BaseModel
 
 from reference.dataset.manifest import Manifest
 from reference.dataset.vectors import Vectors
+from reference.scenes.scene import Scene
 
-SCHEMAS: dict[str, type[BaseModel]] = {"manifest.json": Manifest, "vectors.json": Vectors}
+SCHEMAS: dict[str, type[BaseModel]] = {"manifest.json": Manifest, "vectors.json": Vectors, "scene.json": Scene}
 
 
 def path_of(name: str) -> Path:
-    """Return where the schema of a file of a dataset stands."""
-    return ROOT / "reference/dataset/schema" / name.replace(".json", ".schema.json")
+    """Return where the schema of a file of a dataset stands, or of a scene."""
+    room = "scenes" if name == "scene.json" else "dataset/schema"
+    return ROOT / "reference" / room / name.replace(".json", ".schema.json")
 
 
 def schema_of(name: str) -> dict[str, Any]:

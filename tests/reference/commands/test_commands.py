@@ -38,6 +38,29 @@ def test_show_gives_inputs_and_what_follows_from_them(foucault):
     assert "rest_y_m = -0.1152" in out
 
 
+def test_show_says_period_precession_and_the_time_of_a_full_turn_or_why_there_is_none(foucault):
+    motion = json.loads(foucault("show", "paris", "--json")[1])["motion"]
+    assert motion["period_s"] == pytest.approx(1 / 0.060843634, rel=2e-8)  # Mathar
+    assert motion["full_turn_h"] == pytest.approx(360 / 11.3418, rel=1e-5)
+    assert all(0 < motion[name] < 1e-6 for name in motion if "error" in name)
+    status, out, _ = foucault(
+        "show", "paris", "--set", "release.x=0", "--set", "release.y=0.0", "--set", "site.gravity=0"
+    )
+    assert (status, "no period: " in out) == (0, True)
+
+
+def test_show_begins_a_scene(foucault):
+    status, out, _ = foucault("show", "laboratory", "--template")
+    assert status == 0 and 'drag = "0.0023"' in out
+    for words, field in (
+        ((), "SCENE"),
+        (("--template", "--json"), "--json"),
+        (("--template", "--set", "id=a"), "--set"),
+    ):
+        status, _, err = foucault("show", *words)
+        assert (status, err.startswith(f"foucault: {field}: ")) == (2, True), err
+
+
 def test_show_equations_says_what_was_left_out_and_why(foucault):
     _, out, _ = foucault("show", "pole", "--equations")
     assert "the latitude is a pole" in out

@@ -106,7 +106,7 @@ def test_doubles_are_nearest_to_the_truth_that_is_known_and_not_to_the_digits_th
         assert nearest["doubles"] > 0.95 * nearest["all"] > nearest["decimals"]
 
 
-@pytest.mark.parametrize("name", schemas.SCHEMAS)
+@pytest.mark.parametrize("name", ["manifest.json", "vectors.json"])
 def test_the_manifest_and_the_vectors_follow_their_published_schemas(dataset, name):
     document = json.loads((dataset / name).read_text())
     schema = json.loads(schemas.path_of(name).read_text())

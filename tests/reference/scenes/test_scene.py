@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import json
+import tomllib
 from fractions import Fraction
 from pathlib import Path
 
+import jsonschema
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from schemas import path_of, schema_of
 from small_scenes import make_scene
 
 from reference.errors import InputError
 from reference.scenes.inputs import Inputs
 from reference.scenes.scene import is_scene_id, load_scene, parse_scene
 from reference.scenes.shipped import scene_ids
+from reference.scenes.template import template
 
 
 def test_a_decimal_is_the_decimal_and_not_the_double_next_to_it(paris):
@@ -201,3 +206,48 @@ def test_a_grid_read_as_binary64_does_not_come_to_its_end_twice():
     assert len(grid) == 401
     assert [float(t) for t in grid] == sorted({float(t) for t in grid})
     assert grid[-1] == Fraction(0.2)
+
+
+def test_all_mistakes_of_a_file_are_told_at_once(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text('titel = "a"\n[pendulum]\nlenght = 3\ndrag = "-1"\n[site]\nlatitude = 95\n', encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        load_scene(path)
+    first, *lines = str(caught.value).splitlines()
+    assert first == "5 mistakes:"
+    fields = [line.strip().partition(":")[0] for line in lines]
+    assert fields == ["pendulum.drag", "pendulum.lenght", "site.latitude", "release", "titel"]
+    with pytest.raises(InputError, match=r"(?s)2 mistakes:.*release: .*run\.grid_step: "):
+        load_scene("paris", ["release.angle=3", "run.grid_step=1e-9"])
+
+
+@pytest.mark.parametrize(
+    ("name", "own"), [("church.toml", "church"), ("My hall-2.toml", "my_hall_2"), ("2nd.toml", None)]
+)
+def test_a_file_without_an_id_is_named_after_itself(tmp_path, name, own):
+    path = tmp_path / name
+    path.write_text('[release]\nx = "0.3"\ny = "0"\n', encoding="utf-8")
+    if own:
+        assert load_scene(path).id == own
+    else:
+        with pytest.raises(InputError, match="id: got 'nothing'"):
+            load_scene(path)
+
+
+@pytest.mark.parametrize("name", scene_ids())
+def test_a_scene_as_a_template_is_the_same_scene_and_follows_the_schema(tmp_path, name):
+    scene = load_scene(name)
+    path = tmp_path / f"{name}.toml"
+    path.write_text(template(scene), encoding="utf-8")
+    assert load_scene(path) == scene
+    jsonschema.validate(tomllib.loads(path.read_text(encoding="utf-8")), schema_of("scene.json"))
+
+
+def test_the_schema_of_scenes_is_the_one_that_the_code_has():
+    schema = json.loads(path_of("scene.json").read_text(encoding="utf-8"))
+    assert schema == schema_of("scene.json"), "run: python tests/helpers/schemas.py"
+    scene = {"id": "a", "release": {"x": "0.3", "y": 0}}
+    jsonschema.validate(scene, schema)
+    for wrong in ({"release": {"x": 0.3}}, {"site": {"gravity": "nan"}}, {"titel": "a"}):
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate({**scene, **wrong}, schema)

@@ -1,0 +1,44 @@
+"""`foucault show --template`: a scene as a TOML file to begin with, in which each field has its unit and meaning."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from .scene import Scene, parse_scene
+from .tables import SceneTable
+
+BEGIN = """\
+# A scene of the Foucault pendulum. docs/scene.md explains each field, drag and the azimuth with an example.
+# Numbers stand in quotes, so that they are taken exactly as written. A field that you leave out has its default.
+"""
+COLUMN = 34  # where comments begin
+
+
+def template(scene: Scene | None) -> str:
+    """Return a scene as a TOML file with comments; without one, the defaults with a measured g and a release."""
+    mine = {"id": "mine", "title": "my pendulum", "site": {"gravity_is": "effective"}}
+    given = scene or parse_scene({**mine, "release": {"angle": "5", "azimuth": "0"}})
+    parts = [BEGIN, *_lines(given)]
+    for name in Scene.model_fields:
+        if isinstance(table := getattr(given, name), SceneTable):
+            parts += ["", f"[{name}]  # {type(table).__doc__}", *_lines(table)]
+    return "\n".join(parts) + "\n"
+
+
+def _lines(table: SceneTable) -> Iterator[str]:
+    """Yield a line for each field of a table, commented out where it has no value."""
+    for name, info in type(table).model_fields.items():
+        value = getattr(table, name)
+        if isinstance(value, SceneTable):
+            continue
+        written = f"{'# ' if value is None else ''}{name} = {_toml(value)}"
+        extra: Any = info.json_schema_extra or {}
+        unit = f"{extra['unit']}; " if extra else ""
+        yield f"{written:{COLUMN}}  # {unit}{info.description}"
+
+
+def _toml(value: Any) -> str:
+    """Return a value as TOML writes it, which of texts, lists, whole numbers and truth values is what JSON writes."""
+    return json.dumps("0" if value is None else value, ensure_ascii=False)
