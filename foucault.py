@@ -6,23 +6,40 @@ import gc
 import os
 import signal
 import sys
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
     import typer
 
 INTERRUPTED = 130
+GROUPS = {
+    "Solve and judge": ("scenes", "show", "generate", "verify", "score", "plot", "atlas"),
+    "Compare many": ("methods", "study", "stability", "sweep"),
+    "The source papers": ("paper", "pend"),
+}
 SELDOM = 100_000  # objects made between two searches for garbage: imports make many, and leave none
 
 
 def commands() -> typer.Typer:
     """Return the command line; all imports are here, so that an interruption finds `main` at work."""
     import typer
+    from typer.core import TyperGroup
 
     from compare.commands import app as comparing
     from reference.commands import app as computing
 
+    class Grouped(TyperGroup):
+        """The commands, listed in groups of one purpose each."""
+
+        def format_commands(self, ctx: Any, formatter: Any) -> None:
+            """Write a list of commands for each group, with the first line of their help."""
+            for heading, names in GROUPS.items():
+                with formatter.section(heading):
+                    helps = {name: self.commands[name].help or "" for name in names}
+                    formatter.write_dl([(name, text.partition("\n")[0]) for name, text in helps.items()])
+
     app = typer.Typer(
+        cls=Grouped,
         no_args_is_help=True,
         rich_markup_mode=None,
         context_settings={"help_option_names": ["--help", "-h"]},

@@ -5,8 +5,6 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from sphinx.application import Sphinx
-
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
@@ -36,21 +34,3 @@ html_copy_source = False
 html_show_copyright = False
 html_static_path, html_css_files = ["site/style.css"], ["style.css"]
 html_extra_path = ["site/index.html"]  # leads to the start page
-
-
-def with_commands(_: Sphinx, page: str, source: list[str]) -> None:
-    """Append to the page of commands what each of them prints as its help."""
-    if page == "docs/commands":
-        import typer
-        from typer.cli import get_docs_for_click
-
-        from foucault import commands
-
-        command = typer.main.get_command(commands())
-        text = get_docs_for_click(obj=command, ctx=typer.Context(command), name="foucault")
-        source[0] += text.partition("\n")[2]  # without the heading: the page has its own
-
-
-def setup(app: Sphinx) -> None:
-    """Have Sphinx call what stands above."""
-    app.connect("source-read", with_commands)

@@ -7,6 +7,7 @@ import re
 import shutil
 from importlib import import_module
 
+import pictures
 import pytest
 from pages import commands, of_language, output, shows
 from places import ROOT
@@ -37,6 +38,18 @@ def test_the_python_in_the_readme_runs_and_prints_what_it_shows():
 def test_the_packages_own_examples_are_true(module):
     result = doctest.testmod(import_module(module))
     assert result.attempted and not result.failed
+
+
+def test_the_readme_takes_three_minutes():
+    assert len(README.split()) <= 900
+    prose = re.sub(r"```.*?```|^[|>].*?$|\]\(.*?\)", "", README, flags=re.S | re.M)
+    sentences = re.split(r"(?<=[.:;?!\]])\s+|\n\n", prose)
+    assert [sentence for sentence in sentences if len(sentence.split()) > 25] == []
+
+
+def test_the_pictures_of_the_readme_are_drawn_from_the_numbers():
+    for name, text in pictures.pictures().items():
+        assert (ROOT / name).read_text(encoding="utf-8") == text, "run: python tests/helpers/pictures.py"
 
 
 def test_the_readme_counts_nothing_that_a_new_file_would_change():

@@ -41,7 +41,7 @@ def command(
     set_: Assignments = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show the inputs of a scene and what follows from them: gravity, period, precession, the time of a full turn.
+    """Show a scene: its inputs, period and precession.
 
     `foucault show --template > mine.toml` begins a scene of your own.
     """

@@ -42,6 +42,10 @@ def main() -> None:
     for name in [] if chosen.page else chosen.names or commands:
         keep(name, run(name, commands[name]))
     PAGE.write_text(studies_page.page(kept()), encoding="utf-8")
+    sys.path.append(str(ROOT / "tests/helpers"))
+    import pictures
+
+    pictures.write()  # README's chart is drawn from the study of paris
     print(f"{PAGE}: written from {KEPT}")
 
 

@@ -19,6 +19,7 @@ from compare.score.judge import TOLERANCE
 from compare.studies.stability import LIMIT_S as STABILITY_LIMIT_S
 from compare.studies.study import LIMIT_S as STUDY_LIMIT_S
 from compare.studies.study_plan import SPAN_S
+from foucault import GROUPS
 from reference.commands import app as computing
 from reference.scenes.shipped import DATA_VERSION
 
@@ -32,7 +33,8 @@ def test_the_help_says_what_the_program_does_how_to_begin_and_each_command_in_a_
     assert status == 0
     assert "reference solutions of the Foucault pendulum" in out and "foucault scenes" in out
     lines = out.splitlines()
-    listed = [line.split()[0] for line in lines[lines.index("Commands:") + 1 :]]
+    begin = min(lines.index(f"{heading}:") for heading in GROUPS)
+    listed = [line.split()[0] for line in lines[begin:] if line.startswith("  ")]
     assert sorted(listed) == sorted(COMMANDS)
     assert [line for line in lines if line.rstrip().endswith(("…", "...")) or len(line) > 80] == [
         "Usage: foucault [OPTIONS] COMMAND [ARGS]..."
