@@ -32,12 +32,13 @@ if TYPE_CHECKING:
     from .candidates.candidate import Candidate
     from .candidates.read import read
     from .methods import METHODS
+    from .report.plot import plot
     from .score.judge import judge
-    from .score.scored import Score
+    from .score.verdict import Score
     from .studies.study import study
     from .testing import assert_agrees
 
-__all__ = ["APPROXIMATIONS", "METHODS", "Candidate", "Score", "assert_agrees", "judge", "read", "study"]
+__all__ = ["APPROXIMATIONS", "METHODS", "Candidate", "Score", "assert_agrees", "judge", "plot", "read", "study"]
 
 __getattr__, __dir__ = lazy(
     __name__,
@@ -45,9 +46,10 @@ __getattr__, __dir__ = lazy(
         "APPROXIMATIONS": "approximations",
         "Candidate": "candidates.candidate",
         "METHODS": "methods",
-        "Score": "score.scored",
+        "Score": "score.verdict",
         "assert_agrees": "testing",
         "judge": "score.judge",
+        "plot": "report.plot",
         "read": "candidates.read",
         "study": "studies.study",
     },

@@ -23,11 +23,10 @@ from reference import InputError, Scene
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene
 
-from .candidates.candidate import COLUMNS, candidate_of, checked_transits
+from .candidates.candidate import COLUMNS, candidate_of, checked_transits, real_array
 from .candidates.external import placeholders
 from .score.judge import judge
-from .score.scored import Score
-from .score.verdict import percent
+from .score.verdict import Score, percent
 
 
 def assert_agrees(
@@ -61,11 +60,11 @@ def assert_agrees(
             expected, got, difference, what is allowed, and the causes that were found.
         InputError: an array has the wrong shape, or a number is not finite.
     """
-    rows, times = _array(states, "states"), _array(t, "t")
+    rows, times = real_array(states, "states"), real_array(t, "t")
     if rows.ndim != 2 or rows.shape[1] not in (2, 3, 6):
         raise InputError("states", f"shape {rows.shape}", "shape (rows, 2), (rows, 3) or (rows, 6)")
     arrays = {"t": times, **{name: rows[:, i] for i, name in enumerate(COLUMNS[: rows.shape[1]])}}
-    transit_times = None if transits is None else checked_transits(_array(transits, "transits"), "transits")
+    transit_times = None if transits is None else checked_transits(real_array(transits, "transits"), "transits")
     result = judge(
         candidate_of("states", arrays),
         scene,
@@ -105,17 +104,6 @@ class SceneCase:
     def assert_agrees(self, t: npt.ArrayLike, states: npt.ArrayLike, **more: Any) -> Score:
         """Assert that a trajectory agrees with the truth, as `assert_agrees` does."""
         return assert_agrees(self.scene, t, states, **{"tolerance": self.tolerance, **more})
-
-
-def _array(values: npt.ArrayLike, name: str) -> Array:
-    """Return an array of real numbers."""
-    try:
-        array = np.asarray(values)
-    except ValueError:
-        raise InputError(name, "rows of different lengths", "an array of real numbers") from None
-    if array.size and array.dtype.kind not in "fiu":
-        raise InputError(name, f"dtype {array.dtype}", "real numbers")
-    return array
 
 
 def message(result: Score) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import json
 import math
 import re
@@ -44,7 +45,7 @@ LANGUAGES = {
     SCENE: {"console", "toml"},
     SWEEPS: {"sh", "bash"},
     STUDIES: {"sh"},
-    API: {"{eval-rst}", "python"},
+    API: {"{eval-rst}", "pycon", "python"},
     "docs/commands.md": {"text"},
     "docs/cite.md": {"{literalinclude} ../CITATION.cff"},
     "docs/index.md": {"{include} ../README.md", "{toctree}"},
@@ -114,6 +115,13 @@ def test_what_the_tutorial_installs_can_be_had():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     assert name == project["name"]
     assert set(extras.split(",")) <= set(project["optional-dependencies"])
+
+
+def test_the_lines_of_the_page_on_python_print_what_it_shows():
+    (block,) = of_language(API, "pycon")
+    parser, runner = doctest.DocTestParser(), doctest.DocTestRunner()
+    runner.run(parser.get_doctest(block, {}, "API", API, 0))
+    assert runner.summarize(verbose=False).failed == 0
 
 
 def test_the_test_of_the_page_on_python_passes(tmp_path):

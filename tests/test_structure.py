@@ -147,7 +147,7 @@ PUBLIC = {
     "reference.scenes.inputs": "Inputs",
     "reference.scenes.scene": "AnyScene MAX_ROWS as_scene",
     "reference.scenes.shipped": "DATA_VERSION data_root golden_root in_checkout seals",
-    "reference.scenes.tables": "LEVELS RunTable",
+    "reference.scenes.fields": "LEVELS RunTable",
     "reference.solver.sensitivity": "digits_lost sensitivity",
     "reference.status": "Status",
     "reference.sweeps.axes": "TEXTS",

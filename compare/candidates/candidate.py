@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -144,6 +145,35 @@ def candidate_of(name: str, arrays: Mapping[str, Array], transits: Array | None 
                 low[key] = remainder
     columns = {key: near[key] for key in COLUMNS if key in near}
     return Candidate.of(name, near["t"], columns, low=low, transits=transits)
+
+
+def candidate_from(columns: Any) -> Candidate:
+    """Make a candidate of columns by name: a mapping of arrays, or a pandas.DataFrame.
+
+    Raises:
+        InputError: it has no names, or as in `Candidate.of`.
+    """
+    names = list(columns) if hasattr(columns, "__getitem__") and hasattr(columns, "keys") else []
+    if "t" not in names:
+        got = f"columns {', '.join(map(str, names))}" if names else type(columns).__name__
+        raise InputError("candidate", got, "a file, a Candidate, or columns by name with t, x and y", ADVICE)
+    arrays = {name: real_array(columns[name], f"candidate: {name}") for name in names if name in ("t", *COLUMNS)}
+    return candidate_of("candidate", arrays)
+
+
+def real_array(values: Any, name: str) -> Array:
+    """Return values as an array of real numbers.
+
+    Raises:
+        InputError: they are rows of different lengths, or no real numbers.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        raise InputError(name, "rows of different lengths", "an array of real numbers") from None
+    if array.size and array.dtype.kind not in "fiu":
+        raise InputError(name, f"dtype {array.dtype}", "real numbers")
+    return array
 
 
 def checked_transits(times: Array, name: str) -> Array:

@@ -249,8 +249,9 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
     scores = [outcome.score for outcome in outcomes if outcome.score is not None]
     if plot is not None and scores:
         from ..report.charts.score_chart import error_picture
+        from ..report.folder import write_file
 
-        error_picture(scores, plot)
+        write_file(plot, error_picture(scores, plot), "--plot")
     if junit is not None:
         write_junit(outcomes, junit)
     if as_json:

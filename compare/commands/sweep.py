@@ -22,7 +22,7 @@ from reference.commands.terminal import (
     replacements,
     stoppable,
 )
-from reference.scenes.tables import LEVELS
+from reference.scenes.fields import LEVELS
 from reference.status import Status
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ from fractions import Fraction
 from pydantic import ValidationError
 
 from reference import InputError, Scene, parse_scene
-from reference.scenes.tables import RunTable
+from reference.scenes.fields import RunTable
 
 METHOD_OF = {"4": "rk4", "5": "rkng56", "6": "rkng67"}
 MAX_STEPS = 1_000_000_000

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from reference import FoucaultError, Golden, UnreachableError, trajectory
+from reference import FoucaultError, Golden, Solution, UnreachableError, trajectory
 from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
 
@@ -59,16 +59,17 @@ class Motion:
         return bool(self.length) and bool((self.rows[:, 2] > WIDE * self.length).any())
 
     @classmethod
-    def of_golden(cls, golden: Golden) -> Motion:
-        """Take a motion from a golden dataset; where its rows lie far apart, one run in double fills the line in."""
-        states = np.column_stack([golden.grid[name] for name in STATE])
+    def of_golden(cls, golden: Golden | Solution) -> Motion:
+        """Take a motion from a golden dataset or a solution; one run in double fills the line in between far rows."""
+        name = golden.manifest.id if isinstance(golden, Golden) else golden.scene.id
+        states = np.column_stack([golden.grid[column] for column in STATE])
         gauge = _gauge(golden)
         line, swings = _line(golden, states, gauge)
         plane = np.full(len(states), np.nan) if gauge is None else np.degrees(gauge.swing_plane(states))
         swinging = np.isfinite(plane)
         transits = golden.transits
         return cls(
-            golden.manifest.id, float(golden.scene.exact.length), golden.t, states[:, :3], line, swings,
+            name, float(golden.scene.exact.length), golden.t, states[:, :3], line, swings,
             golden.t[swinging], plane[swinging], transits["t"], transits["x"], np.array(golden.directions),
         )  # fmt: skip
 
@@ -87,14 +88,14 @@ class Motion:
         )  # fmt: skip
 
 
-def _gauge(golden: Golden) -> Gauge | None:
+def _gauge(golden: Golden | Solution) -> Gauge | None:
     try:
         return Gauge.of(golden.scene)
     except UnreachableError:
         return None
 
 
-def _line(golden: Golden, states: Array, gauge: Gauge | None) -> tuple[Array, int]:
+def _line(golden: Golden | Solution, states: Array, gauge: Gauge | None) -> tuple[Array, int]:
     """Return the points of the line, shape (points, 3), and how many single swings they are."""
     t = golden.t
     if gauge is None or t[1] * POINTS <= COARSE * gauge.period:

@@ -9,9 +9,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from reference.model.start import Start
 from reference.numbers.precision import Array
 from reference.scenes.scene import AnyScene, as_scene
 
-from ..candidates.candidate import Candidate, Deviation
+from ..candidates.candidate import Candidate, Deviation, candidate_from
 from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import read
@@ -30,8 +31,8 @@ from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
 from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
 from .explanation.explain import explain as explained
-from .scored import Score
 from .transit_matching import TransitErrors, transit_errors
+from .verdict import Score
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
@@ -41,7 +42,7 @@ SAME = 1e-3  # relative difference of ratios that count as one scale
 
 
 def judge(
-    candidate: Candidate | str | Path | None,
+    candidate: Candidate | str | Path | Mapping[str, Any] | None,
     scene: AnyScene,
     *,
     transits: Array | None = None,
@@ -57,7 +58,8 @@ def judge(
     """Judge a candidate against the truth of a scene.
 
     Args:
-        candidate: the trajectory, at its own times, or the path of its file; None to judge transits alone.
+        candidate: the trajectory, at its own times; the path of its file; or columns by name, t, x, y and any of z,
+            vx, vy, vz, in a mapping or a pandas.DataFrame; None to judge transits alone.
         scene: the problem that it claims to solve: a scene, its id, the path of a TOML file, or nested mappings.
         transits: its times of xdot = 0 in s; if None, those that came with the trajectory.
         tolerance: largest position error allowed in m; if None, `TOLERANCE` times the amplitude.
@@ -83,7 +85,7 @@ def judge(
         end = float(scene.exact.t_end)
         candidate = Candidate.of_transits("transits", np.empty(0) if transits is None else transits[transits <= end])
     elif not isinstance(candidate, Candidate):
-        candidate = read(candidate)
+        candidate = read(candidate) if isinstance(candidate, str | Path) else candidate_from(candidate)
     times = candidate.transits if transits is None else transits
     if t_end is not None:
         candidate = _up_to(candidate, t_end)

@@ -67,25 +67,8 @@ class Worst(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Score:
-    """The judgement of a candidate.
-
-    Attributes:
-        candidate: the trajectory that was judged.
-        scene: the problem, its inputs read as decimals or as doubles.
-        why_inputs: the reason for that reading.
-        golden: the dataset that the truth comes from.
-        errors: at the candidate's times.
-        tolerance_m: largest position error allowed, in m.
-        swing: turn of the swing plane and delay.
-        drifts: of h and of `|r| - l`, if the candidate has the columns.
-        covers: share of the scene's span that was demanded, from 0 to 1.
-        as_model: whether agreement as a named model is enough.
-        notes: remarks that a reader ought to know.
-        transits: errors of its transits, or None.
-        timing: run time of the program, or None.
-        explanation: the likely reasons for the error; None if they were not looked for.
-    """
+class Scored:
+    """The numbers of a judgement, which `Score` names one by one, and what follows from them."""
 
     candidate: Candidate
     scene: Scene
@@ -101,9 +84,6 @@ class Score:
     transits: TransitErrors | None = None
     timing: Timing | None = None
     explanation: Explanation | None = None
-
-    def __repr__(self) -> str:
-        return f"Score({self.verdict} with {self.scene.id}: {self.errors.max_m:.2g} m)"
 
     @cached_property
     def input_floor_m(self) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from html import escape
 from itertools import islice
 from typing import Any
 
@@ -13,10 +14,42 @@ from reference.status import Status
 
 from ..candidates.candidate import Deviation
 from .explanation.findings import Explanation
-from .scored import Score
+from .scored import Scored
 
 REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
+
+
+@dataclass(frozen=True, repr=False)
+class Score(Scored):
+    """The judgement of a candidate.
+
+    Attributes:
+        candidate: the trajectory that was judged.
+        scene: the problem, its inputs read as decimals or as doubles.
+        why_inputs: the reason for that reading.
+        golden: the dataset that the truth comes from.
+        errors: at the candidate's times.
+        tolerance_m: largest position error allowed, in m.
+        swing: turn of the swing plane and delay.
+        drifts: of h and of `|r| - l`, if the candidate has the columns.
+        covers: share of the scene's span that was demanded, from 0 to 1.
+        as_model: whether agreement as a named model is enough.
+        notes: remarks that a reader ought to know.
+        transits: errors of its transits, or None.
+        timing: run time of the program, or None.
+        explanation: the likely reasons for the error; None if they were not looked for.
+    """
+
+    def __repr__(self) -> str:
+        return f"Score({self.verdict} with {self.scene.id}: {self.errors.max_m:.2g} m)"
+
+    def __str__(self) -> str:
+        """Return what `foucault score` prints."""
+        return "\n".join(lines(self))
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
 
 
 @dataclass(frozen=True)
@@ -67,7 +100,7 @@ class Outcome:
         return {"scene": self.scene, "candidate": self.name, "verdict": REFUSED, "error": str(self.error)}
 
 
-def lines(score: Score) -> Iterator[str]:
+def lines(score: Scored) -> Iterator[str]:
     """Yield the verdict line by line."""
     errors = score.errors
     yield f"{score.candidate.name} {_verdict(score)} ({_span(score)})"
@@ -107,7 +140,7 @@ def lines(score: Score) -> Iterator[str]:
         yield f"Note: {note}."
 
 
-def _verdict(score: Score) -> str:
+def _verdict(score: Scored) -> str:
     if score.grade == score.verdict:
         return f"{score.verdict} with {score.scene.id}"
     assert score.explanation is not None and score.explanation.model is not None
@@ -135,14 +168,14 @@ def _one_decimal(digits: float | None) -> str:
     return "none" if digits is None else f"{round(digits, 1) + 0.0:.1f}"
 
 
-def _span(score: Score) -> str:
+def _span(score: Scored) -> str:
     t, end = score.errors.t, score.scene.run.t_end
     what = "row" if score.candidate.positions else "transit"
     rows = f"1 {what}" if len(t) == 1 else f"{len(t)} {what}s"
     return f"{rows}, t = {t[0]:.6g} to {t[-1]:.6g} of {end} s: {percent(score.covered)}"
 
 
-def _largest(score: Score) -> str:
+def _largest(score: Scored) -> str:
     errors = score.errors
     if score.at_bound:
         return "at or below the reference's bound"
@@ -157,7 +190,7 @@ def _growth(exponent: float | None) -> str:
     return "" if exponent is None else f"grows like t^{exponent:.2f}"
 
 
-def _transit_lines(score: Score) -> Iterator[str]:
+def _transit_lines(score: Scored) -> Iterator[str]:
     transits = score.transits
     if transits is None:
         return
@@ -183,7 +216,7 @@ def _listed(texts: Iterable[str]) -> str:
     return ", ".join(first[:NAMED]) + (" …" if len(first) > NAMED else "")
 
 
-def document(score: Score) -> dict[str, Any]:
+def document(score: Scored) -> dict[str, Any]:
     """Return a score as a JSON document; its keys are part of the command line's contract."""
     errors, transits = score.errors, score.transits
     turn = score.swing.largest_turn

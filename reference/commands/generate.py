@@ -12,9 +12,9 @@ import typer
 
 from ..engines import AUTO, engine_names
 from ..errors import DatasetError, InputError, UnreachableError, in_words
+from ..scenes.fields import LEVELS
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
-from ..scenes.tables import LEVELS
 from ..status import Status
 from .progress import progress
 from .terminal import (

@@ -18,9 +18,9 @@ from pydantic import ValidationError
 from ..errors import DatasetError, FoucaultError, InputError, did_you_mean
 from ..numbers.columns import GridColumns
 from ..numbers.precision import Array
+from ..scenes.fields import Level
 from ..scenes.scene import Scene, parse_scene
 from ..scenes.shipped import seals
-from ..scenes.tables import Level
 from .manifest import FORMAT, MANIFEST, Manifest
 from .place import golden_folder
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet

@@ -13,8 +13,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import rounded_up
+from ..scenes.fields import Level
 from ..scenes.scene import Reading
-from ..scenes.tables import Level
 
 MANIFEST = "manifest.json"
 FORMAT = 3

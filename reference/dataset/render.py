@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 
 from ..errors import DatasetError
-from ..scenes.tables import Level
+from ..scenes.fields import Level
 from ..solver.solution import Solution
 from .manifest import MANIFEST, FileRecord, Manifest
 from .record import manifest_of

@@ -5,12 +5,13 @@ CONTRIBUTING.md says what else one more column of `grid.csv` takes.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import no_attribute
+from ..errors import InputError, no_attribute
 from .precision import Array
 
 POSITION = ("x", "y", "z")
@@ -26,7 +27,34 @@ KINDS = {name: kind for kind in UNITS for name in kind}  # the columns of a colu
 HORIZONTAL = {name: pair for pair in (("x", "y"), ("vx", "vy")) for name in pair}  # the same errors are assumed of both
 
 
-class GridColumns:
+def data_frame(columns: Mapping[str, Any]) -> Any:
+    """Return columns as a pandas.DataFrame.
+
+    Raises:
+        InputError: pandas is not installed.
+    """
+    try:
+        from pandas import DataFrame
+    except ImportError:
+        raise InputError("to_pandas", "nothing", "the package pandas", "Install it: pip install pandas.") from None
+    return DataFrame(columns)
+
+
+class Framed:
+    """What can be a pandas.DataFrame, and is shown as one by a notebook where pandas is installed."""
+
+    def to_pandas(self) -> Any:
+        """Return a pandas.DataFrame."""
+        raise NotImplementedError
+
+    def _repr_html_(self) -> str | None:
+        try:
+            return str(self.to_pandas()._repr_html_())
+        except InputError:
+            return None
+
+
+class GridColumns(Framed):
     """A solution or dataset whose table `grid` has a row for each of `times`: its columns are attributes."""
 
     grid: Any
@@ -40,6 +68,14 @@ class GridColumns:
     def exact(self, column: str) -> list[Fraction]:
         """Return the exact values of a grid column."""
         return list(self.times if column == "t" else self.grid.exact(column))
+
+    def to_pandas(self) -> Any:
+        """Return time and state as a pandas.DataFrame of the nearest doubles, in s, m and m/s.
+
+        Raises:
+            InputError: pandas is not installed.
+        """
+        return data_frame({"t": self.t, **{name: self.grid[name] for name in STATE}})
 
     if TYPE_CHECKING:
         x = y = z = vx = vy = vz = np.empty(0)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from .columns import KINDS
+from .columns import KINDS, Framed, data_frame
 from .precision import Array, decimals_for, rounded, to_fraction, with_decimal_point
 
 Integers = Any  # an array of integers of any size: dtype object, shape (rows,)
@@ -21,7 +21,7 @@ NOISE = 8  # a column whose largest number is within this many times its error i
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(Framed):
     """Named columns of numbers, as integers over 2**bits, with error bounds in the same form where they are known.
 
     `table["x"]` is a column as the nearest doubles, `len(table)` the number of rows.
@@ -71,6 +71,14 @@ class Table:
         """Return a column as the nearest doubles, shape (rows,)."""
         i, unit = self._place(name), 1 << self.bits
         return np.array([row[i] / unit for row in self.values], dtype=np.float64)
+
+    def to_pandas(self) -> Any:
+        """Return the columns as a pandas.DataFrame of the nearest doubles.
+
+        Raises:
+            InputError: pandas is not installed.
+        """
+        return data_frame({name: self.array(name) for name in self.columns})
 
     def exact(self, name: str) -> list[Fraction]:
         """Return the values of a column, exactly as computed."""

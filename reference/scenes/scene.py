@@ -17,9 +17,9 @@ from pydantic import AfterValidator, TypeAdapter, ValidationError
 
 from ..errors import InputError, all_of, unknown
 from ..system.documents import toml_document
+from .fields import Pendulum, Release, RunTable, SceneTable, Site, field
 from .inputs import Inputs, Line, Refused, as_read, explained
 from .shipped import data_root, scene_ids
-from .tables import Pendulum, Release, RunTable, SceneTable, Site, field
 
 MAX_ROWS = 2_000_000
 LEAST_T_END = Fraction(1, 10**300)
@@ -84,12 +84,28 @@ class Scene(SceneTable):
             gravity_is=site.gravity_is,
         )
 
-    def with_values(self, assignments: Iterable[str]) -> Scene:
-        """Return the scene with fields replaced, each assignment written `section.key=value`."""
+    def with_values(self, values: Words) -> Scene:
+        """Return the scene with fields replaced, by words `section.key=value` or a mapping of such keys to values."""
         document = self.model_dump(exclude_none=True)
-        for assignment in assignments:
+        for assignment in words_of(values):
             _assign(document, assignment)
         return parse_scene(document)
+
+
+Words = str | Iterable[str] | Mapping[str, Any]  # one word `key=value`, several, or a mapping from keys to values
+
+
+def words_of(values: Words) -> list[str]:
+    """Return values of fields as words `key=value`; a list, range or array is written as values between commas."""
+    if isinstance(values, Mapping):
+        return [f"{key}={_word(value)}" for key, value in values.items()]
+    return [values] if isinstance(values, str) else list(values)
+
+
+def _word(value: Any) -> str:
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return ",".join(map(_word, value))
+    return str(value)
 
 
 def _assign(document: dict[str, Any], assignment: str) -> None:
@@ -196,8 +212,8 @@ def _wrong_in_run(scene: Scene) -> Iterator[InputError]:
         )
 
 
-def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
-    """Read a scene by id, or from the path of a TOML file, with `section.key=value` replacements.
+def load_scene(name: str | Path, values: Words = ()) -> Scene:
+    """Read a scene by id, or from the path of a TOML file, with fields replaced as by `Scene.with_values`.
 
     A file without an id is named after itself: `My hall.toml` is `my_hall`.
 
@@ -215,7 +231,7 @@ def load_scene(name: str | Path, assignments: Iterable[str] = ()) -> Scene:
     own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document and is_scene_id(own_name):
         document["id"] = own_name
-    for assignment in assignments:
+    for assignment in words_of(values):
         _assign(document, assignment)
     return parse_scene(document)
 

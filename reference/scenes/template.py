@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from .fields import SceneTable
 from .scene import Scene, parse_scene
-from .tables import SceneTable
 
 BEGIN = """\
 # A scene of the Foucault pendulum. docs/scene.md explains each field, drag and the azimuth with an example.

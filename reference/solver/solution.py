@@ -14,8 +14,8 @@ from ..engines.plan import Run
 from ..errors import UnreachableError
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.table import Table, decimals_of, resolved
+from ..scenes.fields import Level
 from ..scenes.scene import Scene
-from ..scenes.tables import Level
 
 
 @dataclass(frozen=True)

@@ -31,7 +31,7 @@ def solve(
     *,
     digits: int | None = None,
     level: str | None = None,
-    t_end: str | None = None,
+    t_end: str | float | None = None,
     transits: bool | None = None,
     engine: str | None = None,
     audit: bool = False,
@@ -44,7 +44,7 @@ def solve(
         scene: the scene to solve: a scene, its id, the path of a TOML file, or nested mappings.
         digits: significant decimal digits of the largest number in each column.
         level: one of `scene.LEVELS`.
-        t_end: end of the run in s, as a decimal string.
+        t_end: end of the run in s; a number is taken as it is printed.
         transits: whether to find every zero of xdot.
         engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that is installed. At
             the level confirmed the run that confirms is always heyoka's.

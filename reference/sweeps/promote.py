@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import FoucaultError
-from ..scenes.tables import LEVELS, Level
+from ..scenes.fields import LEVELS, Level
 from ..status import Status
 from .request import Request
 from .row_columns import columns_of

@@ -22,8 +22,8 @@ from ..engines.registry import batches
 from ..errors import InputError, unknown
 from ..model.start import Start
 from ..numbers.precision import DOUBLE_BITS, GUARD_BITS
+from ..scenes.fields import LEVELS, Level
 from ..scenes.scene import Scene, parse_scene
-from ..scenes.tables import LEVELS, Level
 from .axes import TEXTS, Table, grid, listed
 from .parquet import AMPLITUDE, COLUMNS, FREQUENCY, PRECESSION, TIMES, TRANSIT_COLUMNS, TRANSITS, WANTS, WORDS, Column
 from .row_constants import ANGLES, POSITION

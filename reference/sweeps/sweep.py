@@ -16,7 +16,8 @@ import numpy as np
 
 from ..engines import AUTO
 from ..errors import InputError, unknown
-from ..scenes.scene import AnyScene, Scene, as_scene
+from ..numbers.columns import Framed, data_frame
+from ..scenes.scene import AnyScene, Scene, Words, as_scene, words_of
 from ..status import Status
 from ..system.imports import missing
 from ..system.workers import usable_cores
@@ -34,8 +35,8 @@ LEAST_AUDIT, MOST_AUDIT, AUDITED = 8, 1000, 1000  # audited rows: at least, at m
 Report = Callable[[int], None]
 
 
-@dataclass(frozen=True)
-class Swept:
+@dataclass(frozen=True, repr=False)
+class Swept(Framed):
     """A sweep that is done: its columns as arrays, in memory or read from its folder.
 
     Attributes:
@@ -58,6 +59,19 @@ class Swept:
 
     def __len__(self) -> int:
         return self.request.table.count
+
+    def __repr__(self) -> str:
+        """Return the scene, and how many rows there are of each status."""
+        found = ", ".join(f"{count} {status}" for status, count in self.counts.items())
+        return f"Swept({self.request.scene.id}: {len(self)} rows, {found}; {self.request.engine})"
+
+    def to_pandas(self) -> Any:
+        """Return the rows as a pandas.DataFrame: the values of the fields, then the columns.
+
+        Raises:
+            InputError: pandas is not installed.
+        """
+        return data_frame(self.columns())
 
     @cached_property
     def counts(self) -> dict[str, int]:
@@ -131,8 +145,9 @@ class Swept:
 
 def sweep(
     scene: AnyScene,
-    over: Iterable[str] = (),
+    over: Words = (),
     *,
+    t_end: str | float | None = None,
     rows: str | Path | None = None,
     out: str | Path | None = None,
     want: Sequence[str] = ("all",),
@@ -149,7 +164,9 @@ def sweep(
 
     Args:
         scene: what is varied, and the span: its `t_end`; a scene, its id, the path of a TOML file, or nested mappings.
-        over: words KEY=START:STOP:STEP, KEY=V1,V2,… or KEY=@FILE.csv; all combinations are rows, the last fastest.
+        over: a mapping from fields to values, `{"site.latitude": range(-90, 91, 10)}`, or words KEY=START:STOP:STEP,
+            KEY=V1,V2,… or KEY=@FILE.csv; all combinations are rows, the last fastest.
+        t_end: end of each run in s, where it is not the scene's.
         rows: instead, a CSV or Parquet file whose columns are fields, one row a scene.
         out: a folder for the rows, in Parquet; needed beyond 100,000 rows. A folder of the same sweep is gone on with.
         want: quantities: frequency, precession, transits, state, amplitude, all of these, transit-times.
@@ -170,8 +187,11 @@ def sweep(
     """
     file, folder = (Path(path) if path is not None else None for path in (rows, out))
     options = {"want": want, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
+    scene = as_scene(scene)
+    if t_end is not None:
+        scene = scene.with_values({"run.t_end": t_end})
     return run(
-        asked_for(as_scene(scene), over, file, folder, audit=audit_rows, **options), folder, workers, cluster, report
+        asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options), folder, workers, cluster, report
     )
 
 

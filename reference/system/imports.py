@@ -28,7 +28,8 @@ def lazy(package: str, homes: Mapping[str, str]) -> tuple[Callable[[str], Any], 
         raise no_attribute(f"module {package!r}", name, {*homes, *getattr(sys.modules[package], "__all__", ())})
 
     def names() -> list[str]:
-        return sorted({*vars(sys.modules[package]), *homes})
+        inside = vars(sys.modules[package])
+        return sorted({*inside.get("__all__", ()), *homes, *(name for name in inside if name.startswith("__"))})
 
     return attribute, names
 

@@ -8,7 +8,7 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from reference.scenes.tables import LEVELS
+from reference.scenes.fields import LEVELS
 
 from ..charts.drawing import check_matplotlib
 from ..charts.motion_pictures import motion_svgs

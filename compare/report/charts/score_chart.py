@@ -11,19 +11,17 @@ import numpy as np
 from reference.errors import shortened
 from reference.numbers.precision import Array
 
-from ...score.scored import Score
-from ..folder import write_file
+from ...score.verdict import Score
 from .drawing import COLOURS, GUIDE, Line, band, draw, legend, line_style, logarithmic, picture, sheet
 
 LONGEST_NAME = 32  # characters of a file's name beside its line
 
 
-def error_picture(scores: Sequence[Score], path: Path) -> None:
-    """Draw each candidate's position error against time, with the reference's bound as a band."""
+def error_picture(scores: Sequence[Score], target: Path) -> bytes:
+    """Return the content of a picture: the position errors of candidates against time, the reference's bound a band."""
     with sheet((8, 4.5)) as figure:
         _draw(figure.subplots(), scores)
-        content = picture(figure, path.suffix[1:].lower())
-    write_file(path, content, "--plot")
+        return picture(figure, target.suffix[1:].lower())
 
 
 def _draw(axes: Any, scores: Sequence[Score]) -> None:

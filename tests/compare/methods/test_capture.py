@@ -13,7 +13,7 @@ from compare import assert_agrees, study
 from compare.methods import METHODS, available, capture
 from compare.methods.capture import captured
 from compare.rhs.problem import Problem
-from reference.scenes.tables import LEVELS
+from reference.scenes.fields import LEVELS
 
 
 @pytest.fixture

@@ -26,7 +26,7 @@ from compare.candidates.candidate import Candidate
 from compare.score.explanation.explain import explain
 from compare.score.explanation.findings import Explanation
 from compare.score.judge import judge
-from compare.score.scored import Score
+from compare.score.verdict import Score
 from foucault import commands
 from reference import Scene, load_scene
 from reference.engines.trajectory import Variants

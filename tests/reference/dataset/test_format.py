@@ -16,8 +16,8 @@ from compare.studies.stability import Cell
 from reference import errors
 from reference.dataset import manifest, vectors
 from reference.dataset.sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER
+from reference.scenes.fields import LEVELS
 from reference.scenes.shipped import DATA_VERSION
-from reference.scenes.tables import LEVELS
 
 PAGE = (ROOT / "docs/format.md").read_text("utf-8")
 

@@ -17,8 +17,8 @@ from reference.errors import IntegrationError, UnreachableError
 from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE
 from reference.numbers.table import bits_in
+from reference.scenes.fields import LEVELS
 from reference.scenes.scene import load_scene
-from reference.scenes.tables import LEVELS
 from reference.solver import pilot as pilot_runs
 from reference.solver import reach
 from reference.solver.pilot import Pilot, run_pilot
