@@ -109,6 +109,23 @@ def test_drag_and_azimuth_are_what_the_page_on_scenes_says(tmp_path):
     assert motion["full_turn_h"] == pytest.approx(360 / abs(motion["precession_deg_per_h"]))
 
 
+def test_the_error_budget_is_that_of_the_dataset():
+    page = (ROOT / "docs/error_budget.md").read_text(encoding="utf-8")
+    golden, doubles = reference.load("paris"), reference.load("paris.binary64")
+    manifest = golden.manifest.model_dump()
+    proof, bounds = manifest["enclosure"], manifest["bounds"]
+    assert f"at most {proof['position_radius_m']} m, and {proof['transit_radius_s']} s for a transit" in page
+    assert f"between the {len(golden.directions)} that are listed" in page
+    assert f"{bounds['grid']['x']} m in *x* and *y*, {bounds['grid']['z']} m in *z*, {bounds['transit_s']} s" in page
+    for check in manifest["cross_checks"]:
+        assert float(check["position_m"]) < 1e-46
+    pairs = [(golden.exact(name), doubles.exact(name)) for name in ("x", "y", "z")]
+    apart = max(float(abs(p - q)) for own, other in pairs for p, q in zip(own, other, strict=True))
+    assert f"depart by {apart:.1e} m" in page
+    late = max(float(abs(p - q)) for p, q in zip(golden.transits.exact("t"), doubles.transits.exact("t"), strict=True))
+    assert f"its transits by {late:.1e} s" in page
+
+
 def test_what_the_tutorial_installs_can_be_had():
     (block,) = of_language(TUTORIAL, "sh")
     (name, extras), *_ = re.findall(r"'([\w-]+)\[([\w,]+)\]'", block)
