@@ -11,7 +11,7 @@ import typer
 from reference import InputError, load_scene, scene_ids
 from reference.commands.terminal import AsJson, Assignments, chosen, completion, emit, refuse, replacements
 
-from .options import listed
+from .options import announce, listed
 
 if TYPE_CHECKING:
     from ..score.verdict import Outcome
@@ -192,7 +192,7 @@ def command(
         options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
         if scene_word is None:
             raise InputError("SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them.")
-        scene = load_scene(scene_word, replacements(set_, options, UNUSED))
+        scene = load_scene(scene_word, replacements(set_, options, UNUSED, announce))
     else:
         others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
         refuse({**others, "--set": set_ or None, "--t-end": t_end, "--columns": columns}, "together with --suite")

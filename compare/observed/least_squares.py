@@ -13,6 +13,18 @@ Numbers = npt.NDArray[Any]  # real or complex
 Model = Callable[[Numbers], tuple[Numbers, Callable[[], Numbers]]]
 
 
+def solved(matrix: Numbers, right: Numbers, rcond: float | None = None) -> Numbers:
+    """Return the least squares solution of `matrix` times it = `right`.
+
+    Raises:
+        LinAlgError: a number is not finite. LAPACK would print that on stdout, where a JSON document may stand.
+    """
+    if not (np.isfinite(matrix).all() and np.isfinite(right).all()):
+        raise np.linalg.LinAlgError("numbers that are not finite")
+    solution: Numbers = np.linalg.lstsq(matrix, right, rcond=rcond)[0]
+    return solution
+
+
 def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers:
     """Return the change of numbers by which slopes come nearest to what is left.
 
@@ -27,7 +39,7 @@ def best_change(slopes: Numbers, left: Numbers, damping: float = 0.0) -> Numbers
     if damping:
         matrix = np.vstack([matrix, damping * np.eye(len(scale))])
         left = np.concatenate([left, np.zeros(len(scale))])
-    change: Numbers = np.linalg.lstsq(matrix, left, rcond=1e-14)[0] / scale
+    change: Numbers = solved(matrix, left, 1e-14) / scale
     return change
 
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import InputError, Stopped, did_you_mean, in_words, plain_json
-from ..scenes.scene import field_names
+from ..scenes.scene import field_names, full_name
 from ..scenes.shipped import scene_ids
 
 
@@ -29,7 +29,7 @@ Assignments = Annotated[
     typer.Option(
         "--set",
         metavar="section.key=value",
-        help="Replace one field of the scene; may be repeated.",
+        help="Replace one field of the scene, by this name or as in --run: x0=0.1; may be repeated.",
         autocompletion=completion(lambda: (f"{name}=" for name in field_names())),
     ),
 ]
@@ -80,6 +80,7 @@ def replacements(
     assignments: Iterable[str] | None,
     options: Mapping[str, tuple[str, str | None]],
     unused: Mapping[str, str] | None = None,
+    note: Callable[[str], None] | None = None,
 ) -> list[str]:
     """Return the replacements of a scene's fields, by `--set` and by options of their own.
 
@@ -87,6 +88,7 @@ def replacements(
         assignments: those of `--set`.
         options: the field that each option replaces, and its value; None if it was not given.
         unused: fields, or fields with a value, that make no difference to the command, and why.
+        note: called with a sentence for each of these that is replaced; without it they are refused.
 
     Raises:
         InputError: a replacement would have no effect: the field is replaced twice, or it is an unused one.
@@ -94,18 +96,21 @@ def replacements(
     values: dict[str, str] = {}
     reasons = unused or {}
     for assignment in assignments or ():
-        field = assignment.partition("=")[0].strip()
-        reason = reasons.get(field) or reasons.get(assignment)
-        if reason:
+        word, sign, value = assignment.partition("=")
+        field = full_name(word)
+        reason = reasons.get(field) or reasons.get(f"{field}{sign}{value.strip()}")
+        if reason and note is not None:
+            note(f"--set {assignment} makes no difference here. {reason}")
+        elif reason:
             raise InputError("--set", assignment, "a field that makes a difference here", reason)
         if field in values:
             raise InputError("--set", assignment, f"{field} once", f"{values[field]} stands before it: keep one.")
         values[field] = assignment
-    for option, (field, value) in options.items():
-        if value is not None:
+    for option, (field, given) in options.items():
+        if given is not None:
             if field in values:
-                raise InputError(option, value, f"no such option together with --set {values[field]}", "Keep one.")
-            values[field] = f"{field}={value}"
+                raise InputError(option, given, f"no such option together with --set {values[field]}", "Keep one.")
+            values[field] = f"{field}={given}"
     return list(values.values())
 
 

@@ -85,7 +85,7 @@ class Scene(SceneTable):
         )
 
     def with_values(self, values: Words) -> Scene:
-        """Return the scene with fields replaced, by words `section.key=value` or a mapping of such keys to values."""
+        """Return the scene with fields replaced, by words `section.key=value` or a mapping of keys; `x0` is a short name."""
         document = self.model_dump(exclude_none=True)
         for assignment in words_of(values):
             _assign(document, assignment)
@@ -110,7 +110,7 @@ def _word(value: Any) -> str:
 
 def _assign(document: dict[str, Any], assignment: str) -> None:
     key, sign, value = assignment.partition("=")
-    parts = key.strip().split(".")
+    parts = full_name(key).split(".")
     if not sign or len(parts) > 2 or not all(parts):
         raise InputError("--set", assignment, "section.key=value, such as site.latitude=0")
     table = document
@@ -133,6 +133,21 @@ def field_names() -> list[str]:
         inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, SceneTable) else ()
         names += [f"{top}.{key}" for key in inside] or [top]
     return names
+
+
+@cache
+def _short_names() -> dict[str, str]:
+    """Return the fields by the words that `foucault score --run` fills in: x0 for release.x, latitude, t_end."""
+    names = {}
+    for name in field_names():
+        section, _, key = name.partition(".")
+        names[f"{key}0" if key in ("x", "y", "vx", "vy") else key or section] = name
+    return names
+
+
+def full_name(word: str) -> str:
+    """Return the name of a field as `section.key` from that name or a short one; other words come back as they are."""
+    return _short_names().get(word.strip(), word.strip())
 
 
 def checked_value(name: str, value: str, reading: Reading) -> str:

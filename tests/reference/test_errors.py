@@ -44,7 +44,7 @@ def test_names_are_joined_as_in_a_sentence():
     ("assignment", "advice"),
     [
         ("site.lattitude=3", "Did you mean site.latitude or site.altitude?"),
-        ("latitude=3", "site.latitude"),
+        ("lattitude=3", "site.latitude"),
         ("sight.latitude=3", "Did you mean site?"),
         ("run.Digits=3", "Did you mean run.digits?"),
         ("zzzz=3", "`foucault show SCENE` lists them."),

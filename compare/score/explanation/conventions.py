@@ -27,6 +27,7 @@ SLIGHT = 1e-9  # and by more than this, heights are left out
 ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
 ROUGHLY = 0.03  # of the distance from the vertical: a release in another unit may be off by this
 SHIFTS = 3  # rows by which a clock may be off
+DECAYS = 0.1  # of its frequency: a swing that decays, or grows, faster tells no unit of time
 PARTS = 4  # of a row: programs that write every second or fourth step are off by that
 
 
@@ -227,7 +228,9 @@ def unit_of_time(rows: Rows, frequency: float) -> Rows:
     def ratio(scale: float) -> float | None:
         """Return the frequency of the rows over the scene's, their times multiplied by a scale."""
         fitted = fit_phasors(rows.times[some] * scale, plane[some], frequency)
-        return None if fitted is None or fitted[1] > 0.05 * size else abs(fitted[0].square) ** 0.5 / frequency
+        rate = 0.0 if fitted is None or fitted[1] > 0.05 * size else abs(fitted[0].square) ** 0.5
+        # a part of a wide swing in another unit looks like one that dies away, or grows, within it
+        return rate / frequency if fitted is not None and abs(fitted[0].drag) < DECAYS * rate else None
 
     as_printed = ratio(1.0)
     if as_printed is not None and 0.5 < as_printed < 2:

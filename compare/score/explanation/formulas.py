@@ -18,7 +18,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from ...observed.least_squares import gauss_newton
+from ...observed.least_squares import gauss_newton, solved
 from .causes import NAMED, causes_of
 from .families import Fit, windows
 from .findings import Explanation
@@ -164,7 +164,7 @@ def _refined(times: Array, plane: Array, guess: tuple[float, float]) -> Formula 
 
 
 def _linear(basis: Array, plane: Array) -> Array:
-    return np.asarray(np.linalg.lstsq(basis, plane, rcond=1e-12)[0], dtype=np.float64)
+    return np.asarray(solved(basis, plane, 1e-12), dtype=np.float64)
 
 
 def _left(times: Array, plane: Array, hold: float, rates: Array) -> tuple[Array, Callable[[], Array]]:

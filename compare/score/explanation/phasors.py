@@ -25,7 +25,7 @@ import numpy.typing as npt
 
 from reference.numbers.precision import Array
 
-from ...observed.least_squares import gauss_newton
+from ...observed.least_squares import gauss_newton, solved
 
 ComplexArray = npt.NDArray[np.complex128]
 STEPS = 30  # Gauss-Newton steps at most
@@ -142,7 +142,7 @@ def _guesses(times: Array, rows: ComplexArray, near: float) -> list[tuple[comple
             if len(before) < 6:
                 continue
             matrix = np.column_stack([here, before, np.ones_like(before)])
-            p, q, _ = np.linalg.lstsq(matrix, after, rcond=None)[0]
+            p, q, _ = solved(matrix, after)
             roots = np.roots([1, -p, -q])
             if (np.abs(roots) == 0).any() or not np.isfinite(roots).all():
                 continue
@@ -190,7 +190,7 @@ def _basis(times: Array, rates: ComplexArray) -> ComplexArray:
 
 def _linear(basis: ComplexArray, rows: ComplexArray) -> ComplexArray:
     """Return A, B and C."""
-    return np.asarray(np.linalg.lstsq(basis, rows, rcond=None)[0], dtype=np.complex128)
+    return np.asarray(solved(basis, rows), dtype=np.complex128)
 
 
 def _left(times: Array, rows: ComplexArray, rates: ComplexArray) -> tuple[ComplexArray, Callable[[], ComplexArray]]:

@@ -17,6 +17,8 @@ from reference.model.constants import Constants, constants_in_double
 from reference.model.force import acceleration
 from reference.numbers.precision import Array
 
+from ...observed.least_squares import solved
+
 FIRST = np.array([-1, 9, -45, 0, 45, -9, 1]) / 60  # stencils of order 6
 SECOND = np.array([2, -27, 270, -490, 270, -27, 2]) / 180
 COARSE = np.array([-1, 16, -30, 16, -1]) / 12  # of order 4, whose difference from the other tells the error
@@ -128,7 +130,7 @@ def _left(basis: Array, off: Array, places: list[tuple[int, int]]) -> tuple[floa
     fitted: dict[tuple[int, int], float] = {}
     for i, accelerations in enumerate(off):
         terms = [j for equation, j in places if equation == i]
-        solution = np.linalg.lstsq(basis[terms].T, accelerations, rcond=None)[0]
+        solution = solved(basis[terms].T, accelerations)
         fitted |= {(i, j): float(value) for j, value in zip(terms, solution, strict=True)}
         rest += float(np.sum((accelerations - solution @ basis[terms]) ** 2))
     return rest, fitted

@@ -1,13 +1,17 @@
-"""`foucault score --t-end`: the comparison ends there, and what comes later is ignored and counted."""
+"""`foucault score`: where the comparison ends (--t-end), fields by short names, and one JSON document on stdout."""
 
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
-from reference import load
+from compare.candidates.external import placeholders
+from reference import load, load_scene
+from reference.scenes.scene import field_names, full_name
 
 
 @pytest.fixture
@@ -53,3 +57,43 @@ def test_an_approximation_is_compared_up_to_there(foucault):
     status, out, _ = foucault("score", "paris", "--approximation", "linear_3d", "--t-end", "120", "--no-diagnosis")
     assert status == 1
     assert "3 rows, t = 0 to 120 of 120 s" in out
+
+
+FALLS = """
+for k in range(601):
+    t = k / 30
+    print(t, 0.3 - {0} * t**2, 0.4 + {0} * t**{1}, sep=",")
+"""
+
+
+@pytest.mark.parametrize(("pull", "power"), [("168.0", "2"), ("1e95", "1"), ("1e-9", "60")])
+def test_stdout_of_a_program_that_diverges_is_one_json_document(tmp_path, pull, power):
+    """In a process of its own, whose stdout LAPACK would write to."""
+    (tmp_path / "falls.py").write_text("print('t,x,y')" + FALLS.format(pull, power))
+    run = ["--run", f"{sys.executable} falls.py", "--repeats", "0", "--set", "t_end=20", "--json"]
+    command = [sys.executable, "-m", "foucault", "score", "paris", *run]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    document = json.loads(done.stdout)
+    assert document["verdict"] == "disagrees" and document["causes"] == []
+    (tmp_path / "nan.csv").write_text("t,x,y\n0,0.3,0.4\n1,inf,nan\n")
+    command[5:-1] = ["nan.csv"]
+    refused = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (refused.returncode, refused.stdout) == (2, "") and "nan.csv: x: got 'inf in row 2'" in refused.stderr
+
+
+def test_fields_have_the_short_names_of_run_and_one_without_effect_is_a_note(foucault):
+    words = ("score", "paris", "--approximation", "linear_3d", "--no-diagnosis", "--json")
+    long = foucault(*words, "--set", "run.t_end=120", "--set", "release.x=0.2", "--set", "site.latitude=12")
+    short = foucault(*words, "--set", "t_end=120", "--set", "x0=0.2", "--set", "latitude=12")
+    assert short[:2] == long[:2] and short[0] == 1
+    ignored = foucault(
+        *words, "--set", "t_end=120", "--set", "x0=0.2", "--set", "latitude=12", "--set", "level=enclosed"
+    )
+    assert ignored[:2] == long[:2]
+    assert ignored[2] == "--set level=enclosed makes no difference here. " + (
+        "A candidate is held against a confirmed solution, or a dataset that ships.\n"
+    )
+    assert load_scene("paris", ["x0=0.2", "length=60"]) == load_scene("paris", ["release.x=0.2", "pendulum.length=60"])
+    fields = {full_name(word) for word in placeholders(load_scene("paris"))} - {"z0", "vz0"}  # these two follow
+    assert fields <= set(field_names())

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from compare.observed.least_squares import Numbers, best_change, by_differences, gauss_newton
+from compare.observed.least_squares import Numbers, best_change, by_differences, gauss_newton, solved
 
 TIMES = np.linspace(0.0, 3.0, 40)
 
@@ -67,3 +67,16 @@ def test_slopes_by_differences_find_the_same_numbers() -> None:
     model = by_differences(lambda n: n[0] * np.exp(-n[1] * TIMES), 2.0 * np.exp(-0.7 * TIMES), np.array([1e-6, 1e-6]))
     found, _ = gauss_newton(model, np.array([1.5, 0.9]), steps=12, gain=0.9)
     assert found == pytest.approx(np.array([2.0, 0.7]), rel=1e-12)
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf])
+def test_numbers_that_are_not_finite_are_refused_and_lapack_prints_nothing(bad, capfd):
+    matrix, right = np.array([[1.0, 2.0], [3.0, 4.0], [5.0, 7.0]]), np.array([1.0, 2.0, 3.0])
+    assert solved(matrix, matrix @ [2.0, -1.0]) == pytest.approx([2.0, -1.0])
+    for place in (matrix[1, 1:], right[2:]):
+        kept = place[0]
+        place[0] = bad
+        with pytest.raises(np.linalg.LinAlgError):
+            solved(matrix, right)
+        place[0] = kept
+    assert capfd.readouterr() == ("", "")
