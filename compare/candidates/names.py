@@ -35,8 +35,8 @@ TIME_WORDS = {
 }  # fmt: skip
 TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")  # a column that is called so
 LONGEST = 100  # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
-_BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
-_AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
+BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
+AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
 TIMES = {
     "s": Fraction(1), "ms": Fraction(1, 10**3), "us": Fraction(1, 10**6), "ns": Fraction(1, 10**9),
     "min": Fraction(60), "h": Fraction(3600), "d": Fraction(86400),
@@ -59,7 +59,7 @@ OTHER_WORDS = {
     "millimetres": "mm", "kilometer": "km", "kilometers": "km", "kilometre": "km", "kilometres": "km", "inch": "in",
     "inches": "in", "foot": "ft", "feet": "ft",
 }  # fmt: skip
-_PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
+PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
 SHORT_SPEEDS = {"mps": "m/s", "cmps": "cm/s", "mmps": "mm/s", "kmh": "km/h", "kph": "km/h"}
 
 
@@ -104,7 +104,7 @@ def meaning(word: str, units: dict[str, str]) -> Meaning | None:
             unit = ""  # x(t)
         size = size_of(unit, column) if unit else Fraction(1)
         if size is None:
-            if _BRACKETS.fullmatch(text):
+            if BRACKETS.fullmatch(text):
                 return Meaning(column, None, unit, rank)
             continue  # it may be no unit
         if not unit and column in units:
@@ -124,13 +124,13 @@ def unquoted(word: str) -> str:
 
 def _parts(text: str) -> list[tuple[str, str]]:
     """Return the ways to take a word apart into a name and a unit, the most likely first."""
-    brackets = _BRACKETS.fullmatch(text)
+    brackets = BRACKETS.fullmatch(text)
     if brackets:
         return [(brackets[1], brackets[2])]
     ways = [(text, "")]
     if TIME_UNITS.fullmatch(text.lower()):
         ways.append(("t", text))
-    after = _AFTER.fullmatch(text)
+    after = AFTER.fullmatch(text)
     if after:
         ways.append((after[1], after[2]))
     return ways
@@ -175,7 +175,7 @@ def size_of(unit: str, column: str) -> Fraction | None:
         return LENGTHS.get(plain_unit(unit))
     word = unit.strip().lower()
     word = "m/s" if word == "ms" else SHORT_SPEEDS.get(word, word)
-    parts = _PER.fullmatch(word)
+    parts = PER.fullmatch(word)
     if parts is None:
         return None
     length, time = (parts[1], parts[2]) if parts[1] else (parts[3], parts[4])

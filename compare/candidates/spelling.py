@@ -16,10 +16,10 @@ CHUNK = 1 << 22
 _BINARY = "Binary data is read from .npz only."
 COMMENTS = ("#", "%", "!", "//")  # a line that begins with one of these is a comment
 MARKS = {mark[0] for mark in COMMENTS}
-_FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
-_HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
-_APART = re.compile(r"\s{2,}|\t")
-_BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
+FORTRAN = re.compile(r"(?<=[\d.])[dD](?=[+-]?\d)")
+HEXFLOAT = re.compile(r"[+-]?0x[\da-f]+(\.[\da-f]*)?p[+-]?\d+", re.IGNORECASE)  # never read, but no word either
+APART = re.compile(r"\s{2,}|\t")
+BEFORE_BRACKET = re.compile(r"(?<!\s)\s+(?=[(\[{])")
 
 
 def chunks(stream: BinaryIO, name: str, head: bytes = b"") -> Iterator[tuple[list[str], bool]]:
@@ -100,7 +100,7 @@ class Spelling:
             line = line.replace(",", ".")
         if self.quoted:
             line = line.replace('"', "")
-        return _FORTRAN.sub("e", line) if self.fortran else line
+        return FORTRAN.sub("e", line) if self.fortran else line
 
     def fields(self, line: str) -> list[str]:
         """Return the fields of a row."""
@@ -110,14 +110,14 @@ class Spelling:
 def spelling(line: str) -> Spelling | None:
     """Return how a line is written if it is a row, that is if most of its fields are numbers; else None."""
     best = Spelling(None)
-    fortran, quoted = _FORTRAN.search(line) is not None, '"' in line
+    fortran, quoted = FORTRAN.search(line) is not None, '"' in line
     for comma in (False, True) if "," in line else (False,):
         for separator in (",", ";", "\t", None):
             if (separator is not None and separator not in line) or (comma and separator == ","):
                 continue
             tried = Spelling(separator, comma, fortran, quoted)
             fields = [text.strip() for text in tried.fields(line)]
-            numbers = sum(is_number(text) or _HEXFLOAT.fullmatch(text) is not None for text in fields)
+            numbers = sum(is_number(text) or HEXFLOAT.fullmatch(text) is not None for text in fields)
             share = numbers / max(1, len(fields) - (fields[-1:] == [""]))
             if share > best.share:
                 best = Spelling(separator, comma, fortran, quoted, share)
@@ -127,7 +127,7 @@ def spelling(line: str) -> Spelling | None:
 def words(line: str) -> list[list[str]]:
     """Return the ways to take a header apart, the most likely first; a separator at its end adds no word."""
     ways = [line.split(separator) for separator in (",", ";", "\t") if separator in line]
-    ways += [_APART.split(line.strip()), _BEFORE_BRACKET.sub("", line).split(), line.split()]
+    ways += [APART.split(line.strip()), BEFORE_BRACKET.sub("", line).split(), line.split()]
     return [way[:-1] if len(way) > 1 and not way[-1].strip() else way for way in ways]
 
 

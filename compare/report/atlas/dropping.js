@@ -103,7 +103,7 @@ async function take(files) {
   show(last);
 }
 
-tolerance.placeholder = small(DEFAULT_TOLERANCE * truth.amplitude_m);
+tolerance.placeholder = small(truth.words.TOLERANCE * truth.amplitude_m);
 tolerance.addEventListener("change", () => last.length && show(last));
 document.getElementById("files").addEventListener("change", (event) => take(event.target.files));
 for (const kind of ["dragenter", "dragover", "dragleave", "drop"]) {

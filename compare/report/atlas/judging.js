@@ -2,9 +2,7 @@
 // `truth` is what parts.py embeds: columns as doubles in base64, bounds, scales and words. Needs reading.js.
 "use strict";
 
-const DEFAULT_TOLERANCE = 1e-6; // part of the amplitude
 const SAME_TIME = 1e-6; // rad of the swing: a row that is this near to a golden time is judged there
-const COVERED = 1e-6; // part of the span that may be missing at the end
 const EXPLAINED = 0.02; // part of the error that a suspected mistake may leave
 const MOST_EXTRA = 1000; // extra transits that are looked at one by one
 const POSITION = ["x", "y", "z"];
@@ -33,37 +31,46 @@ function nearest(values, value) {
   return Math.abs(values[high] - value) < Math.abs(values[low] - value) ? high : low;
 }
 
-// Which rows are at golden times: [[row, golden row], …]. Throws Unreadable where none after t = 0 is.
-function pairs(t, truth) {
-  const { grid, t_end: end, grid_step: step } = truth;
-  const last = t[t.length - 1];
-  if (last > end + step) {
-    const unit = [["milliseconds", 1e3], ["microseconds", 1e6]].find(([, size]) => last / size <= end * 1.001 && last > 10 * end);
-    const advice = unit ? `They look like ${unit[0]}: name the column t (${unit[1] === 1e3 ? "ms" : "us"}).` : "Leave later rows out.";
-    throw new Unreadable(`The last time is ${last} s, and the scene ends at ${end} s. ${advice}`);
-  }
-  const within = SAME_TIME * Math.min(step, truth.omega ? 1 / truth.omega : step);
+const ratio = ([above, below]) => above / below;
+
+// Which rows are at golden times: [[row, golden row], …].
+function matches(t, { grid, grid_step: step, omega }) {
+  const within = SAME_TIME * Math.min(step, omega ? 1 / omega : step);
   const found = [];
-  const offsets = [];
   t.forEach((time, row) => {
     const at = nearest(grid.t, time);
-    offsets.push(time - grid.t[at]);
     if (Math.abs(time - grid.t[at]) <= within && !(found.length && found[found.length - 1][1] === at)) found.push([row, at]);
   });
+  return found;
+}
+
+// The same, or throws Unreadable where no row after t = 0 is at a golden time, with what may be the reason.
+function pairs(columns, truth) {
+  const { grid, t_end: end, grid_step: step, words } = truth;
+  const { t } = columns;
+  const last = t[t.length - 1];
+  if (last > end + step) {
+    const unit = words.FINER.find((one) => last * ratio(words.TIMES[one]) <= end * (1 + words.SAME) && last > words.FAR * end);
+    const advice = unit ? `They look like ${words.LONG_NAMES[unit]}: name the column t (${unit}).` : "Leave later rows out.";
+    throw new Unreadable(`The last time is ${last} s, and the scene ends at ${end} s. ${advice}`);
+  }
+  const found = matches(t, truth);
   if (!found.some(([, at]) => grid.t[at] > 0)) {
-    const later = offsets.filter((_, row) => t[row] > 0);
-    const shift = later[0] ?? 0;
-    const shifted = later.length > 1 && later.every((offset) => Math.abs(offset - shift) <= within);
+    const within = SAME_TIME * Math.min(step, truth.omega ? 1 / truth.omega : step);
+    const offsets = t.filter((time) => time > 0).map((time) => time - grid.t[nearest(grid.t, time)]);
+    const shift = offsets[0] ?? 0;
+    const shifted = offsets.length > 1 && offsets.every((offset) => Math.abs(offset - shift) <= within);
     const why = shifted ? ` All are ${Math.abs(shift).toPrecision(3)} s ${shift > 0 ? "after" : "before"} one: is the clock shifted?` : "";
     const golden = [...grid.t.slice(0, 3)].join(", ");
-    throw new Unreadable(`No row after t = 0 is at a golden time (${golden} … s).${why} Print rows there, or use foucault score, which judges at any time.`);
+    const unit = unitOfTime(columns, truth).map((text) => ` ${text}`).join("");
+    throw new Unreadable(`No row after t = 0 is at a golden time (${golden} … s).${why}${unit} Print rows there, or use foucault score, which judges at any time.`);
   }
   return found;
 }
 
 // Errors of the rows at golden times: candidate minus truth, the truth moved on by its velocity to the row's own time.
 function errorsOf(columns, matched, truth) {
-  const names = KNOWN.filter((name) => name !== "t" && name in columns);
+  const names = allColumns(truth.words).filter((name) => name !== "t" && name in columns);
   const rates = { x: "vx", y: "vy", z: "vz" };
   const components = {};
   for (const name of names) {
@@ -81,18 +88,21 @@ const largest = (values) => values.reduce((best, value, i) => (Math.abs(value) >
 
 // Judge a candidate {columns or null, transits or null, notes}; `tolerance` in m, null for a millionth of the amplitude.
 function judge(candidate, truth, tolerance = null) {
-  const allowance = tolerance ?? DEFAULT_TOLERANCE * truth.amplitude_m;
+  const allowance = tolerance ?? truth.words.TOLERANCE * truth.amplitude_m;
   const allowed = allowance + truth.bound_m;
   const verdict = { tolerance_m: allowance, bound_m: truth.bound_m, notes: [...candidate.notes], path: null, transits: null };
   let until = Math.min(truth.t_end, candidate.transits?.at(-1) ?? 0); // later transits are not missed
   if (candidate.columns) {
-    const matched = pairs(candidate.columns.t, truth);
+    const matched = pairs(candidate.columns, truth);
     const errors = errorsOf(candidate.columns, matched, truth);
     verdict.path = { ...pathVerdict(candidate.columns, matched, errors, truth, allowed), errors };
     until = errors.t[errors.t.length - 1];
     const apart = candidate.columns.t.length - matched.length;
     if (apart) verdict.notes.push(`${apart} of ${candidate.columns.t.length} rows are not at golden times and were not judged.`);
-    if (verdict.path.max_error_m > allowed) verdict.notes.push(...suspicions(candidate.columns, matched, errors, truth));
+    if (verdict.path.max_error_m > allowed) {
+      const found = suspicions(candidate.columns, matched, errors, truth);
+      verdict.notes.push(...(found.length ? found : unitOfTime(candidate.columns, truth)));
+    }
   }
   if (candidate.transits && truth.transits) {
     verdict.transits = transitErrors(candidate.transits, truth, until, allowance);
@@ -117,7 +127,7 @@ function pathVerdict(columns, matched, errors, truth, allowed) {
   const last = t[t.length - 1];
   return {
     rows: t.length,
-    covered: last >= truth.t_end * (1 - COVERED) ? 1 : last / truth.t_end,
+    covered: last >= truth.t_end * (1 - truth.words.WHOLE) ? 1 : last / truth.t_end,
     covered_s: [t[0], last],
     max_error_m: top,
     rms_error_m: top && top * Math.sqrt(position.reduce((sum, error) => sum + (error / top) ** 2, 0) / position.length),
@@ -133,29 +143,40 @@ function firstWrongPlace(error) {
   return Math.floor(-Math.log10(2 * Math.abs(error))) + 1;
 }
 
-// What plain mistakes explain: axes exchanged or turned round, a clock that is late.
+// What plain mistakes explain, and what they leave: another unit, axes turned round or exchanged, a clock that is late.
 function suspicions(columns, matched, errors, truth) {
-  const golden = (name) => matched.map(([, at]) => truth.grid[name][at]);
-  const mine = (name) => matched.map(([row]) => columns[name][row]);
-  const [x, y, tx, ty] = [mine("x"), mine("y"), golden("x"), golden("y")];
-  const left = (u, v) => Math.max(...tx.map((_, i) => Math.hypot(u[i] - tx[i], v[i] - ty[i])));
-  const minus = (values) => values.map((value) => -value);
-  const top = left(x, y);
-  const ways = [
-    ["With x and y exchanged", left(y, x)],
-    ["With x turned round (it points west)", left(minus(x), y)],
-    ["With y turned round (it points south)", left(x, minus(y))],
-    ["With x and y turned round", left(minus(x), minus(y))],
-  ];
-  const [vx, vy] = [golden("vx"), golden("vy")];
+  const { words } = truth;
+  const top = errors.position.reduce((most, error) => Math.max(most, error), 0);
+  const enough = EXPLAINED * Math.min(top, truth.amplitude_m);
+  const told = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: put right, ${rest.toPrecision(2)} m are left.`] : []);
+  const rows = matched.map(([row, at]) => [columns.x[row], columns.y[row], truth.grid.x[at], truth.grid.y[at]]);
+  for (const [size, unit] of [[1, ""], ...Object.entries(words.LENGTHS_SAID).map(([unit, text]) => [ratio(words.LENGTHS[unit]), text])]) {
+    for (const [first, second, xSign, ySign, axes] of words.AXES_SAID) {
+      if (!unit && !axes) continue;
+      const left = rows.map((row) => Math.hypot(xSign * size * row[first] - row[2], ySign * size * row[second] - row[3]));
+      const found = told([unit && `Your file ${unit}`, axes && `${unit ? "it" : "Your file"} ${axes}`], left.reduce((most, one) => Math.max(most, one), 0));
+      if (found.length) return found;
+    }
+  }
+  const [vx, vy] = ["vx", "vy"].map((name) => matched.map(([, at]) => truth.grid[name][at]));
   const { x: ex, y: ey } = errors.components;
   const square = vx.reduce((sum, one, i) => sum + one ** 2 + vy[i] ** 2, 0);
   const late = -vx.reduce((sum, one, i) => sum + one * ex[i] + vy[i] * ey[i], 0) / square;
-  if (square) {
-    const rest = Math.max(...vx.map((one, i) => Math.hypot(ex[i] + late * one, ey[i] + late * vy[i])));
-    ways.push([`With a clock that is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"} put right`, rest]);
+  const rest = vx.reduce((most, one, i) => Math.max(most, Math.hypot(ex[i] + late * one, ey[i] + late * vy[i])), 0);
+  return square ? told([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], rest) : [];
+}
+
+// The unit in which times are meant: rows at golden times in it are within 2 % of the truth there; a sentence or none.
+function unitOfTime(columns, truth) {
+  for (const [unit, text] of Object.entries(truth.words.TIMES_SAID)) {
+    const t = columns.t.map((time) => time * ratio(truth.words.TIMES[unit]));
+    if (t[t.length - 1] > truth.t_end + truth.grid_step) continue;
+    const matched = matches(t, truth);
+    const { position } = errorsOf({ ...columns, t }, matched, truth);
+    const rest = position.reduce((most, error) => Math.max(most, error), 0);
+    if (matched.length > 2 && rest <= EXPLAINED * truth.amplitude_m) return [`Your file ${text}: put right, ${rest.toPrecision(2)} m are left.`];
   }
-  return ways.filter(([, rest]) => rest <= EXPLAINED * top).map(([text, rest]) => `${text}, ${rest.toPrecision(2)} m are left.`);
+  return [];
 }
 
 // Match transits in order; name the missed and the extra ones, as compare/score/transit_matching.py does.

@@ -151,7 +151,9 @@ def _drop(entry: Entry) -> Html:
 
 def _truth(entry: Entry) -> Html:
     document = parts.embedded(entry.judged)
-    content = json.dumps(document, separators=(",", ":"), ensure_ascii=False).replace("<", "\\u003c")
+    content = json.dumps(document, separators=(",", ":"), ensure_ascii=False, default=parts.plain).replace(
+        "<", "\\u003c"
+    )
     return Html(f'<script type="application/json" id="truth">{content}</script>\n')
 
 

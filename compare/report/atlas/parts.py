@@ -18,10 +18,14 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array
 from reference.status import Status
 
-from ...candidates import names
+from ...candidates import candidate, layout, names, spelling
+from ...candidates import text as text_reader
 from ...observed.position_error import distance
+from ...score import judge
 from ...score.errors import swing_rate
+from ...score.explanation import conventions
 from ...score.judge import unjudged_transits
+from ...score.scored import WHOLE
 from ..page import Html, Table, facts, text
 from .entry import Entry, MethodResult, StudyResults
 
@@ -165,24 +169,21 @@ def embedded(golden: Golden) -> dict[str, Any]:
 
 
 def _vocabulary() -> dict[str, Any]:
-    """Return the words of headers and units that `reading.js` understands: those of `foucault score`."""
-    return {
-        "position": names.POSITION.pattern,
-        "velocity": names.VELOCITY.pattern,
-        "time": sorted(names.TIME_WORDS),
-        "timeUnits": names.TIME_UNITS.pattern,
-        "axes": {word: list(axis) for word, axis in names.AXES.items()},
-        "directions": {word: list(axis) for word, axis in names.DIRECTIONS.items()},
-        "times": _ratios(names.TIMES),
-        "lengths": _ratios(names.LENGTHS),
-        "words": names.OTHER_WORDS,
-        "speeds": names.SHORT_SPEEDS,
-    }
+    """Return the tables, patterns and limits by which the scripts read and judge, by the names they have in Python."""
+    reading = names, layout, spelling, text_reader, candidate
+    found = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
+    said = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
+    limits = {"TOLERANCE": judge.TOLERANCE, "FINER": judge.FINER, "FAR": judge.FAR, "SAME": judge.SAME, "WHOLE": WHOLE}
+    axes = [[*order, *signs, text] for (order, signs), (_, text) in conventions.AXES_SAID.items()]
+    return found | said | limits | {"AXES_SAID": axes}
+
+
+def plain(value: object) -> Any:
+    """Return what JSON has for a set, a pattern, a fraction or a deviation of the vocabulary; for `json.dumps`."""
+    if isinstance(value, Fraction):
+        return [value.numerator, value.denominator]
+    return sorted(value) if isinstance(value, set) else getattr(value, "pattern", None) or getattr(value, "text", None)
 
 
 def _doubles(values: Array) -> str:
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f8").tobytes()).decode()
-
-
-def _ratios(sizes: dict[str, Fraction]) -> dict[str, list[int]]:
-    return {word: [size.numerator, size.denominator] for word, size in sizes.items()}

@@ -28,6 +28,18 @@ ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
 ROUGHLY = 0.03  # of the distance from the vertical: a release in another unit may be off by this
 SHIFTS = 3  # rows by which a clock may be off
 DECAYS = 0.1  # of its frequency: a swing that decays, or grows, faster tells no unit of time
+LENGTHS_SAID = {unit: f"is in {LONG_NAMES[unit]}" for unit in ("cm", "mm", "km", "ft", "in")}
+TIMES_SAID = {unit: f"counts time in {LONG_NAMES[unit]}" for unit in ("min", "h", "ms", "d")}
+AXES_SAID = {  # order and signs by which a file's horizontal columns become the scene's: x of the scene first
+    ((0, 1), (1, 1)): ("", ""),
+    ((0, 1), (-1, 1)): ("x_west", "has x pointing west instead of east"),
+    ((0, 1), (1, -1)): ("y_south", "has y pointing south instead of north"),
+    ((0, 1), (-1, -1)): ("xy_reversed", "has x pointing west and y pointing south"),
+    ((1, 0), (1, 1)): ("xy_swapped", "writes north as x and east as y"),
+    ((1, 0), (-1, 1)): ("axes_turned", "writes north as x and west as y"),
+    ((1, 0), (1, -1)): ("axes_turned", "writes south as x and east as y"),
+    ((1, 0), (-1, -1)): ("axes_turned", "writes south as x and west as y"),
+}
 PARTS = 4  # of a row: programs that write every second or fourth step are off by that
 
 
@@ -132,10 +144,10 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
         return rows
     units = [
         (1.0, ""),
-        *((1 / float(LENGTHS[unit]), f"is in {LONG_NAMES[unit]}") for unit in ("cm", "mm", "km", "ft", "in")),
+        *((1 / float(LENGTHS[unit]), text) for unit, text in LENGTHS_SAID.items()),
         (1 / length, "is in cord lengths (x/l)"),
     ]
-    ways = [*itertools.product(((0, 1), (1, 0)), ((1, 1), (-1, 1), (1, -1), (-1, -1)))]
+    ways = [*AXES_SAID]
     for (scale, text), (order, signs) in itertools.product(units, ways if rename else ways[:1]):
         if is_release(row[[*order]] / scale * np.array(signs), release, rows.noise / scale):
             return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
@@ -172,17 +184,9 @@ def _in_metres(rows: Rows, scale: float, text: str) -> Rows:
 
 def _renamed(rows: Rows, order: tuple[int, int], signs: tuple[int, int]) -> Rows:
     """Return the rows with the horizontal axes in another order and with other signs, and what is said of that."""
-    if (order, signs) == ((0, 1), (1, 1)):
+    word, text = AXES_SAID[order, signs]
+    if not text:
         return rows
-    words = {1: ("north", "east"), -1: ("south", "west")}
-    # x of the scene is signs[0] times the file's y
-    turned = ("axes_turned", f"writes {words[signs[1]][0]} as x and {words[signs[0]][1]} as y")
-    word, text = {
-        ((0, 1), (-1, 1)): ("x_west", "has x pointing west instead of east"),
-        ((0, 1), (1, -1)): ("y_south", "has y pointing south instead of north"),
-        ((0, 1), (-1, -1)): ("xy_reversed", "has x pointing west and y pointing south"),
-        ((1, 0), (1, 1)): ("xy_swapped", "writes north as x and east as y"),
-    }.get((order, signs), turned)
     plane = rows.positions[:, order] * np.array(signs)
     convention = Deviation(word, text, largest(plane - rows.plane))
     return rows.changed(convention, positions=np.column_stack([plane, rows.positions[:, 2:]]))
@@ -236,14 +240,13 @@ def unit_of_time(rows: Rows, frequency: float) -> Rows:
     if as_printed is not None and 0.5 < as_printed < 2:
         return rows
     spacing, span = float(np.median(np.diff(rows.times))), float(rows.times[-1] - rows.times[0])
-    for unit in ("min", "h", "ms", "d"):
+    for unit, text in TIMES_SAID.items():
         scale = float(TIMES[unit])
         if not spacing * scale * frequency < math.pi < span * scale * frequency:
             continue  # farther apart, rows of any frequency look like those of another; closer, they show none
         scaled = ratio(scale)
         if scaled is not None and abs(scaled - 1) < 0.1:
-            convention = Deviation("unit_of_time", f"counts time in {LONG_NAMES[unit]}", size)
-            return rows.changed(convention, times=rows.times * scale)
+            return rows.changed(Deviation("unit_of_time", text, size), times=rows.times * scale)
     return rows
 
 

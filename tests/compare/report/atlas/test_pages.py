@@ -216,7 +216,7 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, tmp_path):
     )
     assert "10514 matched, 0 missed, 0 extra" in texts[1]
     assert f"10513 matched, 1 missed ({times[41]:.6f} s)" in texts[2]
-    assert "With x and y exchanged" in texts[3]
+    assert "Your file writes north as x and east as y: put right, " in texts[3]
     assert "All are 7.00 s after one" in texts[4] and "fields, and the first row has 3" in texts[5]
 
 
