@@ -13,7 +13,9 @@ True
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -39,8 +41,9 @@ def assert_agrees(
     covers: float = 0.0,
     as_model: bool = False,
     inputs: str = "auto",
+    baseline: Score | Mapping[str, Any] | str | Path | None = None,
 ) -> Score:
-    """Assert that positions agree with the truth of a scene.
+    """Assert that positions agree with the truth of a scene, or are no worse than those of an earlier version.
 
     Args:
         scene: a scene, its id, the path of a TOML file, or nested mappings.
@@ -51,13 +54,16 @@ def assert_agrees(
         covers: share of the scene's span, from 0 to 1, that the times have to reach; 1 is all of it.
         as_model: whether agreement as a named simplification of the model is enough.
         inputs: decimal, binary64 or auto, as in `foucault score --inputs`.
+        baseline: an earlier version: the path of its file or of its `foucault score --json` (.json), or its score. Then
+            it is enough to be no worse than that by more than the tolerance.
 
     Returns:
         The score, with more measures of the error.
 
     Raises:
-        AssertionError: the trajectory disagrees, or has no row after t = 0; the message gives time, component,
-            expected, got, difference, what is allowed, and the causes that were found.
+        AssertionError: the trajectory disagrees, or has no row after t = 0, or became worse than its baseline; the
+            message gives time, component, expected, got, difference, what is allowed, what changed, and the causes
+            that were found.
         InputError: an array has the wrong shape, or a number is not finite.
     """
     rows, times = real_array(states, "states"), real_array(t, "t")
@@ -73,8 +79,9 @@ def assert_agrees(
         inputs=inputs,
         covers=covers,
         as_model=as_model,
+        baseline=baseline,
     )
-    if not result.passes:
+    if not result.accepted:
         raise AssertionError(message(result))
     return result
 
@@ -117,6 +124,8 @@ def message(result: Score) -> str:
         f"  difference {worst.difference:+.3e} m",
         f"  position error {errors.max_m:.3e} m, allowed {result.allowed_m:.3e} m",
     ]
+    if result.since is not None:
+        lines.insert(1, f"  {result.since.text}.")
     each = ", ".join(f"{name} {abs(worst.difference):.2g}" for name, worst in result.worst_of_each.items())
     lines.append(f"  worst of each: {each}")
     if result.falls_short:

@@ -23,20 +23,23 @@ from ..candidates.external import Timing, arguments, timed
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
 from ..report.suite import outcome_forms
-from ..score.verdict import Outcome
+from ..score.baseline import document_of, rows_of
+from ..score.verdict import Outcome, Score
 from .options import announce
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")  # of a suite's files
 TRANSITS = ".transits"
+DOCUMENT = ".json"  # of a baseline that is no trajectory
 
 
 class Trial(NamedTuple):
-    """A candidate to judge, with its transits or transits alone, and how long its program took."""
+    """A candidate to judge, with its transits or transits alone, how long its program took, and its baseline."""
 
     scene: Scene
     candidate: Candidate | None
     transits: Array | None = None
     timing: Timing | None = None
+    baseline: Candidate | Score | dict[str, Any] | str | None = None
 
 
 @dataclass(frozen=True)
@@ -59,16 +62,14 @@ class SuiteFiles:
         return str(self.candidate or self.transits)
 
 
-def suite_files(folder: Path) -> list[SuiteFiles]:
+def suite_files(folder: Path, option: str = "--suite") -> list[SuiteFiles]:
     """List the candidates of a folder by their scenes, sorted.
 
     Raises:
         InputError: it is no folder, holds no candidates, or two for one scene.
     """
     if not folder.is_dir():
-        raise InputError(
-            "--suite", str(folder), "a folder", "Its files are named by their scenes: paris.csv, hard.npz."
-        )
+        raise InputError(option, str(folder), "a folder", "Its files are named by their scenes: paris.csv, hard.npz.")
     by_scene: dict[str, dict[bool, Path]] = {}
     for path in sorted(folder.iterdir()):
         if path.suffix.lower() not in SUFFIXES or not path.is_file():
@@ -76,11 +77,11 @@ def suite_files(folder: Path) -> list[SuiteFiles]:
         of_transits = path.stem.endswith(TRANSITS)
         others = by_scene.setdefault(path.stem.removesuffix(TRANSITS), {})
         if of_transits in others:
-            raise InputError("--suite", f"{others[of_transits].name} and {path.name}", "one file for a scene")
+            raise InputError(option, f"{others[of_transits].name} and {path.name}", "one file for a scene")
         others[of_transits] = path
     if not by_scene:
         expected = f"files named by their scenes, with one of {', '.join(SUFFIXES)}"
-        raise InputError("--suite", str(folder), expected, "For paris: paris.csv, and paris.transits.csv if you like.")
+        raise InputError(option, str(folder), expected, "For paris: paris.csv, and paris.transits.csv if you like.")
     suite = []
     for scene, paths in sorted(by_scene.items()):
         described = folder / f"{scene}.toml"
@@ -95,18 +96,21 @@ class Judging:
     Attributes:
         naming: what the user says of the columns of files.
         options: further arguments of `judge`.
+        baseline: a file, a document (.json), a command for that of --run, a folder for a suite; None for none.
     """
 
     naming: Naming
     options: dict[str, Any]
+    baseline: str | None = None
 
     def outcome(self, name: str, scene_id: str, trial: Callable[[], Trial]) -> Outcome:
         """Judge a candidate; an error in it becomes the outcome and does not stop others, an interruption ends all."""
         try:
-            scene, candidate, times, timing = trial()
+            scene, candidate, times, timing, baseline = trial()
+            options = self.options | {"baseline": baseline}
             with stoppable("nothing was written"), progress() as show:
                 report = show(f"the truth of {scene.id}", float(scene.exact.t_end))
-                score = judge(candidate, scene, transits=times, announce=announce, report=report, **self.options)
+                score = judge(candidate, scene, transits=times, announce=announce, report=report, **options)
         except Stopped:
             raise
         except FoucaultError as error:
@@ -116,7 +120,12 @@ class Judging:
 
     def file(self, scene: Scene, name: str, times: Array | None) -> Outcome:
         """Judge a file."""
-        return self.outcome(name, scene.id, lambda: Trial(scene, self._read(name), times))
+        return self.outcome(name, scene.id, lambda: Trial(scene, self._read(name), times, None, self._earlier()))
+
+    def _earlier(self) -> Candidate | str | None:
+        """Read the baseline, if there is one, unless it is a document."""
+        is_file = self.baseline is not None and not self.baseline.endswith(DOCUMENT)
+        return self._read(str(self.baseline)) if is_file else self.baseline
 
     def transits(self, scene: Scene, name: str) -> Outcome:
         """Judge transits alone."""
@@ -129,9 +138,15 @@ class Judging:
 
         def trial() -> Trial:
             times = self.times(transits)
+            candidate, timing = printed(words, name, repeats)
+            if self.baseline is not None and not Path(self.baseline).is_file():
+                return Trial(scene, candidate, times, timing, printed(self.baseline, self.baseline, 0)[0])
+            return Trial(scene, candidate, times, timing, self._earlier())
+
+        def printed(words: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
             output, timing = timed(arguments(words, scene), timeout, repeats)
             with output:
-                return Trial(scene, read_stream(output, plain(name), naming=self.naming), times, timing)
+                return read_stream(output, plain(name), naming=self.naming), timing
 
         return self.outcome(name, scene.id, trial)
 
@@ -149,19 +164,35 @@ class Judging:
 
         return self.outcome(word, scene.id, trial)
 
-    def suite(self, folder: Path, out: Path | None) -> list[Outcome]:
+    def suite(self, folder: Path, out: Path | None, option: str = "--suite") -> list[Outcome]:
         """Judge the files of a folder by the scenes that they are named after, and write the page."""
         if out is not None:
             outcome_forms.check(out)
-        suite = suite_files(folder)
-        outcomes = [self.outcome(files.name, Path(files.scene).stem, partial(self._trial, files)) for files in suite]
+        outcomes, earlier = [], self._earlier_suite()
+        for files in suite_files(folder, option):
+            name = Path(files.scene).stem
+            trial = partial(self._trial, files, earlier.pop(name, None if self.baseline is None else {"rows": []}))
+            outcomes.append(self.outcome(files.name, name, trial))
+        for name in earlier:
+            error = InputError("--suite", f"no file for {name}", f"one, as {self.baseline} has it")
+            outcomes.append(Outcome(name, name, error=error))
         if out is not None:
             outcome_forms.write(outcomes, out)
         return outcomes
 
-    def _trial(self, files: SuiteFiles) -> Trial:
+    def _earlier_suite(self) -> dict[str, Score | dict[str, Any]]:
+        """Return the baseline of a suite by scene: the scores of a folder, or rows of a document."""
+        if self.baseline is None:
+            return {}
+        path = Path(self.baseline)
+        if path.suffix == DOCUMENT:
+            return {str(row["scene"]): {"rows": [row]} for row in rows_of(document_of(path))}
+        outcomes = replace(self, baseline=None).suite(path, None, "--baseline")
+        return {outcome.scene: outcome.score or outcome.document() for outcome in outcomes}
+
+    def _trial(self, files: SuiteFiles, earlier: Score | dict[str, Any] | None) -> Trial:
         scene, times = load_scene(files.scene), self.times(files.transits)
-        return Trial(scene, None if files.candidate is None else self._read(files.candidate), times)
+        return Trial(scene, None if files.candidate is None else self._read(files.candidate), times, None, earlier)
 
     def times(self, name: str | Path | None) -> Array | None:
         """Read the times of transits from a file, if there is one."""

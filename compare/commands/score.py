@@ -104,6 +104,14 @@ def command(
             autocompletion=completion(_approximation_ids),
         ),
     ] = None,
+    baseline: Annotated[
+        str | None,
+        typer.Option(
+            "--baseline",
+            metavar="FILE",
+            help="Say what changed since an earlier version: its file or --json (.json), its command or suite.",
+        ),
+    ] = None,
     tolerance: Annotated[
         float | None,
         typer.Option(
@@ -174,7 +182,8 @@ def command(
     """Score a program's output against the truth.
 
     Exit status 0: agrees, 1: disagrees, or agrees as a simpler model (0 with --as-model), 2: cannot be judged; of
-    several candidates, the largest.
+    several candidates, the largest. With --baseline 1 means worse than that by more than the tolerance, 0 no worse,
+    whatever the verdict.
 
     --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
     {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
@@ -187,6 +196,8 @@ def command(
         refuse({"--github": github}, "together with --json")
     if run is None:
         refuse({"--timeout": timeout, "--repeats": repeats, "--name": name}, "without --run")
+    if not (candidates or run or suite):
+        refuse({"--baseline": baseline}, "without a file, --run or --suite")
     if suite is None:
         refuse({"--out": out}, "without --suite")
         options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
@@ -217,7 +228,7 @@ def command(
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
     end = None if t_end is None else float(scene.exact.t_end)
     limits: dict[str, Any] = {"tolerance": tolerance, "covers": covers or 0.0, "t_end": end}
-    judging = Judging(naming, limits | {"inputs": inputs, "as_model": as_model, "explain": not no_diagnosis})
+    judging = Judging(naming, limits | {"inputs": inputs, "as_model": as_model, "explain": not no_diagnosis}, baseline)
     if suite is not None:
         outcomes = judging.suite(suite, out)
     else:

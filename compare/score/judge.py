@@ -29,6 +29,7 @@ from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
 from ..truth import DIGITS, FINE, Report, golden_of, truth_at
+from .baseline import document_of, since
 from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
 from .explanation.explain import explain as explained
 from .transit_matching import TransitErrors, transit_errors
@@ -52,6 +53,7 @@ def judge(
     covers: float = 0.0,
     as_model: bool = False,
     explain: bool = True,
+    baseline: Score | Candidate | Mapping[str, Any] | str | Path | None = None,
     announce: Callable[[str], None] | None = None,
     report: Report | None = None,
 ) -> Score:
@@ -68,6 +70,8 @@ def judge(
         covers: share of the scene's span, from 0 to 1, that the rows have to reach for it to agree.
         as_model: whether agreement as a named model is enough for it to pass.
         explain: whether to look for the reasons if a position is off.
+        baseline: an earlier version, to say what changed since: its score, its trajectory or the path of its file, or a
+            document of `foucault score --json` or the path of one (.json).
         announce: called with a message before the scene is solved, which takes long.
         report: called with the simulated time reached, in s, while the scene is solved.
 
@@ -117,8 +121,18 @@ def judge(
         as_model=as_model,
     )
     if explain and result.off_path and candidate.positions and result.covered:
-        return replace(result, explanation=explained(candidate.t, candidate.columns, problem, result.allowed_m))
-    return result
+        result = replace(result, explanation=explained(candidate.t, candidate.columns, problem, result.allowed_m))
+    if baseline is None:
+        return result
+    if isinstance(baseline, str | Path):
+        path = Path(baseline)
+        baseline = document_of(path) if path.suffix == ".json" else read(path)
+    if isinstance(baseline, Candidate):
+        same: dict[str, Any] = {"tolerance": tolerance, "inputs": inputs, "t_end": t_end, "as_model": as_model}
+        baseline = judge(baseline, scene, **same, explain=explain and as_model)
+    changed = since(result, baseline, explain)
+    alone = () if changed else ("the baseline has no score of it: this verdict stands alone",)
+    return replace(result, since=changed, notes=result.notes + alone)
 
 
 def _up_to(candidate: Candidate, end: float) -> Candidate:

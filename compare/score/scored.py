@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -66,6 +66,49 @@ class Worst(NamedTuple):
     difference: float
 
 
+@dataclass(frozen=True)
+class Since:
+    """What changed since a baseline.
+
+    Attributes:
+        name: of the baseline.
+        before_m: its largest position error in m, over the span that both have.
+        after_m: that of the candidate.
+        apart_m: the largest distance in m between both, of a document the difference of their errors; 0 if it is no
+            more than rounding.
+        worse: what became worse by more than the tolerance; empty if nothing did.
+        better: whether it became better by more than the tolerance.
+        changes: what came and what went.
+        left_m: what they leave of both errors, at most, in m; None if it is not known.
+        complete: whether that is all, down to the tolerance or a tenth of `apart_m`.
+    """
+
+    name: str
+    before_m: float
+    after_m: float
+    apart_m: float
+    worse: tuple[str, ...] = ()
+    better: bool = False
+    changes: tuple[str, ...] = ()
+    left_m: float | None = None
+    complete: bool = False
+
+    @property
+    def text(self) -> str:
+        """All of it in a line."""
+        word = "Worse since" if self.worse else "Better since" if self.better else "Since"
+        numbers = f"{self.before_m:.3g} → {self.after_m:.3g} m"
+        if self.changes:
+            left = "not all of it" if self.left_m is None else f"all but {self.left_m:.2g} m"
+            rest = "nothing else" if self.complete else f"that explains {left}"
+            what = f"{'; '.join(self.changes)}: {numbers}; {rest}"
+        elif self.apart_m:
+            what = f"{numbers}; what lies between them, {self.apart_m:.2g} m, is no known mistake"
+        else:
+            what = f"nothing changed, {numbers}"
+        return f"{word} {self.name}: {what}{''.join(f'; {reason}' for reason in self.worse)}"
+
+
 @dataclass(frozen=True, repr=False)
 class Scored:
     """The numbers of a judgement, which `Score` names one by one, and what follows from them."""
@@ -84,6 +127,7 @@ class Scored:
     transits: TransitErrors | None = None
     timing: Timing | None = None
     explanation: Explanation | None = None
+    since: Since | None = None
 
     @cached_property
     def input_floor_m(self) -> float:
@@ -156,6 +200,16 @@ class Scored:
             return True
         modelled = self.explanation is not None and self.explanation.model is not None
         return self.as_model and modelled and not self.falls_short and self.transits is None
+
+    @property
+    def accepted(self) -> bool:
+        """True if it passes or, where there is a baseline, if it became no worse."""
+        return self.passes if self.since is None else not self.since.worse
+
+    @property
+    def problem(self) -> dict[str, Any]:
+        """The inputs of the scene as they are written, by section and name."""
+        return self.scene.model_dump(include={"pendulum", "site", "release"}, exclude_none=True)
 
     @property
     def at_bound(self) -> bool:

@@ -14,7 +14,7 @@ from reference.status import Status
 
 from ..candidates.candidate import Deviation
 from .explanation.findings import Explanation
-from .scored import Scored
+from .scored import Scored, Since
 
 REFUSED = Status.REFUSED.value  # the verdict on a candidate that could not be judged
 NAMED = 3  # transits of each kind (missed, extra, shifted) that are listed at most
@@ -39,6 +39,7 @@ class Score(Scored):
         transits: errors of its transits, or None.
         timing: run time of the program, or None.
         explanation: the likely reasons for the error; None if they were not looked for.
+        since: what changed since a baseline, if there is one.
     """
 
     def __repr__(self) -> str:
@@ -77,8 +78,13 @@ class Outcome:
 
     @property
     def exit_status(self) -> int:
-        """0: agrees, 1: disagrees, 2 or 3: could not be judged."""
-        return self.error.exit_status if self.error is not None else int(self.verdict != "agrees")
+        """0: agrees, or no worse than its baseline; 1: disagrees, or worse; 2 or 3: could not be judged."""
+        return int(not self.score.accepted) if self.score is not None else self.error.exit_status if self.error else 0
+
+    @property
+    def since(self) -> Since | None:
+        """What changed since a baseline, if there is one."""
+        return None if self.score is None else self.score.since
 
     @property
     def lines(self) -> list[str]:
@@ -104,6 +110,8 @@ def lines(score: Scored) -> Iterator[str]:
     """Yield the verdict line by line."""
     errors = score.errors
     yield f"{score.candidate.name} {_verdict(score)} ({_span(score)})"
+    if score.since is not None:
+        yield f"{score.since.text}."
     if not score.covered:
         yield _row("covers nothing", "no row after t = 0", "the release alone says nothing of the motion")
     elif score.falls_short:
@@ -256,6 +264,8 @@ def document(score: Scored) -> dict[str, Any]:
         "corrected": None,
         "slip": None,
         "diagnosis": None,
+        "baseline": None if score.since is None else vars(score.since) | {"text": score.since.text},
+        "problem": score.problem,
         "notes": list(score.notes),
     }
     if transits is not None:
@@ -273,12 +283,12 @@ def document(score: Scored) -> dict[str, Any]:
     if score.timing is not None:
         fields["timing"] = vars(score.timing)
     if score.explanation is not None:
-        fields |= _explained(score.explanation, fields["conventions"])
+        fields |= explained(score.explanation, fields["conventions"])
     return fields
 
 
-def _explained(explanation: Explanation, readings: list[dict[str, Any]]) -> dict[str, Any]:
-    """Return the keys that an explanation fills."""
+def explained(explanation: Explanation, readings: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the keys of the document that an explanation fills; `readings` stand before its conventions."""
     diagnosis, corrected = explanation.diagnosis, explanation.corrected_m
     return {
         "conventions": [*readings, *(_said("your file", convention) for convention in explanation.conventions)],

@@ -85,7 +85,7 @@ class Scene(SceneTable):
         )
 
     def with_values(self, values: Words) -> Scene:
-        """Return the scene with fields replaced, by words `section.key=value` or a mapping of keys; `x0` is a short name."""
+        """Return the scene with fields replaced, by words `section.key=value` or `x0=value`, or a mapping of keys."""
         document = self.model_dump(exclude_none=True)
         for assignment in words_of(values):
             _assign(document, assignment)

@@ -26,6 +26,7 @@ KEYS = ("scene", "candidate", "verdict", "covered", "max_error_m", "digits", "to
 SUMMARY = "GITHUB_STEP_SUMMARY"
 SIGNS = {"agrees": "✅", "disagrees": "❌", REFUSED: "⚠️"}  # from best to worst
 LABEL = "Foucault pendulum"
+DISAGREES = 1  # the exit status of what was judged and did not pass
 GOOD, BAD = "#2f7d32", "#b3261e"  # white text on them has a contrast above 5 to 1
 _WIDTH = 6.2  # px of a letter of 11 px, about; textLength makes it exact
 _MARGIN = 8
@@ -106,7 +107,7 @@ def page_text(outcomes: Sequence[Outcome]) -> str:
     reasons = [
         Html(f"<h3>{text(outcome.scene)}</h3>\n{findings(outcome.main_lines)}")
         for outcome in outcomes
-        if outcome.verdict != "agrees"
+        if outcome.verdict != "agrees" or outcome.since is not None
     ]
     if reasons:
         parts.append(section("What was found", *reasons))
@@ -133,10 +134,10 @@ def _cells(outcome: Outcome) -> tuple[str, ...]:
 
 def annotation(outcome: Outcome) -> str:
     """Return the workflow command that shows an outcome, with the verdict and what is known of its reason."""
-    agrees = outcome.verdict == "agrees"
-    lines = outcome.main_lines[:1] if agrees else outcome.main_lines
+    passes = outcome.exit_status == 0
+    lines = outcome.main_lines[:1] if passes and outcome.since is None else outcome.main_lines
     place = f"file={_property(outcome.name)},title={_property(f'foucault {outcome.scene}')}"
-    return f"::{'notice' if agrees else 'error'} {place}::{_data(chr(10).join(lines))}"
+    return f"::{'notice' if passes else 'error'} {place}::{_data(chr(10).join(lines))}"
 
 
 def _data(text: str) -> str:
@@ -157,7 +158,7 @@ def summary(outcomes: Sequence[Outcome]) -> str:
         names = [f"`{name.replace('`', chr(39))}`" for name in (outcome.scene, outcome.name)]
         cells = [SIGNS[outcome.verdict], *names, outcome.verdict, *numbers]
         rows.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
-        if outcome.verdict != "agrees":
+        if outcome.verdict != "agrees" or outcome.since is not None:
             fence = "\n".join(line.replace("```", "'''") for line in outcome.lines)
             details.append(f"\n<details><summary>{escape(outcome.scene)}</summary>\n\n```\n{fence}\n```\n</details>")
     return "\n".join(["### Foucault pendulum", "", *rows, *details, ""])
@@ -181,17 +182,14 @@ def append_summary(text: str) -> None:
 
 
 def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
-    """Write a test for each candidate as JUnit XML: a disagreement is a failure, a refused candidate an error.
+    """Write a test for each candidate as JUnit XML: what ends with status 1 is a failure, a refused one an error.
 
     Raises:
         InputError: the file cannot be written.
     """
-    verdicts = [outcome.verdict for outcome in outcomes]
-    counts = {
-        "tests": str(len(outcomes)),
-        "failures": str(verdicts.count("disagrees")),
-        "errors": str(verdicts.count(REFUSED)),
-    }
+    failed = [outcome.exit_status for outcome in outcomes if outcome.exit_status]
+    failures = failed.count(DISAGREES)
+    counts = {"tests": str(len(outcomes)), "failures": str(failures), "errors": str(len(failed) - failures)}
     root = ElementTree.Element("testsuites", counts)
     suite = ElementTree.SubElement(root, "testsuite", {"name": "foucault", **counts})
     for outcome in outcomes:
@@ -199,11 +197,11 @@ def write_junit(outcomes: Sequence[Outcome], path: Path) -> None:
         fields = {"classname": f"foucault.{outcome.scene}", "name": outcome.name}
         case = ElementTree.SubElement(suite, "testcase", fields | ({"time": f"{timing.wall_s:.3f}"} if timing else {}))
         lines = [plain_lines(line) for line in outcome.lines]
-        if outcome.verdict == "agrees":
+        if outcome.exit_status == 0:
             result = ElementTree.SubElement(case, "system-out")
         else:
-            word = "error" if outcome.verdict == REFUSED else "failure"
-            result = ElementTree.SubElement(case, word, {"message": lines[0]})
+            word = "failure" if outcome.exit_status == DISAGREES else "error"
+            result = ElementTree.SubElement(case, word, {"message": lines[0 if outcome.since is None else 1]})
         result.text = "\n".join(lines)
     ElementTree.indent(root)
     document = f'<?xml version="1.0" encoding="UTF-8"?>\n{ElementTree.tostring(root, encoding="unicode")}\n'

@@ -1,0 +1,193 @@
+"""Tell what changed since a baseline: the rows of an earlier version, or the JSON document of their score.
+
+Both versions are explained down to a tenth of what lies between them, or to the tolerance if that is less. What one
+explanation has and the other has not is what changed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from reference import InputError
+from reference.system.documents import json_document
+
+from .explanation.explain import explain
+from .explanation.findings import AS_IF
+from .scored import WHOLE, Since
+from .verdict import REFUSED, Score, document, explained
+
+SHARE = 0.1  # of a change: what is smaller is no part of it
+WOBBLE = 10.0  # times a change: a cause that moves the bob by more has not come with it
+ROUNDED = 10.0  # times the input floor: no more than this is no change
+STEPS = 2.0  # ratio of two errors of an integrator that counts as a change
+SAME = 1e-9  # relative difference of two inputs that count as one
+STEP = "step"
+NEEDED, EXPECTED = {"scene", "candidate", "verdict"}, "a document of `foucault score --json`"
+
+Told = Mapping[str, Any]  # a convention or a cause, as in the document
+
+
+def since(new: Score, old: Score | Mapping[str, Any], explains: bool = True) -> Since | None:
+    """Return what changed since a baseline; None if it was not judged.
+
+    Args:
+        new: the score of the candidate.
+        old: that of the baseline, or its document, or one of several candidates.
+        explains: whether to look for the reasons.
+
+    Raises:
+        InputError: the document is none of a score, or one of another problem.
+    """
+    rows = old if isinstance(old, Score) else None
+    try:
+        said = document(old) if isinstance(old, Score) else _row(old, new)
+        return None if said is None or said["verdict"] == REFUSED else _since(new, rows, said, explains)
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        raise InputError("baseline", f"{type(error).__name__} {error}", EXPECTED, "Make it anew.") from None
+
+
+def document_of(path: Path) -> dict[str, Any]:
+    """Return the document in a file.
+
+    Raises:
+        InputError: there is no such file, or no JSON document in it.
+    """
+    try:
+        return json_document(path, "baseline")
+    except FileNotFoundError:
+        raise InputError("baseline", str(path), "a file", "`foucault score … --json > FILE` writes one.") from None
+
+
+def rows_of(document: Mapping[str, Any]) -> Sequence[Mapping[str, Any]]:
+    """Return the documents of single candidates that a document holds.
+
+    Raises:
+        InputError: it is none of `foucault score`.
+    """
+    rows: Sequence[Mapping[str, Any]] = document["rows"] if isinstance(document.get("rows"), list) else [document]
+    if not all(isinstance(row, dict) and row.keys() >= NEEDED for row in rows):
+        raise InputError("baseline", "another document", EXPECTED, "Make it anew.")
+    return rows
+
+
+def _row(old: Mapping[str, Any], new: Score) -> Mapping[str, Any] | None:
+    """Return the document by the candidate's problem, of several the one of its name; None if there is none of them."""
+    rows, problem = rows_of(old), new.problem
+    fitting = [row for row in rows if row["scene"] == new.scene.id and row.get("problem", problem) == problem]
+    if not fitting and "problem" in old:
+        got, expected = f"a score by {old['scene']} with {old['problem']}", f"one by {new.scene.id} with {problem}"
+        raise InputError("baseline", got, expected, "Judge both by the same inputs.")
+    return max(fitting, key=lambda row: bool(row["candidate"] == new.candidate.name), default=None)
+
+
+def _since(new: Score, rows: Score | None, said: Mapping[str, Any], explains: bool) -> Since:
+    """Return what changed since a document, and since the rows that it is of if they are there."""
+    before, after = float(said["max_error_m"]), _until(new, float(said["covered_s"][1]))
+    apart, level = abs(after - before), min(before, float(said["tolerance_m"]))
+    if rows is not None:
+        before, apart, level = _until(rows, float(new.errors.t[-1])), _apart(new, rows), 0.0
+    agreed = str(said["grade" if new.as_model else "verdict"]).startswith("agrees")
+    worse = tuple(_worse(new, said, after - before, agreed))
+    better = not worse and (before - after > new.allowed_m or (new.passes and not agreed))
+    changed = apart > max(new.errors.bound_m, ROUNDED * new.input_floor_m)
+    changes, left_m = list[str](), None
+    allowed = max(min(SHARE * apart, new.tolerance_m), level)
+    if changed and explains and new.candidate.positions:
+        files = [(score.candidate, score.scene) for score in (new, rows) if score is not None]
+        both = [explain(file.t, file.columns, scene, allowed) for file, scene in files]
+        now, then = explained(both[0], []), said if rows is None else explained(both[1], [])
+        left = _left(then, before), _left(now, after)
+        changes = list(_changes(then, now, left, math.inf if rows is None else WOBBLE * apart))
+        left_m = max(left) if changes else None
+    name, complete = str(said["candidate"]), left_m is not None and left_m <= allowed
+    return Since(name, before, after, apart if changed else 0.0, worse, better, tuple(changes), left_m, complete)
+
+
+def _until(score: Score, end: float) -> float:
+    """Return the largest position error in m up to a time in s."""
+    reached = score.errors.t <= end * (1 + WHOLE)
+    return float(score.errors.position[reached].max(initial=0.0))
+
+
+def _apart(new: Score, old: Score) -> float:
+    """Return the largest distance in m between the rows of two candidates at the times that both have."""
+    _, here, there = np.intersect1d(new.errors.t.round(9), old.errors.t.round(9), return_indices=True)
+    if len(here) < 2 or not (new.candidate.positions and old.candidate.positions):
+        return abs(new.errors.max_m - old.errors.max_m)
+    names = [name for name in "xyz" if name in new.candidate.columns and name in old.candidate.columns]
+    gaps = [new.candidate.columns[name][here] - old.candidate.columns[name][there] for name in names]
+    return float(np.linalg.norm(gaps, axis=0).max())
+
+
+def _worse(new: Score, said: Mapping[str, Any], more: float, agreed: bool) -> Iterator[str]:
+    """Yield what became worse by more than the tolerance."""
+    if more > new.allowed_m:
+        yield f"{more:.3g} m more, {more / new.allowed_m:.2g} tolerances"
+    if agreed and not new.passes:
+        yield "it agreed before"
+    end, last = float(said["covered_s"][1]), float(new.errors.t[-1])
+    if last < end * (1 - WHOLE):
+        yield f"it ends at t = {last:.6g} s, and ended at {end:.6g} s"
+    if new.transits is not None and said["transits"]:
+        before, off = (len(said["transits"][key]) for key in ("missed_at", "extra_at")), len(new.transits.missed)
+        if (off := off + len(new.transits.extra)) > (had := sum(before)):
+            yield f"{off} transits are missed or extra, and {had} were"
+
+
+def _told(said: Mapping[str, Any]) -> Iterator[Told]:
+    """Yield what a document says for certain of its candidate: of the file, of the program."""
+    for one in (*said["conventions"], *said["causes"]):
+        if one["text"].startswith("your ") and not one["id"].startswith(AS_IF):
+            yield one
+    if said["slip"]:
+        yield {"id": "slip", "text": f"your program has a slip ({said['slip'].rstrip('.')})", "size_m": 0.0}
+
+
+def _left(said: Mapping[str, Any], error_m: float) -> float:
+    """Return what the causes of a document leave in m; all of its error where none is known."""
+    return float((said["corrected"] or {"max_error_m": error_m})["max_error_m"])
+
+
+def _changes(then: Told, now: Told, left: tuple[float, float], most: float) -> Iterator[str]:
+    """Yield what came and what went; a number that changed has come.
+
+    Args:
+        then: the document of the baseline.
+        now: that of the candidate.
+        left: what the causes of each leave in m: a smaller one may be in it untold.
+        most: how far in m one may move the bob.
+    """
+    before, after = list(_told(then)), list(_told(now))
+    came = [one for one in after if not any(_is_same(one, other) for other in before)]
+    went = [one for one in before if _kind(one) not in map(_kind, after)]
+    for when, ones, hidden in (("now", came, left[0]), ("no longer", went, left[1])):
+        for one in ones:
+            if 0 < one["size_m"] <= hidden or one["size_m"] > most:
+                continue
+            if one["id"] == "off_the_sphere" and STEP in map(_kind, ones):
+                continue  # a step takes the bob off the sphere
+            text = one["text"].partition(" (--set")[0]  # which is advice for a verdict
+            text = text.replace("your program", f"it {when}", 1).replace("your file", f"its file {when}", 1)
+            yield text if _kind(one) != STEP else f"the step ({text})" if when == "now" else "the step"
+
+
+def _kind(one: Told) -> str:
+    """Return the word for a thing of which a program has one: a step, a gravity."""
+    kinds = {"integrator_": STEP, "gravity_": "site.gravity"}
+    return next((kind for begin, kind in kinds.items() if one["id"].startswith(begin)), str(one["id"]))
+
+
+def _is_same(one: Told, other: Told) -> bool:
+    """Return whether two explanations tell the same."""
+    value, was = one.get("value"), other.get("value")
+    if (value is None or was is None) and _kind(one) == _kind(other) == STEP:
+        return bool(1 / STEPS < one["size_m"] / other["size_m"] < STEPS)
+    if value is None or was is None:
+        return bool(one["text"] == other["text"])
+    doubt = sum(part.get("uncertainty") or 0.0 for part in (one, other)) + SAME * abs(value)
+    return bool(one["id"] == other["id"] and abs(value - was) <= doubt)

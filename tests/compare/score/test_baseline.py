@@ -1,0 +1,165 @@
+"""What changed between two versions of a program: pairs of which it is known, and what a document must be."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mistakes import Case, case
+from places import MISTAKEN_C
+from scipy.integrate import solve_ivp
+
+from compare.candidates.candidate import Candidate
+from compare.score.judge import judge
+from compare.score.scored import Since
+
+COMPILER = shutil.which("cc")
+FINE = {"swing": 900.0}
+NO_REST = {"reading": 1.0}  # without the centrifugal force
+DAY = {"rate": 2 * math.pi / 86400}
+STEP, WORSE, BETTER, SAME = "the step", "worse", "better", "same"
+Options = dict[str, float]
+
+# what both have, what the new version has besides or instead, what is told, and what became of the error
+PAIRS: list[tuple[str, Options, Options, Options, set[str], str]] = [
+    ("nothing", {}, {}, {}, set(), SAME),
+    ("nothing", {"g": 9.81}, {}, {}, set(), SAME),
+    ("nothing", {"model": 1, "reading": 1}, {}, {}, set(), SAME),
+    ("nothing", {"method": 3, "swing": 100}, {}, {}, set(), SAME),
+    ("nothing", NO_REST | DAY, {}, {}, set(), SAME),
+    ("step", {}, FINE, {"swing": 200}, {STEP}, ""),
+    ("step", {}, FINE, {"swing": 40}, {STEP}, WORSE),
+    ("step", {}, {"swing": 40}, FINE, {STEP}, BETTER),
+    ("step", NO_REST, FINE, {"swing": 60}, {STEP}, ""),
+    ("step", {}, FINE, {"swing": 200, "method": 2}, {STEP}, WORSE),
+    ("step", {}, FINE, {"swing": 200, "method": 3}, {STEP}, WORSE),
+    ("constant", {}, {}, {"g": 9.81}, {"9.81"}, WORSE),
+    ("constant", {}, {"g": 9.81}, {}, {"9.81"}, BETTER),
+    ("constant", {}, {"g": 9.81}, {"g": 9.8}, {"9.8 "}, ""),
+    ("constant", {"g": 9.81}, {}, DAY, {"solar day"}, ""),
+    ("constant", NO_REST, {}, {"rate": 7.29e-5}, {"7.29e-05"}, ""),
+    ("constant", {}, {}, {"drag": 1e-5}, {"drag"}, WORSE),
+    ("unit", {}, {}, {"scale": 100}, {"centimetres"}, WORSE),
+    ("unit", {}, {"scale": 1000}, {}, {"millimetres"}, BETTER),
+    ("unit", {}, {}, {"swap": 1}, {"writes north as x"}, WORSE),
+    ("unit", {}, {}, {"tscale": 60}, {"minutes"}, WORSE),
+    ("model", {}, {}, NO_REST, {"centrifugal"}, ""),
+    ("model", {}, NO_REST, {}, {"centrifugal"}, ""),
+    ("model", {"g": 9.81}, {}, {"half": -1}, {"Coriolis"}, ""),
+    ("model", {}, {}, {"half": 0.5}, {"Coriolis"}, WORSE),
+    ("model", {}, {}, {"invf": 1e9}, {"sphere of the equatorial radius"}, WORSE),
+]
+
+
+@pytest.fixture(scope="module")
+def programs(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """One program, compiled twice: its numbers differ by rounding alone."""
+    if COMPILER is None:
+        pytest.skip("no C compiler")
+    made = tuple(tmp_path_factory.mktemp("programs") / name for name in ("plain", "fast"))
+    for target, option in zip(made, ("-O0", "-O3"), strict=True):
+        more = ["-ffast-math"] if option == "-O3" else []
+        subprocess.run([COMPILER, option, *more, "-o", str(target), str(MISTAKEN_C), "-lm"], check=True)
+    return made[0], made[1]
+
+
+def small(number: int) -> Case:
+    """Return a scene of many swings that are not wide, where a step is known from its error; in one of four g is
+    measured."""
+    reading = 2 if number % 4 == 3 else 0
+    for made in (case(i, seed=29, most=0) for i in itertools.count(100 * number)):
+        swing = math.hypot(made.arguments["x0"], made.arguments["y0"])
+        many = made.arguments["tend"] > 25 * made.period
+        if swing < 0.1 * made.arguments["l"] and many and made.arguments["reading"] == reading:
+            return made
+    raise AssertionError
+
+
+def printed(program: Path, made: Case, options: Options, name: str) -> Candidate:
+    """Return what a version of a program writes."""
+    before = made.arguments
+    if "swing" in options:  # about so many steps in a swing, a whole number from row to row
+        steps = math.ceil(before["out"] / made.period * options["swing"])
+        options = {key: value for key, value in options.items() if key != "swing"} | {"h": before["out"] / steps}
+    made.arguments = before | options
+    try:
+        times, columns = made.rows(program)
+    finally:
+        made.arguments = before
+    return Candidate.of(name, times, columns)
+
+
+def compared(made: Case, old: Candidate, new: Candidate, **options: Any) -> Since:
+    found = judge(new, made.scene, baseline=old, **options).since
+    assert found is not None and found.name == "old"
+    return found
+
+
+def check(found: Since, words: set[str], outcome: str) -> None:
+    """Check that exactly these things are told, and what became of the error."""
+    assert len(found.changes) == len(words), found.text
+    assert all(any(word in change for change in found.changes) for word in words), found.text
+    assert found.complete is bool(words) or words == {STEP} or (found.left_m or 0.0) < 0.1 * found.apart_m, found.text
+    assert (bool(found.worse), found.better) == (outcome == WORSE, outcome == BETTER) or not outcome, found.text
+
+
+QUICK = (1, 5, 11, 14, 17, 20, 21)  # at least one of each kind
+NUMBERED = [
+    pytest.param(i, pair, id=f"{i}-{pair[0]}", marks=() if i in QUICK else pytest.mark.long)
+    for i, pair in enumerate(PAIRS)
+]
+
+
+@pytest.mark.parametrize(("number", "pair"), NUMBERED)
+def test_what_changed_between_two_versions(programs: tuple[Path, Path], number: int, pair: tuple[Any, ...]) -> None:
+    _, both, before, after, words, outcome = pair
+    made = small(number)
+    old, new = (printed(programs[0], made, both | options, name) for options, name in ((before, "old"), (after, "new")))
+    check(compared(made, old, new), words, outcome)
+
+
+def test_rounding_is_no_change(programs: tuple[Path, Path]) -> None:
+    for number in range(2):
+        made = small(number)
+        old, new = (
+            printed(program, made, NO_REST, name) for program, name in zip(programs, ("old", "new"), strict=True)
+        )
+        assert max(abs(old.columns["x"] - new.columns["x"])) > 0
+        check(compared(made, old, new), set(), SAME)
+
+
+def solved(made: Case, tolerance: float, method: str) -> Candidate:
+    """Return what SciPy's integrators make of the pendulum, with g effective: no centrifugal force."""
+    a = made.arguments
+    latitude, rate = math.radians(a["lat"]), 7.292115e-5
+    turn = np.array([0, rate * math.cos(latitude), rate * math.sin(latitude)])
+    down, square = np.array([0, 0, -9.80665]), a["l"] ** 2
+
+    def right(_: float, state: np.ndarray) -> np.ndarray:
+        r, v = state[:3], state[3:]
+        force = down - 2 * np.cross(turn, v)
+        return np.concatenate([v, force - r * (v @ v + r @ force) / square])
+
+    start = [a["x0"], a["y0"], -math.sqrt(square - a["x0"] ** 2 - a["y0"] ** 2), 0, 0, 0]
+    times = a["out"] * np.arange(101.0)
+    states = solve_ivp(right, (0, times[-1]), start, method, times, rtol=tolerance, atol=tolerance).y
+    return Candidate.of("old", times, dict(zip("xyz", states, strict=False)))
+
+
+@pytest.mark.parametrize(
+    ("method", "old", "new", "outcome"),
+    [("RK45", 1e-10, 1e-6, ""), ("RK45", 1e-6, 1e-9, ""), ("DOP853", 1e-12, 1e-5, ""), ("DOP853", 1e-11, 1e-11, SAME)],
+)
+def test_a_tolerance_is_the_step(method: str, old: float, new: float, outcome: str) -> None:
+    made = small(5)
+    found = compared(made, solved(made, old, method), solved(made, new, method))
+    if old == new:
+        check(found, set(), outcome)
+        return
+    assert found.changes and all(STEP in one or "leaves the sphere" in one for one in found.changes), found.text
