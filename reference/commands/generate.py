@@ -6,13 +6,13 @@ from collections.abc import Generator, Sequence
 from contextlib import ExitStack, closing, suppress
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from ..engines import AUTO, engine_names
 from ..errors import DatasetError, InputError, UnreachableError, in_words
-from ..scenes.fields import LEVELS
+from ..scenes.fields import CONFIRMATIONS, LEVELS, Confirmation
 from ..scenes.scene import load_scene
 from ..scenes.shipped import scene_ids
 from ..status import Status
@@ -84,18 +84,23 @@ def command(
     ] = AUTO,
     no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for transits, xdot = 0.")] = False,
     audit: Annotated[
-        bool,
+        bool | None,
         typer.Option(
-            "--audit",
-            help="At the level enclosed, prove it again by FLINT alone: the same digits; always for what ships.",
+            "--audit/--no-audit",
+            help="At the level enclosed, prove it again by FLINT alone: the same digits (default: --audit).",
         ),
-    ] = False,
-    no_confirm: Annotated[
-        bool,
+    ] = None,
+    confirm: Annotated[
+        str | None,
         typer.Option(
-            "--no-confirm", help="At the level enclosed, leave out heyoka's run that confirms every digit of the proof."
+            "--confirm",
+            metavar="C",
+            help=f"At the level enclosed, what heyoka confirms in another formulation: {in_words(CONFIRMATIONS)}; "
+            "sampled is a tenth of the grid's intervals (default: sampled; of what ships, as it was made: the whole).",
+            autocompletion=completion(lambda: CONFIRMATIONS),
         ),
-    ] = False,
+    ] = None,
+    no_confirm: Annotated[bool, typer.Option("--no-confirm", help="The same as --confirm none.", hidden=True)] = False,
     set_: Assignments = None,
     every: Annotated[
         bool, typer.Option("--all", help="Make every dataset that ships and is missing or not sealed.")
@@ -114,9 +119,11 @@ def command(
         "--level": ("run.level", level and chosen("--level", level, LEVELS)),
         "--no-transits": ("run.transits", "false" if no_transits else None),
     }
+    proving: dict[str, object] = {"--audit": audit, "--no-audit": audit is False, "--confirm": confirm}
+    proving["--no-confirm"] = no_confirm
     if every:
-        unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, "--audit": audit}
-        unused |= {"--no-confirm": no_confirm, "--set": set_, "--engine": engine if engine != AUTO else None}
+        unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
+        unused |= {"--set": set_, "--engine": engine if engine != AUTO else None}
         refuse(unused, "with --all")
         _generate_all(replacements(None, options), out, workers, cluster, as_json)
         return
@@ -134,12 +141,15 @@ def command(
     folder = out or default_folder(scene, name)
     check_target(folder)
     if scene.run.level != "enclosed":
-        refuse({"--no-confirm": no_confirm, "--audit": audit}, "without --level enclosed")
+        refuse(proving, "without --level enclosed")
+    if no_confirm:
+        refuse({"--confirm": confirm}, "with --no-confirm")
     usual = making_of(scene, name, folder)
+    confirm = chosen("--confirm", "none" if no_confirm else confirm or usual.confirm, CONFIRMATIONS)
     making = Making(
         engine=usual.engine if engine == AUTO else engine,
-        audit=audit or usual.audit,
-        confirm=usual.confirm and not no_confirm,
+        audit=usual.audit if audit is None else audit,
+        confirm=cast("Confirmation", confirm),
     )
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
@@ -153,8 +163,9 @@ def command(
     if as_json:
         emit(measured)
         return
+    confirmed = f", confirmation {measured['confirmed']}" if solution.proof else ""
     rows = f"{len(solution.times)} grid times, {measured['transits']} transits"
-    typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}")
+    typer.echo(f"{folder}: {rows}, {scene.run.digits} digits, {solution.level}{confirmed}")
     if solution.not_checked:
         typer.echo(
             f"The proof finds all transits; no run with event detection confirms them: {solution.not_checked}", err=True

@@ -96,6 +96,8 @@ def command(
         typer.echo("left out:")
         for line in document["left_out"] or ["nothing"]:
             typer.echo(f"  {line}")
+        if document["confirmed"]:
+            typer.echo(f"of the proof heyoka confirms: {document['confirmed']}")
 
 
 def _compiled(scene: Scene) -> dict[str, Any]:
@@ -104,6 +106,8 @@ def _compiled(scene: Scene) -> dict[str, Any]:
     Raises:
         UnreachableError: `generate` refuses the scene.
     """
+    from ..dataset.place import dataset_id, default_folder
+    from ..dataset.shipping import making_of
     from ..engines.heyoka.system import lines_and_left_out
     from ..solver.choice import first_plan, pilot_for
 
@@ -112,7 +116,9 @@ def _compiled(scene: Scene) -> dict[str, Any]:
     number = str(plan.number)
     lines, left_out = lines_and_left_out(scene, plan.formulation, number)
     run = {"engine": plan.engine, "formulation": plan.formulation, "number": number}
-    return {**run, "equations": lines, "left_out": left_out}
+    usual = making_of(scene, name := dataset_id(scene), default_folder(scene, name))
+    confirmed = usual.confirm if scene.run.level == "enclosed" else None
+    return {**run, "equations": lines, "left_out": left_out, "confirmed": confirmed}
 
 
 def _derived(scene: Scene) -> dict[str, str]:

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+from ..engines import engine_names
 from ..engines.heyoka.system import lines_and_left_out
 from ..model.constants import constants
 from ..model.force import invariant
 from ..numbers.columns import POSITION, STATE, UNITS, VELOCITY
 from ..numbers.precision import bits_of, context, fixed_decimal, outward, rounded_up
 from ..numbers.table import FixedPoint
+from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
-from ..scenes.shipped import DATA_VERSION, flag_meanings, scene_ids
+from ..scenes.shipped import DATA_VERSION, flag_meanings, index, scene_ids
 from ..solver.solution import Proof, Solution
 from .manifest import (
     Bounds,
@@ -28,43 +31,53 @@ from .manifest import (
     Possible,
     RunRecord,
 )
-from .place import changes, changes_in, dataset_id, shipped_scene
+from .place import changes, changes_in, dataset_id, is_of_shipped_scene, shipped_scene
 from .sheets import Sheet, column_bounds, scene_inputs
 
 _UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
 UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
-AUDIT = "--audit"  # in a dataset's command, it says that FLINT alone proved the same digits
-NO_CONFIRM = "--no-confirm"  # there, that a proof stands without heyoka's confirmation
-ENGINE = "--engine"
+ENGINE, AUDIT, CONFIRM = "--engine", "--audit", "--confirm"
+# How a dataset is made, in its command. What was made before there was --confirm says --no-confirm or, of a whole
+# confirmation, nothing; and nothing of an audit that there was not.
+OPTIONS = re.compile(
+    rf"{ENGINE} ({'|'.join(engine_names())})( {AUDIT}| --no-audit|)(?: {CONFIRM} (whole|sampled|none)|( --no-confirm)|)"
+)
 PACKAGES = ("heyoka", "mpmath", "numba", "numpy", "python-flint")
 INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
 
 
 @dataclass(frozen=True)
 class Making:
-    """How a dataset is made: by which engine, and whether its proof is audited and confirmed."""
+    """How a dataset is made: by which engine, whether its proof is audited, and what of it is confirmed."""
 
     engine: str = "limbs"
     audit: bool = True
-    confirm: bool = True
+    confirm: Confirmation = "whole"
 
     @classmethod
     def of(cls, command: str) -> Making:
         """Read it off a dataset's command, or off the options in the index of what ships."""
-        words = command.split()
-        return cls(words[words.index(ENGINE) + 1], AUDIT in words, NO_CONFIRM not in words)
+        engine, audit, confirm, nothing = OPTIONS.findall(command)[0]
+        return cls(engine, audit.strip() == AUDIT, "none" if nothing else confirm or "whole")
 
     @property
     def options(self) -> str:
-        """The options that say it."""
-        return " ".join([ENGINE, self.engine, *[AUDIT] * self.audit, *[NO_CONFIRM] * (not self.confirm)])
+        """The options that say it, of a proof."""
+        return f"{ENGINE} {self.engine} {AUDIT if self.audit else '--no-audit'} {CONFIRM} {self.confirm}"
+
+    def options_for(self, scene: Scene, name: str) -> str:
+        """Return the options of a dataset's command: those in the index where a shipped scene is made as it says."""
+        said = index().get(name, {}).get("options", self.options)
+        return said if is_of_shipped_scene(scene, name) and Making.of(said) == self else self.options
 
 
 def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | None = None) -> Manifest:
     """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id."""
     scene, run, proof = solution.scene, solution.run, solution.proof
     name = name or dataset_id(scene)
-    making = Making(run.engine, proof is not None and proof.audited, proof is None or proof.confirmed)
+    options = f"{ENGINE} {run.engine}"
+    if proof is not None:
+        options = Making(run.engine, proof.audited, proof.confirmed).options_for(scene, name)
     end = grid.rows[-1][0]
     return Manifest.model_construct(
         schema_version=3,
@@ -91,7 +104,7 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
         cross_checks=[CrossCheckRecord.model_validate(check) for check in solution.checks],
         enclosure=None if proof is None else _enclosure(proof),
         generator=generator(),
-        command=command(scene, name, making),
+        command=command(scene, name, options),
         files={},
         **following(scene, run.formulation, run.number, grid),
     )
@@ -124,15 +137,15 @@ def generator() -> dict[str, str]:
     return versions
 
 
-def command(scene: Scene, name: str, making: Making) -> str:
+def command(scene: Scene, name: str, options: str) -> str:
     """Return the command that makes a dataset: of a shipped scene, or of the scene's own file, with what was changed.
 
-    `name` is the dataset's id, which names the changes; without a proof there is nothing that was left out.
+    `name` is the dataset's id, which names the changes; `options` say how it is made.
     """
     run = scene.run
     parts = ["foucault", "generate", scene.id if scene.id in scene_ids() else f"{scene.id}.toml"]
     parts += ["--t-end", run.t_end, "--digits", str(run.digits), "--level", run.level]
-    parts += [making.options]
+    parts += [options]
     parts += [] if run.transits else ["--no-transits"]
     own_option = ("run.t_end=", "run.digits=", "run.level=", "run.transits=")
     shipped = shipped_scene(scene)

@@ -6,10 +6,10 @@ import json
 from collections.abc import Mapping
 
 from ..errors import DatasetError
-from ..scenes.fields import Level
-from ..solver.solution import Solution
+from ..scenes.fields import Confirmation, Level
+from ..solver.solution import SAMPLED, Solution
 from .manifest import MANIFEST, FileRecord, Manifest
-from .record import manifest_of
+from .record import CONFIRM, Making, manifest_of
 from .sheets import GRID_HEADER, Sheet, binary64_sheet, by_field, grid_sheet, nearest_doubles, transits_sheet
 from .vectors import vectors
 
@@ -19,6 +19,11 @@ MEANING: dict[Level, str] = {
     "self_consistent": "Two runs with different precisions, tolerances and steps agree to every printed digit.",
     "confirmed": "Two runs in different formulations, precisions and tolerances agree to every printed digit.",
     "enclosed": "A proof encloses every printed digit (interval arithmetic, rounding included).",
+}
+CONFIRMED: dict[Confirmation, str] = {
+    "whole": "heyoka's run in another formulation agrees to every printed digit.",
+    "sampled": "heyoka agrees to {} of {} rows, each reached from the row before.",
+    "none": "No other run confirms it.",
 }
 _GRAVITY = {
     "ellipsoid": "gravity g points along the ellipsoid's normal, the centrifugal force is explicit.",
@@ -76,6 +81,7 @@ def _inputs(manifest: Manifest) -> list[str]:
         *([f"Source: {manifest.source}"] if manifest.source else []),
         "",
         f"Level: {manifest.level}. {MEANING[manifest.level]}",
+        *_confirmation(manifest),
         f"Inputs are read as: {manifest.inputs}",
         *(["Why it is hard:"] if manifest.flags else []),
         *(f"  {flag}: {manifest.notes[flag]}" for flag in manifest.flags),
@@ -87,6 +93,15 @@ def _inputs(manifest: Manifest) -> list[str]:
         f"suspension; {_GRAVITY[manifest.scene['site']['gravity_is']]}",
         "",
     ]
+
+
+def _confirmation(manifest: Manifest) -> list[str]:
+    """Return the line on a proof's audit and confirmation, where the command names one."""
+    if CONFIRM not in manifest.command.split():
+        return []
+    making, rows = Making.of(manifest.command), manifest.counts.grid - 1
+    audit = "FLINT alone proves the same digits." if making.audit else "It is not audited."
+    return [f"{audit} {CONFIRMED[making.confirm].format(-(-rows // SAMPLED), rows)}"]
 
 
 def _states(manifest: Manifest, grid: Sheet) -> list[str]:

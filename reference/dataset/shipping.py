@@ -97,7 +97,7 @@ def making_of(scene: Scene, name: str, folder: Path) -> Making:
     if ships(folder) or is_of_shipped_scene(scene, name):
         entry = index().get(name)
         return Making.of(entry["options"]) if entry else Making()
-    return Making(AUTO, audit=False)
+    return Making(AUTO, confirm="sampled")
 
 
 def solved(scene: Scene, making: Making, report: Report | None = None) -> Solution:
@@ -108,8 +108,8 @@ def solved(scene: Scene, making: Making, report: Report | None = None) -> Soluti
         UnreachableError: the level or the digits cannot be reached.
     """
     proving = scene.run.level == "enclosed"
-    audit, confirm = making.audit and proving, making.confirm and proving
-    return solve(scene, engine=making.engine, audit=audit, confirm=confirm, report=report)
+    asked: dict[str, Any] = {"audit": making.audit, "confirm": making.confirm} if proving else {}
+    return solve(scene, engine=making.engine, **asked, report=report)
 
 
 def isolated(job: Job) -> tuple[Row, dict[str, str]]:
@@ -135,6 +135,7 @@ def summary(solution: Solution, folder: Path) -> Row:
         "level": solution.level,
         "digits": solution.scene.run.digits,
         "engine": solution.run.engine,
+        "confirmed": solution.proof.confirmed if solution.proof else None,
         "transits": len(solution.directions),
         "bound_m": max(float(bounds[column]) for column in POSITION),
         "cpu_s": solution.pilot_s + solution.run.cpu_s + checks_s,

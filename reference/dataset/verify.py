@@ -70,7 +70,8 @@ def verify(folder: Path, report: motion.Progress | None = None) -> Verification:
 
 def _claims(manifest: Manifest) -> list[str]:
     """Return what a manifest says of its proof and its cross-checks, for which nothing but the index can vouch."""
-    claims = {"the proof": manifest.enclosure, "the cross-checks": manifest.cross_checks}
+    confirmed = f" (confirmation: {Making.of(manifest.command).confirm})" if manifest.enclosure else ""
+    claims = {"the proof": manifest.enclosure, f"the cross-checks{confirmed}": manifest.cross_checks}
     return [name for name, made in claims.items() if made and seals().get(manifest.id) != manifest.seal]
 
 

@@ -14,7 +14,7 @@ from ..solver.solution import Solution
 from ..system.workspace import OLD, workspace
 from .manifest import MANIFEST
 from .place import ships
-from .record import Making
+from .record import OPTIONS
 from .render import check_proved, render
 from .verify import problems_of
 
@@ -92,4 +92,4 @@ def write_texts(texts: Mapping[str, str], folder: Path, solution: Solution | Non
         new.rename(target)
         if ships(target):
             manifest = json.loads(texts[MANIFEST])
-            keep_seal(target.name, manifest["seal"], Making.of(manifest["command"]).options)
+            keep_seal(target.name, manifest["seal"], next(OPTIONS.finditer(manifest["command"]))[0])

@@ -15,6 +15,8 @@ MAX_DIGITS = 1000
 
 Level = Literal["computed", "self_consistent", "confirmed", "enclosed"]
 LEVELS: tuple[Level, ...] = get_args(Level)
+Confirmation = Literal["whole", "sampled", "none"]  # how much of a proof heyoka confirms
+CONFIRMATIONS: tuple[Confirmation, ...] = get_args(Confirmation)
 
 
 def field(default: Any, unit: str, meaning: str) -> Any:

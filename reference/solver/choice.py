@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
+from hashlib import sha256
 from math import ceil, e, sqrt
 
 from ..engines import AUTO
@@ -17,6 +18,7 @@ from ..scenes.inputs import Inputs
 from ..scenes.scene import Scene
 from .pilot import Pilot, run_pilot
 from .proof_steps import COEFFICIENT_BITS
+from .solution import SAMPLED
 
 FINER_BITS = 16  # bits that the published run has more than the one it is compared with
 ROUND_TO_BITS = 8  # precisions are multiples of this, so that small changes of the pilot's errors do not show
@@ -88,6 +90,18 @@ def confirming_plan(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, pre
     """Return heyoka's run that confirms another one: in another formulation, of `prec` bits."""
     number = DOUBLE if prec == DOUBLE.prec else real(prec)
     return Plan(scene.exact, confirming_formulation(pilot), number, times, scene.run.transits)
+
+
+def drawn_intervals(scene: Scene) -> list[int]:
+    """Return the intervals of a scene's grid that a sampled confirmation integrates: the first is 0.
+
+    A tenth of them, rounded up: those with the least sha256 of "HASH K", where K counts intervals from 1, and HASH is
+    the sha256, in hexadecimal figures, of the scene's inputs as JSON without spaces.
+    """
+    inputs = scene.model_dump_json(include={"inputs", "pendulum", "site", "release", "run"}, exclude_none=True)
+    word, count = sha256(inputs.encode()).hexdigest(), len(scene.exact.grid) - 1
+    drawn = sorted(range(count), key=lambda i: sha256(f"{word} {i + 1}".encode()).digest())
+    return sorted(drawn[: ceil(Fraction(count, SAMPLED))])
 
 
 def confirming_formulation(pilot: Pilot) -> str:

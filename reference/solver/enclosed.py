@@ -1,31 +1,38 @@
-"""The level `enclosed`: a proof, its audit by FLINT alone, and heyoka's confirmation; each in a process of its own."""
+"""The level `enclosed`: a proof, its audit by FLINT alone, and heyoka's confirmation, of the whole or of a sample.
+
+A sampled run starts from the middles of proven intervals, not from the digits printed of them. By the theorem a motion
+that begins in the middle at one time passes through the interval at every later one. So nothing has to be allowed for
+how an interval of the grid amplifies half a unit of the last digit, and the run has to agree as closely as a whole one.
+"""
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, ExitStack
+from contextlib import ExitStack
 from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import Any
 
 from ..engines import AUTO
-from ..engines.background import WORTH_A_PROCESS, Background, expected_s, in_background, reports, send_run, slowest
+from ..engines.background import WORTH_A_PROCESS, expected_s, in_background, reports, send_run, slowest
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import run
 from ..errors import InputError, IntegrationError
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import LONG_DOUBLE
+from ..numbers.table import Table
+from ..scenes.fields import Confirmation
 from ..scenes.scene import Scene
 from ..system.workers import Emit
 from .agreement import bits_lacking
-from .choice import confirming_plan, first_prec, rounded_prec
+from .choice import confirming_plan, drawn_intervals, first_prec, rounded_prec
 from .pilot import run_pilot
 from .proving import Problem, guarded, proved
 from .reach import MAX_RAISES, check_reach
-from .solution import CrossCheck, Solution, grid_decimals, transit_decimals
+from .solution import SAMPLED, CrossCheck, Solution, grid_decimals, transit_decimals
 
 AUDIT_STEPS = 2000  # steps of the pilot, a proof of some seconds, from which an audit in a process pays for its start
-WITHOUT = "The proof does not rest on heyoka's confirmation: `--no-confirm` leaves it out."
+WITHOUT = "The proof does not rest on heyoka's confirmation: `--confirm none` leaves it out."
 
 
 def solve_enclosed(
@@ -34,12 +41,13 @@ def solve_enclosed(
     engine: str,
     report: Report | None,
     audit: bool = False,
-    confirm: bool = False,
+    confirm: Confirmation = "none",
 ) -> Solution:
     """Enclose a scene's states and transits so tightly that every digit asked for is decided.
 
-    With `audit` FLINT alone proves the same run again, which has to give the same digits; with `confirm` heyoka's run
-    in another formulation has to agree to each of them. Both are done meanwhile, where that pays. Where no such run
+    With `audit` FLINT alone proves the same run again, which has to give the same digits. Where `confirm` is "whole",
+    heyoka's run in another formulation has to agree to each of them. Both are done meanwhile, where that pays. Where it
+    is "sampled", heyoka has to reach the end of each drawn interval of the grid from its first row. Where no whole run
     confirms every transit, one in a cheaper type may refuse them.
 
     Raises:
@@ -56,20 +64,20 @@ def solve_enclosed(
 
     problem = Problem(scene, times, engine, run_pilot(scene.exact, times))
     with ExitStack() as meanwhile:
-        confirmation = meanwhile.enter_context(begin_confirmation(problem)) if confirm else None
-        second_proof = meanwhile.enter_context(begin_audit(problem)) if audit else None
-        report = report and slowest(report, [child for child in (confirmation, second_proof) if child is not None])
+        plan = None if confirm == "none" else _confirming_plan(problem, confirm)
+        pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
+        whole = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
+        pays = problem.pilot.steps >= AUDIT_STEPS
+        second_proof = meanwhile.enter_context(in_background(pays, _send_digits, problem)) if audit else None
+        report = report and slowest(report, [child for child in (whole, second_proof) if child is not None])
         solution = proved(problem, enclosure.enclose, report)
+        if plan and confirm == "sampled":  # while the audit goes on
+            solution = confirmed(problem, solution, confirm, _sampled(plan, solution, report))
         if second_proof is not None:
             solution = audited(solution, second_proof.result(report))
-        if confirmation is not None:
-            solution = confirmed(problem, solution, confirmation.result(report))
-        return solution if confirm and not solution.possible else guarded(solution, problem.pilot)
-
-
-def begin_audit(problem: Problem) -> AbstractContextManager[Background]:
-    """Begin a proof by FLINT alone; its result, the digits that it proves, is for `audited`."""
-    return in_background(problem.pilot.steps >= AUDIT_STEPS, _send_digits, problem)
+        if whole is not None:
+            solution = confirmed(problem, solution, confirm, whole.result(report))
+        return solution if whole and not solution.possible else guarded(solution, problem.pilot)
 
 
 def audited(solution: Solution, digits: Any) -> Solution:
@@ -98,46 +106,56 @@ def _send_digits(emit: Emit, problem: Problem) -> None:
     emit(proved_digits(proved(problem, partial(enclose, flint_only=True), reports(emit))))
 
 
-def begin_confirmation(problem: Problem) -> AbstractContextManager[Background]:
-    """Begin heyoka's run in another formulation; its result is for `confirmed`.
+def _confirming_plan(problem: Problem, confirm: Confirmation, prec: int | None = None) -> Plan:
+    """Return heyoka's run in another formulation, in `prec` bits or in those that the digits need.
 
     Raises:
-        UnreachableError: the run is out of reach.
+        UnreachableError: the run, or the sampled tenth of it, is out of reach.
     """
-    plan = _confirming_plan(problem, first_prec(problem.scene, problem.pilot, AUTO))
-    return in_background(expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS, send_run, plan)
+    scene, pilot = problem.scene, problem.pilot
+    bits = prec or first_prec(scene, pilot, AUTO)
+    check_reach(pilot.steps // (SAMPLED if confirm == "sampled" else 1), bits, scene.run.digits, WITHOUT)
+    return confirming_plan(scene, problem.times, pilot, bits)
 
 
-def confirmed(problem: Problem, solution: Solution, witness: Run) -> Solution:
+def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Run:
+    """Return heyoka's run over the drawn intervals, each from the middle of the proven one at its first row."""
+    from ..engines.heyoka.run import run_between
+
+    return run_between(replace(plan, transits=False), solution.grid, drawn_intervals(solution.scene), report)
+
+
+def confirmed(problem: Problem, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
     """Return a proved solution with the run that confirms it, at a precision that is raised until it agrees.
 
     Raises:
         UnreachableError: a finer run, which it takes, is out of reach.
         IntegrationError: heyoka finds other numbers, or other transits.
     """
-    last = None
+    last, grid = None, solution.grid
+    if confirm == "sampled":
+        grid = replace(grid, values=[grid.values[i + 1] for i in drawn_intervals(solution.scene)])
     for _ in range(MAX_RAISES):
-        check, missing = _compared(witness, solution)
+        check, missing = _compared(witness, solution, grid)
         if not missing:
             assert solution.proof is not None
-            proof = replace(solution.proof, confirmed=True)
+            proof = replace(solution.proof, confirmed=confirm)
             return replace(solution, checks=(*solution.checks, check), proof=proof)
         if last is not None and check.position_m >= last > 0:
             break
         last = check.position_m
         prec = max(LONG_DOUBLE.prec, rounded_prec(witness.plan.number.prec + missing))
-        witness = run(_confirming_plan(problem, prec))
+        plan = _confirming_plan(problem, confirm, prec)
+        witness = run(plan) if confirm == "whole" else _sampled(plan, solution)
     raise IntegrationError(f"heyoka does not confirm the proof: it is {float(check.position_m):.2g} m away.")
 
 
-def _confirming_plan(problem: Problem, prec: int) -> Plan:
-    check_reach(problem.pilot.steps, prec, problem.scene.run.digits, WITHOUT)
-    return confirming_plan(problem.scene, problem.times, problem.pilot, prec)
+def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck, int]:
+    """Return a run as a check of a solution, and the bits that it lacks to agree to a quarter of the last digit.
 
-
-def _compared(witness: Run, solution: Solution) -> tuple[CrossCheck, int]:
-    """Return a run as a check of a solution, and the bits that it lacks to agree to a quarter of the last digit."""
-    gaps = solution.grid.distance(witness.grid.only(GRID)).largest()
+    `grid` are the solution's rows that the run has.
+    """
+    gaps = grid.distance(witness.grid.only(GRID)).largest()
     missing = bits_lacking(gaps, grid_decimals(solution))
     if solution.zeros is None or witness.transits is None or solution.possible:
         return CrossCheck.of(witness, gaps, None), missing

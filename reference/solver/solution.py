@@ -14,8 +14,10 @@ from ..engines.plan import Run
 from ..errors import UnreachableError
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
 from ..numbers.table import Table, decimals_of, resolved
-from ..scenes.fields import Level
+from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
+
+SAMPLED = 10  # of so many intervals of the grid a sampled confirmation integrates one
 
 
 @dataclass(frozen=True)
@@ -70,7 +72,8 @@ class Proof:
     """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
 
     `proved` is what trusted code returned, and compares with what is printed; `audited`: FLINT alone proves it too;
-    `confirmed`: heyoka's run in another formulation agrees to every printed digit.
+    `confirmed`: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
+    transit, or a sample: a tenth of the grid's intervals, each from its first row.
     """
 
     method: str
@@ -84,7 +87,7 @@ class Proof:
     cpu_s: dict[str, float]
     proved: Any = field(default=None, repr=False)
     audited: bool = False
-    confirmed: bool = False
+    confirmed: Confirmation = "none"
 
 
 @dataclass(frozen=True, repr=False)

@@ -14,10 +14,11 @@ from fractions import Fraction
 from ..engines.background import run_both
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
-from ..errors import InputError, UnreachableError
+from ..errors import InputError, UnreachableError, in_words
 from ..numbers.columns import GRID
 from ..numbers.precision import LONG_DOUBLE
 from ..numbers.table import Table
+from ..scenes.fields import CONFIRMATIONS, Confirmation
 from ..scenes.scene import AnyScene, Scene, as_scene
 from .agreement import Agreement, with_transit_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
@@ -35,7 +36,7 @@ def solve(
     transits: bool | None = None,
     engine: str | None = None,
     audit: bool = False,
-    confirm: bool = False,
+    confirm: Confirmation = "none",
     report: Report | None = None,
 ) -> Solution:
     """Solve a scene to the digits and the level asked for (the scene's own by default).
@@ -49,8 +50,9 @@ def solve(
         engine: "heyoka", "limbs" (fast at many digits, needs numba), or None for the fastest that is installed. At
             the level confirmed the run that confirms is always heyoka's.
         audit: at the level enclosed, prove the same run again by FLINT alone, and require the same digits.
-        confirm: at the level enclosed, have heyoka confirm every digit as well, as at the level confirmed; on a second
-            core.
+        confirm: at the level enclosed, what heyoka confirms as well, in another formulation: "whole", every digit and
+            transit, on a second core; "sampled", the end of a tenth of the grid's intervals, each from its first row;
+            or "none".
         report: called with the simulated time reached, in s.
 
     Returns:
@@ -64,8 +66,10 @@ def solve(
     scene = as_scene(scene).with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
     settings, times = scene.run, tuple(scene.exact.grid)
     engine = checked(engine)
-    for wish, value in (("audit", audit), ("confirm", confirm)):
-        if value and settings.level != "enclosed":
+    if confirm not in CONFIRMATIONS:
+        raise InputError("confirm", confirm, in_words(CONFIRMATIONS))
+    for wish, asked in (("audit", audit), ("confirm", confirm != "none")):
+        if asked and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", f"Nothing else has a proof to {wish}.")
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it

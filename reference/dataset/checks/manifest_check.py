@@ -4,16 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
-from itertools import product
 
-from ...engines import engine_names
 from ...errors import LONGEST_VALUE, shortened
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start, xdot_vanishes
 from ..golden import Files
 from ..manifest import MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
-from ..record import NO_CONFIRM, Making, bounds_of, command, completeness, following
+from ..record import ENGINE, OPTIONS, Making, bounds_of, command, completeness, following
 from ..render import derived_texts
 from ..sheets import by_field
 from .tables import SLACK
@@ -47,10 +45,11 @@ def problems(files: Files) -> Iterator[str]:
         return
     if not _is_its_id(files):
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
-    proofs = ((False, True), (False, True)) if manifest.level == "enclosed" else ((False,), (True,))
-    makings = [Making(*words) for words in product(engine_names(), *proofs)]
-    if manifest.command not in {command(scene, manifest.id, making) for making in makings}:
+    said = OPTIONS.search(manifest.command)
+    options = said and (said[0] if manifest.level == "enclosed" else f"{ENGINE} {said[1]}")
+    if not options or command(scene, manifest.id, options) != manifest.command:
         yield f"{MANIFEST}: command does not follow from the scene"
+        return
     yield from _possible(files)
     yield from _bounds(manifest)
     yield from _evidence(manifest)
@@ -94,9 +93,12 @@ def _evidence(manifest: Manifest) -> Iterator[str]:
     if manifest.level == "self_consistent" and all(same_run):
         yield f"{MANIFEST}: level = self_consistent, and no cross-check differs from the run"
     others = [check for check in checks if check.formulation != run.formulation]
-    to_confirm = proof is not None and NO_CONFIRM not in manifest.command.split()
-    if to_confirm and all(any(_too_far(check, manifest)) for check in others):
-        yield f"{MANIFEST}: no cross-check confirms the proof, and the command does not say {NO_CONFIRM}"
+    if proof is not None:
+        close = [check for check in others if not any(_too_far(check, manifest))]
+        seen = manifest.transits != "complete" or any(check.transit_s for check in close)  # a sample sees no transits
+        said = Making.of(manifest.command).confirm
+        if not {"whole": close and seen, "sampled": any(not check.transit_s for check in close), "none": True}[said]:
+            yield f"{MANIFEST}: the cross-checks do not show the confirmation that the command names: {said}"
     for check in checks:
         if check.formulation not in FORMULATIONS:
             yield f"{MANIFEST}: cross_checks: {check.formulation} is no formulation"

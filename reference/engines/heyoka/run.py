@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Generator
+from collections.abc import Generator, Sequence
+from dataclasses import replace
 from fractions import Fraction
 from functools import partial
 from typing import Any
@@ -17,7 +18,8 @@ import numpy as np
 from ...model.carried import carried
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start, xdot_vanishes, zero_at_release
-from ...numbers.precision import GUARD_BITS, real
+from ...numbers.columns import STATE
+from ...numbers.precision import GUARD_BITS, real, to_mpf
 from ...numbers.table import Table
 from ...numbers.taylor_step import LOCAL, TaylorStep
 from ...scenes.inputs import Inputs
@@ -103,6 +105,32 @@ def run(plan: Plan, report: Report | None = None, pace: Pace | None = None) -> R
     else:
         states = stepper.propagate(times, report, pace)
     return result(plan, stepper, states, zeros if watching else None, started)
+
+
+def run_between(plan: Plan, rows: Table, starts: Sequence[int], report: Report | None = None) -> Run:
+    """Integrate from some rows of a grid, each to the time of the next; return a run with the states reached.
+
+    Args:
+        plan: the run that is taken in parts: its times are those of the rows. Transits are not looked for.
+        rows: the states at these times, in SI units.
+        starts: numbers of the rows to start from, counted from 0.
+        report: called with the time of each row that is reached, in s.
+
+    Raises:
+        IntegrationError: the integrator stopped.
+    """
+    start, started = Start.of(plan.inputs, plan.number.prec + GUARD_BITS), time.process_time()
+    formulation = carried(FORMULATIONS[plan.formulation], start, Numbers(plan.number).of)
+    lengths = [plan.times[i + 1] - plan.times[i] for i in starts]
+    stepper = Stepper(formulation, start, plan.number, span=sum(lengths, Fraction(0)))
+    states, reached, zero = rows.only(STATE).values, [], stepper.numbers.of(0)
+    for i, length in zip(starts, lengths, strict=True):
+        x, y, z, vx, vy, vz = (to_mpf(Fraction(value, 1 << rows.bits), start.ctx) for value in states[i])
+        stepper.back((zero, stepper.model.release(replace(start, position=(x, y, z), velocity=(vx, vy, vz)))))
+        reached.append(stepper.propagate([zero, stepper.numbers.of(length)])[-1])
+        if report is not None:
+            report(float(plan.times[i + 1]))
+    return result(plan, stepper, np.array(reached, dtype=stepper.numbers.dtype), None, started)
 
 
 def result(plan: Plan, stepper: Stepper, states: Any, zeros: list[Zero] | None, started: float) -> Run:

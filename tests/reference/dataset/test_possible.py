@@ -18,7 +18,7 @@ from reference.dataset.verify import recompute, verify
 from reference.dataset.write import write
 
 SPEEDS = {0: "-0.0077460679307865453684", 2: "-0.0077460679307865453685"}  # m/s to the east, by the zeros in the dip
-SAID = "not decided without --recompute: the possible transits, the proof, the cross-checks"
+SAID = "not decided without --recompute: the possible transits, the proof, the cross-checks (confirmation: none)"
 
 
 @pytest.fixture(scope="module", params=SPEEDS)

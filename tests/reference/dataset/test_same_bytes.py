@@ -121,14 +121,14 @@ def test_the_commands_of_what_ships_make_what_ships():
         for job in (everything[name], elsewhere[name]):
             scene = job.scene
             making = making_of(scene, name, job.folder)
-            assert command(scene, name, making) == manifest.command
-            assert making.options == entry["options"]
+            assert making.options_for(scene, name) == entry["options"]
+            assert command(scene, name, entry["options"]) == manifest.command
         assert everything[name].folder == default_folder(scene, name) == golden_root() / name
     assert [name for name, entry in index().items() if "--no-confirm" in entry["options"]] == ["paris_30d"]
 
 
 def test_options_are_read_as_they_are_written():
-    for making in (Making(), Making("heyoka", audit=False), Making("limbs", confirm=False)):
+    for making in (Making(), Making("heyoka", audit=False), Making("limbs", confirm="none"), Making(confirm="sampled")):
         assert Making.of(f"foucault generate paris {making.options} --set site.latitude=0") == making
 
 

@@ -362,16 +362,15 @@ def test_a_name_means_the_same_folder_to_those_who_write_and_those_who_read(monk
 def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     paris = paris.with_values(["run.level=confirmed"])
     plain = "foucault generate paris --t-end 86400 --digits 40 --level confirmed"
-    assert command(paris, "paris", Making("heyoka", audit=False)) == f"{plain} --engine heyoka"
-    assert command(paris, "paris", Making(audit=False)) == f"{plain} --engine limbs"
+    assert command(paris, "paris", "--engine heyoka") == f"{plain} --engine heyoka"
     changed = paris.with_values(["site.latitude=0", "release.vx=1", "run.grid_step=600", "inputs=binary64"])
     sets = "--set site.latitude=0 --set release.vx=1 --set run.grid_step=600 --set inputs=binary64"
-    text = command(changed, dataset_id(changed), Making("heyoka", audit=False))
+    text = command(changed, dataset_id(changed), "--engine heyoka")
     assert sets in text and text.startswith(plain)
     words = [word for word in text.split() if "=" in word]
     assert paris.with_values(words) == changed
-    assert command(make_scene("mine"), "mine", Making()).startswith("foucault generate mine.toml --t-end")
-    assert command(make_scene("mine"), "mine+site.latitude=1", Making()).endswith("--set site.latitude=1")
+    assert command(make_scene("mine"), "mine", Making().options).startswith("foucault generate mine.toml --t-end")
+    assert command(make_scene("mine"), "mine+site.latitude=1", Making().options).endswith("--set site.latitude=1")
 
 
 def test_no_proof_goes_to_the_golden_folder_unaudited(monkeypatch, tmp_path):

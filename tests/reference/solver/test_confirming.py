@@ -1,59 +1,91 @@
-"""A proof with heyoka's confirmation beside it: a run in another formulation that agrees to every digit."""
+"""A proof with heyoka's confirmation beside it, of the whole, of a sample, or none: what is said of it, and refused."""
 
 from __future__ import annotations
 
 import dataclasses
+import shutil
 from fractions import Fraction
+from pathlib import Path
 
 import pytest
+from forgery import forge
 
 import reference
 from reference.dataset.golden import read_files
-from reference.dataset.record import NO_CONFIRM
 from reference.dataset.verify import problems_of, recompute
 from reference.dataset.write import write
 from reference.engines import background
 from reference.engines.background import Background, send_run
 from reference.errors import InputError, IntegrationError, UnreachableError
+from reference.scenes.fields import CONFIRMATIONS
 from reference.solver import enclosed, reach
 
 SHORT = {"t_end": "60", "digits": 18, "level": "enclosed"}
 PARIS = reference.load_scene("paris")
+WORDS = {
+    "whole": "heyoka's run in another formulation agrees to every printed digit.",
+    "sampled": "heyoka agrees to 1 of 1 rows, each reached from the row before.",
+    "none": "No other run confirms it.",
+}
 
 
 @pytest.fixture(scope="module")
-def confirmed(tmp_path_factory):
-    solution = reference.solve(PARIS, **SHORT, confirm=True)
-    return write(solution, tmp_path_factory.mktemp("confirmed") / "paris")
+def made(tmp_path_factory):
+    """One dataset for each choice, by its word."""
+    folder = tmp_path_factory.mktemp("made")
+    return {word: write(reference.solve(PARIS, **SHORT, confirm=word), folder / word) for word in CONFIRMATIONS}
 
 
-def test_the_manifest_says_both_and_the_dataset_is_made_again_byte_for_byte(confirmed):
-    manifest = read_files(confirmed).manifest
-    confirming = manifest.cross_checks[-1]
-    assert manifest.enclosure is not None and NO_CONFIRM not in manifest.command
-    assert confirming.formulation == "space" != manifest.run.formulation
-    assert Fraction(confirming.position_m) < Fraction(manifest.bounds.position_m)
-    assert confirming.transit_s is not None and manifest.bounds.transit_s is not None
-    assert Fraction(confirming.transit_s) < Fraction(manifest.bounds.transit_s)
-    assert problems_of(confirmed) == []
-    assert recompute(confirmed) == ([], [])
+@pytest.mark.parametrize("word", CONFIRMATIONS)
+def test_each_choice_is_named_by_manifest_page_and_verify_and_made_again_byte_for_byte(made, word, foucault):
+    manifest = read_files(made[word]).manifest
+    assert manifest.enclosure is not None and f"--no-audit --confirm {word}" in manifest.command
+    others = [check for check in manifest.cross_checks if check.formulation != manifest.run.formulation]
+    assert [check.formulation for check in others] == ["space"] * (word != "none")
+    for check in others:
+        assert Fraction(check.position_m) < Fraction(manifest.bounds.position_m)
+        assert (check.transit_s is not None) == (word == "whole")  # the event run beside a sample is not recorded
+    assert f"It is not audited. {WORDS[word]}\n" in (made[word] / "certified.txt").read_text("utf-8")
+    assert foucault("verify", made[word])[1].endswith(f"the proof, the cross-checks (confirmation: {word})\n")
+    assert recompute(made[word]) == ([], [])
 
 
-def test_a_proof_alone_says_so_and_has_the_same_digits(confirmed, tmp_path):
-    alone = write(reference.solve(PARIS, **SHORT), tmp_path / "paris")
-    assert NO_CONFIRM in read_files(alone).manifest.command.split()
-    assert problems_of(alone) == []
+def test_a_whole_confirmation_compares_transits_and_the_others_have_a_run_in_hardware_beside_them(made):
+    check, bounds = read_files(made["whole"]).manifest.cross_checks[-1], read_files(made["whole"]).manifest.bounds
+    assert Fraction(check.transit_s) < Fraction(bounds.transit_s)
+    guards = {word: reference.solve(PARIS, **SHORT, confirm=word).guard for word in CONFIRMATIONS}
+    assert guards["whole"] is None
+    assert {guards["sampled"].number, guards["none"].number} <= {"double", "long_double"}
+
+
+def test_all_three_have_the_same_digits(made):
     for name in ("grid.csv", "transits.csv"):
-        assert (alone / name).read_bytes() == (confirmed / name).read_bytes()
+        assert len({(folder / name).read_bytes() for folder in made.values()}) == 1
 
 
-def test_a_manifest_that_claims_a_confirmation_has_to_show_it(confirmed, tmp_path):
-    files = read_files(confirmed)
-    fewer = files.manifest.model_copy(update={"cross_checks": files.manifest.cross_checks[:-1]}).sealed()
-    for name, text in files.texts.items():
-        (tmp_path / name).write_text(text, "utf-8")
-    (tmp_path / "manifest.json").write_text(fewer.text(), "utf-8")
-    assert any("no cross-check confirms the proof" in problem for problem in problems_of(tmp_path))
+@pytest.mark.parametrize(
+    ("word", "claimed"),
+    [(word, claimed) for word in CONFIRMATIONS for claimed in ("whole", "sampled") if word != claimed],
+)
+def test_a_manifest_that_claims_another_confirmation_has_to_show_it(made, tmp_path, word, claimed):
+    forged = Path(shutil.copytree(made[word], tmp_path / "forged"))
+    forge(
+        forged, manifest=lambda m: m.update(command=m["command"].replace(f"--confirm {word}", f"--confirm {claimed}"))
+    )
+    (problem,) = problems_of(forged)
+    assert problem.endswith(f"do not show the confirmation that the command names: {claimed}")
+
+
+def test_what_was_made_before_the_option_says_nothing_of_a_whole_confirmation(made, tmp_path):
+    for word, older in (("whole", ""), ("none", " --no-confirm"), ("sampled", "")):
+        old = Path(shutil.copytree(made[word], tmp_path / word))
+        forge(
+            old,
+            manifest=lambda m, new=f" --no-audit --confirm {word}", older=older: m.update(
+                command=m["command"].replace(new, older)
+            ),
+        )
+        assert bool(problems_of(old)) == (word == "sampled")
 
 
 def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
@@ -65,21 +97,45 @@ def test_heyoka_that_finds_other_numbers_is_an_error(monkeypatch):
     monkeypatch.setattr(Background, "result", wrong)
     monkeypatch.setattr("reference.solver.enclosed.run", lambda plan: wrong(Background(None, send_run, plan)))
     with pytest.raises(IntegrationError, match="does not confirm"):
-        reference.solve(PARIS, **SHORT, confirm=True)
+        reference.solve(PARIS, **SHORT, confirm="whole")
 
 
 def test_a_confirmation_out_of_reach_is_refused_before_the_proof(monkeypatch):
     monkeypatch.setattr(reach, "MAX_PREC", 64)
     monkeypatch.setattr("reference.solver.enclosed.proved", None)
-    with pytest.raises(UnreachableError, match=NO_CONFIRM):
-        reference.solve(PARIS, **SHORT, confirm=True)
+    for word in ("whole", "sampled"):
+        with pytest.raises(UnreachableError, match="--confirm none"):
+            reference.solve(PARIS, **SHORT, confirm=word)
 
 
 def test_without_a_proof_there_is_nothing_to_confirm(foucault, tmp_path):
     with pytest.raises(InputError, match="confirm: got"):
-        reference.solve(PARIS, level="confirmed", confirm=True)
-    status, _, said = foucault("generate", "paris", "--level", "confirmed", NO_CONFIRM, "--out", tmp_path / "paris")
-    assert status == 2 and "without --level enclosed" in said
+        reference.solve(PARIS, level="confirmed", confirm="sampled")
+    for words in (("--confirm", "none"), ("--no-confirm",), ("--audit",), ("--no-audit",)):
+        status, _, said = foucault("generate", "paris", "--level", "confirmed", *words, "--out", tmp_path / "paris")
+        assert status == 2 and "without --level enclosed" in said and words[0] in said
+
+
+def test_a_word_that_is_none_of_the_three_is_refused(foucault, tmp_path):
+    with pytest.raises(InputError, match="confirm: got 'True', expected whole, sampled or none"):
+        reference.solve(PARIS, **SHORT, confirm=True)
+    words = ("generate", "paris", "--t-end", "60", "--out", tmp_path / "paris")
+    status, _, said = foucault(*words, "--confirm", "sample")
+    assert status == 2 and "Did you mean sampled?" in said
+    status, _, said = foucault(*words, "--confirm", "whole", "--no-confirm")
+    assert status == 2 and "with --no-confirm" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "named"),
+    [((), "--audit --confirm sampled"), (("--no-audit", "--no-confirm"), "--no-audit --confirm none")],
+)
+def test_a_user_gets_an_audit_and_a_sampled_confirmation_unasked(foucault, tmp_path, words, named):
+    status, out, _ = foucault(
+        "generate", "paris", "--t-end", "60", "--digits", "18", *words, "--out", tmp_path / "paris"
+    )
+    assert status == 0 and f"enclosed, confirmation {named.split()[-1]}\n" in out
+    assert read_files(tmp_path / "paris").manifest.command.endswith(f" {named}")
 
 
 def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeypatch):
@@ -95,7 +151,7 @@ def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeyp
     monkeypatch.setattr(background, "usable_cores", lambda: 2)
     monkeypatch.setattr("reference.solver.enclosed.WORTH_A_PROCESS", 0.0)
     end = 9000.0
-    reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm=True, report=seen.append)
+    reference.solve(PARIS, t_end=str(end), digits=18, level="enclosed", audit=True, confirm="whole", report=seen.append)
     assert before[-1] < end  # the proof has ended, its audit has not
     after = seen[len(before) :]
     assert after[0] < after[-1]
