@@ -47,8 +47,9 @@ def solve_enclosed(
 
     With `audit` FLINT alone proves the same run again, which has to give the same digits. Where `confirm` is "whole",
     heyoka's run in another formulation has to agree to each of them. Both are done meanwhile, where that pays. Where it
-    is "sampled", heyoka has to reach the end of each drawn interval of the grid from its first row. Where no whole run
-    confirms every transit, one in a cheaper type may refuse them.
+    is "sampled", heyoka has to reach the end of each drawn interval of the grid from its first row; if these are more
+    than the steps of a whole run, that is made. Where no whole run confirms every transit, one in a cheaper type may
+    refuse them.
 
     Raises:
         InputError: python-flint is not installed.
@@ -63,6 +64,8 @@ def solve_enclosed(
         raise InputError("--level", "enclosed", f"the package {error.name}, which the proof needs", advice) from None
 
     problem = Problem(scene, times, engine, run_pilot(scene.exact, times))
+    if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
+        confirm = "whole"  # of a grid so fine a sample costs more: a step at least for each interval
     with ExitStack() as meanwhile:
         plan = None if confirm == "none" else _confirming_plan(problem, confirm)
         pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
