@@ -26,8 +26,9 @@ def test_in_a_users_process_no_descriptor_is_redirected(monkeypatch):
     monkeypatch.setattr(os, "dup2", lambda *descriptors: redirected.append(descriptors))
     for level in LEVELS:
         reference.solve("paris", t_end="5", digits=10, level=level)
-    reference.sweep("paris", ["site.latitude=0,45"], level="confirmed", workers=1)
-    reference.sweep("paris", ["site.latitude=0,45"])
+    minute = reference.load_scene("paris", ["run.t_end=60"])
+    reference.sweep(minute, ["site.latitude=0,45"], level="confirmed", workers=1)
+    reference.sweep(minute, ["site.latitude=0,45"])
     assert_agrees("paris", golden.t[:9], np.column_stack([golden.x, golden.y])[:9])
     assert study("paris", ["rk4"], t_end=60).rows
     problem = Problem.of(reference.load_scene("paris"), "momentum", [0.0, 1.0, 2.0])
