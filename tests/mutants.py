@@ -43,7 +43,7 @@ TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset: sheets write": f"{FILES} {DATASET}verify.py",
     "compare/score: transit_matching": f"{SCORE}transit_errors.py",
     "compare/score: errors": f"{SCORE}errors.py",
-    "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py",
+    "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py tests/compare/candidates/test_naming.py",
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
     "reference/solver: solution": f"{SOLVER}solution.py {FILES} {SOLVER}solve.py",
     "reference/solver: agreement": f"{SOLVER}agreement.py {SOLVER}solve.py",

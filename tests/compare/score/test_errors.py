@@ -155,6 +155,15 @@ def test_a_time_that_is_no_double_is_taken_as_it_is(golden):
     assert blind.max_m > 1e-14
 
 
+def test_a_turn_of_the_swing_plane_is_told_where_there_are_positions(golden, truth):
+    x, y = truth.states[:, 0], truth.states[:, 1]
+    dx, dy = (np.cos(0.1) - 1) * x - np.sin(0.1) * y, np.sin(0.1) * x + (np.cos(0.1) - 1) * y
+    made = trajectory_errors(candidate(truth, x=dx, y=dy), truth, golden)
+    assert made.swing((0.0, 0.0)).largest_turn == pytest.approx(0.1, rel=1e-6)
+    alone = trajectory_errors(Candidate.of_transits("transits", TIMES), dense(golden, TIMES[1:]), golden)
+    assert alone.swing((0.0, 0.0)).largest_turn is None
+
+
 def test_drifts_of_a_good_run_are_rounding_and_of_a_bad_one_what_was_put_in():
     scene = make_scene(pendulum={"length": "2"}, site={"latitude": "30"})
     states = trajectory(scene, np.linspace(0, 60, 100), number=LONG_DOUBLE)

@@ -299,3 +299,20 @@ def test_a_row_may_be_off_from_the_motion_by_its_bound_and_by_what_the_runs_are_
 
     assert len(compared(apart)) == found
     assert compared("0.75") is None
+
+
+@pytest.mark.parametrize(("beyond", "refuted"), [(0, False), (1, True)])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_possible_transit_is_refuted_where_xdot_cannot_come_near_zero_to_the_last_bit(
+    files, monkeypatch, side, beyond, refuted
+):
+    """From 1 to 5 s, with 3 m/s² in the middle and a jerk of 5 m/s³, xdot changes by 2·3 + 5·2²/2 m/s and is 1 off."""
+    limbs, bits = engines()["limbs"], 60
+    middles = Table(("vx", "ax"), bits, [(0, 0), (side * ((17 << bits) + beyond), -3 << bits)])
+    monkeypatch.setattr(type(limbs), "run", lambda *_: SimpleNamespace(grid=middles))
+    monkeypatch.setattr(motion, "largest_jerk", lambda _: Fraction(5))
+    part = SimpleNamespace(from_s="1", to_s="5", parity="even")
+    manifest = SimpleNamespace(possible=[part], bound=lambda *_: Fraction(1, motion.GRAZES))
+    plan, later = limbs.plan(files.scene.exact, 110, (Fraction(0),), True), Table(("t", "ax"), 0, [(6, 1)])
+    outside, problems = motion._outside_intervals(SimpleNamespace(manifest=manifest), plan, later)
+    assert (outside, bool(problems)) == ([0], refuted)

@@ -25,7 +25,7 @@ from reference.dataset.manifest import ALWAYS, MANIFEST, OPTIONAL
 from reference.dataset.place import dataset_id, default_folder, golden_folder
 from reference.dataset.record import Making, command
 from reference.dataset.render import render
-from reference.dataset.sheets import Sheet, nearest_doubles
+from reference.dataset.sheets import Sheet, nearest_doubles, scene_inputs
 from reference.dataset.verify import problems_of
 from reference.dataset.write import check_target, write
 from reference.errors import DatasetError, InputError
@@ -163,6 +163,12 @@ def test_the_manifest_records_the_check_and_its_disagreement(dataset):
     assert Fraction(check.position_m) < Fraction(manifest.bounds.position_m)
     assert manifest.counts.grid == 6
     assert manifest.counts.transits == 36
+
+
+@pytest.mark.parametrize(("transits", "written"), [(True, "true"), (False, "false")])
+def test_inputs_are_written_as_a_scenes_file_has_them(transits, written):
+    inputs = scene_inputs(make_scene(run={"transits": transits}))
+    assert (inputs["run"]["transits"], inputs["run"]["level"]) == (written, "confirmed")
 
 
 def test_the_page_for_people_carries_the_certified_values(dataset):
