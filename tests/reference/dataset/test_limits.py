@@ -16,7 +16,7 @@ from small_scenes import make_scene
 import reference
 from reference.dataset.checks.tables import _order, _signs_on_grid
 from reference.dataset.golden import read_files
-from reference.dataset.manifest import ALWAYS, MANIFEST, Manifest
+from reference.dataset.manifest import ALWAYS, MANIFEST, Manifest, differences
 from reference.dataset.place import MAX_ID, dataset_id
 from reference.dataset.sheets import Sheet
 from reference.dataset.vectors import _closest_pair
@@ -169,3 +169,21 @@ def test_between_transits_xdot_has_one_sign_but_within_the_bounds_of_a_time_or_o
     times, ones = (Fraction(10), Fraction(20)), (Fraction(1), Fraction(1))
     said = list(_signs_on_grid(files, times, ones, (Fraction(1), Fraction(-1))))
     assert bool(said) is found
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ({"a": {"b": 1, "c": 2}}, {"a": {"b": 1, "c": 3}}, [("a.c", 2, 3)]),
+        ({"a": {"b": 1}}, {"a": None}, [("a", {"b": 1}, None)]),
+        ({"a": None}, {"a": {"b": 1}}, [("a", None, {"b": 1})]),
+        ({"a": [1, {"b": 2}]}, {"a": [1, {"b": 3}]}, [("a[1].b", 2, 3)]),
+        ({"a": [1]}, {"a": [1, 2]}, [("a", [1], [1, 2])]),
+        ({"a": [1]}, {"a": 1}, [("a", [1], 1)]),
+        ({"a": 1, "b": 2}, {"b": 2}, [("a", 1, None)]),
+    ],
+)
+def test_where_two_documents_differ_is_told_with_both_values(old, new, told):
+    """A whole section or list stands there where the other document has none, or has a longer one."""
+    assert [*differences(old, new)] == told
+    assert [*differences(new, old)] == [(place, two, one) for place, one, two in told]
