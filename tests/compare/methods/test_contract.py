@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from functools import cache
 
 import numpy as np
 import pytest
@@ -25,6 +26,7 @@ ERRORS = {
 }  # … but for those whose ladder ends where they become too dear
 
 
+@cache
 def run(name, scene, setting=None):
     method, example = METHODS[name], case(scene)
     problem = example.problem(name, rows=ROWS.get(name))
@@ -55,12 +57,9 @@ def test_a_run_can_be_repeated_and_gives_the_same_bits(name):
 
 
 def test_a_tighter_setting_is_better(name):
-    method, paris = METHODS[name], case("paris")
-    problem = paris.problem(name, rows=ROWS.get(name))
-    errors = [
-        np.abs(method.prepare(problem, setting)().states - paris.truth[: len(problem.times)])[:, :3].max()
-        for setting in (method.ladder[0], SETTINGS.get(name) or method.ladder[-1])
-    ]
+    (problem, coarse), (_, fine) = run(name, "paris", METHODS[name].ladder[0]), run(name, "paris")
+    truth = case("paris").truth[: len(problem.times)]
+    errors = [np.abs(outcome.states - truth)[:, :3].max() for outcome in (coarse, fine)]
     assert errors[1] < errors[0] or errors[0] < 1e-13
 
 

@@ -123,7 +123,7 @@ def test_a_scene_may_be_given_by_id_by_path_and_as_mappings(paris, tmp_path):
     expected = reference.solve(paris, **short).grid.values
     for given in ("paris", path, str(path), paris.model_dump()):
         assert reference.solve(given, **short).grid.values == expected
-    assert len(reference.sweep("paris", ["site.latitude=0,45"])) == 2
+    assert len(reference.sweep("paris", ["run.t_end=60,61"])) == 2
     assert reference.trajectory("paris", [0, 1]).tolist() == reference.trajectory(paris, [0, 1]).tolist()
     for wrong, field in ((None, "scene"), (3, "scene"), ("pariss", "SCENE"), ({"id": "a"}, "release")):
         for call in (reference.solve, reference.sweep, lambda scene: reference.trajectory(scene, [0, 1])):
