@@ -171,6 +171,13 @@ def test_between_transits_xdot_has_one_sign_but_within_the_bounds_of_a_time_or_o
     assert bool(said) is found
 
 
+@pytest.mark.parametrize(("change", "count"), [(lambda row: f"{row},0", 8), (lambda row: row.rpartition(",")[0], 6)])
+def test_a_row_with_a_number_too_many_or_too_few_is_told_with_both_counts(dataset, change, count):
+    row = (dataset / "grid.csv").read_text().splitlines()[2]
+    sealed(dataset, "grid.csv", row, change(row))
+    assert f"row 2: {count} numbers, not 7" in problems(dataset)
+
+
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
