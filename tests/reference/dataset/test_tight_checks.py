@@ -270,6 +270,13 @@ def test_h_is_taken_on_the_sphere_on_the_side_where_the_bob_is(files, z):
 
 
 @pytest.mark.parametrize(
+    ("z", "deep"), [("0.25", False), ("-0.25", False), (f"0.25{'0' * 15}1", True), (f"-0.25{'0' * 15}1", True)]
+)
+def test_z_follows_from_x_and_y_where_it_is_more_than_a_quarter_of_the_cord(files, z, deep):
+    assert in_a_swing(files, ("0.9", "0", z, "1", "2", "0"), [1] * 6)._deep.tolist() == [deep]
+
+
+@pytest.mark.parametrize(
     ("state", "gravity", "slopes"),
     [
         (("0.6", "0", "-0.8", "1", "2", "0.75"), "5", (5.21484375, 1.875, 0, 1.5625, 2, 0)),
