@@ -152,12 +152,13 @@ def test_the_law_of_a_known_exponent_of_time_is_named() -> None:
 
 
 def test_the_command_reports_rows_and_a_page(foucault, tmp_path: Path) -> None:
-    words = ("stability", "--scenes", "hard,two_radians", "--methods", "rkmk4,scipy_dop853", "--json")
-    status, out, _ = foucault(*words, "--out", tmp_path)
+    scenes = ",".join(shortened(tmp_path, name, "10", "1") for name in ("hard", "two_radians"))
+    words = ("stability", "--scenes", scenes, "--methods", "rkmk4,scipy_dop853", "--json")
+    status, out, _ = foucault(*words, "--out", tmp_path / "out")
     assert status == 0
     rows = json.loads(out)["rows"]
     assert {"scene", "method", "precision", "status", "digits", "cpu_s", "reason"} <= rows[0].keys()
-    page = (tmp_path / "index.html").read_text()
+    page = (tmp_path / "out/index.html").read_text()
     assert "<svg" in page
     wrong = any(row["status"] == Status.SILENTLY_WRONG for row in rows)
     assert ("<p>None.</p>" in page.partition("<h2>Silently wrong</h2>")[2].partition("</section>")[0]) is not wrong
