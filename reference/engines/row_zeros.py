@@ -7,7 +7,7 @@ through zero.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -20,9 +20,11 @@ from ..numbers.precision import Array
 from .batch_interface import CLOSE_PAIR, DOUBTFUL, LEAST_BEND, Outcomes, PlumbAxes, Rows
 
 MODEL = FORMULATIONS["momentum"]
-TRANSIT, HEIGHT = 0, 1  # kinds of zeros: of xdot, and of the rate of the height over the plumb line
+TRANSIT, HEIGHT = 0, 2  # kinds of zeros: of xdot, and of the rate of the height over the plumb line; and their axes
 QUIET = 1e-4  # of a swing's period after the release: there heyoka may report the zero at the release
-INSIDE = np.arange(1, 8)[:, None] / 8  # of an interval between two samples
+MOST_LATE = (
+    1e-3  # of a radian of the swing: as a zero of the height's rate was found; more, and its series tells little
+)
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,14 @@ class Motion:
         v, torque = (rates[0], rates[1], rates[2]), (rates[3], rates[4], rates[5])
         return cls(n, v, add(cross(torque, n), cross(subtract(momentum, k.turn), v)))
 
+    def earlier(self, by: Array) -> Self:
+        """Return the motion a little earlier than at its times, n'' as it is."""
+        n, v = (
+            tuple(part - by * rate for part, rate in zip(parts, rates, strict=True))
+            for parts, rates in ((self.n, self.v), (self.v, self.a))
+        )
+        return type(self)(n, v, self.a)
+
     def __getitem__(self, chosen: Any) -> Self:
         """Return the motion at some of its times."""
         return type(self)(*(tuple(part[chosen] for part in vector) for vector in (self.n, self.v, self.a)))
@@ -85,8 +95,8 @@ class Release:
     rate: float
     quiet: float
     still: bool
-    zero: tuple[bool, bool]
-    signs: tuple[float, float]
+    zero: dict[int, bool]
+    signs: dict[int, float]
     angle: float
 
     @classmethod
@@ -102,8 +112,9 @@ class Release:
             rate=rate,
             quiet=QUIET * 2 * np.pi / (rate + axes.speed[row]),
             still=bool(rows.still[row]),
-            zero=(multiplicity > 0, rising == 0),
-            signs=(np.sign(east), rising or np.sign(motion.a[2]) or 1),  # at rest on the plumb line it can but rise
+            zero={TRANSIT: multiplicity > 0, HEIGHT: rising == 0},
+            # at rest on the plumb line the bob can but rise
+            signs={TRANSIT: np.sign(east), HEIGHT: rising or np.sign(motion.a[2]) or 1},
             angle=np.arctan2(np.hypot(x, p), -u),
         )
 
@@ -116,37 +127,37 @@ class Release:
 
 @dataclass(frozen=True)
 class Samples:
-    """A row's motion at times from the release to the end, at equal distances; `at` gives it at others, increasing."""
+    """A row's motion at times from the release to the end; `complete` where it is known that no zero is lost."""
 
     times: Array
     motion: Motion
-    at: Callable[[Array], Motion]
+    complete: bool = False
 
-    def lost(self, zeros: Zeros, sign: float, axis: int) -> bool:
-        """Return whether a zero of n' along an axis is not among the zeros; `sign` is its sign after the release."""
-        signs = np.concatenate([[sign], zeros.directions, [np.sign(self.motion.v[axis][-1])]])
-        alternate = (signs[:-2] * signs[1:-1] < 0).all() and signs[-1] == signs[-2]
-        return not alternate or self._dips(zeros, axis)
+    def lost(self, zeros: Zeros, at: Motion, release: Release, kind: int) -> bool:
+        """Return whether zeros of a kind may not be among those that were found; `at` is the motion at these."""
+        signs = np.concatenate([[release.signs[kind]], zeros.directions])
+        there = signs[np.searchsorted(zeros.times, self.times[1:])]
+        alternate = (signs[:-1] * signs[1:] < 0).all() and (self.motion.v[kind][1:] * there > 0).all()
+        return not (self.complete or (alternate and not self._dips(zeros, at, release, kind, signs)))
 
-    def _dips(self, zeros: Zeros, axis: int) -> bool:
-        """Return whether n' along an axis goes through zero and back between two samples without zeros between them.
+    def _dips(self, zeros: Zeros, at: Motion, release: Release, kind: int, signs: Array) -> bool:
+        """Return whether a rate may go through zero and back between neighbours among samples and zeros.
 
-        The cubic through values and slopes says where that may be; there n' itself is asked, and the parabola there.
+        The cubic through the values and slopes there says how low the minimum between them is, but for its error: that
+        of u' = A sin 2ωt is below A (2ωh)⁴/384.
         """
-        rate, slope = self.motion.v[axis], self.motion.a[axis] * self.times[1]
-        towards, away = rate * slope < 0, rate * slope > 0
-        dips = np.flatnonzero((rate[:-1] * rate[1:] > 0) & towards[:-1] & away[1:])
-        dips = dips[np.diff(np.searchsorted(zeros.times, self.times[[dips, dips + 1]]), axis=0)[0] == 0]
-        (left, right), (before, after), s = rate[[dips, dips + 1]], slope[[dips, dips + 1]], INSIDE
-        cubic = (1 - s) ** 2 * ((1 + 2 * s) * left + s * before) + s**2 * ((3 - 2 * s) * right - (1 - s) * after)
-        height = cubic * np.sign(left)
-        low = np.flatnonzero(height.min(axis=0) < 0)
-        if not len(low):
-            return False
-        lowest = self.at(self.times[dips[low]] + INSIDE[np.argmin(height[:, low], axis=0), 0] * self.times[1])
-        bend = (after - before)[low]
-        least = lowest.v[axis] - (lowest.a[axis] * self.times[1]) ** 2 / (2 * bend)
-        return bool((least * left[low] <= 0).any())
+        order = np.argsort(np.concatenate([self.times, zeros.times]), kind="stable")
+        rate, slope = self.motion.v[kind], self.motion.a[kind]
+        sign, most = signs[np.cumsum(order >= len(rate))[:-1]], np.abs(rate).max()
+        length = np.diff(np.concatenate([self.times, zeros.times])[order])
+        rate, slope = np.concatenate([rate, 0 * zeros.times])[order], np.concatenate([slope, at.a[kind]])[order]
+        left, right, before, after = sign * [rate[:-1], rate[1:], slope[:-1] * length, slope[1:] * length]
+        if release.zero[kind]:
+            left[0], before[0] = 0, max(before[0], 0)
+        between = 3 * (right - left) - before - after
+        s = before / (before - between - np.sqrt(between**2 - before * after))
+        least = (1 - s) ** 2 * ((1 + 2 * s) * left + s * before) + s**2 * ((3 - 2 * s) * right - (1 - s) * after)
+        return bool(((s > 0) & (s < 1) & (least < most * (2 * release.rate * length) ** 4 / 384)).any())
 
 
 def describe_transits(
@@ -154,7 +165,7 @@ def describe_transits(
 ) -> None:
     """Fill in a row's transits: the zeros, and the motion at them."""
     t, ax = zeros.times, at.a[0]
-    if samples.lost(zeros, release.signs[TRANSIT], 0) or (np.sign(ax) != zeros.directions).any():
+    if samples.lost(zeros, at, release, TRANSIT) or (np.sign(ax) != zeros.directions).any():
         outcomes.fate[row] = DOUBTFUL
     outcomes.transits[row] = len(t)
     if len(t):
@@ -166,7 +177,12 @@ def describe_transits(
 def describe_highest_points(
     outcomes: Outcomes, row: int, release: Release, zeros: Zeros, at: Motion, samples: Samples
 ) -> None:
-    """Fill in a row's highest points, the zeros at which the height begins to fall, and its largest angle."""
+    """Fill in a row's highest points, the zeros at which the height begins to fall, and its largest angle.
+
+    The height's rate is a product: a small swing's, whose steps are long, is known worse by its own series, in which
+    the zeros were found, than by the motion, which is as exact as the step. One step of Newton's method goes from the
+    ones to the others; of u' = A sin 2ωt it leaves a third of the cube of what 2ωt was.
+    """
     high = zeros.directions < 0
     t, fall, (x, p, u) = zeros.times[high], -at.a[2][high], (part[high] for part in at.n)
     across = np.hypot(x, p)
@@ -176,9 +192,12 @@ def describe_highest_points(
     bend = np.min(fall / (release.rate * across) ** 2, initial=np.inf)
     if not (len(t) and release.rate and bend >= LEAST_BEND):
         return
-    if samples.lost(zeros, release.signs[HEIGHT], 2):
+    late = at.v[2] / at.a[2]
+    zeros = Zeros(zeros.times - late, zeros.directions)
+    if samples.lost(zeros, at, release, HEIGHT) or not (np.abs(late) * release.rate < MOST_LATE).all():
         outcomes.fate[row] = DOUBTFUL
         return
+    t, (x, p, _) = zeros.times[high], at.earlier(late)[high].n
     azimuth = np.arctan2(p, x)
     outcomes.apsides[row], outcomes.least_bend[row], outcomes.least_fall[row] = len(t), bend, fall.min()
     outcomes.apsis_first[row], outcomes.apsis_last[row] = t[0], t[-1]

@@ -12,6 +12,7 @@ from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from secrets import token_hex
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import dask
@@ -104,6 +105,8 @@ def _connected(address: str, stack: ExitStack) -> Any:
             raise InputError("--cluster", address, "local:N with a number of workers from 1")
         # dask gives a local worker up that is being started again some seconds after its death: the last one, too
         stack.enter_context(dask.config.set({"distributed.deploy.lost-worker-timeout": FOREVER_S}))
+        scratch = stack.enter_context(TemporaryDirectory(ignore_cleanup_errors=True))
+        stack.enter_context(dask.config.set({"temporary-directory": scratch}))
         try:
             cluster = distributed.LocalCluster(
                 n_workers=int(count), threads_per_worker=1, dashboard_address=None, silence_logs=50

@@ -16,18 +16,17 @@ from typing import Any
 
 import numpy as np
 
-from ..engines.batch_interface import STOPPED, Batch, Outcomes, Rows, Wanted
+from ..engines.batch_interface import LEAST_BEND, STOPPED, Batch, Outcomes, Rows, Wanted
 from ..numbers.precision import Array
 
 FACTOR = 16.0
 WILD_FACTOR = 64.0  # where there are three runs
 LEAST_ULPS = 4.0  # of the cord length: the two runs may agree by chance
+GOLDEN = (np.sqrt(5.0) - 1) / 2
 HALF_ULP = 2.0**-53  # of a number just above 1, relative
 GROWN = 1e-12  # of the cord length: an estimate above it takes the third run
-OFFSETS = 2.5  # of the rest position: beyond 2 there are no highest points near the plumb line that signs may miss
-SWAYS = (
-    2.0  # of what the Coriolis force does to the height of a bob that goes round: it may make highest points of its own
-)
+OFFSETS = 3.0  # of the rest position from the plumb line; see `_unsure_of_highest`
+SWAYS = 2.0 / 3.0  # over cos² of a cone's angle, of Ω/ω sin² of it: how far the Coriolis force sways the cone
 LATE = 0.25  # of half a swing or turn: transits and highest points that may be as far off have no frequency
 HEIGHT = FACTOR * LEAST_ULPS * HALF_ULP  # what rounding may do to a height over the cord length
 DEGREES_PER_HOUR = np.degrees(1.0) * 3600
@@ -174,22 +173,26 @@ def _undecided(rows: Rows, run: Outcomes, velocity: Array, speed: Array) -> Arra
 
 
 def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Array) -> Array:
-    """Return where a highest point may lie on either side of the end, or near the plumb line and be missed.
+    """Return where a highest point may lie on either side of the end, or where pairs of them may come and go unseen.
 
-    There are such where the rest position, which is not quite on that line, is as far from it as the swing reaches; and
-    on a cone whose height is swayed by the Coriolis force as much as by the swing.
+    Highest points are seen from the plumb line, which is off the middle of the swing by some d: at rest by the
+    centrifugal force. From inside the ellipse's evolute an orbit with semi-axes a, b shows two a turn, from outside
+    one, and d < a - b is inside. There the bend at the highest, times its distance, is at most (3ad - d²)/(a + d),
+    below 3d, so that 3d tell the ones from the others. On a cone of angle θ the Coriolis force sways the angle by
+    cos φ as well, by 2/3 Ω/ω_c sin² θ/cos² θ, ω_c² = ω²/cos θ, and the same holds with this added to d, times
+    ω_c²/ω². Of θ are known the largest angle and the spin s ω about the line: with s² = sin⁴ θ/cos θ, cos θ is above
+    1/(1 + s²) or the golden section. And a cone is one only where the error of its bend leaves it so.
     """
     length, down = rows.length[:, 0], rows.pull[..., 0] / rows.rate[:, None] ** 2
     n, v = run.state[:, :3] / length[:, None], run.state[:, 3:]
     sine, speed = np.linalg.norm(np.cross(n, down), axis=1) + position / length, np.linalg.norm(v, axis=1)
     at_end = np.abs((v * down).sum(axis=1)) <= velocity * sine + speed * position / length
-    turn, some, lean = rows.turn[..., 0], run.apsides > 0, np.sin(np.fmin(run.largest_angle, np.pi / 2))
+    turn, some, lean = rows.turn[..., 0], run.apsides > 0, np.sin(run.largest_angle)
     across = np.linalg.norm(np.cross(turn, down), axis=1) / rows.rate**2
     offset = np.abs((turn * down).sum(axis=1)) * across
-    spun = np.abs(
-        (np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1)
-    )  # angular momentum about the plumb line
-    bend = np.where(some, run.least_bend, 1)
-    near = (bend * np.sin(run.largest_angle) < OFFSETS * offset) | (bend * lean < 2 * SWAYS * across * spun)
-    unsure: Array = some & at_end | near
+    spun = np.abs((np.cross(rows.n[..., 0], rows.V[..., 0]) * down).sum(axis=1))
+    upright = np.fmax(np.cos(run.largest_angle), np.fmin(GOLDEN, rows.rate**2 / (rows.rate**2 + spun**2)))
+    near = np.where(some, run.least_bend, 1) * lean < OFFSETS * (offset + SWAYS * across * spun / upright**2)
+    round_ = ~some & (4 * position >= LEAST_BEND * length * lean)  # of two squares, each twice its relative error
+    unsure: Array = some & at_end | near | round_
     return unsure

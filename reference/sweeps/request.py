@@ -176,6 +176,8 @@ def request(
     """
     if level not in LEVELS:
         raise unknown("--level", level, "a level of trust", LEVELS, "")
+    if audit is not None and audit < 0:
+        raise InputError("--audit", audit, "a number of rows from 0")
     words = list(over)
     if bool(words) == (rows is not None):
         raise InputError("--over", " ".join(words) or "nothing", "--over KEY=…, or --rows FILE", "Give one of the two.")

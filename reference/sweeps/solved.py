@@ -148,7 +148,7 @@ def _of_run(rows: Rows, solution: Solution, prec: int) -> tuple[Outcomes, Array]
     course = Course.of(steps, inputs)
     release = Release.of(rows, PlumbAxes.of(rows), 0, course.at(np.zeros(1))[0])
     times = np.linspace(0, release.end, SAMPLES * len(steps) + 1)
-    samples = Samples(times, course.at(times), course.at)
+    samples = Samples(times, course.at(times), complete=True)
     for order in range(TOP, 1, -1):
         times = np.sort(np.concatenate([times, course.crossings(order, times).times]))
     zeros = course.crossings(1, times, release.signs[HEIGHT])

@@ -109,6 +109,11 @@ class Worker:
             self._process.wait()
         self._connection.close()
 
+    @property
+    def ended(self) -> bool:
+        """Whether the process has ended."""
+        return self._process.poll() is not None
+
     def kill(self) -> None:
         """Kill the process (SIGKILL)."""
         self._process.kill()
@@ -149,7 +154,8 @@ class Pool:
     def _call(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> Any:
         thread, reason = threading.get_ident(), "the work was ended"
         for _ in range(TRIES):
-            if thread not in self._processes:
+            idle = self._processes.get(thread)
+            if idle is None or idle.ended:  # one that was killed while idle costs no try
                 self._processes[thread] = Worker(_answer)
             if self._ended.is_set():  # asked when `__exit__` can see the process
                 break

@@ -28,6 +28,7 @@ from .system import as_pairs, keep_on_disk, rates
 
 PARAMETERS = ("turn_1", "turn_2", "pull_2", "drag")
 STEPS_PER_SWING = 1000  # most steps over 2π/√|c|; a small swing takes seven
+SAMPLES_PER_SWING = 12  # at least, between which a rate may dip to zero; a step of a tiny swing lasts half of one
 LEAST_STEPS = 10_000  # that are granted to any row
 
 Kind = tuple[tuple[int, ...], bool, float]  # the zeros that are looked for, whether there is drag, and the tolerance
@@ -154,21 +155,18 @@ def _solve(
     end = Motion.of(last, k)
     outcomes.state[row], outcomes.steps[row] = [*end.n, *end.v], steps
     if sought:
-        samples = np.linspace(0, release.end, steps + 1)
+        swung = SAMPLES_PER_SWING * release.end * release.rate / (2 * np.pi)
+        samples = np.linspace(0, release.end, int(max(steps, swung)) + 1)
         times, places = np.unique(np.concatenate([samples, transits.times, heights.times]), return_inverse=True)
         at_samples, at_transits, at_heights = np.split(places, np.cumsum([len(samples), len(transits.times)]))
         with _lent((), *kind) as second:
-
-            def at(times: Array) -> Motion:
-                second.begin(k, state)
-                return Motion.of(second.at(times), k)
-
-            motion = at(times)
-            seen = Samples(samples, motion[at_samples], at)
-            if TRANSIT in sought and not release.still:
-                describe_transits(outcomes, row, release, transits, motion[at_transits], seen)
-            if HEIGHT in sought:
-                describe_highest_points(outcomes, row, release, heights, motion[at_heights], seen)
+            second.begin(k, state)
+            motion = Motion.of(second.at(times), k)
+        seen = Samples(samples, motion[at_samples])
+        if TRANSIT in sought and not release.still:
+            describe_transits(outcomes, row, release, transits, motion[at_transits], seen)
+        if HEIGHT in sought:
+            describe_highest_points(outcomes, row, release, heights, motion[at_heights], seen)
     return transits
 
 

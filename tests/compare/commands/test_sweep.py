@@ -62,6 +62,10 @@ def test_a_row_that_fails_is_named_and_the_others_stand(foucault):
         ([], "SCENE: got 'nothing'"),
         (["--over", "site.latitude=1"], "no such option without SCENE"),
         (["paris", "--over", "site.latitude=1", "--workers", "0"], "--workers"),
+        (
+            ["paris", "--over", "site.latitude=1", "--audit", "-1"],
+            "--audit: got '-1', expected a number of rows from 0",
+        ),
         (["paris", "--over", "site.latitude=1", "--workers", "2", "--cluster", "local:2"], "together with --cluster"),
         (["paris", "--over", "site.latitude=1", "--set", "run.digits=3"], "a field that makes a difference here"),
         (["paris", "--over", "site.latitude=1", "--plot", "a.gif"], "a path that ends in"),

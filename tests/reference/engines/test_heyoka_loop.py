@@ -13,12 +13,12 @@ from reference.engines.heyoka.batch import BATCH
 from reference.engines.octet.batch import BATCH as OCTET
 from reference.engines.row_zeros import HEIGHT, TRANSIT, Zeros
 
-CLOSE_PAIRS = make_scene(
-    pendulum={"length": "1"},
-    site={"latitude": "0", "rotation_rate": "0.05", "equatorial_radius": "1"},
-    release={"x": "0", "y": "0.5", "vx": "-0.00775"},
-    run={"t_end": "60"},
-)
+SITE = {
+    "pendulum": {"length": "1"},
+    "site": {"latitude": "0", "rotation_rate": "0.05", "equatorial_radius": "1"},
+    "run": {"t_end": "60"},
+}
+RELEASES = {"a close pair": {"y": "0.5", "vx": "-0.00775"}, "three together": {"y": "0.5235", "vx": "-0.02275"}}
 FOUND = loop.Integrator.zeros
 
 
@@ -43,15 +43,20 @@ def test_a_zero_that_is_lost_leaves_a_doubt(monkeypatch, paris, kind, place):
     assert BATCH.solve(rows, Wanted()).fate.tolist() == [DOUBTFUL]
 
 
-def test_a_close_pair_that_is_lost_together_leaves_a_doubt(monkeypatch):
-    rows = rows_of([CLOSE_PAIRS.exact])
+@pytest.mark.parametrize("kind", [TRANSIT, HEIGHT], ids=["transit", "highest point"])
+@pytest.mark.parametrize("name", RELEASES)
+def test_any_two_that_are_lost_together_leave_a_doubt(monkeypatch, name, kind):
+    """Far apart or close, with samples between them or another zero beside them."""
+    rows = rows_of([make_scene(**SITE, release={"x": "0", **RELEASES[name]}).exact])
     run = BATCH.solve(rows, Wanted(times=True))
     assert run.fate.tolist() == [OK]
     gaps = np.diff(run.transit_t)
-    assert gaps.min() < 0.03
-    closest = int(np.argmin(gaps))
-    losing(monkeypatch, TRANSIT, lambda _: [closest, closest + 1])
-    assert BATCH.solve(rows, Wanted(times=True)).fate.tolist() == [DOUBTFUL]
+    closest = (gaps[1:] + gaps[:-1] if name == "three together" else gaps).min()
+    assert closest < {"a close pair": 0.03, "three together": 0.125}[name]
+    assert len(run.transit_t) > 40
+    for first in range(40):
+        losing(monkeypatch, kind, lambda _, first=first: [first, first + 1])
+        assert BATCH.solve(rows, Wanted(times=True)).fate.tolist() == [DOUBTFUL], first
 
 
 @pytest.mark.parametrize("wanted", [Wanted(times=True), Wanted(False, False, moved=1)], ids=["run", "moved"])

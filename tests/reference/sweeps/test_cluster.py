@@ -147,6 +147,16 @@ def test_a_scheduler_without_workers_is_named(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(shutil.which("openssl") is None, reason="openssl makes the certificate")
+def test_a_cluster_that_is_started_here_leaves_nothing_behind(tmp_path, monkeypatch):
+    from reference.sweeps.cluster import scheduler_at
+
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
+    with scheduler_at("local:1") as local:
+        assert local.submit(sum, [1, 2]).result() == 3
+        assert list(tmp_path.iterdir())
+    assert not list(tmp_path.iterdir())
+
+
 def test_tls_is_dasks_own_and_an_address_without_certificates_is_refused(tmp_path):
     import dask
 

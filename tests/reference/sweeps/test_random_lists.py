@@ -1,7 +1,7 @@
 """Two lists of 250 random scenes: both engines give the same within their errors, and every number has an error.
 
-46 of the 500 rows of angles in both engines are left to the solver, and 37 of those of positions; more would be a loss.
-It solves some of them in every test run, and all under --long: they cost nearly all of the time.
+The solver solves 52 of the 500 rows of angles in both engines, and 38 of those of positions; more would be a loss.
+Some of them are compared in every test run, and all under --long: they cost nearly all of the time.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from reference.sweeps.promote import Promoted
 from reference.sweeps.sweep import sweep
 
 SCENES = {"angles": "two_radians", "positions": "paris"}
-MOST_SOLVED = {"angles": 48, "positions": 39}
+MOST_SOLVED = {"angles": 53, "positions": 39}
 SAME = ("status", "transits", "close_pairs")
 ERRORS = {column.name: column.error for column in COLUMNS if column.error}
 

@@ -147,6 +147,16 @@ def test_a_pool_gives_results_and_tells_a_death_that_happens_twice(tmp_path):
             pool.submit(os.stat, str(tmp_path / "none")).result()
 
 
+def test_a_worker_that_is_killed_while_idle_costs_no_try(tmp_path):
+    with Pool(1) as pool:
+        idle = pool.submit(os.getpid).result()
+        os.kill(idle, signal.SIGKILL)
+        while not next(iter(pool._processes.values())).ended:
+            pass
+        assert pool.submit(die_once, str(tmp_path)).result() == "alive"
+        assert pool.submit(os.getpid).result() != idle
+
+
 def test_a_pool_that_is_interrupted_ends_what_is_begun_and_begins_nothing_again():
     started = time.monotonic()
     with pytest.raises(KeyboardInterrupt), Pool(2) as pool:
