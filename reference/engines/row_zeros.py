@@ -127,7 +127,7 @@ class Release:
 
 @dataclass(frozen=True)
 class Samples:
-    """A row's motion at times from the release to the end; `complete` where it is known that no zero is lost."""
+    """A row's motion at times from the release to the end; `complete` where no pair of zeros can be lost."""
 
     times: Array
     motion: Motion
@@ -138,7 +138,7 @@ class Samples:
         signs = np.concatenate([[release.signs[kind]], zeros.directions])
         there = signs[np.searchsorted(zeros.times, self.times[1:])]
         alternate = (signs[:-1] * signs[1:] < 0).all() and (self.motion.v[kind][1:] * there > 0).all()
-        return not (self.complete or (alternate and not self._dips(zeros, at, release, kind, signs)))
+        return not (alternate and (self.complete or not self._dips(zeros, at, release, kind, signs)))
 
     def _dips(self, zeros: Zeros, at: Motion, release: Release, kind: int, signs: Array) -> bool:
         """Return whether a rate may go through zero and back between neighbours among samples and zeros.

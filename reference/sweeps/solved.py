@@ -89,6 +89,7 @@ class Course:
         """Return the zeros of a derivative of the height that signs at times tell; `first` replaces the first sign."""
         values = self.derivatives(times)[order][2]
         values[0] = first or values[0]
+        times, values = times[values != 0], values[values != 0]  # a zero may be hit, and has no sign
         before = np.flatnonzero(values[:-1] * values[1:] < 0)
         low, high, sign = times[before], times[before + 1], np.sign(values[before])
         t = (low + high) / 2

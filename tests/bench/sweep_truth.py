@@ -1,6 +1,7 @@
 """Are the numbers of sweeps true? Random rows in every engine, every column against Newton's law in 37 digits and more.
 
-    nice python tests/bench/sweep_truth.py [ROWS] [--seed 1] [--engines auto octet heyoka] [--out DIR] [--show 5] [--slice I N]
+    nice python tests/bench/sweep_truth.py [ROWS] [--seed 1] [--engines auto octet heyoka] [--out DIR] [--show 5]
+        [--slice I N]
 
 The truth is `sweep_truth.cpp`, which shares no line and no method with the project (it is compiled here, and wants g++,
 libboost-dev, libmpfr-dev). The first 500 rows are tests/helpers/random_positions.csv and random_angles.csv, the others

@@ -46,6 +46,11 @@ KNOWN = {
         " release.y=1.9993e-12 release.vx=9.39229e-13 release.vy=3.17567e-12 run.t_end=60",
         {"swing_hz": 0.68035112856042339, "precession_deg_per_h": 361.84105638503434},
     ),
+    "a zero at a sample": (
+        "paris pendulum.length=1.4246 site.latitude=90 site.gravity_is=effective release.x=1e-12 release.y=0"
+        f" {AT_REST} run.t_end=60",
+        {"swing_hz": 0.41757452851864046},
+    ),
     "a swing of 1e-13 rad": (
         "paris pendulum.length=11.821 pendulum.drag=0.02072 site.latitude=-90 release.x=1e-12 release.y=0"
         f" {AT_REST} run.t_end=83.35",
