@@ -12,6 +12,7 @@ from functools import cache
 from typing import Any
 
 import pytest
+from checker import check
 from hypothesis import settings
 from small_scenes import make_scene
 
@@ -26,7 +27,7 @@ settings.load_profile("here")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
-__all__ = ["make_scene"]
+__all__ = ["check", "make_scene"]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -6,40 +6,21 @@ import json
 import random
 import re
 import shutil
-import subprocess
 from decimal import Decimal, localcontext
 
 import pytest
+from checker import SOURCE
 from forgery import forge, seal
 from places import ROOT
 
 from reference.dataset.golden import read_files
 from reference.dataset.manifest import MANIFEST
 
-SOURCE = ROOT / "docs/checker/check.c"
 GOLDEN = ROOT / "data/golden"
-LIBRARIES = (["-lflint-arb", "-lflint"], ["-lflint"])  # FLINT 2.9 and Arb; FLINT 3
 QUICK = ("conical", "damped", "inverted_rest", "nanometre", "over_top", "separatrix", "weightless")
 FORGED = ("barely_over", "damped", "nanometre_paris", "vertical_picometre", "weightless")
 GENERIC = ("barely_over", "damped", "nanometre_paris")  # their motion depends on every input
 MOST_LINES = 1000  # without blanks, comments and includes
-
-
-@pytest.fixture(scope="session")
-def check(tmp_path_factory):
-    """Run the checker on a folder."""
-    if shutil.which("cc") is None:
-        pytest.skip("no C compiler")
-    program = tmp_path_factory.mktemp("checker") / "check"
-    for libraries in LIBRARIES:
-        command = ["cc", "-O2", "-Wall", "-o", program, SOURCE, *libraries, "-lmpfr", "-lgmp", "-lm"]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        if done.returncode == 0:
-            assert not done.stderr
-            return lambda folder: subprocess.run([program, folder], capture_output=True, text=True, check=False)
-        if not re.search(r"\.h: No such file|cannot find -lflint", done.stderr):
-            pytest.fail(done.stderr)
-    return pytest.skip("no FLINT: apt install libflint-dev libflint-arb-dev")
 
 
 def test_the_program_stays_readable_in_an_evening():

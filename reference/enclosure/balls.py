@@ -33,8 +33,7 @@ def upper(x: arb) -> arb:
 def interval(x: arb) -> Interval:
     """Return the exact endpoints of a ball."""
     upper(abs(x) / HUGE)
-    ends = ((int(n), int(e)) for n, e in (x.lower().man_exp(), x.upper().man_exp()))
-    return Interval(*(Fraction(n << max(e, 0), 1 << max(-e, 0)) for n, e in ends))
+    return Interval(*(Fraction(int(q.p), int(q.q)) for q in (x.lower().fmpq(), x.upper().fmpq())))
 
 
 def fixed(values: Vector, bits: int) -> tuple[list[fmpz], arb]:

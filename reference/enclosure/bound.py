@@ -94,9 +94,9 @@ class Piece:
         self.v = [f.derivative() for f in self.p]
         self.begin, self.end = step.centre + step.h * step.low, step.centre + step.h * step.high
 
-    def values(self, s: arb) -> tuple[Vector, Vector]:
-        """Return balls of p(s) and p'(s)."""
-        return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v]
+    def values(self, s: arb, first: int = 0) -> tuple[Vector, Vector]:
+        """Return balls of p(s) and p'(s), of this from a component on."""
+        return [f(s) / self.unit for f in self.p], [f(s) / self.unit for f in self.v[first:]]
 
     @cached_property
     def sizes(self) -> Sizes:
@@ -188,10 +188,10 @@ class Radius(Carried):
             return Covered(piece, tube(k, d, self.eta, (k.w + d.k) * self.eta))
 
 
-def state(covered: Covered, s: arb) -> tuple[Vector, Vector]:
-    """Return balls that contain the true r and r' at `s`."""
-    p, v = covered.piece.values(s)
-    return [x + arb(0, covered.tube.eta) for x in p], [x + arb(0, covered.tube.u) for x in v]
+def state(covered: Covered, s: arb, first: int = 0) -> tuple[Vector, Vector]:
+    """Return balls that contain the true r and r' at `s`, of this from a component on."""
+    (p, v), (eta, u, _) = covered.piece.values(s, first), covered.tube
+    return [x + arb(0, eta) for x in p], [x + arb(0, u) for x in v]
 
 
 def output(covered: Covered, time: Fraction) -> State:

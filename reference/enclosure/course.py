@@ -4,7 +4,6 @@ Who calls `advance` proposes steps and columns, and can do no harm: an exception
 result only for a run that is complete.
 """
 
-from collections.abc import Callable
 from fractions import Fraction
 from typing import Any
 from weakref import WeakSet
@@ -27,19 +26,15 @@ class Course:
         self.bound: Any = Columns(balls) if columns else Radius(balls)
         self.scan = Scan(balls) if transits and not balls.still else None
 
-    def advance(self, step: TaylorStep, proposal: tuple[Proposal, ...], lap: Callable[[str], None]) -> None:
-        """Take the next step, and columns if it is proved by them; `lap` is told which part of the work is done."""
+    def advance(self, step: TaylorStep, *proposal: Proposal) -> None:
+        """Take the next step, and columns if it is proved by them."""
         demand(self.open, "the run is closed: a step failed")
         self.open = False
-        piece = Piece(self.balls, step)
-        lap("defect" if piece.sizes else "")
-        covered = self.bound.advance(piece, *proposal)
-        while len(self.states) < len(self.times) and self.times[len(self.states)] <= piece.end:
+        covered = self.bound.advance(Piece(self.balls, step), *proposal)
+        while len(self.states) < len(self.times) and self.times[len(self.states)] <= covered.piece.end:
             self.states.append(output(covered, self.times[len(self.states)]))
-        lap("bound")
         if self.scan:
             self.scan.advance(covered)
-            lap("transits")
         self.open = True
 
     def finish(self) -> Proved:

@@ -2,7 +2,7 @@
 
 Nothing here is a float, and no sum can overflow: `check` refuses what could (THEOREM.md, section 6). A digit of row q
 stands for 2^(22 (L - 1 - q)) in a coefficient over 2^(22 L - 1), a sum of row t for 2^(22 (2 L - 2 - t)) in a product.
-`multiply` and `carry` are compiled: numba, LLVM and the machine code kept on disk are believed, but where FLINT audits.
+`multiply` and `sums` are compiled: numba, LLVM and the machine code kept on disk are believed, but where FLINT audits.
 """
 
 from functools import lru_cache
@@ -17,6 +17,9 @@ from .balls import demand
 
 # orders of a factor that are taken at once; rows in which a sum below 2^62 is carried on
 MASK, BLOCK, TOP_ROWS = (1 << DIGIT_BITS) - 1, 8, 3
+# sum, factor, constant and series of a term of `sums`: - ω² p, 2 Ω × p', - c, the - 1 of τ; and γ p', p'
+FEW = ((0, -1, 1, 0), (1, -1, 1, 1), (0, -2, 0, 5), (1, 2, 0, 4), (1, -1, 3, 7), (2, -1, 4, 7), (3, -1, 5, 7))
+LINEAR = FEW + tuple(term for n in range(3) for term in ((n, 1, 2, 4 + n), (4 + n, 1, 5, 4 + n)))
 
 
 def check(rows: Any, constants: Any) -> int:
@@ -47,26 +50,42 @@ def multiply(to: Any, i: int, f: Any, g: Any, alike: bool) -> None:
 
 
 @kept()
-def carry(digits: Any) -> None:
-    """Make digits from 0 to 2^22 - 1 of sums; the highest, -1 for a negative coefficient, else 0, turns all signs."""
-    for t in range(len(digits) - 1, 0, -1):
-        for n in range(digits.shape[1]):
-            digits[t - 1, n] += digits[t, n] >> DIGIT_BITS
-            digits[t, n] &= MASK
-    digits *= 1 + 2 * digits[0]
-
-
-def padded(table: Any) -> Any:
-    """Return digits as `multiply` takes them, in 32 bits, with a block of zeros before the orders and one after."""
-    wide = np.zeros((*table.shape[:-1], table.shape[-1] + 2 * BLOCK), np.int32)
-    wide[..., BLOCK:-BLOCK] = table
-    return wide
+def sums(series: Any, constants: Any, more: int) -> Any:
+    """Return the sums over all orders of the digits of |c|, by rows: of d, of τ, of p', and of n |c| of τ."""
+    _, count, width = series.shape
+    digits = np.zeros((TOP_ROWS + count + more, 7, 2 * (width - BLOCK)), np.int64)
+    own, to = np.zeros((8, len(digits)), np.int64), digits[TOP_ROWS:]
+    for i in range(3):
+        multiply(to, i, series[3], series[i], False)
+        multiply(to, 3, series[i], series[i], True)
+    for i, times, constant, factor in LINEAR:
+        for q in range(count):
+            c = times * constants[constant, q]
+            for r in range(min(count, len(to) - q) if c else 0):
+                for n in range(width - 2 * BLOCK):
+                    to[q + r, i, n] += c * series[factor, r, BLOCK + n]
+    for i in range(7):
+        for t in range(count if i < 3 else 0):
+            for n in range(width):
+                to[t, i, n] += (n + 1) * to[t, 4 + i, n + 1]  # p''
+        for t in range(len(digits) - 1, 0, -1):
+            for n in range(digits.shape[2]):
+                digits[t - 1, i, n] += digits[t, i, n] >> DIGIT_BITS
+                digits[t, i, n] &= MASK
+        for t in range(len(digits)):
+            for n in range(digits.shape[2]):
+                # the highest digit, -1 for a negative coefficient, else 0, turns all signs
+                x = (digits[t, i, n] ^ digits[0, i, n]) - digits[0, i, n]
+                own[i, t] += x
+                own[7, t] += n * x if i == 3 else 0
+    return own
 
 
 @lru_cache(maxsize=64)  # steps of the same length follow each other
-def split(n: fmpz, count: int) -> list[int]:
-    """Return the digits of an integer, the highest first and signed."""
-    return [int(n >> DIGIT_BITS * (count - 1)), *(int(n >> DIGIT_BITS * q) & MASK for q in range(count - 2, -1, -1))]
+def split(count: int, *whole: fmpz) -> Any:
+    """Return the digits of integers, the highest first and signed."""
+    low = range(DIGIT_BITS * (count - 2), -1, -DIGIT_BITS)
+    return np.array([[int(n >> DIGIT_BITS * (count - 1)), *(int(n >> bits) & MASK for bits in low)] for n in whole])
 
 
 def norms(rows: Any, whole: list[fmpz], more: int = 1) -> list[arb]:
@@ -77,23 +96,12 @@ def norms(rows: Any, whole: list[fmpz], more: int = 1) -> list[arb]:
         whole: ω, ω², γ, c_m, c_w over 2^(22 L - 1).
         more: rows of a product that are summed beyond L; what is left out is bounded, with L - 1 it is nothing.
     """
-    (_, count, orders), half = rows.shape, DIGIT_BITS - 1
-    constants, order = np.array([split(n, count) for n in whole]), np.arange(orders)
-    most, p, bend = check(rows, constants), padded(rows[:3]), order[1:-1] * order[2:] * rows[:3, :, 2:] << half
-    (turn, _, drag), v = padded(constants[:3, :, None]), padded(order[1:] * rows[:3, :, 1:])
-    tension, lift = padded(rows[3]), padded(rows[3] - constants[1, :, None] * (order == 0))
-    digits = np.zeros((TOP_ROWS + count + more, 7, 2 * (orders + BLOCK)), np.int64)
-    to = digits[TOP_ROWS:]
-    to[:count, :3, : bend.shape[2]] = bend.swapaxes(0, 1)
-    to[:count, 4:, : orders - 1] = (order[1:] * rows[:3, :, 1:] << half).swapaxes(0, 1)
-    to[:count, 1:3, 0] -= constants[3:].T << half
-    to[0, 3, 0] -= 1 << 2 * half
-    products = [(0, lift, p[0]), (1, lift, p[1]), (2, tension, p[2]), (0, -2 * turn, v[1]), (1, 2 * turn, v[0])]
-    for i, f, g in (*products, *(x for n in range(3) for x in ((n, drag, v[n]), (3, p[n], p[n])))):
-        multiply(to, i, f, g, f is g)
-    carry(digits.reshape(len(digits), -1))
+    (_, count, orders), last = rows.shape, 2 - DIGIT_BITS * (rows.shape[1] + 1 + more)
+    series = np.zeros((8, count, orders + 2 * BLOCK), np.int32)
+    constants, inner = split(count, *whole, fmpz(1) << DIGIT_BITS * count - 1), series[..., BLOCK:-BLOCK]
+    most = check(rows, constants[:5])
+    inner[:4], inner[4:7, :, :-1], inner[7, :, 0] = rows, np.arange(1, orders) * rows[:3, :, 1:], constants[5]
     # what is left out of at most 2 O coefficients, in units of the last row
     cut = 0 if more >= count - 1 else (4 * orders * most >> DIGIT_BITS) + 1
-    last = fmpz(2 - DIGIT_BITS * (count + 1 + more))
-    own = [(x, 1) for x in digits.sum(2).T] + [(digits[:, 3] @ np.arange(digits.shape[2]), 2 * orders)]
-    return [arb((fmpz_poly(x[::-1].tolist())(1 << DIGIT_BITS) + cut * k, last)) for x, k in own]
+    own = enumerate(sums(series, constants, more)[:, ::-1].tolist())
+    return [arb((fmpz_poly(x)(1 << DIGIT_BITS) + cut * (2 * orders if i == 7 else 1), fmpz(last))) for i, x in own]

@@ -106,8 +106,9 @@ class Scan:
         self.found.append(EnclosedTransit(parity, way, interval(t), *self._values(leaves, t)))
 
     def _values(self, leaves: list[Leaf], t: arb) -> list[Interval]:
-        turned, parts = self.balls.turned, [(f, f.piece.k.h, s, *state(f.covered, s)) for f, s in touched(leaves, t)]
-        rows = [[*turned(r, -1), turned(v, -1)[1] / h, f.at(1, s) / h**2] for f, h, s, r, v in parts]
+        turned, parts = self.balls.turned, [(f, f.piece.k.h, s, *state(f.covered, s, 1)) for f, s in touched(leaves, t)]
+        # the velocity's first component, xdot, is 0
+        rows = [[*turned(r, -1), turned([0, *v], -1)[1] / h, f.at(1, s) / h**2] for f, h, s, r, v in parts]
         return [interval(reduce(arb.union, x) * self.balls.length) for x in zip(*rows, strict=True)]
 
 

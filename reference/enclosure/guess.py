@@ -10,13 +10,14 @@ from .shapes import Leaf
 POLISH = 24  # steps of Newton's method from the middle of a leaf to a zero, in few bits, at most:
 ORDERS = 40  # of the Taylor series, enough for this: a coefficient is about a quarter of the one before
 NEAR = arb(2) ** -28  # a last one so short has come near: what is left is about its square
+NEGLIGIBLE = arb(2) ** -30  # part of what xdot is uncertain by
 MARGIN = 1 + arb(2) ** -8  # farther from the zero than xdot is uncertain
 
 
 def around_zero(leaves: list[Leaf]) -> tuple[arb, arb]:
     """Return exact times between which p'_x has a zero, about: proposals, which prove nothing."""
     leaf = leaves[len(leaves) // 2]
-    slope, full, s = leaf.slope, ctx.prec, ((leaf.low + leaf.high) / 2).mid()
+    slope, s = leaf.slope, ((leaf.low + leaf.high) / 2).mid()
     (f, off), (g, _) = slope.forms
     with ctx.workprec(SHORT):
         short_f, short_g = f.truncate(ORDERS), g.truncate(ORDERS)
@@ -24,9 +25,13 @@ def around_zero(leaves: list[Leaf]) -> tuple[arb, arb]:
             before, s = s, (s - short_f(s) / short_g(s)).mid()
             if abs(s - before) < NEAR:
                 break
-    rate = g(s).mid()
-    for _ in range(full // SHORT):
-        s = (s - f(s) / rate).mid()
-    away = MARGIN * (off.rad() * slope.piece.unit + abs(f(s))) / abs(rate)
+        rate = g(s).mid()
+    value, width = f(s), off.rad() * slope.piece.unit
+    for _ in range(ctx.prec // SHORT):
+        if abs(value) < NEGLIGIBLE * width:
+            break
+        s = (s - value / rate).mid()
+        value = f(s)
+    away = MARGIN * (width + abs(value)) / abs(rate)
     low, high = (slope.centre + (s + way * away) * slope.piece.k.h for way in (-1, 1))
     return low.mid(), high.mid()

@@ -29,7 +29,7 @@ ATTEMPTS = 4  # at rising precision
 LEAST_RAISE = 8  # bits from one attempt to the next
 USELESS = 2**12  # a state known this many times less closely than requested ends an attempt at once
 TINY = -1e9  # stands for the logarithm of a width that is 0
-PARTS = ("candidate", "defect", "bound", "transits")  # as datasets name them: the first is the approximant
+PARTS = ("candidate", "proof")  # the first is the approximant
 
 Approximant = Callable[[int], Iterable[TaylorStep]]
 
@@ -151,11 +151,9 @@ class _Run:
         columns = ColumnSource(balls) if self.plan.method == "columns" else None
         course = Course(balls, self.times, columns is not None, self.transits)
         count = known = 0
-        self.clock.lap("bound")
         for step in self._until(chain([first], steps)):
-            proposal = (columns.propose(step, [_log(z) for z in course.bound.z]),) if columns else ()
             self.clock.lap("candidate")
-            course.advance(step, proposal, self.clock.lap)
+            course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))
             if self.flint_only:
                 check_sums(Piece(balls, step))
             count += 1
@@ -165,7 +163,7 @@ class _Run:
             if self.progress:
                 self.progress(float((step.centre + step.h * step.high) / self.end) if self.end else 1.0)
         proved = course.finish()
-        self.clock.lap("transits")
+        self.clock.lap("proof")
         position, velocity = self._check_widths(proved.states, self.end, 1, bits)
         return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts)
 

@@ -6,7 +6,7 @@ The columns are proposals: integers over 2^FINE, so they are exact whatever floa
 from flint import arb, arb_mat, arb_poly, ctx, fmpz, fmpz_poly
 
 from .balls import SHORT, UNIT, Vector, add, ball, cross, dot, size, times, upper
-from .bound import Carried, Piece, SceneBalls, error_rate, tube
+from .bound import Carried, Piece, error_rate, tube
 from .shapes import Covered, Proposal
 
 FINE = 50  # a column's coefficients are integers over 2^FINE
@@ -16,16 +16,13 @@ CUT = 48  # terms of p and K in the residuals, which are multiplied by the small
 class Columns(Carried):
     """Theorem E: (r, H) = (p + Wp ζ, K + WK ζ) + (e, g) with |ζ_j| <= z_j; `rest` bounds e and g (g in 1/s)."""
 
-    def __init__(self, balls: SceneBalls) -> None:
-        super().__init__(balls)
-        self.rest, self.z, self.carried = [arb(0)] * 6, [arb(0)] * 6, arb_mat(6, 6)
+    rest, z, carried = [arb(0)] * 6, [arb(0)] * 6, arb_mat(6, 6)
 
     def advance(self, piece: Piece, proposal: Proposal) -> Covered:
         """Carry the box of the z_j over `piece`; `proposal[j]` holds the six polynomials of column j."""
         k, step, d, columns = piece.k, piece.step, piece.sizes, [[fmpz_poly(f) for f in c] for c in proposal]
-        jump = self.join(piece)
         with ctx.workprec(2 * SHORT):
-            slack = add(jump, self.rest)
+            slack = add(self.join(piece), self.rest)
             inverse = matrix(columns, ball(step.low), k.h).inv()
             moved, self.carried = inverse * self.carried, matrix(columns, ball(step.high), k.h)
             pairs = [(moved[i, j].abs_upper() * self.z[j], inverse[i, j].abs_upper() * slack[j]) for i, j in GRID]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 import time
+from collections import Counter
 from fractions import Fraction
 
 import pytest
 from random_scenes import random_scene
 
 import reference
+from reference.enclosure.plan import plan_for
 from reference.engines.plan import Plan
 from reference.engines.registry import engines, run
 from reference.errors import InputError, IntegrationError, UnreachableError
@@ -71,6 +74,38 @@ def test_random_scenes_are_proved_and_right(size, tally):
     assert not refused, refused
     parts = f"{possible} with undecided transits, {unchecked} without a finer run, {flat} without a guard"
     tally(f"random scenes: {proved} proved, {parts}")
+
+
+def scene_of_a_third(seed):
+    """A short random scene: of three one damped, one whose gravity is effective, one as it is drawn."""
+    document = random_scene(1000 + seed)
+    run, site, pendulum = (document[part] for part in ("run", "site", "pendulum"))
+    if seed % 3 == 0 and not float(pendulum["drag"]):
+        pendulum["drag"] = f"{math.sqrt(float(site['gravity']) / float(pendulum['length'])) * (1 + seed) / 400:.6g}"
+    if seed % 3 == 1:
+        site["gravity_is"] = "effective"
+    run["t_end"] = f"{float(run['t_end']) / 4:.9g}"
+    run["grid_step"] = f"{float(run['t_end']) / (1 + seed % 7):.6g}"
+    return parse_scene(document)
+
+
+def test_random_scenes_are_proved_and_the_checker_proves_them_again(check, monkeypatch, tmp_path, size, tally):
+    """A third damped, a third of effective gravity, a tenth by columns: check.c proves every number that is printed."""
+    methods, transits, wrong, begin = Counter(), 0, [], size(198, 0)
+    for seed in range(begin, 200):
+        with monkeypatch.context() as patch:
+            if seed % 10 == 9:
+                patch.setattr("reference.enclosure.prove.plan_for", lambda *wanted: plan_for(*wanted[:3], "columns"))
+            solution = reference.solve(scene_of_a_third(seed))
+        methods[solution.proof.method] += 1
+        transits += len(solution.transits or ())
+        done = check(reference.write(solution, tmp_path / str(seed)))
+        if done.returncode:
+            wrong.append((seed, done.stdout[-300:]))
+    assert not wrong, wrong
+    assert methods["columns"] >= (200 - begin) // 10
+    parts = f"{methods['columns']} of them by columns, {transits} transits"
+    tally(f"random scenes: {200 - begin} proved and proved again by check.c, {parts}")
 
 
 @pytest.mark.parametrize(

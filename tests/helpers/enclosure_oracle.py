@@ -168,6 +168,20 @@ def unit_step(bits: int, rows) -> TaylorStep:
     return TaylorStep(Fraction(1), Fraction(1), Fraction(-1), Fraction(1), bits, rows)
 
 
+class FailingStep:
+    """A step that raises when it has been read so many times: a fault of the driver at any place of a proof."""
+
+    def __init__(self, step: TaylorStep, readings: int) -> None:
+        self.step, self.readings = step, readings
+
+    def __getattr__(self, name: str):
+        """Hand on what the step has."""
+        self.readings -= 1
+        if self.readings < 0:
+            raise RuntimeError("this step fails")
+        return getattr(self.step, name)
+
+
 def steps(inputs: Inputs, end: Fraction, bits: int = 128, order: int = 64, first: Fraction = Fraction(1, 4)):
     """Steps of the recurrence, the last one cut at `end`."""
     for step in pair(Recurrence(SceneBalls(inputs, bits + 64), bits, order).chain(first)):
@@ -186,7 +200,7 @@ def in_digits(step: TaylorStep) -> TaylorStep:
     table = np.zeros((4, count, orders), np.int64)
     for i, row in enumerate(step.coefficients):
         for k, c in enumerate(row):
-            table[i, :, k] = split(int(c) << up, count)
+            table[i, :, k] = split(count, int(c) << up)[0]
     # signed digits, as a series has them: the leading ones of a small coefficient are 0
     for q in range(count - 1, 0, -1):
         over = table[:, q] >> (DIGIT_BITS - 1)

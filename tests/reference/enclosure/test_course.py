@@ -8,7 +8,7 @@ from itertools import islice
 
 import numpy as np
 import pytest
-from enclosure_oracle import PARIS, carry, in_digits, scene, steps, unit_step
+from enclosure_oracle import PARIS, FailingStep, carry, in_digits, scene, steps, unit_step
 from flint import arb
 
 from reference.enclosure.bound import Piece, Radius, SceneBalls, output, tube
@@ -24,7 +24,7 @@ def course(proposed, times=TIMES):
     proposed = list(proposed)
     one = Course(SceneBalls(PARIS, proposed[0].bits + 64), times, columns=False, transits=True)
     for step in proposed:
-        one.advance(step, (), lambda _: None)
+        one.advance(step)
     return one
 
 
@@ -83,44 +83,34 @@ def test_leaves_that_a_useless_tube_would_ask_for_are_one_possible_transit(width
 def test_a_closed_run_takes_no_further_step():
     first, second, third = islice(steps(PARIS, Fraction(20)), 3)
     one = Course(SceneBalls(PARIS, 192), TIMES, columns=False, transits=False)
-    one.advance(first, (), nothing)
+    one.advance(first)
     with pytest.raises(ArithmeticError, match="join"):
-        one.advance(third, (), nothing)
+        one.advance(third)
     with pytest.raises(ArithmeticError, match="closed"):
-        one.advance(second, (), nothing)
+        one.advance(second)
 
 
-def swallowed(proposed, times, transits, hooks=lambda _: nothing, inputs=PARIS):
+def swallowed(proposed, times, transits, inputs=PARIS):
     """Drive a run on through every exception; return what it says at the end."""
     one = Course(SceneBalls(inputs, 400), times, False, transits)
-    for i, step in enumerate(proposed):
+    for step in proposed:
         with suppress(ArithmeticError, RuntimeError):
-            one.advance(step, (), hooks(i))
+            one.advance(step)
     return one.finish()
-
-
-def nothing(_part):
-    """Hear what is done."""
 
 
 SHORT_ROD = scene(length="1", x="0.05", y="0.1")
 
 
 def test_an_exception_in_a_step_closes_the_run_for_good():
-    """F1 of the audit: the transits of a step were lost when what is told of the parts raised, and was caught."""
-    proposed = list(steps(SHORT_ROD, Fraction("5.04"), bits=160))
-
-    def raising(i):
-        def lap(part):
-            if i == len(proposed) - 1 and part == "bound":
-                raise RuntimeError
-
-        return lap
-
+    """F1 of the audit: the transits of a step were lost when something between the bound and the scan raised."""
+    *proposed, last = steps(SHORT_ROD, Fraction("5.04"), bits=160)
     times = [Fraction(0), Fraction("5.04")]
-    assert len(swallowed(proposed, times, True, inputs=SHORT_ROD).transits) == 5
-    with pytest.raises(ArithmeticError, match="do not end with the run"):
-        swallowed(proposed, times, True, raising, SHORT_ROD)
+    whole = FailingStep(last, 10**6)
+    assert len(swallowed([*proposed, whole], times, True, SHORT_ROD).transits) == 5
+    for readings in range(10**6 - whole.readings):
+        with pytest.raises(ArithmeticError, match="do not end with the run"):
+            swallowed([*proposed, FailingStep(last, readings)], times, True, SHORT_ROD)
 
 
 def bumped(step, size=1 << 8):
@@ -138,7 +128,7 @@ def test_a_step_whose_bound_is_not_finite_is_not_passed_over():
     k = len(proposed) // 2
     with pytest.raises(ArithmeticError, match="do not end with the run"):
         chain = [*proposed[:k], bumped(proposed[k]), *proposed[k + 1 :]]
-        swallowed(chain, [Fraction(0), Fraction("5.04")], False, inputs=SHORT_ROD)
+        swallowed(chain, [Fraction(0), Fraction("5.04")], False, SHORT_ROD)
 
 
 def test_a_run_whose_scan_did_not_come_to_the_end_gives_nothing():

@@ -8,7 +8,18 @@ from random import Random
 
 import numpy as np
 import pytest
-from enclosure_oracle import PARIS, contains, doubles, in_digits, last_state, scanned, scene, steps, truth
+from enclosure_oracle import (
+    PARIS,
+    FailingStep,
+    contains,
+    doubles,
+    in_digits,
+    last_state,
+    scanned,
+    scene,
+    steps,
+    truth,
+)
 from enclosure_recurrence import Recurrence, prove
 from flint import arb, ctx
 from hypothesis import given, settings
@@ -272,13 +283,10 @@ def driven(rng, inputs, proposed, columns):
     course = Course(balls, [Fraction(0), SABOTAGED_END[inputs]], columns, transits=True)
     source, faulty = ColumnSource(balls) if columns else None, rng.choice((0, 0, 0, 0, 0.1))
 
-    def lap(_):
-        if rng.random() < faulty:
-            raise RuntimeError
-
     for step in proposed:
         with suppress(ArithmeticError, RuntimeError, RuntimeWarning, ValueError, TypeError, IndexError):
-            course.advance(step, (source.propose(step, [0.0] * 6),) if source else (), lap)
+            columns = (source.propose(step, [0.0] * 6),) if source else ()
+            course.advance(FailingStep(step, rng.randrange(30)) if rng.random() < faulty else step, *columns)
     return course.finish()
 
 
