@@ -38,6 +38,7 @@ from .verdict import Score
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
 BEYOND = 1.01  # times the cord: farther out, no rounding and no stretching puts the bob
+SMALL = 0.1  # of the truth's reach: a candidate that stays within has a tolerance of its own size
 FAR = 10  # times the scene's span: a run that ends later is rather in another unit than longer
 SAME = 1e-3  # relative difference of ratios that count as one scale
 
@@ -102,7 +103,7 @@ def judge(
     digits = scene.run.digits if candidate.extended else DIGITS
     golden = golden_of(problem, digits, announce, report, float(candidate.t[-1]))
     errors = trajectory_errors(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
-    allowed = TOLERANCE * errors.amplitude_m if tolerance is None else tolerance
+    allowed = TOLERANCE * _amplitude(candidate, errors) if tolerance is None else tolerance
     unjudged = None if times is None else unjudged_transits(golden)
     if unjudged and not candidate.positions:
         raise InputError("transits", unjudged, "a trajectory as well", "Print t,x,y.")
@@ -133,6 +134,15 @@ def judge(
     changed = since(result, baseline, explain)
     alone = () if changed else ("the baseline has no score of it: this verdict stands alone",)
     return replace(result, since=changed, notes=result.notes + alone)
+
+
+def _amplitude(candidate: Candidate, errors: TrajectoryErrors) -> float:
+    """Return the amplitude in m: of the truth, or of a candidate that swings far less."""
+    if not candidate.positions:
+        return errors.amplitude_m
+    columns = ((candidate.columns["x"], candidate.columns["y"]), errors.truth.states[:, :2].T)
+    reach, true = (float(np.hypot(*part).max()) for part in columns)
+    return errors.amplitude_m * (reach / true if 0 < reach < SMALL * true else 1.0)
 
 
 def _up_to(candidate: Candidate, end: float) -> Candidate:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from itertools import islice
 from typing import Any
@@ -152,7 +152,9 @@ def _verdict(score: Scored) -> str:
     if score.grade == score.verdict:
         return f"{score.verdict} with {score.scene.id}"
     assert score.explanation is not None and score.explanation.model is not None
-    return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}"
+    would_pass = not score.passes and replace(score, as_model=True).passes
+    enough = "; --as-model takes that as enough" if would_pass else ""
+    return f"agrees with {score.scene.id} as the model: {score.explanation.model.text}{enough}"
 
 
 def _row(name: str, value: str, remark: str = "") -> str:

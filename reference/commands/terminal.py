@@ -91,7 +91,7 @@ def replacements(
         note: called with a sentence for each of these that is replaced; without it they are refused.
 
     Raises:
-        InputError: a replacement would have no effect: the field is replaced twice, or it is an unused one.
+        InputError: a replacement would have no effect: the field is replaced by two values, or it is an unused one.
     """
     values: dict[str, str] = {}
     reasons = unused or {}
@@ -108,7 +108,7 @@ def replacements(
         values[field] = assignment
     for option, (field, given) in options.items():
         if given is not None:
-            if field in values:
+            if field in values and values[field] != f"{field}={given}":
                 raise InputError(option, given, f"no such option together with --set {values[field]}", "Keep one.")
             values[field] = f"{field}={given}"
     return list(values.values())

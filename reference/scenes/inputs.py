@@ -23,6 +23,7 @@ MAX_LENGTH = 2000  # characters of a number
 _EXPONENT_DIGITS = 9  # a Decimal can hold these; far above what is allowed
 _LONGEST_KEY = 80  # characters of a wrong key that a message quotes
 
+_PRINTED = re.compile(r"(?:np|numpy)\.\w+\((.*)\)")
 _DECIMAL = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?0*(\d+))?", re.ASCII)
 
 
@@ -105,7 +106,9 @@ _SIZES = f"a number between 1e-{MAX_EXPONENT} and 1e{MAX_EXPONENT} in size"
 def _decimal(text: str, info: ValidationInfo) -> str:
     match = _DECIMAL.fullmatch(text) if len(text) <= MAX_LENGTH else None
     if match is None:
-        raise Refused("a decimal number such as 67 or 7.292115e-5", "NaN and inf are not numbers here.")
+        printed = _PRINTED.fullmatch(text)
+        advice = f"NumPy's repr: write {printed[1]}, as str() does." if printed else "NaN and inf are not numbers here."
+        raise Refused("a decimal number such as 67 or 7.292115e-5", advice)
     # zero as well: 0e999999999 is computed with a power of ten
     if len(match[4] or "") > _EXPONENT_DIGITS or abs(Decimal(text).adjusted()) > MAX_EXPONENT:
         raise Refused(_SIZES)

@@ -243,6 +243,11 @@ def load_scene(name: str | Path, values: Words = ()) -> Scene:
         document = toml_document(path, "SCENE")
     except FileNotFoundError:
         raise _no_scene(word) from None
+    except InputError as error:
+        if path.suffix == ".toml":
+            raise
+        advice = f"The scene stands before a trajectory: `foucault score SCENE {path.name}`."
+        raise InputError(error.field, error.got, error.expected, advice) from None
     own_name = re.sub(r"[^a-z0-9]+", "_", path.stem.lower()).strip("_")
     if "id" not in document and is_scene_id(own_name):
         document["id"] = own_name

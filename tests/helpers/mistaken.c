@@ -129,6 +129,7 @@ int main(int argc, char **argv) {
         s[2] = -sqrt(l * l - xs * xs - ys * ys);
         s[5] = -(s[0] * s[3] + s[1] * s[4]) / s[2];
     }
+    if (zshift < 0) zshift = l; /* from its own lowest point */
     long rows = (long)floor(tend / out + 0.5), many = (long)floor(out / h + 0.5);
     double *all = malloc(sizeof(double) * 3 * (rows + 1));
     for (long row = 0; row <= rows; row++) {

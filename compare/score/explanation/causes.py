@@ -27,6 +27,8 @@ UNITS = {
     "g": " m/s²", "length": " m", "latitude": " degrees", "drag": " 1/s", "x": " m", "y": " m", "altitude": " m",
     "vx": " m/s", "vy": " m/s",
 }  # fmt: skip
+EFFECTIVE = "takes g as the effective gravity, which contains the centrifugal force (--set site.gravity_is=effective)"
+NO_CHANGE = "leaves out the centrifugal force's change along the swing"
 FACTORS = (2.0, 10.0, 50.0, 60.0, 100.0, 200.0, 300.0, 500.0, 1000.0, 2000.0, 3600.0, 5000.0, 10000.0)
 
 
@@ -105,16 +107,8 @@ def _gravity(right: Program) -> Iterator[Cause]:
     ellipsoid = right.gravity_reading == "ellipsoid"
     if right.rate:
         if ellipsoid and right.radius:
-            text = (
-                "takes g as the effective gravity, measured along the plumb line: no separate centrifugal force "
-                "(--set site.gravity_is=effective)"
-            )
-            yield reading("none", "no_centrifugal", text, 0.2)
-            text = (
-                "takes g as the effective gravity, the centrifugal force at the suspension within it "
-                "(--set site.gravity_is=effective)"
-            )
-            yield reading("effective", "effective_gravity", text, 0.2)
+            yield reading("none", "no_centrifugal", f"{EFFECTIVE}, and {NO_CHANGE}", 0.2)
+            yield reading("effective", "effective_gravity", EFFECTIVE, 0.2)
             yield reading(
                 "no_tilt", "no_tilt", "leaves out the horizontal centrifugal force but keeps the vertical one"
             )
@@ -122,9 +116,10 @@ def _gravity(right: Program) -> Iterator[Cause]:
             yield reading("tilt", "no_lift", text)
             text = "takes the horizontal centrifugal force without the sine of the latitude, and no vertical one"
             yield reading("tilt_no_sine", "tilt_no_sine", text, RARE)
-            yield reading("uniform", "uniform_gravity", "treats the centrifugal force as constant along the swing")
+            yield reading("uniform", "uniform_gravity", NO_CHANGE)
         else:
-            yield reading("none", "no_centrifugal", "leaves out the centrifugal force", 0.2)
+            whole = right.gravity_reading != "effective"
+            yield reading("none", "no_centrifugal", "leaves out the centrifugal force" if whole else NO_CHANGE, 0.2)
             if right.gravity_reading == "effective":
                 text = "adds the centrifugal force to a g that contains it already (--set site.gravity_is=ellipsoid)"
                 yield reading("ellipsoid", "ellipsoid_gravity", text)

@@ -15,8 +15,8 @@ from ...approximations import APPROXIMATIONS, Motion
 from ...candidates.candidate import Deviation
 from .causes import NAMED
 from .conventions import made_right
-from .findings import AS_IF, HARMLESS, Explanation, Model
-from .fitted import MODELS, of_causes
+from .findings import HARMLESS, Explanation, Model
+from .fitted import MODELS, best_of, explanation_of
 from .formulas import of_formula
 from .programs import Pendulum, Program
 from .slips import slip
@@ -26,6 +26,7 @@ from .unexplained import Case, Rows, largest, rms
 RENAMED = ("xy_swapped", "x_west", "y_south", "xy_reversed", "axes_turned")
 FAST = 20.0  # times faster than the scene: nothing is run
 ROWS = 500  # rows that are used at most: half evenly spaced, half at the beginning
+PARTS, GROWN = 4, 2.0  # of the rows, and how many times as far as in the first a growing motion reaches in the last
 LOW = 0.25  # of the cord: a bob that comes nearer to the suspension's height makes no small swings
 SHARE = 0.01  # of the error that an approximation may leave
 PLAINLY = 0.01  # of what fitted causes leave: an approximation that leaves less is meant
@@ -67,11 +68,15 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
         # the release may be at fault, and not the names of the columns
         other = of_rows(made_right(times, columns, start, right.length, frequency, rename=False))
         best = min(best, other, key=lambda explanation: explanation.score)
-    unknown = not best.known and best.corrected_m > max(allowed_m, 1.5 * rows.noise)
+    unknown = {cause.stage for cause in best.known} <= {"gravity", "model"} and best.corrected_m > max(
+        allowed_m, 1.5 * rows.noise
+    )
     if not best.slip and (unknown or any(cause.id == "integrator_loose" for cause in best.causes)):
         wrong_term = slip(rows.times, rows.positions, scene)
         if wrong_term:  # one term of a formula, as no integrator changes it
             return Explanation(best.conventions, slip=wrong_term)
+        if not best.known:
+            return replace(best, slip=growth(rows.times, rows.plane))
     return best
 
 
@@ -79,14 +84,13 @@ def _of_case(case: Case, scene: Scene) -> Explanation:
     """Return the first explanation that is good enough, in the order in which one would believe them."""
     if case.error <= case.floor:
         return _plain(case)
-    named = of_causes(case)
+    reading = best_of(case)
+    named = None if reading is None else explanation_of(case, reading)
     if named is not None and named.corrected_m <= case.enough:
         return named
-    second = None
-    if named is None or any(cause.stage in ("integrator", AS_IF) for cause in named.causes):
-        linear = named is not None and any(cause.id in dict(MODELS.values()) for cause in named.causes)
-        second = None if linear and case.rows.cord is None else of_steps(case)
-        second = second or of_formula(case)
+    linear = named is not None and any(cause.id in dict(MODELS.values()) for cause in named.causes)
+    second = None if linear and case.rows.cord is None else of_steps(case, reading)
+    second = second or of_formula(case)
     return second or _of_approximation(case, scene, named) or named or _plain(case)
 
 
@@ -124,6 +128,19 @@ def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Ex
     corrected = model.exact_to_m
     exact = corrected <= case.enough and all(convention.id in HARMLESS for convention in rows.conventions)
     return case.explanation((cause,), corrected, rms(left), NAMED, model if exact else None)
+
+
+def growth(times: Array, plane: Array) -> str:
+    """Return in a sentence how fast a motion grows; empty if it does not, part by part of the rows."""
+    parts = np.array_split(np.arange(len(times)), PARTS)
+    if len(times) < 2 * PARTS:
+        return ""
+    reach = np.array([float(np.hypot(*plane[part].T).max()) for part in parts])
+    if not (reach[1:] > reach[:-1]).all() or not reach[-1] > GROWN * reach[0]:
+        return ""
+    between = float(times[parts[-1]].mean() - times[parts[0]].mean())
+    fold = between / math.log(reach[-1] / reach[0])
+    return f"Its motion grows by a factor of e in {fold:.2g} s: a force does work, or the cord does not hold."
 
 
 def _sample(count: int) -> Array:

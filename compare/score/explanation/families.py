@@ -71,13 +71,8 @@ def _sphere(case: Case, phasors: Phasors | None, rest: float) -> Fit | None:
     rows, right, floor = case.rows, case.right, case.floor
     nominal = right.theta()
     plane = rows.plane @ np.array([1, 1j])
-    g = right.g / right.length or abs(nominal[5])
-    scales = np.array(
-        [*[max(abs(right.rate), 1e-6)] * 3, g, g, g, math.sqrt(g), *[right.length] * 2,
-         *[right.length * math.sqrt(g)] * 2, right.length, 1.0, 1.0]
-    )  # fmt: skip
     guesses = [nominal, nominal.copy()]
-    guesses[1][3:6] = 0.0, 0.0, -g
+    guesses[1][3:6] = 0.0, 0.0, -case.pull
     if phasors is not None:
         guess = guesses[1].copy()
         tilt = float(np.abs(plane).max()) / right.length
@@ -94,7 +89,7 @@ def _sphere(case: Case, phasors: Phasors | None, rest: float) -> Fit | None:
             apart = case.pendulum.rows(linear, rows.times, 2) - rows.plane
             if not rms(apart) < 30 * floor:
                 return None
-    return fit_pendulum(case.pendulum, rows.times, rows.positions, guesses, scales, max(rows.noise, floor / 100))
+    return fit_pendulum(case.pendulum, rows.times, rows.positions, guesses, case.scales, max(rows.noise, floor / 100))
 
 
 def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Program) -> Fit:
@@ -122,7 +117,7 @@ def _fit_of(kind: str, phasors: Phasors, rest: float, times: Array, right: Progr
     answer = float(np.linalg.norm(slopes[:, free.index(5)]))
     slopes = np.column_stack([slopes, np.zeros(len(slopes))])
     apart = np.zeros((1, slopes.shape[1]))
-    apart[0, -1] = answer * max(abs(xx - yy), abs(xx)) / 2
+    apart[0, -1] = answer * abs(xx - yy) / 2
     return Fit(kind, theta, rest, (*free, 12), np.vstack([slopes, apart]))
 
 

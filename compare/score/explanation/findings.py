@@ -82,11 +82,11 @@ class Explanation:
     @property
     def diagnosis(self) -> Diagnosis | None:
         """The cause that matters most, a simpler model before all; None if none is known."""
-        known = self.known
+        known = sorted(self.known, key=lambda cause: -cause.size_m)
         if not known:
             return None
         models = [cause for cause in known if cause.stage == "model"]
-        first = (models or sorted(known, key=lambda cause: -cause.size_m))[0]
+        first = (models or known)[0]
         texts = "; it ".join(cause.text for cause in known)
         others = tuple(cause.id for cause in known if cause is not first)
         return Diagnosis(first.id, self.explained, f"{BEGIN} {texts}.", first.shift, others)

@@ -106,7 +106,8 @@ def of_formula(case: Case) -> Explanation | None:
     same = max(SAME * float(np.hypot(case.right.x, case.right.y)), 10 * case.rows.noise)
     best: tuple[float, Reading, str] | None = None
     for turned in (formula, formula.mirrored):
-        reader = Reader(replace(case.right, kind="linear"), turned.fit(case.rows.times, case.right), case.floor)
+        fit = turned.fit(case.rows.times, case.right)
+        reader = Reader(replace(case.right, kind="linear"), fit, case.floor, fit.rest)
         reading = reader.readings(rates)[0]
         if reading.rest > 2 * case.floor:
             continue

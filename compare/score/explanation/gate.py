@@ -3,22 +3,53 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from ...candidates.candidate import Deviation
 from .findings import AS_IF
 from .readings import SAME
 
 CHANCE = 0.02  # that a number which nobody typed has as few digits, within its uncertainty
+SCARCE = 0.2  # and where all the rest agrees: a doubt of a tenth of the last digit, either way
 TYPED, MOST_DIGITS = 7, 9  # digits that people type, and that anybody does
-SHARE = 3.0  # times what is left: a cause that moves the bob by less is not told from it
+SHARE = 3.0  # times what is left, or what is not known: a cause that moves the bob by less is not told from it
 FAR = 1.5  # times the scene's g or length, or less by as much: what no program has that is merely off
-METHOD_SHARE = 10.0  # times what is left: a method that moves it by less is not told from another
+METHOD_SHARE = 0.1  # of what a method does that may be left, or it is not told from another
+UNSURE_SHARE = 0.03  # where several steps divide the spacing of the rows
 SLIGHT = 10.0  # times the tolerance: what a number that is nearly the scene's may move
-WHOLE = 1e-6  # of a step: how far the rows' spacing may be from a whole number of them
-ALIKE = 1.5  # ratio of two sizes that may cancel each other
+STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
+APART = 0.02  # of a step: how far a whole number of them may be from the spacing of the rows
+CLEAN = 1e-3  # of what an integrator does: a named one leaves less
 LOOSE = "has a step error: too loose a tolerance or too large a step (phase and amplitude drift)"
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What a reading leaves, beside what the file can tell.
+
+    Attributes:
+        left_m: the largest distance in m that its causes leave.
+        allowed_m: distance in m that counts as agreement.
+        enough_m: that may be left, the rounding of the file included.
+        spacing: of the rows in s.
+        frequency: of the swing in rad/s.
+        clean: share of what an integrator does that its name may leave.
+        shown: ids of inputs that row 0 has itself.
+    """
+
+    left_m: float
+    allowed_m: float
+    enough_m: float
+    spacing: float
+    frequency: float
+    clean: float
+    shown: tuple[str, ...] = ()
+
+    @property
+    def agrees(self) -> bool:
+        """Whether what is left is no more than the tolerance and the rounding."""
+        return self.left_m <= self.enough_m
 
 
 def loose(size_m: float, stage: str = "integrator") -> Deviation:
@@ -26,42 +57,33 @@ def loose(size_m: float, stage: str = "integrator") -> Deviation:
     return Deviation("integrator_loose", LOOSE, size_m, stage)
 
 
-def may_be_told(
-    causes: Iterable[Deviation], left_m: float, allowed_m: float, enough_m: float, spacing: float
-) -> Iterator[Deviation]:
-    """Yield what may be told of causes.
-
-    Args:
-        causes: those that were read from the rows.
-        left_m: the largest distance in m that they leave.
-        allowed_m: distance in m that counts as agreement.
-        enough_m: that may be left, the rounding of the file included.
-        spacing: of the rows in s.
-    """
-    causes, agrees = list(causes), left_m <= enough_m
+def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Deviation]:
+    """Yield what may be told of causes that were read from the rows."""
     if any(not is_likely(cause) for cause in causes):
         return
-    causes = [cause for cause in causes if cause.size_m > allowed_m and not is_the_scenes(cause, allowed_m)]
+    allowed, left, agrees = evidence.allowed_m, evidence.left_m, evidence.agrees
+    causes = [_in_whole_steps(cause, evidence) for cause in _drift_as_step(causes, evidence)]
+    causes = [cause for cause in causes if cause.size_m > allowed and not is_the_scenes(cause, allowed)]
+    within = allowed / left if agrees and left else 0.0
     typed = [
-        cause.value is None or is_typed(cause, allowed_m / left_m if agrees and left_m else 0.0) for cause in causes
+        cause.stage == "integrator" or cause.value is None or cause.id in evidence.shown or is_typed(cause, within)
+        for cause in causes
     ]
-    least = 0.0
-    if not agrees:  # what is not known may look like anything that is smaller
-        unknown = [cause.size_m for cause, sure in zip(causes, typed, strict=True) if not sure and not _is_step(cause)]
-        least = max(SHARE * left_m, *unknown, 0.0)
-    steps = [cause.size_m for cause in causes if cause.id == "integrator_loose"]
+    unknown = max((cause.size_m for cause, sure in zip(causes, typed, strict=True) if not sure), default=0.0)
+    steps = max((cause.size_m for cause in causes if cause.stage == "integrator"), default=0.0)
     for cause, sure in zip(causes, typed, strict=True):
-        if cause.stage == "model":
-            if not agrees and any(size / ALIKE < cause.size_m < ALIKE * size for size in steps):
-                continue  # a step's error takes back what this does
-        elif cause.size_m < least:
+        # what is not known may look like anything that is smaller, and what is not known of a step like a model
+        like = max(left, unknown if sure else 0.0, steps if cause.stage == "model" else 0.0)
+        if not agrees and cause.size_m < SHARE * like:
             continue
         if _is_step(cause):
-            clear = (agrees or cause.size_m > METHOD_SHARE * left_m) and _divides(cause, spacing)
-            yield cause if clear else loose(cause.size_m)
+            run = agrees and cause.uncertainty is None
+            share = min(evidence.clean, UNSURE_SHARE if cause.uncertainty else METHOD_SHARE)
+            clear = agrees or left < share * cause.size_m
+            yield cause if run or (clear and not unknown) else loose(cause.size_m)
         elif sure:
             yield cause
-        else:
+        elif agrees or cause.size_m > steps:  # else it is part of the step's error
             text = f"moves like one that {cause.text}; a clock, a step or another term may do the same"
             yield replace(cause, id=f"{AS_IF}.{cause.id}", stage=AS_IF, text=text)
 
@@ -70,11 +92,45 @@ def _is_step(cause: Deviation) -> bool:
     return cause.stage == "integrator" and cause.value is not None
 
 
-def _divides(step: Deviation, spacing: float) -> bool:
-    """Return whether a step may divide the spacing of the rows, within its uncertainty."""
-    assert step.value is not None
-    many = spacing / step.value
-    return abs(many - round(many)) <= many * max(WHOLE, (step.uncertainty or 0.0) / step.value)
+def _in_whole_steps(cause: Deviation, evidence: Evidence) -> Deviation:
+    """Return a cause, its step replaced by that which divides the spacing of the rows: one of no name if none does.
+
+    Its uncertainty is 0 then, unless several steps do.
+    """
+    if not _is_step(cause) or not cause.uncertainty:
+        return cause
+    assert cause.value is not None
+    many = round(evidence.spacing / cause.value)
+    doubt, off = evidence.clean * many, abs(evidence.spacing / cause.value - many)
+    if not many or off > max(doubt, APART):
+        return loose(cause.size_m)
+    if doubt >= 1 / 2:
+        return replace(cause, uncertainty=max(cause.uncertainty, evidence.clean * cause.value))
+    step = evidence.spacing / many
+    text = cause.text.replace(f"about {cause.value:.3g} s", f"{step:.3g} s")
+    return replace(cause, value=step, shift=step, uncertainty=0.0, text=text)
+
+
+def _drift_as_step(causes: Sequence[Deviation], evidence: Evidence) -> list[Deviation]:
+    """Return causes with a frequency that is off by little told as a step's error.
+
+    An integrator with a variable step moves the frequency and the amplitude, as no input does and no fixed step.
+    """
+    fitted = {cause.id: cause for cause in causes if cause.shift is not None}
+    drag = fitted.get("pendulum.drag")
+    slow = drag is not None and abs(drag.shift or 0.0) < 0.1 * STEP_LIKE * evidence.frequency
+    steps = any(cause.stage == "integrator" for cause in causes)
+    told = list(causes)
+    for word in ("site.gravity", "pendulum.length"):
+        cause = fitted.get(word)
+        if cause is None or not abs(cause.shift or 0.0) < STEP_LIKE * abs(cause.value or 0.0):
+            continue
+        if slow and drag is not None:
+            return [*(part for part in told if part not in (drag, cause)), loose(drag.size_m + cause.size_m)]
+        if not evidence.agrees and evidence.left_m > CLEAN * cause.size_m:
+            others = [part for part in told if part is not cause]
+            told = others if steps else [*others, loose(cause.size_m)]
+    return told
 
 
 def is_the_scenes(cause: Deviation, allowed_m: float) -> bool:
@@ -98,8 +154,7 @@ def is_typed(cause: Deviation, within: float = 0.0) -> bool:
 
     Args:
         cause: with the number and its uncertainty.
-        within: the tolerance over what is left, if nothing else is off: then numbers that serve as well count, and
-            all of few digits; else 0, and it has to be shorter than by chance.
+        within: the tolerance over what is left, if nothing else is off: then numbers that serve as well count; else 0.
     """
     value, doubt = cause.value or 0.0, (cause.uncertainty or 0.0) * max(within, 1.0)
     if has_few_digits(value, doubt, within > 0):
@@ -117,5 +172,5 @@ def has_few_digits(value: float, doubt: float, any_few: bool) -> bool:
     for digits in range(1, MOST_DIGITS + 1):
         unit = 10.0 ** (math.floor(math.log10(abs(value))) - digits + 1)
         if abs(round(value / unit) * unit - value) <= doubt:
-            return (any_few and digits <= TYPED) or 2 * doubt < CHANCE * unit
+            return 2 * doubt < (SCARCE if any_few and digits <= TYPED else CHANCE) * unit
     return False

@@ -30,6 +30,7 @@ from ...observed.least_squares import gauss_newton, solved
 ComplexArray = npt.NDArray[np.complex128]
 STEPS = 30  # Gauss-Newton steps at most
 GAIN = 0.999  # of what was left: a step that leaves more ends the fit
+DOUBLE_ROOT = 1e-8  # of a rate: two that are one are kept apart by this much
 OVERFLOW = 1e8  # of the first row: phasors that grow by more are not followed
 
 
@@ -45,7 +46,7 @@ class Phasors:
     def of(cls, beta: float, square: float, drag: float, centre: complex, start: complex, speed: complex) -> Phasors:
         """Return the motion of w'' = -(drag + 2iβ) w' - ω² (w - centre) with w = start, w' = speed at t = 0."""
         half = complex(-beta, drag / 2)
-        root = np.sqrt(half * half + square)
+        root = np.sqrt(half * half + square) or DOUBLE_ROOT * (abs(half) or 1.0)
         first, second = complex(half + root), complex(half - root)
         about = start - centre
         a = (speed / 1j - second * about) / (first - second)

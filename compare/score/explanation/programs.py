@@ -158,6 +158,7 @@ class Program:
         if self.pace != 1:
             theta[PER_SECOND] *= self.pace
             theta[PER_SECOND_SQUARED] *= self.pace**2
+            theta[NAMES.index("gradient")] *= self.pace**2
         return theta
 
     def _as_computed(self, theta: Array) -> Array:

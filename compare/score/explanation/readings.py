@@ -66,11 +66,13 @@ class Reader:
         right: what a right program computes with, with the family's kind.
         fit: the free fit of that family.
         floor: root mean square in m below which nothing more is asked.
+        least: root mean square in m that the best fit of any family leaves.
     """
 
     right: Program
     fit: Fit
     floor: float
+    least: float
 
     def readings(self, causes: Sequence[Cause]) -> list[Reading]:
         """Return the best combinations, the best first."""
@@ -194,10 +196,10 @@ class Reader:
         off = float(np.linalg.norm(self._off(program)))
         return self.scored(together, program, math.hypot(off, self.fit.rest) if math.isfinite(off) else math.inf)
 
-    def without(self, reading: Reading, cause: Cause) -> Reading:
-        """Return a reading without one of its causes, the other fitted numbers as they were."""
+    def without(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+        """Return a reading without some of its causes, the other fitted numbers as they were."""
         program = self.right
-        together = tuple(part for part in reading.causes if part is not cause)
+        together = tuple(part for part in reading.causes if part not in causes)
         for part in together:
             program = part.change(program)
             if part.free:
@@ -206,7 +208,7 @@ class Reader:
 
     def scored(self, together: tuple[Cause, ...], program: Program, rest: float) -> Reading:
         """Return a combination that leaves `rest`, a root mean square in m, with its score."""
-        low = max(1.2 * self.fit.rest, 1e-3 * self.floor)
+        low = max(1.2 * self.least, 1e-3 * self.floor)
         score = math.inf
         if math.isfinite(rest):
             score = math.log10(max(rest, self.floor) / self.floor) + BELOW * math.log10(max(rest, low) / low)

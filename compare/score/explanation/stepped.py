@@ -1,149 +1,262 @@
-"""Euler's methods and leapfrog on the sphere, run as a program would: at a fixed step that divides the rows.
+"""Fixed steps on the sphere, run as a program would: of a length that divides the spacing of the rows.
 
-What the leading error of a step does to a wide swing is known; what Euler's first order does beside that, leaving the
-sphere on its way, is not. So the equations of a program are stepped in the same way, and what that does to the rows is
-taken from them before they are read.
+What the leading error of a step does to a small swing is known; what a step does to a wide one, leaving the sphere on
+its way, is not. So the equations of a program are stepped in the same way, and what that does to the rows is taken
+from them before they are read.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
 
+import heyoka as hy
 import numpy as np
 import numpy.typing as npt
 
+from reference.model.constants import Constants
 from reference.model.force import acceleration
 from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
-from .causes import FITTED, NAMED
-from .findings import Explanation
+from .causes import FITTED
+from .families import fit_pendulum
+from .findings import AS_IF, Explanation
 from .fitted import best_of, explanation_of
 from .phasors import METHODS
-from .programs import Program
+from .programs import Pendulum, Program
+from .readings import Reading
 from .unexplained import Case, largest, rms
 
-TITLES = {method.id: method.title for method in METHODS if "euler" in method.id or method.id == "leapfrog"}
-DRIFT_FIRST = ("semi_implicit_euler_drift", "leapfrog")  # before the kick at the new place
-IntArray = npt.NDArray[np.int64]
-LONGEST = 15_000  # steps that are run
-FINEST = 0.004  # ωh: the shortest step that is tried
+TITLES = {method.id: method.title for method in METHODS}
+TITLES["heun"] = TITLES["rk2"]
+FINEST = {  # ωh: the shortest step that is tried
+    "semi_implicit_euler": 0.004, "semi_implicit_euler_drift": 0.004, "leapfrog": 0.004, "explicit_euler": 0.001,
+    "rk2": 0.004, "heun": 0.004, "rk4": 0.02,
+}  # fmt: skip
+RUNGE_KUTTA: dict[str, tuple[tuple[float, ...], tuple[float, ...]]] = {  # places of the stages after the first, weights
+    "explicit_euler": ((), (1.0,)),
+    "rk2": ((1 / 2,), (0.0, 1.0)),
+    "heun": ((1.0,), (1 / 2, 1 / 2)),
+    "rk4": ((1 / 2, 1 / 2, 1.0), (1 / 6, 1 / 3, 1 / 3, 1 / 6)),
+}
+LONGEST = 15_000  # steps that are run: of longer files the rows up to there are read
+FEWEST = 30  # rows that tell a motion
+TRIED = 24  # numbers of steps that are run at a time
+SEARCHED = 8_000  # steps that are run at most where nothing tells how many there are
 SWING = 1.5  # periods at the beginning that tell the step
 LIKELY = 3  # steps that are tried on all rows
 PLAIN = 0.3  # of what no step at all leaves of the first swing
-PASSES = 4  # by which the other causes are found
+READINGS = 2  # of that motion
 STEP_LEFT = 1e-3  # of what the steps do that may be left
+ALIKE = 10.0  # times what the likeliest leaves: others that are tried
+UNSURE = (2, 3, 4, 5, 7, 8)  # of theta, beside which a step is looked for: the turn, the pull, the place of the release
+State = list[Any]
 
 
 @dataclass(frozen=True)
-class Steps:
-    """A method and its number of steps from row to row, with the reading of g that it was found with."""
+class Steps(Pendulum):
+    """A pendulum that a method moves, from row to row in a whole number of steps.
 
-    method: str
-    every: int
-    program: Program
+    Attributes:
+        method: a word of `FINEST`.
+        every: number of steps from row to row.
+        spacing: of the rows in s.
+    """
+
+    method: str = ""
+    every: int = 1
+    spacing: float = 0.0
+
+    @classmethod
+    def of(cls, pendulum: Pendulum, method: str, every: int, spacing: float) -> Steps:
+        """Return the steps that move a pendulum."""
+        return cls(**vars(pendulum), method=method, every=every, spacing=spacing)
+
+    def rows(self, theta: Array, times: Array, columns: int) -> Array:
+        """Return x and y in m, shape (times, 2)."""
+        return self._at(times, theta[:, None])[:, :, 0]
+
+    def slopes(self, theta: Array, times: Array, columns: int, scales: Array, nudges: Array) -> Array:
+        """Return d rows / d theta times `scales`, by differences of `nudges` scales, shape (times * 2, 14)."""
+        moved = self._at(times, np.column_stack([theta, theta[:, None] + np.diag(nudges * scales)]))
+        return np.asarray((moved[:, :, 1:] - moved[:, :, :1]) / nudges).reshape(-1, len(theta))
+
+    def _at(self, times: Array, thetas: Array) -> Array:
+        at = np.round(times / self.spacing).astype(int)
+        return self.all_rows(thetas, np.full(thetas.shape[1], self.every), int(at[-1]))[at]
+
+    def all_rows(self, thetas: Array, every: npt.NDArray[np.int64], count: int) -> Array:
+        """Return x and y of row 0, 1, … in m, shape (rows, 2, columns of theta), each in steps of its own."""
+        constants = [self.constants(theta) for theta in thetas.T]
+        numbers = np.array([[0.0, *k.pull, *k.turn, *k.centrifugal, k.drag] for k in constants]).T.copy()
+        numbers[0] = self.spacing / every
+        state = np.column_stack([self.start(theta) for theta in thetas.T])
+        rows = np.full((count + 1, *state[:2].shape), np.nan)
+        rows[0] = state[:2]
+        step, alike = _step(self.method), bool((every == every[0]).all())
+        for done in range(1, count * int(every.max()) + 1):
+            state = step(state, pars=numbers)
+            if not alike:
+                ended = np.flatnonzero((done % every == 0) & (done <= count * every))
+                rows[done // every[ended], :, ended] = state[:2, ended].T
+            elif done % every[0] == 0:
+                rows[done // every[0]] = state[:2]
+        return np.asarray(rows * thetas[11])
 
 
-def of_steps(case: Case) -> Explanation | None:
+def of_steps(case: Case, reading: Reading | None) -> Explanation | None:
     """Return what is known of rows that such a method made on the sphere; None if none did.
 
-    The step's effect is that on a right program at first, then that on the program which the rest is read as.
+    The numbers of the motion are fitted in these steps; what the steps do to it is taken from the rows.
+
+    Args:
+        case: the rows.
+        reading: of the rows, its integrator's step known roughly; or None.
     """
     rows = replace(case.rows, positions=np.ascontiguousarray(case.rows.plane), cord=None)
     flat = replace(case, rows=rows, truth=case.truth[:, :2])
-    for steps in likely_steps(flat):
-        program, best, seen, before = steps.program, None, case, math.inf
-        for _ in range(PASSES):
-            moved = stepped(flat, program, steps)
-            effect = moved - flat.positions(program)
-            left = rms(rows.positions - moved)
-            enough = left <= max(case.floor, STEP_LEFT * rms(effect))
-            if not left < before or (enough and (best is not None or program == case.right)):
+    found = []
+    for steps in likely_steps(flat, None if reading is None else reading.program):
+        within = rows.times <= steps.spacing / steps.every * LONGEST
+        told = _of_steps(flat.part(int(within.sum())), steps) if within.sum() >= FEWEST else None
+        if told is not None:
+            found.append(told)
+            if all(cause.stage != AS_IF for cause in told.causes):
                 break
-            before = left
-            seen = replace(flat, rows=replace(rows, positions=rows.positions - effect))
-            best = best_of(seen, integrators=False, sure=False)
-            if best is None or best.reader.right.kind != "sphere":
-                break
-            program = best.program
-        if not enough or program.kind != "sphere":
-            continue
-        causes = () if best is None else explanation_of(seen, best).causes
-        step = float(rows.times[1]) / steps.every
-        text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
-        cause = Deviation(f"integrator_{steps.method}", text, largest(effect), "integrator", step, step, 0.0)
-        corrected, price = largest(rows.positions - moved), NAMED * len(causes) + FITTED
-        return case.explanation((*causes, cause), corrected, left, price)
-    return None
+    return min(found, key=lambda told: told.score, default=None)
 
 
-def likely_steps(case: Case) -> list[Steps]:
+def _of_steps(case: Case, steps: Steps) -> Explanation | None:
+    """Return what is known of rows that some steps made; None if others did."""
+    rows, (pendulum, theta) = case.rows, case.pendulum_of(case.right)
+    noise = max(rows.noise, case.floor / 100)
+    fit = fit_pendulum(steps, rows.times, rows.positions, [theta], case.scales, noise)
+    if fit is None:
+        return None
+    theta, best = fit.theta, None
+    moved = steps.rows(theta, rows.times, 2)
+    for _ in range(READINGS):
+        effect = moved - pendulum.rows(theta, rows.times, 2)
+        if not fit.rest <= max(case.floor, STEP_LEFT * rms(effect)):
+            return None
+        if best is not None and rms(rows.positions - moved) <= case.floor:
+            break
+        seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
+        best = best_of(seen, integrators=False, sure=False)
+        if best is None or best.reader.right.kind != "sphere":
+            return None
+        pendulum, theta = case.pendulum_of(best.program)
+        steps = Steps.of(pendulum, steps.method, steps.every, steps.spacing)
+        moved = steps.rows(theta, rows.times, 2)
+    effect = moved - pendulum.rows(theta, rows.times, 2)
+    left = rms(rows.positions - moved)
+    if best is None or not largest(rows.positions - moved) <= case.enough:
+        return None
+    step = steps.spacing / steps.every
+    text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
+    word = f"integrator_{'rk2' if steps.method == 'heun' else steps.method}"
+    cause = Deviation(word, text, largest(effect), "integrator", step, step)
+    seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
+    told = explanation_of(seen, best, cause)
+    return case.explanation(told.causes, told.corrected_m, left, sum(cause.cost for cause in best.causes) + FITTED)
+
+
+def likely_steps(case: Case, near: Program | None) -> list[Steps]:
     """Return methods and steps that the first swing looks like, the likeliest first; none for rows not evenly spaced.
 
-    The rows have x and y alone, the first of them evenly spaced from the release on.
+    The rows have x and y alone, the first of them evenly spaced from the release on. Where they are so far apart that
+    it takes long to try all, a program's step has to be `near`.
     """
     rows, frequency = case.rows, case.frequency
     if len(rows.times) < 8 or rows.times[0] != 0 or not frequency:
         return []
     spacing = float(rows.times[1])
-    count = max(6, math.ceil(SWING * 2 * math.pi / frequency / spacing))
-    last = rows.times[-1] / spacing
-    even = np.abs(rows.times / spacing - np.round(rows.times / spacing)).max() < 1e-6 * last
-    most = min(int(spacing * frequency / FINEST), int(LONGEST / last))
-    if not even or most < 1 or len(rows.times) <= count or abs(rows.times[count] / spacing - count) > 1e-6:
+    count = max(10, math.ceil(SWING * 2 * math.pi / frequency / spacing))
+    even = np.abs(rows.times / spacing - np.round(rows.times / spacing)).max() < 1e-6 * rows.times[-1] / spacing
+    if not even or len(rows.times) <= count or abs(rows.times[count] / spacing - count) > 1e-6:
         return []
+    swing = case.part(count + 1)
+    pendulum, theta = case.pendulum_of(case.right)
+    slopes = pendulum.slopes(theta, swing.rows.times, 2, case.scales, np.full(len(theta), 1e-6))[:, UNSURE]
+    unsure = np.linalg.qr(slopes)[0] if np.isfinite(slopes).all() else np.zeros((len(slopes), 0))
+    plain = float(np.linalg.norm(_beside(swing.left(case.right).reshape(-1, 1), unsure)))
     likely: list[tuple[float, Steps]] = []
-    plain: list[float] = []
-    first = replace(rows, times=rows.times[: count + 1], positions=rows.positions[: count + 1])
-    swing = replace(case, rows=first)
-    every = np.arange(1, most + 1, dtype=np.int64)
-    for gravity in dict.fromkeys((case.right.gravity_reading, "none")):
-        program = replace(case.right, gravity_reading=gravity)
-        plain.append(float(np.linalg.norm(swing.left(program))))
-        for method in TITLES:
-            moved = _rows(case, program, method, spacing, every, count)
-            apart = np.linalg.norm(moved - first.positions[:, :, None], axis=(0, 1))
-            best = int(np.argmin(np.where(np.isfinite(apart), apart, np.inf)))
-            near = every[max(best - 1, 0) : best + 2]
-            likely += [(float(apart[i - 1]), Steps(method, int(i), program)) for i in near if np.isfinite(apart[i - 1])]
+    roughly = round(spacing / near.step) if near is not None and near.method is not None and near.step else 0
+    for method in FINEST:
+        low, high = 1, int(spacing * frequency / FINEST[method])
+        if count * high > SEARCHED:
+            low, high = max(1, roughly - TRIED // 4), min(high, roughly + TRIED // 4)
+        steps = Steps.of(pendulum, method, 1, spacing)
+        likely += [
+            (size, replace(steps, every=every)) for every, size in _apart(swing, steps, theta, unsure, low, high)
+        ]
+        if near is not None and near.method is not None and near.method.id == method:
+            likely.append((0.0, replace(steps, every=roughly)))
     likely.sort(key=lambda pair: pair[0])
-    return [steps for apart, steps in likely[:LIKELY] if apart < PLAIN * min(plain)]
+    least = next((size for size, _ in likely if size), 0.0)
+    return [steps for size, steps in likely[:LIKELY] if size < min(PLAIN * plain, ALIKE * least)]
 
 
-def stepped(case: Case, program: Program, steps: Steps) -> Array:
-    """Return x and y in m at the times of the rows, as steps of a program have them, shape (rows, 2)."""
-    spacing = float(case.rows.times[1])
-    at = np.round(case.rows.times / spacing).astype(int)
-    every = np.array([steps.every], dtype=np.int64)
-    whole = _rows(case, program, steps.method, spacing, every, int(at[-1]))
-    return np.asarray(whole[at, :, 0])
+def _beside(left: Array, shares: Array) -> Array:
+    """Return columns without their parts along some orthonormal ones."""
+    return np.asarray(left - shares @ (shares.T @ left))
 
 
-def _rows(case: Case, program: Program, method: str, spacing: float, every: IntArray, count: int) -> Array:
-    """Return x and y of row 0, 1, … in m for several numbers of steps a row, shape (rows, 2, numbers)."""
-    pendulum, theta = case.pendulum_of(program)
-    k = pendulum.constants(theta)
-    length, start = float(theta[11]), pendulum.start(theta)
-    h = spacing / every if len(every) > 1 else float(spacing / every[0])  # a single one is faster without an array
-    place, speed = ([value + 0 * h for value in part] for part in (start[:3], start[3:]))
-    rows = np.full((count + 1, 2, len(every)), np.nan)
-    rows[0] = np.reshape(place[:2], (2, -1))
-    for done in range(1, count * int(every.max()) + 1):
-        kick = h
-        if method == "leapfrog":
-            kick = h / 2
-            rates = acceleration(tuple(place), tuple(speed), k)
-            speed = [v + kick * a for v, a in zip(speed, rates, strict=True)]
-        if method in DRIFT_FIRST:
-            place = [p + h * v for p, v in zip(place, speed, strict=True)]
-        rates = acceleration(tuple(place), tuple(speed), k)
-        before = speed
-        speed = [v + kick * a for v, a in zip(speed, rates, strict=True)]
-        if method not in DRIFT_FIRST:
-            moved = before if method == "explicit_euler" else speed
-            place = [p + h * v for p, v in zip(place, moved, strict=True)]
-        row = np.flatnonzero((done % every == 0) & (done // every <= count))
-        if len(row):
-            rows[done // every[row], :, row] = np.reshape(place[:2], (2, -1)).T[row]
-    return rows * length
+def _apart(swing: Case, steps: Steps, theta: Array, shares: Array, low: int, high: int) -> list[tuple[int, float]]:
+    """Return what numbers of steps from row to row leave, from `low` to `high`: ever closer ones around the best."""
+    rows = swing.rows
+    while low <= high:
+        every = np.unique(np.geomspace(low, high, TRIED).round().astype(np.int64))
+        moved = steps.all_rows(theta[:, None].repeat(len(every), axis=1), every, len(rows.times) - 1)
+        left = (rows.positions[:, :, None] - moved).reshape(-1, len(every))
+        sizes = np.linalg.norm(_beside(left, shares), axis=0)
+        best = int(np.argmin(np.where(np.isfinite(sizes), sizes, np.inf)))
+        near = slice(max(best - 1, 0), best + 2)
+        if high - low < len(every):
+            return list(zip(every[near].tolist(), sizes[near].tolist(), strict=True))
+        low, high = int(every[near][0]), int(every[near][-1])
+    return []
+
+
+@cache
+def _step(method: str) -> Any:
+    """Return a step of a method as machine code: of a state over l, with h, pull, turn, centrifugal, drag as `pars`."""
+    state = list(hy.make_vars("x", "y", "z", "vx", "vy", "vz"))
+    h, *numbers = (hy.par[i] for i in range(12))
+    k = Constants(pull=tuple(numbers[:3]), turn=tuple(numbers[3:6]), centrifugal=tuple(numbers[6:10]), drag=numbers[10])
+    return hy.cfunc(_taken(method, state, h, k), state)
+
+
+def _taken(method: str, state: State, h: Any, k: Constants) -> State:
+    """Return position and velocity after one step."""
+
+    def rates(state: State) -> State:
+        return [*state[3:], *acceleration(tuple(state[:3]), tuple(state[3:]), k)]
+
+    def kicked(state: State, h: Any) -> State:
+        return [*state[:3], *_along(state[3:], h, rates(state)[3:])]
+
+    def drifted(state: State) -> State:
+        return [*_along(state[:3], h, state[3:]), *state[3:]]
+
+    if method == "semi_implicit_euler":
+        return drifted(kicked(state, h))
+    if method == "semi_implicit_euler_drift":
+        return kicked(drifted(state), h)
+    if method == "leapfrog":
+        return kicked(drifted(kicked(state, h / 2)), h / 2)
+    places, weights = RUNGE_KUTTA[method]
+    stages = [rates(state)]
+    for place in places:
+        stages.append(rates(_along(state, place * h, stages[-1])))
+    for weight, stage in zip(weights, stages, strict=True):
+        state = _along(state, weight * h, stage) if weight else state
+    return state
+
+
+def _along(state: Sequence[Any], h: Any, rates: Sequence[Any]) -> State:
+    return [value + h * rate for value, rate in zip(state, rates, strict=True)]

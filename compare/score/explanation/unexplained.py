@@ -106,6 +106,22 @@ class Case:
         off = np.abs(self.rows.positions[0, :2] - (self.right.x, self.right.y)).max()
         return bool(self.rows.times[0] == 0 and off <= 2 * self.rows.noise + EXACT * self.right.length)
 
+    @property
+    def pull(self) -> float:
+        """Gravity over the length in 1/s², or what stands for it where there is none."""
+        return self.right.g / self.right.length or abs(float(self.right.theta()[5]))
+
+    @property
+    def scales(self) -> Array:
+        """Sizes of the numbers of theta, in the order of `NAMES`."""
+        length, rate, swing = self.right.length, max(abs(self.right.rate), 1e-6), math.sqrt(self.pull)
+        return np.array([*[rate] * 3, *[self.pull] * 3, swing, *[length] * 2, *[length * swing] * 2, length, 1.0, 1.0])
+
+    def part(self, count: int) -> Case:
+        """Return the case of the first `count` rows."""
+        rows = replace(self.rows, times=self.rows.times[:count], positions=self.rows.positions[:count])
+        return replace(self, rows=rows, truth=self.truth[:count])
+
     def score_of(self, left: float) -> float:
         """Return decades by which what is left exceeds the tolerance, plus what the conventions cost."""
         return math.log10(max(left / self.allowed_m, 1e-2)) + CONVENTION * len(self.rows.conventions)
@@ -135,7 +151,7 @@ class Case:
     def pendulum_of(self, program: Program) -> tuple[Pendulum, Array]:
         """Return the pendulum and the theta of a program, the centrifugal force's change that of its own latitude."""
         theta = program.theta()
-        theta[NAMES.index("gradient")] = program.gradient
+        theta[NAMES.index("gradient")] = program.gradient * program.pace**2
         return replace(self.pendulum, square=program.gradient_square), theta
 
     def positions(self, program: Program) -> Array:

@@ -8,6 +8,7 @@ import shutil
 import subprocess
 import sys
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from pathlib import Path
@@ -177,6 +178,51 @@ def test_no_word_is_wrong_of_programs_with_one_to_three_mistakes(
 
 
 SHARE = 0.8
+
+
+def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -> None:
+    """Position first, 25 steps a row, on a swing of 45 degrees; and Runge-Kutta's of order 4 on one of 60."""
+    words = [words_of(told(made, *made.rows(mistaken))) for made in (case(49), case(39))]
+    assert words[0] >= {"integrator_semi_implicit_euler_drift", "z_down"}
+    assert words[1] >= {"integrator_rk4"}
+
+
+def test_mistakes_corrected_as_told_end_at_agreement(
+    mistaken: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
+) -> None:
+    """Two or three mistakes; one that is told is mended, whichever, and what is left is told again."""
+    ends: Counter[str] = Counter()
+    number = 0
+    while ends.total() < size(3, 60):
+        made = case(number, seed=20)
+        if len(made.parts) > 1:
+            ends[corrected(made, mistaken)] += 1
+        number += 1
+    tally(f"programs corrected as told: {dict(ends)}")
+    assert ends["agrees"] + ends["agrees as a model"] >= ENDS * ends.total()
+
+
+ENDS = 0.8
+
+
+def corrected(made: Case, program: Path) -> str:
+    """Return where corrections end: at agreement, or with nothing told that would mend a mistake."""
+    for _ in range(len(made.parts) + 1):
+        times, columns = made.rows(program)
+        found = told(made, times, columns)
+        if found.model is not None:
+            return "agrees as a model"
+        words = {one.id.removeprefix("as_if.") for one in (*found.causes, *found.conventions)}
+        if not made.parts or not made.matters(program):
+            return "agrees" if found.corrected_m <= made.allowed_m else "disagrees"
+        words |= {"no_coriolis", "no_centrifugal"} if "no_rotation" in words else set()
+        steps = {word for word in made.true if word.startswith("integrator") and "integrator_loose" in words}
+        mended = [made.without({word}) for word in made.rng.permutation(sorted(words | steps))]
+        fewer = [one for one in mended if len(one.parts) < len(made.parts)]
+        if not fewer:
+            return "untold"
+        made = fewer[0]
+    return "disagrees"
 
 
 def test_nothing_is_said_of_right_programs(mistaken: Path, size: Callable[[int, int], int]) -> None:

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from schemas import path_of, schema_of
 from small_scenes import make_scene
 
+from reference.commands.terminal import replacements
 from reference.errors import InputError
 from reference.scenes.inputs import Inputs
 from reference.scenes.scene import is_scene_id, load_scene, parse_scene
@@ -251,3 +252,20 @@ def test_the_schema_of_scenes_is_the_one_that_the_code_has():
     for wrong in ({"release": {"x": 0.3}}, {"site": {"gravity": "nan"}}, {"titel": "a"}):
         with pytest.raises(jsonschema.ValidationError):
             jsonschema.validate({**scene, **wrong}, schema)
+
+
+def test_a_trajectory_in_place_of_a_scene_is_told(tmp_path: Path) -> None:
+    (tmp_path / "mine.csv").write_text("t,x,y\n0,1,0\n")
+    with pytest.raises(InputError, match=r"foucault score SCENE mine\.csv"):
+        load_scene(tmp_path / "mine.csv")
+
+
+def test_a_number_as_numpy_prints_it_is_told() -> None:
+    with pytest.raises(InputError, match=r"pendulum.length: got 'np.float64\(2.5\)'.* write 2.5,"):
+        load_scene("paris", ["pendulum.length=np.float64(2.5)"])
+
+
+def test_an_option_may_say_what_set_says() -> None:
+    assert replacements(["run.t_end=600"], {"--t-end": ("run.t_end", "600")}) == ["run.t_end=600"]
+    with pytest.raises(InputError, match=r"together with --set run\.t_end=600"):
+        replacements(["run.t_end=600"], {"--t-end": ("run.t_end", "601")})
