@@ -15,7 +15,7 @@ from .enclosed_transits import Scan
 from .shapes import Proposal, Proved, State
 from .six_columns import Columns
 
-FINISHED = WeakSet[Proved]()
+FINISHED = WeakSet[Any]()
 
 
 class Course:
@@ -24,7 +24,7 @@ class Course:
     def __init__(self, balls: SceneBalls, times: list[Fraction], columns: bool, transits: bool) -> None:
         self.balls, self.times, self.states, self.open = balls, tuple(times), list[State](), True
         self.bound: Any = Columns(balls) if columns else Radius(balls)
-        self.scan = Scan(balls) if transits and not balls.still else None
+        self.scan, self.followers = Scan(balls) if transits and not balls.still else None, list[Any]()
 
     def advance(self, step: TaylorStep, *proposal: Proposal) -> None:
         """Take the next step, and columns if it is proved by them."""
@@ -33,8 +33,8 @@ class Course:
         covered = self.bound.advance(Piece(self.balls, step), *proposal)
         while len(self.states) < len(self.times) and self.times[len(self.states)] <= covered.piece.end:
             self.states.append(output(covered, self.times[len(self.states)]))
-        if self.scan:
-            self.scan.advance(covered)
+        for follower in filter(None, (self.scan, *self.followers)):
+            follower.advance(covered)
         self.open = True
 
     def finish(self) -> Proved:

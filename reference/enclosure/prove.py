@@ -21,7 +21,7 @@ from .bound import Piece, SceneBalls
 from .course import Course
 from .frames import ColumnSource
 from .plan import MAX_BITS, ProofPlan, plan_for, short
-from .shapes import Proved, State
+from .shapes import Proved, ProvedFunction, State
 from .sums_checked import check_sums
 
 SCENE_GUARD_BITS = 64  # precision of the scene's balls beyond the steps' coefficients
@@ -29,7 +29,7 @@ ATTEMPTS = 4  # at rising precision
 LEAST_RAISE = 8  # bits from one attempt to the next
 USELESS = 2**12  # a state known this many times less closely than requested ends an attempt at once
 TINY = -1e9  # stands for the logarithm of a width that is 0
-PARTS = ("candidate", "proof")  # the first is the approximant
+PARTS = ("candidate", "proof", "function")  # the first is the approximant
 
 Approximant = Callable[[int], Iterable[TaylorStep]]
 
@@ -46,6 +46,7 @@ class Enclosure:
     position_radius: Fraction  # the largest of all, in m
     velocity_radius: Fraction  # in m/s
     cpu_s: dict[str, float]  # by part of the work
+    function: ProvedFunction | None = None  # the golden function, if it was asked for
 
 
 class _TooWide(Exception):
@@ -66,6 +67,7 @@ def enclose(
     progress: Callable[[float], None] | None = None,
     method: str | None = None,
     flint_only: bool = False,
+    function: bool = False,
 ) -> Enclosure:
     """Prove where the pendulum is at `times` (s, increasing), and every transit up to the last of them.
 
@@ -79,6 +81,7 @@ def enclose(
         progress: called with the part of the time span that is proved.
         method: "radius" or "columns"; None for the one that is likely to be cheaper.
         flint_only: prove by FLINT alone, and have the sums of digits compared with its integers.
+        function: also make the golden function, and bound it.
 
     Raises:
         UnreachableError: no bound of this width was reached; says how wide it is.
@@ -92,7 +95,7 @@ def enclose(
         raise UnreachableError(f"enclosure: no precision can be chosen for this scene; {error}.", advice) from None
     for _ in range(ATTEMPTS):
         try:
-            run = _Run(inputs, plan, list(times), radius, transits, progress, flint_only)
+            run = _Run(inputs, plan, list(times), radius, transits, progress, flint_only, function)
             return run.prove(approximant)
         except _TooWide as error:
             reason, bits = str(error), max(error.bits, plan.bits + LEAST_RAISE)
@@ -133,9 +136,10 @@ class _Run:
         transits: bool,
         progress: Callable[[float], None] | None,
         flint_only: bool,
+        function: bool,
     ) -> None:
         self.inputs, self.plan, self.times, self.radius, self.progress = inputs, plan, times, radius, progress
-        self.transits, self.flint_only = transits, flint_only
+        self.transits, self.flint_only, self.function = transits, flint_only, function
         self.end = times[-1]
         self.clock = _Clock()
 
@@ -150,10 +154,18 @@ class _Run:
         balls = SceneBalls(self.inputs, bits + SCENE_GUARD_BITS, self.flint_only)
         columns = ColumnSource(balls) if self.plan.method == "columns" else None
         course = Course(balls, self.times, columns is not None, self.transits)
-        count = known = 0
-        for step in self._until(chain([first], steps)):
+        fit, steps, count, known = None, chain([first], steps), 0, 0
+        if self.function:
+            from .fit import Fit, on_doubles  # a proof without a function does not rest on its code
+
+            fit, steps = Fit(course), on_doubles(steps)
+        for step in self._until(steps):
             self.clock.lap("candidate")
             course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))
+            self.clock.lap("proof")
+            if fit:
+                fit.add()
+                self.clock.lap("function")
             if self.flint_only:
                 check_sums(Piece(balls, step))
             count += 1
@@ -162,10 +174,11 @@ class _Run:
                 self._check_widths(course.states[-1:], self.times[known - 1], USELESS, bits)
             if self.progress:
                 self.progress(float((step.centre + step.h * step.high) / self.end) if self.end else 1.0)
-        proved = course.finish()
-        self.clock.lap("proof")
+        function = fit.finish() if fit else None
+        proved = function.proved if function else course.finish()
+        self.clock.lap("function" if function else "proof")
         position, velocity = self._check_widths(proved.states, self.end, 1, bits)
-        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts)
+        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts, function)
 
     def _check_widths(self, states: Sequence[State], time: Fraction, factor: int, bits: int) -> list[Fraction]:
         """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""

@@ -52,6 +52,16 @@ class Proved:
     still: bool  # xdot is identically zero
 
 
+@dataclass(frozen=True, eq=False)
+class ProvedFunction:
+    """A golden function as it was bounded."""
+
+    proved: Proved  # in the same run
+    facts: dict[str, Any]  # what function.json says of its coefficients
+    bounds: dict[str, Fraction]  # of what it evaluates to, in m and m/s
+    data: bytes  # function.f64
+
+
 class Sizes(NamedTuple):
     """Sup norms on |s| <= 1: the defects, |p|, |K|, ||p|² - 1|, |d1'|."""
 

@@ -87,7 +87,8 @@ class Steps(Pendulum):
 
     def _at(self, times: Array, thetas: Array) -> Array:
         at = np.round(times / self.spacing).astype(int)
-        return self.all_rows(thetas, np.full(thetas.shape[1], self.every), int(at[-1]))[at]
+        rows: Array = self.all_rows(thetas, np.full(thetas.shape[1], self.every), int(at[-1]))[at]
+        return rows
 
     def all_rows(self, thetas: Array, every: npt.NDArray[np.int64], count: int) -> Array:
         """Return x and y of row 0, 1, … in m, shape (rows, 2, columns of theta), each in steps of its own."""

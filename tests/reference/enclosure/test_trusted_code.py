@@ -1,9 +1,12 @@
 """The code that has to be read to believe a proof: it is short, and nothing in it rounds on its own."""
 
 import ast
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+from places import ROOT
 from structure import code_lines
 
 import reference.enclosure
@@ -13,7 +16,8 @@ TRUSTED = ("balls", "bound", "course", "digits", "enclosed_transits", "printed",
 ARRAYS = {"digits": {"numpy"}, "bound": {"numpy"}}  # integers only
 PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
 AUDITED = tuple(name for name in TRUSTED if name != "digits")  # what FLINT alone has proved does not rest on its sums
-BUDGET, AUDITED_BUDGET = 480, 410  # lines of code
+OF_FUNCTIONS = "function"  # what a proof without a golden function does not import
+BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET = 480, 411, 80  # lines of code
 
 
 def source(name):
@@ -24,9 +28,10 @@ def test_trusted_code_stays_within_its_budget():
     counts = {name: code_lines(HOME / f"{name}.py", imports=True) for name in TRUSTED}
     assert sum(counts.values()) <= BUDGET, counts
     assert sum(counts[name] for name in AUDITED) <= AUDITED_BUDGET, counts
+    assert code_lines(HOME / f"{OF_FUNCTIONS}.py", imports=True) <= FUNCTION_BUDGET
 
 
-@pytest.mark.parametrize("name", TRUSTED)
+@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS])
 def test_trusted_code_says_so_and_holds_no_floating_point(name):
     tree = ast.parse(source(name))
     assert ast.get_docstring(tree).startswith("TRUSTED.")
@@ -40,12 +45,32 @@ def test_trusted_code_says_so_and_holds_no_floating_point(name):
         assert not banned & set(modules), node.lineno
 
 
-@pytest.mark.parametrize("name", TRUSTED)
+@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS])
 def test_trusted_code_imports_nothing_untrusted(name):
     declarations = {"shapes", "numbers.taylor_step", "scenes.inputs", "system.machine_code"}
     library = {"collections.abc", "fractions", "functools", "itertools", "json", "typing", "weakref", "flint"}
+    library |= {"array"} if name == OF_FUNCTIONS else set()
     allowed = library | declarations | PROPOSALS | ARRAYS.get(name, set()) | {*TRUSTED}
     for node in ast.walk(ast.parse(source(name))):
         if isinstance(node, ast.ImportFrom):
             assert node.module in allowed, node.module
         assert not isinstance(node, ast.Import) or node.names[0].name == "numpy"
+
+
+def test_a_proof_without_a_function_does_not_import_its_code():
+    """In a process of its own, as others import it here."""
+    program = """
+import sys
+from fractions import Fraction
+from reference.enclosure import enclose
+from reference.scenes.scene import load_scene
+from reference.solver.proof_steps import COEFFICIENT_BITS, Feed
+scene = load_scene("paris", ["run.t_end=10", "run.grid_step=5"])
+for function in (False, True):
+    feed = Feed(scene.exact, tuple(scene.exact.grid), "heyoka")
+    steps = lambda bits: feed(bits - COEFFICIENT_BITS)
+    enclose(scene.exact, scene.exact.grid, radius=Fraction(1, 10**20), approximant=steps, function=function)
+    print("reference.enclosure.function" in sys.modules, "reference.enclosure.fit" in sys.modules)
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout.split() == ["False", "False", "True", "True"]

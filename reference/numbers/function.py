@@ -1,0 +1,100 @@
+"""The golden function: the motion at any time, from Chebyshev series in doubles, as docs/format.md specifies it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import InputError
+from .columns import STATE
+from .precision import Array
+
+
+@dataclass(frozen=True)
+class States:
+    """States at times: each of `t` (s), `x`, `y`, `z` (m), `vx`, `vy`, `vz` (m/s) has the shape of the times asked for.
+
+    Attributes:
+        bound: how far any of the numbers of a component may be from the truth, by its name, in m or m/s.
+    """
+
+    t: Array
+    x: Array
+    y: Array
+    z: Array
+    vx: Array
+    vy: Array
+    vz: Array
+    bound: Mapping[str, float]
+
+
+@dataclass(frozen=True, repr=False)
+class GoldenFunction:
+    """The motion at any time of a span: Chebyshev series in doubles, one for each piece of the span and component.
+
+    Attributes:
+        times: ends of the pieces in s, increasing from 0, shape (pieces + 1,).
+        coefficients: shape (degree + 1, components, pieces); the components are x, y, and z where it has a series.
+        square: square of the length in m², from which z follows where it has no series.
+        bound: how far any value of a component is from the truth, rounding included, by its name, in m or m/s.
+    """
+
+    times: Array
+    coefficients: Array = field(repr=False)
+    square: float | None
+    bound: Mapping[str, float]
+
+    @classmethod
+    def of(cls, facts: Mapping[str, Any], bounds: Mapping[str, Fraction], data: bytes) -> GoldenFunction:
+        """Build from what function.json says of its coefficients, its bounds, and the bytes of function.f64."""
+        times = np.array([float.fromhex(text) for text in facts["times"]])
+        shape = len(times) - 1, len(facts["components"]), facts["degree"] + 1
+        coefficients = np.frombuffer(data, "<f8").astype(np.float64).reshape(shape)
+        square = facts["length_squared"] and float.fromhex(facts["length_squared"])
+        in_doubles = {name: math.nextafter(float(bound), math.inf) for name, bound in bounds.items()}
+        return cls(times, np.ascontiguousarray(coefficients.transpose(2, 1, 0)), square, in_doubles)
+
+    def at(self, t: npt.ArrayLike) -> States:
+        """Return the states at times in s, of any shape and in any order.
+
+        Raises:
+            InputError: a time lies outside of the span, or is not finite.
+        """
+        moments = np.asarray(t, dtype=np.float64)
+        check_span(moments, self.times[-1])
+        flat = moments.ravel()
+        columns = dict(zip(STATE, self._evaluated(flat), strict=True))
+        return States(t=moments[()], **{k: c.reshape(moments.shape)[()] for k, c in columns.items()}, bound=self.bound)
+
+    def _evaluated(self, t: Array) -> tuple[Array, ...]:
+        """Return x, y, z, vx, vy, vz, operation by operation as specified."""
+        piece = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.times) - 2)
+        begin, end = self.times[piece], self.times[piece + 1]
+        width = end - begin
+        u = ((t - begin) - (end - t)) / width
+        twice = u + u
+        b1, b2, d1, d2 = (np.zeros((self.coefficients.shape[1], len(t))) for _ in range(4))
+        for k in range(len(self.coefficients) - 1, 0, -1):
+            c = self.coefficients[k][:, piece]
+            b1, b2 = (twice * b1 - b2) + c, b1
+            d1, d2 = (twice * d1 - d2) + k * c, d1
+        position = (u * b1 - b2) + self.coefficients[0][:, piece]
+        velocity = (d1 + d1) / width
+        if self.square is not None:
+            (x, y), (vx, vy) = position, velocity
+            z = -np.sqrt(self.square - (x * x + y * y))
+            return x, y, z, vx, vy, -(x * vx + y * vy) / z
+        return (*position, *velocity)
+
+
+def check_span(t: Array, end: float) -> None:
+    """Raise InputError where a time is not finite, or outside of 0 to `end` s."""
+    outside = t[~((t >= 0) & (t <= end))]
+    if outside.size:
+        raise InputError("t", f"{outside.flat[0]:.17g}", f"times from 0 to {end:.17g} s", "Nothing is known beyond.")

@@ -1,0 +1,56 @@
+"""Golden functions of scenes, made by a proof alone, and how far they are from a run in limbs."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+from limbs_states import states
+
+from reference.enclosure import Enclosure, enclose
+from reference.numbers.columns import STATE
+from reference.numbers.function import GoldenFunction
+from reference.scenes.scene import Scene, load_scene
+from reference.solver.proof_steps import COEFFICIENT_BITS, Feed
+
+TRUTH = 1e-27  # of the length: what the run in limbs may be off by
+
+
+def proved_function(scene: Scene | str, radius: Fraction = Fraction(1, 10**30), engine: str = "limbs") -> Enclosure:
+    """Prove a scene, without transits, and its golden function."""
+    scene = load_scene(scene) if isinstance(scene, str) else scene
+    times = tuple(scene.exact.grid)
+    feed = Feed(scene.exact, times, engine)
+    try:
+        return enclose(
+            scene.exact,
+            times,
+            radius=radius,
+            approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
+            transits=False,
+            function=True,
+        )
+    finally:
+        feed.stop()
+
+
+def evaluator(enclosure: Enclosure) -> GoldenFunction:
+    """Return what evaluates the function of a proof."""
+    made = enclosure.function
+    assert made is not None
+    return GoldenFunction.of(made.facts, made.bounds, made.data)
+
+
+def errors(scene: Scene, function: GoldenFunction, times: Any) -> dict[str, Any]:
+    """Return how far each component is from a run in limbs, at each of `times`, which increase."""
+    high, low = states(scene.exact, times)
+    at = function.at(times)
+    return {name: np.abs((getattr(at, name) - high[:, i]) - low[:, i]) for i, name in enumerate(STATE)}
+
+
+def random_times(function: GoldenFunction, count: int, seed: int = 0) -> Any:
+    """Return times: random ones of the span, and the ends of all pieces with the doubles before them."""
+    ends = function.times
+    before = np.nextafter(ends[1:], 0)
+    return np.unique([*np.random.default_rng(seed).uniform(0, ends[-1], count), *ends, *before])

@@ -1,0 +1,350 @@
+"""The golden function's bound: against limbs, against exact evaluation, with spoilt coefficients and forged files."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from golden_functions import TRUTH, errors, evaluator, proved_function, random_times
+from numpy.polynomial import chebyshev
+from small_scenes import make_scene
+
+pytest.importorskip("flint")
+
+from flint import arb, arb_mat, ctx
+
+from reference.enclosure import fit
+from reference.enclosure import function as function_module
+from reference.enclosure.function import CUT, Following, basis, check_function, on_sphere, weights
+from reference.numbers.columns import STATE
+from reference.scenes.scene import load_scene
+
+# id, end in s, engine: small and large angles, over the top, without rotation, with drag, far from the usual sizes
+SCENES = [
+    ("paris", "600", "limbs"),
+    ("paris", "120", "heyoka"),
+    ("hard", "20", "limbs"),
+    ("near_inverted", "20", "limbs"),
+    ("over_top", "20", "limbs"),
+    ("damped", "60", "limbs"),
+    ("no_rotation", "120", "limbs"),
+    ("conical_pole", "20", "limbs"),
+    ("nanometre", "120", "limbs"),
+    ("ten_kilometres", "600", "limbs"),
+    ("at_rest", "60", "limbs"),
+    ("weightless", "60", "limbs"),
+]
+
+
+def short(name, end):
+    return load_scene(name, [f"run.t_end={end}", f"run.grid_step={end}"])
+
+
+@pytest.mark.parametrize(("name", "end", "engine"), SCENES)
+def test_no_time_is_outside_of_the_bound(name, end, engine, size):
+    scene = short(name, end)
+    function = evaluator(proved_function(scene, engine=engine))
+    assert function.times[0] == 0
+    assert function.times[-1] == float(end)
+    off, truth = errors(scene, function, random_times(function, size(2000, 100_000))), TRUTH * float(scene.exact.length)
+    for component in STATE:
+        assert off[component].max() <= function.bound[component] + truth, component
+    at = function.at(random_times(function, 1000))
+    swing = float(np.hypot(at.x, at.y).max())
+    assert function.bound["x"] <= 4e-15 * swing + 1e-300
+    assert function.bound["y"] <= 4e-15 * swing + 1e-300
+
+
+@pytest.mark.long
+def test_a_million_times_over_whole_scenes(capsys):
+    """Prints x over the swing, z over l's last place, vx over its size, bytes, and the cost over the proof's."""
+    lines, total = [], 0
+    for name in (
+        "paris",
+        "pantheon",
+        "hard",
+        "near_inverted",
+        "two_radians",
+        "over_top",
+        "damped",
+        "conical",
+        "pole",
+        "museum",
+    ):
+        scene = load_scene(name)
+        proof = proved_function(scene)
+        function = evaluator(proof)
+        times = random_times(function, 100_000)
+        off, truth = errors(scene, function, times), TRUTH * float(scene.exact.length)
+        outside = sum(int((off[c] > function.bound[c] + truth).sum()) for c in STATE)
+        total += len(times)
+        at = function.at(times)
+        swing, ulp = float(np.hypot(at.x, at.y).max()), float(np.spacing(float(scene.exact.length)))
+        others = sum(seconds for part, seconds in proof.cpu_s.items() if part != "function")
+        bounds = [
+            function.bound["x"] / swing,
+            function.bound["z"] / ulp,
+            function.bound["vx"] / float(np.abs(at.vx).max()),
+        ]
+        row = [
+            name,
+            *(f"{b:.2g}" for b in bounds),
+            str(len(proof.function.data)),
+            f"{proof.cpu_s['function'] / others:.2f}",
+        ]
+        lines.append(" | ".join(row))
+        assert outside == 0, name
+    with capsys.disabled():
+        print(f"\n{total} times", *lines, sep="\n")
+    assert total >= 1_000_000
+
+
+def test_the_tube_and_the_orders_that_are_left_out_count(monkeypatch):
+    scene = short("paris", "60")
+    usual = evaluator(proved_function(scene)).bound
+    advance = Following.advance
+
+    def wide(self, covered):
+        advance(self, covered._replace(tube=covered.tube._replace(eta=arb(1e-9), u=arb(1e-8))))
+
+    monkeypatch.setattr(Following, "advance", wide)
+    bound = evaluator(proved_function(scene)).bound
+    assert 67e-9 < bound["x"] < 68e-9 + usual["x"]
+    assert bound["vx"] > 67e-8 / 4.3  # a step is no longer
+    monkeypatch.undo()
+    monkeypatch.setattr(function_module, "total", lambda f, bits: arb(1e-9))
+    bound = evaluator(proved_function(scene)).bound
+    assert bound["x"] > 67e-9
+    assert bound["vx"] > 67e-9 * 50 / 4.3
+
+
+@pytest.mark.parametrize("size_of", [1e-17, 1e-14, 1e-9, 1e-3])
+def test_wrong_coefficients_have_a_bound_that_covers_them(size_of, monkeypatch):
+    """The error of each of some coefficients, as large as it is, is inside the bound."""
+    scene, rng = short("paris", "120"), np.random.default_rng(3)
+    add = Following.add
+
+    def spoilt(self, until, series):
+        wrong = list(series)
+        for i in rng.integers(0, 20, 3):
+            wrong[i + CUT * rng.integers(2)] += size_of * rng.choice([-1, 1])
+        add(self, until, wrong)
+
+    monkeypatch.setattr(Following, "add", spoilt)
+    function = evaluator(proved_function(scene))
+    off = errors(scene, function, random_times(function, 3000))
+    for component in STATE:
+        assert off[component].max() <= function.bound[component], component
+    assert off["x"].max() >= size_of / 4 or size_of < 1e-15
+
+
+def test_a_piece_that_does_not_join_or_lie_in_its_step_is_refused(monkeypatch):
+    add = Following.add
+    for change in (lambda self, until: until + 1, lambda self, until: float(self.end), lambda self, until: -until):
+        monkeypatch.setattr(Following, "add", lambda self, until, series, c=change: add(self, c(self, until), series))
+        with pytest.raises(Exception, match="must join"):
+            proved_function(short("paris", "60"))
+
+
+def test_a_gap_between_pieces_is_refused(monkeypatch):
+    add, skipped = Following.add, []  # in each attempt the second piece
+
+    def skipping(self, until, series):
+        if len(self.pieces) == 1 and self not in skipped:
+            skipped.append(self)
+        else:
+            add(self, until, series)
+
+    monkeypatch.setattr(Following, "add", skipping)
+    with pytest.raises(Exception, match="must join"):
+        proved_function(short("paris", "60"))
+
+
+def test_a_tube_from_elsewhere_is_refused(monkeypatch):
+    """Only the course may say which tube a piece is compared with."""
+    add = Following.add
+
+    def forged(self, until, series):
+        self.advance(self.covered[0])
+        add(self, until, series)
+
+    monkeypatch.setattr(Following, "add", forged)
+    with pytest.raises(Exception, match="from the course alone"):
+        proved_function(short("paris", "60"))
+
+
+def test_series_are_copied_when_they_are_taken(monkeypatch):
+    add, taken = Following.add, []
+
+    def changing(self, until, series):
+        add(self, until, series)
+        series[0] += 1.0
+        taken.append(series)
+
+    monkeypatch.setattr(Following, "add", changing)
+    scene = short("paris", "60")
+    function = evaluator(proved_function(scene))
+    assert errors(scene, function, random_times(function, 200))["x"].max() <= function.bound["x"]
+
+
+def test_the_basis_is_that_of_numpy_and_exact():
+    matrix = basis()
+    assert all(entry.rad() == 0 for entry in matrix.entries())
+    for k in (0, 1, 7, 20):
+        row = [float(matrix[k, j]) for j in range(CUT)]
+        expected = np.zeros(CUT)
+        expected[: k + 1] = chebyshev.poly2cheb([0] * k + [1])
+        assert np.allclose(row, expected, rtol=1e-14, atol=1e-16)
+
+
+def rounded(q):
+    return q.numerator / q.denominator
+
+
+def fused(a, b, c):
+    return rounded(Fraction(a) * Fraction(b) + Fraction(c))
+
+
+def unfused(a, b, c):
+    return a * b + c
+
+
+def clenshaw(c, begin, end, t, multiply):
+    """Return value and rate in doubles, as THEOREM.md has them; `multiply` gives a b + c in one or two roundings."""
+    width = end - begin
+    u = ((t - begin) - (end - t)) / width
+    y, b1, b2, d1, d2 = u + u, 0.0, 0.0, 0.0, 0.0
+    for k in range(len(c) - 1, 0, -1):
+        b1, b2 = multiply(y, b1, -b2) + c[k], b1
+        d1, d2 = multiply(float(k), c[k], multiply(y, d1, -d2)), d1
+    return multiply(u, b1, -b2) + c[0], (d1 + d1) / width
+
+
+def exactly(c, begin, end, t):
+    begin, end, t = map(Fraction, (begin, end, t))
+    u = (2 * t - begin - end) / (end - begin)
+    value, rate, before, now, b, n = Fraction(c[0]), Fraction(0), Fraction(1), u, Fraction(0), Fraction(1)
+    for k in range(1, len(c)):
+        value, rate = value + Fraction(c[k]) * now, rate + k * Fraction(c[k]) * n
+        before, now, b, n = now, 2 * u * now - before, n, 2 * u * n - b
+    return value, rate * 2 / (end - begin)
+
+
+@pytest.mark.parametrize("multiply", [unfused, fused])
+def test_what_is_evaluated_in_doubles_is_within_the_bound_of_its_rounding(multiply, size):
+    """Random series of all kinds, at random times and at ends, in plain and in fused operations, against fractions."""
+    rng = np.random.default_rng(11)
+    closest = np.zeros(2)
+    for _ in range(size(150, 3000)):
+        degree = int(rng.integers(1, 24))
+        c = (
+            rng.choice([-1, 1], degree + 1)
+            * rng.uniform(0.5, 1, degree + 1)
+            * rng.choice([1, 0.2, 0.6]) ** np.arange(degree + 1)
+        ).tolist()
+        begin = float(rng.choice([0.0, rng.uniform(0, 1), rng.uniform(1, 1e5)]))
+        end = begin + float(rng.uniform(0.1, 10))
+        off, width = 3 if 2 * begin >= end else 7, Fraction(end) - Fraction(begin)
+        cost = arb_mat([[abs(x) for x in c] + [0] * (CUT - degree - 1)]) * weights(degree, off)
+        limits = float(cost[0, 0]), float(cost[0, 2] * float(2 / width))
+        for t in (begin, end, np.nextafter(end, 0), *rng.uniform(begin, end, 5)):
+            both = zip(
+                clenshaw(c, begin, end, float(t), multiply), exactly(c, begin, end, float(t)), limits, strict=True
+            )
+            ratios = [abs(float(Fraction(value) - truth)) / limit for value, truth, limit in both]
+            assert max(ratios) <= 1
+            closest = np.maximum(closest, ratios)
+    assert (closest > 0.02).all()  # the bound is no empty one
+
+
+def test_the_evaluator_makes_the_specified_operations():
+    function = evaluator(proved_function(short("hard", "10")))
+    for t in random_times(function, 20)[::5].tolist():
+        piece = max(i for i in range(len(function.times) - 1) if function.times[i] <= t)
+        at = function.at(t)
+        for i, name in enumerate("xyz"):
+            c = function.coefficients[:, i, piece].tolist()
+            both = clenshaw(c, *function.times[piece : piece + 2].tolist(), t, unfused)
+            assert both == (getattr(at, name), getattr(at, f"v{name}"))
+
+
+def test_z_from_the_sphere_is_within_its_bound():
+    """Made-up errors of x, y, vx, vy, as large as they are said to be, beside a true state on the sphere."""
+    rng, inside = np.random.default_rng(5), []
+    balls = Following.__new__(Following)  # stands for the scene
+    length = Fraction("1.3")
+    balls.length, balls.release = arb("1.3") if ctx.prec > 60 else arb(13) / 10, ([arb(0), arb(0), arb(-1)], None)
+    square = rounded(length**2)
+    for _ in range(400):
+        d, e, wide, fast = (float(x) for x in rng.uniform(0, 1, 4) * [10.0 ** -rng.integers(2, 17), 1e-3, 0.8, 2])
+        turn, way = rng.uniform(0, 2 * np.pi, 2)
+        x, y = (Fraction(float(wide * f(turn))) for f in (np.cos, np.sin))
+        vx, vy = (Fraction(float(fast * f(way))) for f in (np.cos, np.sin))
+        most = [
+            arb(d),
+            arb(abs(float(x))),
+            arb(e),
+            arb(abs(float(vx))),
+            arb(d),
+            arb(abs(float(y))),
+            arb(e),
+            arb(abs(float(vy))),
+        ]
+        z_bound, _, vz_bound = on_sphere(balls, arb(square), *most)
+        X, Y, VX, VY = (float(q) + s * rng.choice([-1, 1, 0.3]) * 0.999 for q, s in ((x, d), (y, d), (vx, e), (vy, e)))
+        z = -np.sqrt(square - (X * X + Y * Y))
+        vz = -(X * VX + Y * VY) / z
+        with ctx.workprec(200):
+            true = -(arb(13) ** 2 / 100 - sum(arb(float(q)) ** 2 for q in (x, y))).sqrt()
+            rate = -(arb(float(x)) * float(vx) + arb(float(y)) * float(vy)) / true
+            gaps = abs(arb(float(z)) - true), abs(arb(float(vz)) - rate)
+            assert gaps[0] <= z_bound.upper()
+            assert gaps[1] <= vz_bound.upper()
+            inside.append(float(gaps[0] / z_bound))
+    assert max(inside) > 0.3
+
+
+def test_z_has_a_series_unless_the_bob_stays_deep():
+    assert proved_function(short("paris", "60")).function.facts["components"] == ["x", "y"]
+    steep = make_scene("steep", pendulum={"length": "1"}, release={"angle": "40", "azimuth": "10"}, run={"t_end": "10"})
+    assert proved_function(steep).function.facts["components"] == ["x", "y", "z"]
+
+
+def test_without_a_series_of_z_a_high_bob_is_refused(monkeypatch):
+    monkeypatch.setattr(fit, "_stays_deep", lambda balls: True)
+    with pytest.raises(Exception, match=r"finite|negative"):
+        proved_function(short("hard", "10"))
+
+
+def test_files_that_state_something_else_are_refused():
+    proof = proved_function(short("paris", "60"))
+    made, proved = proof.function, proof.proved
+    said = {**made.facts, "bounds": {name: str(float(bound) * 1.01) for name, bound in made.bounds.items()}}
+    check_function(json.dumps(said), made.data, made, proved)
+
+    def refused(said, data=made.data, function=made, proved=proved):
+        with pytest.raises((ArithmeticError, LookupError)):
+            check_function(json.dumps(said), data, function, proved)
+
+    for key in made.facts:
+        refused({**said, key: None})
+    refused({**said, "times": [*said["times"][:-1], (59.5).hex()]})
+    for name, bound in made.bounds.items():
+        refused({**said, "bounds": {**said["bounds"], name: str(float(bound) * 0.99)}})
+    refused({**said, "bounds": {}})
+    refused(said, data=made.data[:-1] + bytes([made.data[-1] ^ 1]))
+    refused(said, function=replace(made))
+    refused(said, proved=replace(proved))
+
+
+def test_a_time_outside_of_the_span_is_refused():
+    from reference import InputError
+
+    function = evaluator(proved_function(short("paris", "60")))
+    for t in (-1e-300, 60.00000001, float("nan"), float("inf"), [[1.0, 2.0], [3.0, 61.0]]):
+        with pytest.raises(InputError, match="times from 0 to 60 s"):
+            function.at(t)
+    assert function.at([]).x.shape == (0,)
