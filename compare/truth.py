@@ -22,7 +22,7 @@ from reference.scenes.shipped import data_root
 from reference.system import cache
 
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
-DENSE_FORMAT = b"dense 4"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
+DENSE_FORMAT = b"dense 5"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 
 _here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep
@@ -142,8 +142,9 @@ def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
 
     def make() -> dict[str, Array]:
         truth = dense(golden, times, within)
-        numbers = {"bound_m": np.array(truth.bound_m), "number": np.array(truth.number)}
+        numbers = {name: np.array(getattr(truth, name)) for name in ("bound_m", "bound_m_s", "number")}
         return {"t": truth.t, "states": truth.states, "low": truth.low, **numbers}
 
     stored = cache.arrays("dense", f"{recipe.hexdigest()[:32]}.npz", make)
-    return Dense(stored["t"], stored["states"], stored["low"], float(stored["bound_m"]), str(stored["number"]))
+    bounds = float(stored["bound_m"]), float(stored["bound_m_s"])
+    return Dense(stored["t"], stored["states"], stored["low"], *bounds, str(stored["number"]))

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .dataset.golden import Golden, load
     from .dataset.write import write
     from .engines.trajectory import integrate, trajectory
+    from .numbers.function import GoldenFunction, States
     from .numbers.table import Table
     from .solver.solution import Solution
     from .solver.solve import solve
@@ -31,10 +32,12 @@ __all__ = [
     "DatasetError",
     "FoucaultError",
     "Golden",
+    "GoldenFunction",
     "InputError",
     "IntegrationError",
     "Scene",
     "Solution",
+    "States",
     "Swept",
     "Table",
     "UnreachableError",
@@ -54,7 +57,9 @@ __getattr__, __dir__ = lazy(
     __name__,
     {
         "Golden": "dataset.golden",
+        "GoldenFunction": "numbers.function",
         "Solution": "solver.solution",
+        "States": "numbers.function",
         "Swept": "sweeps.sweep",
         "Table": "numbers.table",
         "integrate": "engines.trajectory",

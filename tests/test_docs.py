@@ -48,6 +48,7 @@ LANGUAGES = {
     API: {"{eval-rst}", "pycon", "python"},
     "docs/commands.md": {"text"},
     "docs/cite.md": {"{literalinclude} ../CITATION.cff"},
+    "docs/format.md": {INDENTED},  # formulas
     "docs/index.md": {"{include} ../README.md", "{toctree}"},
     "reference/enclosure/THEOREM.md": {INDENTED},  # formulas
 }
@@ -141,8 +142,9 @@ def test_the_lines_of_the_page_on_python_print_what_it_shows():
     assert runner.summarize(verbose=False).failed == 0
 
 
-def test_the_test_of_the_page_on_python_passes(tmp_path):
-    (name,) = write_files(API, tmp_path)
+def test_the_program_and_the_test_of_the_page_on_python_pass(tmp_path):
+    program, name = write_files(API, tmp_path)
+    assert -67 < float(output(f"python {program}", tmp_path)) < -66.99
     assert output(f"python -m pytest -q {name}", tmp_path).startswith(".  ")
 
 

@@ -101,6 +101,14 @@ def command(
         ),
     ] = None,
     no_confirm: Annotated[bool, typer.Option("--no-confirm", help="The same as --confirm none.", hidden=True)] = False,
+    function: Annotated[
+        bool | None,
+        typer.Option(
+            "--function/--no-function",
+            help="At the level enclosed, make the golden function, the motion at any time (default: it is made, "
+            "but for what ships without it).",
+        ),
+    ] = None,
     set_: Assignments = None,
     every: Annotated[
         bool, typer.Option("--all", help="Make every dataset that ships and is missing or not sealed.")
@@ -120,7 +128,7 @@ def command(
         "--no-transits": ("run.transits", "false" if no_transits else None),
     }
     proving: dict[str, object] = {"--audit": audit, "--no-audit": audit is False, "--confirm": confirm}
-    proving["--no-confirm"] = no_confirm
+    proving |= {"--no-confirm": no_confirm, "--function": function, "--no-function": function is False}
     if every:
         unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
         unused |= {"--set": set_, "--engine": engine if engine != AUTO else None}
@@ -150,6 +158,7 @@ def command(
         engine=usual.engine if engine == AUTO else engine,
         audit=usual.audit if audit is None else audit,
         confirm=cast("Confirmation", confirm),
+        function=usual.function if function is None else function,
     )
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))

@@ -19,9 +19,9 @@ import numpy.typing as npt
 from ..errors import InputError
 from ..model.constants import Constants, constants
 from ..model.formulations import FORMULATIONS
-from ..numbers.columns import STATE
+from ..numbers.columns import POSITION, STATE
+from ..numbers.function import States, check_span
 from ..numbers.precision import GUARD_BITS, LONG_DOUBLE, Array, NumberType, context, real
-from .golden import Golden
 
 TYPES = (LONG_DOUBLE, real(128), real(192), real(256))  # if one loses too many digits, the next is tried
 WITHIN = 2.0**-58  # error allowed, relative to the cord length: enough to judge programs in double
@@ -42,6 +42,7 @@ class Dense:
         states: nearest doubles of x, y, z (m), vx, vy, vz (m/s), shape (rows, 6).
         low: low parts, shape (rows, 6): the values are states + low.
         bound_m: bound on the error of every position, in m.
+        bound_m_s: bound on that of every velocity, in m/s.
         number: number type of the run.
     """
 
@@ -49,10 +50,11 @@ class Dense:
     states: Array = field(repr=False)
     low: Array = field(repr=False)
     bound_m: float
+    bound_m_s: float
     number: str
 
 
-def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense:
+def dense(golden: Any, times: npt.ArrayLike, within: float = WITHIN) -> Dense:
     """Evaluate the solution of a golden dataset at any times that it spans.
 
     Args:
@@ -74,8 +76,28 @@ def dense(golden: Golden, times: npt.ArrayLike, within: float = WITHIN) -> Dense
         states, low = evaluation.run(math.inf if (number, tolerance) == attempts[-1] else within * length)
         if evaluation.error_on_arrival <= within * length:
             break
-    error = SAFETY * evaluation.error_on_arrival + (ULPS * 2.0**-number.prec + PAIR) * length
-    return Dense(requested, states, low, error + float(golden.manifest.bounds.position_m), str(number))
+    error, bounds = SAFETY * evaluation.error_on_arrival, golden.manifest.bounds
+    error += (ULPS * 2.0**-number.prec + PAIR) * length
+    in_velocity = error * evaluation.rate + float(bounds.velocity_m_s)
+    return Dense(requested, states, low, error + float(bounds.position_m), in_velocity, str(number))
+
+
+def states_at(golden: Any, times: npt.ArrayLike) -> States:
+    """Return the states at times of any shape and in any order, rounded to doubles.
+
+    Raises:
+        InputError: a time is not finite, or outside of the dataset's span.
+    """
+    moments = np.asarray(times, dtype=np.float64)
+    check_span(moments, golden.times[-1])
+    if not moments.size:
+        return States.of(moments, np.empty((6, 0)), {})
+    found = dense(golden, moments)
+    rows = found.states[np.searchsorted(found.t, moments.ravel())]
+    largest = np.abs(found.states).max(axis=0)
+    bounds = {name: found.bound_m if name in POSITION else found.bound_m_s for name in STATE}
+    rounding = {name: float(np.spacing(size)) for name, size in zip(STATE, largest, strict=True)}
+    return States.of(moments, rows.T, {name: bound + rounding[name] for name, bound in bounds.items()})
 
 
 def _check(times: Array, grid: list[Fraction]) -> None:
@@ -97,7 +119,7 @@ class _Evaluation:
     """
 
     def __init__(
-        self, golden: Golden, grid: list[Fraction], requested: Array, number: NumberType, tolerance: float | None
+        self, golden: Any, grid: list[Fraction], requested: Array, number: NumberType, tolerance: float | None
     ) -> None:
         from ..engines.heyoka.model import RoundedModel
 
@@ -116,6 +138,7 @@ class _Evaluation:
         self._anchors = _anchors(golden, self._numbers, self._k)
         self._weights, self._speed_ratio = _speeds(self._anchors.astype(np.float64), golden)
         self._spans = {step: self._numbers.of(step) for step in {b - a for a, b in pairwise(grid)}}
+        self.rate = 2 / float(self._weights[3])  # an error e of n and H makes at most e times it in the velocity
         self.error_on_arrival = 0.0
 
     def run(self, most: float) -> tuple[Array, Array]:
@@ -177,7 +200,7 @@ class _Evaluation:
         return nearest, (rows - nearest.astype(self._numbers.dtype)).astype(np.float64)
 
 
-def _speeds(anchors: Array, golden: Golden) -> tuple[Array, Array]:
+def _speeds(anchors: Array, golden: Any) -> tuple[Array, Array]:
     """Return weights that bring n and H to one scale, (6,), and (greatest possible speed)/(speed) at each anchor."""
     k = constants(golden.scene.exact, context(GUARD_BITS)).converted(float)
     model = FORMULATIONS["momentum"]
@@ -193,7 +216,7 @@ def _speeds(anchors: Array, golden: Golden) -> tuple[Array, Array]:
         return weights, np.clip(np.nan_to_num(fastest / speeds, nan=1.0), 1.0, MAX_SPEED_RATIO)
 
 
-def _anchors(golden: Golden, numbers: Any, k: Constants) -> Any:
+def _anchors(golden: Any, numbers: Any, k: Constants) -> Any:
     """Return the golden states in the variables of `momentum`, in the run's number type, shape (grid times, 6)."""
     columns = [_converted(golden.decimals(name), numbers) / k.length for name in STATE]
     start = FORMULATIONS["momentum"].start(tuple(columns[:3]), tuple(columns[3:]), k, np)

@@ -13,15 +13,18 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 from pydantic import ValidationError
 
 from ..errors import DatasetError, FoucaultError, InputError, did_you_mean
 from ..numbers.columns import GridColumns
+from ..numbers.function import GoldenFunction, States
 from ..numbers.precision import Array
 from ..scenes.fields import Level
 from ..scenes.scene import Scene, parse_scene
 from ..scenes.shipped import seals
-from .manifest import FORMAT, MANIFEST, Manifest
+from .function import FunctionRecord, read_function
+from .manifest import FORMAT, FUNCTION, MANIFEST, Manifest
 from .place import golden_folder
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 
@@ -41,7 +44,8 @@ class Files:
         folder: where they stand.
         manifest: `manifest.json`, with its seal intact.
         scene: the scene that it describes.
-        texts: every other file, by name.
+        texts: every other file of text, by name.
+        function: the golden function and its description, None if it has none.
         tables: the CSV tables among them, by name.
         foreign: names of other files in the folder, which are ignored.
     """
@@ -50,6 +54,7 @@ class Files:
     manifest: Manifest
     scene: Scene
     texts: dict[str, str]
+    function: tuple[FunctionRecord, GoldenFunction] | None
     tables: dict[str, Sheet]
     foreign: list[str]
 
@@ -70,7 +75,7 @@ def read_files(folder: Path) -> Files:
         raise DatasetError(str(folder), [f"the manifest's scene is refused: {error}"]) from None
     texts: dict[str, str] = {}
     tables: dict[str, Sheet] = {}
-    problems = []
+    problems, numbers = [], b""
     for name, record in manifest.files.items():
         try:
             size = (folder / name).stat().st_size
@@ -80,6 +85,8 @@ def read_files(folder: Path) -> Files:
             data = (folder / name).read_bytes()
             if hashlib.sha256(data).hexdigest() != record.sha256:
                 problems.append(f"{name}: a byte was changed (sha256 differs)")
+            elif name == FUNCTION[1]:
+                numbers = data
             else:
                 texts[name] = data.decode()
                 if name.endswith(".csv"):
@@ -92,8 +99,12 @@ def read_files(folder: Path) -> Files:
             problems.append(f"{name}: {error}")
     if problems:
         raise DatasetError(str(folder), problems)
+    try:
+        function = read_function(texts[FUNCTION[0]], numbers) if FUNCTION[0] in texts else None
+    except ValueError as error:
+        raise DatasetError(str(folder), [f"{FUNCTION[0]} {error}"]) from None
     foreign = sorted(set(os.listdir(folder)) - {MANIFEST, *manifest.files})
-    return Files(folder, manifest, scene, texts, tables, foreign)
+    return Files(folder, manifest, scene, texts, function, tables, foreign)
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -238,6 +249,7 @@ class Golden(GridColumns):
         scene: the scene that it solves.
         grid: `grid.csv`.
         transits: `transits.csv`; without rows if they were not asked for, or if xdot is identically zero.
+        function: the golden function, None if it has none; `at` serves all the same.
     """
 
     path: Path
@@ -245,6 +257,21 @@ class Golden(GridColumns):
     scene: Scene
     grid: PrintedTable
     transits: PrintedTable
+    function: GoldenFunction | None = None
+
+    def at(self, t: npt.ArrayLike) -> States:
+        """Return the states at times in s, of any shape and in any order, with their bounds.
+
+        They come from the golden function, or are integrated anew from the row before (needs heyoka, takes longer).
+
+        Raises:
+            InputError: a time is not finite, or outside of the dataset's span.
+        """
+        if self.function is not None:
+            return self.function.at(t)
+        from .dense import states_at
+
+        return states_at(self, t)
 
     @property
     def level(self) -> Level:
@@ -283,4 +310,4 @@ def load(name: str | Path) -> Golden:
     bounds, none = files.manifest.bounds, Sheet(TRANSITS_HEADER, [], {})
     grid = PrintedTable(files.tables["grid.csv"], bounds.grid)
     transits = PrintedTable(files.tables.get("transits.csv", none), bounds.transits)
-    return Golden(files.folder, files.manifest, files.scene, grid, transits)
+    return Golden(files.folder, files.manifest, files.scene, grid, transits, files.function and files.function[1])

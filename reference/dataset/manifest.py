@@ -34,9 +34,18 @@ Kind = Literal["grid", "transits"]  # of a table
 Count = Annotated[int, Field(ge=0, le=10**10)]
 Decimals = Annotated[int, Field(ge=0, le=2000)]  # digits after the point
 FileName = Literal[
-    "grid.csv", "certified.txt", "transits.csv", "grid.binary64.csv", "transits.binary64.csv", "vectors.json"
+    "grid.csv",
+    "certified.txt",
+    "transits.csv",
+    "grid.binary64.csv",
+    "transits.binary64.csv",
+    "vectors.json",
+    "function.json",
+    "function.f64",
 ]
 ALWAYS, OPTIONAL = get_args(FileName)[:2], get_args(FileName)[2:]
+FUNCTION: tuple[FileName, FileName] = ("function.json", "function.f64")
+Content = str | bytes  # of a file
 
 
 class Part(BaseModel):
@@ -131,9 +140,9 @@ class FileRecord(Part):
     sha256: Sha256
 
     @classmethod
-    def of(cls, text: str) -> FileRecord:
-        """Return the record of a file with this text."""
-        data = text.encode()
+    def of(cls, content: Content) -> FileRecord:
+        """Return the record of a file with this content."""
+        data = content if isinstance(content, bytes) else content.encode()
         return cls(bytes=len(data), sha256=hashlib.sha256(data).hexdigest())
 
 
@@ -190,6 +199,9 @@ class Manifest(Part):
             in ({*TRANSITS}, {*transits}),
             f"files: {' and '.join(ALWAYS)} belong to every dataset": set(ALWAYS) <= set(self.files),
             "files: transits.csv belongs to a dataset with transits": not transits or "transits.csv" in self.files,
+            "files: a golden function has two files, and a proof": (FUNCTION[0] in self.files)
+            == (FUNCTION[1] in self.files)
+            <= bool(self.enclosure),
         }
         broken = [rule for rule, holds in rules.items() if not holds]
         if broken:

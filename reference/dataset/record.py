@@ -36,11 +36,12 @@ from .sheets import Sheet, column_bounds, scene_inputs
 
 _UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
 UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
-ENGINE, AUDIT, CONFIRM = "--engine", "--audit", "--confirm"
+ENGINE, AUDIT, CONFIRM, WITH_FUNCTION = "--engine", "--audit", "--confirm", "--function"
 # How a dataset is made, in its command. What was made before there was --confirm says --no-confirm or, of a whole
 # confirmation, nothing; and nothing of an audit that there was not.
 OPTIONS = re.compile(
-    rf"{ENGINE} ({'|'.join(engine_names())})( {AUDIT}| --no-audit|)(?: {CONFIRM} (whole|sampled|none)|( --no-confirm)|)"
+    rf"{ENGINE} ({'|'.join(engine_names())})( {AUDIT}| --no-audit|)"
+    rf"(?: {CONFIRM} (whole|sampled|none)|( --no-confirm)|)( {WITH_FUNCTION}|)"
 )
 PACKAGES = ("heyoka", "mpmath", "numba", "numpy", "python-flint")
 INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
@@ -48,22 +49,24 @@ INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of 
 
 @dataclass(frozen=True)
 class Making:
-    """How a dataset is made: by which engine, whether its proof is audited, and what of it is confirmed."""
+    """How a dataset is made: by which engine, whether audited, what is confirmed, and whether with a function."""
 
     engine: str = "limbs"
     audit: bool = True
     confirm: Confirmation = "whole"
+    function: bool = False
 
     @classmethod
     def of(cls, command: str) -> Making:
         """Read it off a dataset's command, or off the options in the index of what ships."""
-        engine, audit, confirm, nothing = OPTIONS.findall(command)[0]
-        return cls(engine, audit.strip() == AUDIT, "none" if nothing else confirm or "whole")
+        engine, audit, confirm, nothing, function = OPTIONS.findall(command)[0]
+        return cls(engine, audit.strip() == AUDIT, "none" if nothing else confirm or "whole", bool(function))
 
     @property
     def options(self) -> str:
         """The options that say it, of a proof."""
-        return f"{ENGINE} {self.engine} {AUDIT if self.audit else '--no-audit'} {CONFIRM} {self.confirm}"
+        audit = AUDIT if self.audit else "--no-audit"
+        return " ".join([ENGINE, self.engine, audit, CONFIRM, self.confirm, *[WITH_FUNCTION] * self.function])
 
     def options_for(self, scene: Scene, name: str) -> str:
         """Return the options of a dataset's command: those in the index where a shipped scene is made as it says."""
@@ -77,7 +80,8 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
     name = name or dataset_id(scene)
     options = f"{ENGINE} {run.engine}"
     if proof is not None:
-        options = Making(run.engine, proof.audited, proof.confirmed).options_for(scene, name)
+        making = Making(run.engine, proof.audited, proof.confirmed, proof.function is not None)
+        options = making.options_for(scene, name)
     end = grid.rows[-1][0]
     return Manifest.model_construct(
         schema_version=3,

@@ -1,14 +1,16 @@
-"""Every file of a dataset as text: manifest, CSV tables, vectors and page; the same solution gives the same bytes."""
+"""Every file of a dataset: manifest, CSV tables, vectors, page, function; the same solution gives the same bytes."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from typing import Any
 
 from ..errors import DatasetError
 from ..scenes.fields import Confirmation, Level
 from ..solver.solution import SAMPLED, Solution
-from .manifest import MANIFEST, FileRecord, Manifest
+from .function import FunctionRecord
+from .manifest import FUNCTION, MANIFEST, Content, FileRecord, Manifest
 from .record import CONFIRM, Making, manifest_of
 from .sheets import GRID_HEADER, Sheet, binary64_sheet, by_field, grid_sheet, nearest_doubles, transits_sheet
 from .vectors import vectors
@@ -31,8 +33,8 @@ _GRAVITY = {
 }
 
 
-def render(solution: Solution, name: str | None = None) -> dict[str, str]:
-    """Return the text of every file of a dataset, by file name; `name` is its id, by default the scene's own."""
+def render(solution: Solution, name: str | None = None) -> dict[str, Content]:
+    """Return the content of every file of a dataset, by file name; `name` is its id, by default the scene's own."""
     grid, transits = grid_sheet(solution), transits_sheet(solution)
     of_grid = {"t": [float(t) for t in solution.times], **nearest_doubles(solution.grid, grid)}
     tables = {"grid.csv": grid, "grid.binary64.csv": binary64_sheet(grid, of_grid)}
@@ -42,23 +44,32 @@ def render(solution: Solution, name: str | None = None) -> dict[str, str]:
             of_transits = nearest_doubles(solution.transits, transits)
             tables["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
     record = manifest_of(solution, grid, transits, name)
-    texts = {name: sheet.csv() for name, sheet in tables.items()} | derived_texts(record, tables)
-    manifest = record.model_copy(update={"files": {file: FileRecord.of(text) for file, text in texts.items()}})
-    return {MANIFEST: manifest.sealed().text(), **texts}
+    contents: dict[str, Content] = {name: sheet.csv() for name, sheet in tables.items()}
+    contents |= derived_texts(record, tables)
+    if solution.proof and solution.proof.function:
+        said = FunctionRecord.of(solution.proof.function, record)
+        contents |= zip(FUNCTION, (said.text(), solution.proof.function.data), strict=True)
+    manifest = record.model_copy(update={"files": {file: FileRecord.of(text) for file, text in contents.items()}})
+    return {MANIFEST: manifest.sealed().text(), **contents}
 
 
-def check_proved(texts: Mapping[str, str], solution: Solution) -> None:
-    """Have trusted code hold the texts of a dataset at the level enclosed against what was proved.
+def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
+    """Have trusted code hold the files of a dataset at the level enclosed against what was proved.
 
     Raises:
         DatasetError: they state something else.
     """
-    if json.loads(texts[MANIFEST])["level"] != "enclosed":
+    if json.loads(contents[MANIFEST])["level"] != "enclosed":
         return
     from ..enclosure.printed import check_dataset
 
+    proof, files = solution.proof, dict[str, Any](contents)
     try:
-        check_dataset(texts, solution.proof.proved if solution.proof else None)
+        check_dataset(files, proof.proved if proof else None)
+        if proof and FUNCTION[1] in files:
+            from ..enclosure.function import check_function
+
+            check_function(files[FUNCTION[0]], files[FUNCTION[1]], proof.function, proof.proved)
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
         raise DatasetError(solution.scene.id, [f"this is not what was proved; {error}"]) from error
 

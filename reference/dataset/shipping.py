@@ -19,6 +19,7 @@ from ..solver.solve import solve
 from ..status import Status
 from ..system.workers import Pool
 from .golden import read_files
+from .manifest import Content
 from .place import dataset_id, default_folder, is_of_shipped_scene, ships
 from .record import Making
 from .render import check_proved, render
@@ -75,7 +76,7 @@ def is_done(job: Job) -> bool:
     return sealed and same and files.manifest.id == job.name
 
 
-def made(job: Job) -> tuple[Row, dict[str, str]]:
+def made(job: Job) -> tuple[Row, dict[str, Content]]:
     """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
     try:
         solution = solved(job.scene, making_of(job.scene, job.name, job.folder))
@@ -97,7 +98,7 @@ def making_of(scene: Scene, name: str, folder: Path) -> Making:
     if ships(folder) or is_of_shipped_scene(scene, name):
         entry = index().get(name)
         return Making.of(entry["options"]) if entry else Making()
-    return Making(AUTO, confirm="sampled")
+    return Making(AUTO, confirm="sampled", function=True)
 
 
 def solved(scene: Scene, making: Making, report: Report | None = None) -> Solution:
@@ -108,14 +109,14 @@ def solved(scene: Scene, making: Making, report: Report | None = None) -> Soluti
         UnreachableError: the level or the digits cannot be reached.
     """
     proving = scene.run.level == "enclosed"
-    asked: dict[str, Any] = {"audit": making.audit, "confirm": making.confirm} if proving else {}
-    return solve(scene, engine=making.engine, **asked, report=report)
+    asked: dict[str, Any] = {"audit": making.audit, "confirm": making.confirm, "function": making.function}
+    return solve(scene, engine=making.engine, **(asked if proving else {}), report=report)
 
 
-def isolated(job: Job) -> tuple[Row, dict[str, str]]:
+def isolated(job: Job) -> tuple[Row, dict[str, Content]]:
     """Make a dataset in a process that is started for it: the solver is not made for several threads."""
     with Pool(1) as pool:
-        result: tuple[Row, dict[str, str]] = pool.submit(made, job).result()
+        result: tuple[Row, dict[str, Content]] = pool.submit(made, job).result()
     return result
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from ..errors import BeyondDoublesError, DatasetError, FoucaultError
 from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..scenes.shipped import golden_root, seals
-from .checks import manifest_check, motion, physics, tables
+from .checks import function, manifest_check, motion, physics, tables
 from .golden import Files, read_files, read_manifest
-from .manifest import MANIFEST, Manifest, differences
+from .manifest import FUNCTION, MANIFEST, FileRecord, Manifest, differences
 from .record import AUDIT, Making, generator
 from .render import render
 from .shipping import solved
@@ -89,7 +89,7 @@ def problems_of(folder: Path) -> list[str]:
 
 def _row_by_row(files: Files) -> list[str]:
     """Return what is wrong with the record and with each row by itself; later checks need what earlier ones passed."""
-    for check in (tables, manifest_check, physics):
+    for check in (tables, manifest_check, physics, function):
         try:
             problems = list(islice(check.problems(files), MAX_PROBLEMS))
         except (ArithmeticError, BeyondDoublesError):
@@ -142,7 +142,13 @@ def recompute(folder: Path, report: motion.Progress | None = None) -> tuple[list
     again = Manifest.model_validate_json(texts.pop(MANIFEST))
     fields = [*differences(manifest.model_dump(exclude={*FOLLOWS}), again.model_dump(exclude={*FOLLOWS}))]
     lines = [f"{MANIFEST}: {place} = {old}, recomputed {new}" for place, old, new in fields]
-    wrong = [line for name, text in texts.items() if (line := _first_line(name, files.texts.get(name), text))]
+    wrong = [
+        line
+        for name, text in texts.items()
+        if isinstance(text, str) and (line := _first_line(name, files.texts.get(name), text))
+    ]
+    if FUNCTION[1] in texts and FileRecord.of(texts[FUNCTION[1]]) != manifest.files.get(FUNCTION[1]):
+        wrong.append(f"{FUNCTION[1]}: recomputing gives other coefficients")
     if wrong or not fields:
         return [*wrong, *lines], []
     runs = [manifest.run, again.run, *manifest.cross_checks, *again.cross_checks]

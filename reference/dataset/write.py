@@ -12,7 +12,7 @@ from ..errors import DatasetError, InputError
 from ..scenes.shipped import keep_seal
 from ..solver.solution import Solution
 from ..system.workspace import OLD, workspace
-from .manifest import MANIFEST
+from .manifest import FUNCTION, MANIFEST, Content
 from .place import ships
 from .record import OPTIONS
 from .render import check_proved, render
@@ -71,22 +71,24 @@ def write(solution: Solution, folder: str | Path, name: str | None = None) -> Pa
     return folder
 
 
-def write_texts(texts: Mapping[str, str], folder: Path, solution: Solution | None = None) -> None:
+def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution | None = None) -> None:
     """Write the files of a dataset that was rendered, as `write` does; without its solution, they were checked."""
     check_target(folder)
     with _place(folder) as (work, target):
         new = work / "new"
         new.mkdir()
         for file, text in texts.items():
-            with (new / file).open("w", encoding="utf-8", newline="\n") as handle:
-                handle.write(text)
+            with (new / file).open("wb") as handle:
+                handle.write(text if isinstance(text, bytes) else text.encode())
                 handle.flush()
                 os.fsync(handle.fileno())
         problems = problems_of(new)
         if problems:
             raise DatasetError(str(folder), problems)
         if solution is not None:
-            check_proved({path.name: path.read_bytes().decode() for path in new.iterdir()}, solution)
+            contents = {path.name: path.read_bytes() for path in new.iterdir()}
+            kept = {name: data if name == FUNCTION[1] else data.decode() for name, data in contents.items()}
+            check_proved(kept, solution)
         if target.exists():
             target.rename(work / OLD)  # after an end between the two renames, `workspace` puts it back
         new.rename(target)

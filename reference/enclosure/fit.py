@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from math import inf, nextafter
 from typing import Any
 
 import numpy as np
 from flint import arb
 
+from ..numbers.precision import double_below
 from ..numbers.taylor_step import TaylorStep
 from .approximant import GRAIN, rescaled
 from .balls import add, dot, size, times
@@ -63,12 +63,6 @@ def _stays_deep(balls: SceneBalls) -> bool:
         return False
     aside = size(add(times(1 / pull, balls.c), balls.turned([arb(0), arb(0), arb(1)], 1)))
     return bool((balls.w0**2 - balls.below) / pull - aside > SHALLOW)
-
-
-def double_below(q: Fraction) -> float:
-    """Return the largest double that is not above a fraction."""
-    near = q.numerator / q.denominator
-    return near if Fraction(near) <= q else nextafter(near, -inf)
 
 
 def on_doubles(steps: Iterable[TaylorStep]) -> Iterator[TaylorStep]:

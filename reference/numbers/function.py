@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
@@ -33,6 +33,12 @@ class States:
     vz: Array
     bound: Mapping[str, float]
 
+    @classmethod
+    def of(cls, t: Array, columns: Iterable[Array], bound: Mapping[str, float]) -> States:
+        """Build from times of any shape and the six components, shape (times,); a single time gives plain numbers."""
+        shaped = {name: column.reshape(t.shape)[()] for name, column in zip(STATE, columns, strict=True)}
+        return cls(t=t[()], **shaped, bound=bound)
+
 
 @dataclass(frozen=True, repr=False)
 class GoldenFunction:
@@ -51,7 +57,7 @@ class GoldenFunction:
     bound: Mapping[str, float]
 
     @classmethod
-    def of(cls, facts: Mapping[str, Any], bounds: Mapping[str, Fraction], data: bytes) -> GoldenFunction:
+    def of(cls, facts: Mapping[str, Any], bounds: Mapping[str, Fraction | str], data: bytes) -> GoldenFunction:
         """Build from what function.json says of its coefficients, its bounds, and the bytes of function.f64."""
         times = np.array([float.fromhex(text) for text in facts["times"]])
         shape = len(times) - 1, len(facts["components"]), facts["degree"] + 1
@@ -68,9 +74,7 @@ class GoldenFunction:
         """
         moments = np.asarray(t, dtype=np.float64)
         check_span(moments, self.times[-1])
-        flat = moments.ravel()
-        columns = dict(zip(STATE, self._evaluated(flat), strict=True))
-        return States(t=moments[()], **{k: c.reshape(moments.shape)[()] for k, c in columns.items()}, bound=self.bound)
+        return States.of(moments, self._evaluated(moments.ravel()), self.bound)
 
     def _evaluated(self, t: Array) -> tuple[Array, ...]:
         """Return x, y, z, vx, vy, vz, operation by operation as specified."""
@@ -93,8 +97,9 @@ class GoldenFunction:
         return (*position, *velocity)
 
 
-def check_span(t: Array, end: float) -> None:
+def check_span(t: Array, end: float | Fraction) -> None:
     """Raise InputError where a time is not finite, or outside of 0 to `end` s."""
-    outside = t[~((t >= 0) & (t <= end))]
+    outside = t[~((t >= 0) & (t <= float(end)))]
     if outside.size:
-        raise InputError("t", f"{outside.flat[0]:.17g}", f"times from 0 to {end:.17g} s", "Nothing is known beyond.")
+        expected = f"times from 0 to {float(end):.17g} s"
+        raise InputError("t", f"{outside[0]:.17g}", expected, "The scene ends there: run.t_end.")

@@ -50,6 +50,12 @@ def cheapest_type(prec: int) -> NumberType:
     return LONG_DOUBLE if prec <= LONG_DOUBLE_BITS else real(prec)
 
 
+def double_below(q: Fraction) -> float:
+    """Return the largest double that is not above a fraction."""
+    near = q.numerator / q.denominator
+    return near if Fraction(near) <= q else math.nextafter(near, -math.inf)
+
+
 @lru_cache(maxsize=64)
 def context(prec: int) -> Any:
     """Return the mpmath context of `prec` bits, whose precision nobody changes: it takes 3 ms to make one."""

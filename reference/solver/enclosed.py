@@ -42,6 +42,7 @@ def solve_enclosed(
     report: Report | None,
     audit: bool = False,
     confirm: Confirmation = "none",
+    function: bool = False,
 ) -> Solution:
     """Enclose a scene's states and transits so tightly that every digit asked for is decided.
 
@@ -49,7 +50,7 @@ def solve_enclosed(
     heyoka's run in another formulation has to agree to each of them. Both are done meanwhile, where that pays. Where it
     is "sampled", heyoka has to reach the end of each drawn interval of the grid from its first row; if these are more
     than the steps of a whole run, that is made. Where no whole run confirms every transit, one in a cheaper type may
-    refuse them.
+    refuse them. With `function` the golden function is made as well.
 
     Raises:
         InputError: python-flint is not installed.
@@ -63,7 +64,7 @@ def solve_enclosed(
         advice = "Install it with pip install 'foucault-reference[enclose]', or ask for the level confirmed."
         raise InputError("--level", "enclosed", f"the package {error.name}, which the proof needs", advice) from None
 
-    problem = Problem(scene, times, engine, run_pilot(scene.exact, times))
+    problem = Problem(scene, times, engine, run_pilot(scene.exact, times), function)
     if confirm == "sampled" and len(drawn_intervals(scene)) > problem.pilot.steps:
         confirm = "whole"  # of a grid so fine a sample costs more: a step at least for each interval
     with ExitStack() as meanwhile:
@@ -71,7 +72,11 @@ def solve_enclosed(
         pays = plan is not None and expected_s(plan, problem.pilot.steps) >= WORTH_A_PROCESS
         whole = meanwhile.enter_context(in_background(pays, send_run, plan)) if confirm == "whole" else None
         pays = problem.pilot.steps >= AUDIT_STEPS
-        second_proof = meanwhile.enter_context(in_background(pays, _send_digits, problem)) if audit else None
+        second_proof = (
+            meanwhile.enter_context(in_background(pays, _send_digits, replace(problem, function=False)))
+            if audit
+            else None
+        )
         report = report and slowest(report, [child for child in (whole, second_proof) if child is not None])
         solution = proved(problem, enclosure.enclose, report)
         if plan and confirm == "sampled":  # while the audit goes on

@@ -44,12 +44,14 @@ class Problem:
         times: output times in s.
         engine: name of the engine that makes the approximant; "auto" for the fastest.
         pilot: how rounding errors grow on the scene.
+        function: whether the golden function is made, too.
     """
 
     scene: Scene
     times: tuple[Fraction, ...]
     engine: str
     pilot: Pilot
+    function: bool = False
 
 
 def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solution:
@@ -77,6 +79,7 @@ def proved(problem: Problem, enclose: Any, report: Report | None = None) -> Solu
                 radius=radius,
                 transits=scene.run.transits,
                 approximant=lambda bits: feed(bits - COEFFICIENT_BITS),
+                function=problem.function,
                 progress=report and (lambda part: report(part * span)),
             )
             try:
@@ -122,6 +125,7 @@ def _solution(scene: Scene, times: tuple[Fraction, ...], enclosed: Any, approxim
         agreement_bits=-bits_in(gap / size) if gap else approximant.plan.number.prec,
         cpu_s=enclosed.cpu_s,
         proved=enclosed.proved,
+        function=enclosed.function,
     )
     # all zeros lie in (0, T]; the ball of a cluster may be a little wider
     possible = tuple((max(z.t.low, Fraction(0)), min(z.t.high, times[-1]), z.parity) for z in undecided)

@@ -8,11 +8,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cached_property
 from typing import Any
 
+import numpy.typing as npt
+
 from ..engines.plan import Run
-from ..errors import UnreachableError
+from ..errors import InputError, UnreachableError
 from ..numbers.columns import POSITION, TRANSITS, VELOCITY, GridColumns
+from ..numbers.function import GoldenFunction, States
 from ..numbers.table import Table, decimals_of, resolved
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
@@ -71,7 +75,8 @@ class Source:
 class Proof:
     """An enclosure: method, size, largest radii in m, m/s and s, and the bits to which its run agrees with it.
 
-    `proved` is what trusted code returned, and compares with what is printed; `audited`: FLINT alone proves it too;
+    `proved` and `function` are what trusted code returned, and compares with what is written; `audited`: FLINT alone
+    proves it too;
     `confirmed`: whether heyoka's run in another formulation agrees to every printed digit, the whole of it with every
     transit, or a sample: a tenth of the grid's intervals, each from its first row.
     """
@@ -86,6 +91,7 @@ class Proof:
     agreement_bits: int
     cpu_s: dict[str, float]
     proved: Any = field(default=None, repr=False)
+    function: Any = field(default=None, repr=False)
     audited: bool = False
     confirmed: Confirmation = "none"
 
@@ -111,7 +117,8 @@ class Solution(GridColumns):
             error.
 
     `solution.t`, `.x`, `.y`, `.z`, `.vx`, `.vy`, `.vz` are binary64 arrays of shape (rows,), `solution.exact("x")` are
-    fractions; both tables have `table["x"]`, `table.exact("x")`, the same, and `table.bound("x")`.
+    fractions; both tables have `table["x"]`, `table.exact("x")`, the same, and `table.bound("x")`. With a golden
+    function `solution.at(t)` is the motion at any time.
     """
 
     scene: Scene
@@ -136,6 +143,23 @@ class Solution(GridColumns):
     def level(self) -> Level:
         """Level of trust in the numbers, one of `scene.LEVELS`."""
         return self.scene.run.level
+
+    @cached_property
+    def function(self) -> GoldenFunction | None:
+        """The golden function, if it was asked for."""
+        made = self.proof and self.proof.function
+        return GoldenFunction.of(made.facts, made.bounds, made.data) if made else None
+
+    def at(self, t: npt.ArrayLike) -> States:
+        """Return the states at times in s, of any shape and in any order, by the golden function; with their bounds.
+
+        Raises:
+            InputError: the solution has no golden function, or a time lies outside of its span.
+        """
+        if self.function is None:
+            advice = "Solve it with level='enclosed', function=True, or write it and load it."
+            raise InputError("at", "a solution without a golden function", "one with it", advice)
+        return self.function.at(t)
 
     def __repr__(self) -> str:
         """Return scene, level, digits, and the numbers of rows and transits."""

@@ -37,6 +37,7 @@ def solve(
     engine: str | None = None,
     audit: bool = False,
     confirm: Confirmation = "none",
+    function: bool = False,
     report: Report | None = None,
 ) -> Solution:
     """Solve a scene to the digits and the level asked for (the scene's own by default).
@@ -53,6 +54,7 @@ def solve(
         confirm: at the level enclosed, what heyoka confirms as well, in another formulation: "whole", every digit and
             transit, on a second core; "sampled", the end of a tenth of the grid's intervals, each from its first row;
             or "none".
+        function: at the level enclosed, make the golden function as well: the motion at any time, `Solution.at`.
         report: called with the simulated time reached, in s.
 
     Returns:
@@ -68,13 +70,13 @@ def solve(
     engine = checked(engine)
     if confirm not in CONFIRMATIONS:
         raise InputError("confirm", confirm, in_words(CONFIRMATIONS))
-    for wish, asked in (("audit", audit), ("confirm", confirm != "none")):
+    for wish, asked in (("audit", audit), ("confirm", confirm != "none"), ("function", function)):
         if asked and settings.level != "enclosed":
-            raise InputError(wish, settings.level, "the level enclosed", f"Nothing else has a proof to {wish}.")
+            raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
 
-        return solve_enclosed(scene, times, engine, report, audit, confirm)
+        return solve_enclosed(scene, times, engine, report, audit, confirm, function)
     if settings.level == "computed":
         return _computed(scene, times, engine, report)
     return _agreed(scene, times, pilot_for(scene, times, engine), engine, report)

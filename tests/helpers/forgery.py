@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -54,10 +54,10 @@ def forge(
     seal(folder, document, texts)
 
 
-def seal(folder: Path, document: dict[str, Any], texts: dict[str, str]) -> None:
+def seal(folder: Path, document: dict[str, Any], texts: Mapping[str, str | bytes]) -> None:
     """Write files and manifest with hashes and a seal that fit."""
     for name, text in texts.items():
-        data = text.encode()
+        data = text if isinstance(text, bytes) else text.encode()
         (folder / name).write_bytes(data)
         document["files"][name] = {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
     document["seal"] = ""

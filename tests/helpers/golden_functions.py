@@ -14,7 +14,8 @@ from reference.numbers.function import GoldenFunction
 from reference.scenes.scene import Scene, load_scene
 from reference.solver.proof_steps import COEFFICIENT_BITS, Feed
 
-TRUTH = 1e-27  # of the length: what the run in limbs may be off by
+TRUTH_BITS = 137  # of the run in limbs, 40 digits; its states are sums of two doubles, so that they are off by
+TRUTH = 1e-29  # of the length, at most
 
 
 def proved_function(scene: Scene | str, radius: Fraction = Fraction(1, 10**30), engine: str = "limbs") -> Enclosure:
@@ -44,7 +45,7 @@ def evaluator(enclosure: Enclosure) -> GoldenFunction:
 
 def errors(scene: Scene, function: GoldenFunction, times: Any) -> dict[str, Any]:
     """Return how far each component is from a run in limbs, at each of `times`, which increase."""
-    high, low = states(scene.exact, times)
+    high, low = states(scene.exact, times, TRUTH_BITS)
     at = function.at(times)
     return {name: np.abs((getattr(at, name) - high[:, i]) - low[:, i]) for i, name in enumerate(STATE)}
 

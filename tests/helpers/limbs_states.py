@@ -18,12 +18,13 @@ from reference.scenes.inputs import Inputs
 STATES_BITS = 93  # the precision that five limbs hold of a swing of half a metre below 67 m
 
 
-def states(inputs: Inputs, times: npt.ArrayLike) -> tuple[Array, Array]:
+def states(inputs: Inputs, times: npt.ArrayLike, bits: int = STATES_BITS) -> tuple[Array, Array]:
     """Return positions and velocities at many times, as unevaluated sums of two doubles.
 
     Args:
         inputs: exact numbers of a scene (`Scene.exact`).
         times: in s, not negative, increasing, shape (rows,); each double is taken exactly.
+        bits: of the run.
 
     Returns:
         High and low parts, each of shape (rows, 6): x, y, z in m, vx, vy, vz in m/s. For a day of the Paris scene
@@ -38,7 +39,7 @@ def states(inputs: Inputs, times: npt.ArrayLike) -> tuple[Array, Array]:
         raise InputError("times", moments.shape, "a list of finite numbers, at least one")
     if moments[0] < 0 or (np.diff(moments) <= 0).any():
         raise InputError("times", "a list that decreases or is negative", "increasing numbers from 0 on")
-    problem = limb_problem(inputs, STATES_BITS)
+    problem = limb_problem(inputs, bits)
     limb_count = problem.model.limb_count
     whole, remainders = limbs_of_doubles(moments, float(problem.grain), limb_count)
     integration = Integration(problem, whole, remainders, seek=False)

@@ -9,11 +9,17 @@ from typing import Any
 from places import ROOT
 from pydantic import BaseModel
 
+from reference.dataset.function import FunctionRecord
 from reference.dataset.manifest import Manifest
 from reference.dataset.vectors import Vectors
 from reference.scenes.scene import Scene
 
-SCHEMAS: dict[str, type[BaseModel]] = {"manifest.json": Manifest, "vectors.json": Vectors, "scene.json": Scene}
+SCHEMAS: dict[str, type[BaseModel]] = {
+    "manifest.json": Manifest,
+    "vectors.json": Vectors,
+    "scene.json": Scene,
+    "function.json": FunctionRecord,
+}
 
 
 def path_of(name: str) -> Path:

@@ -9,7 +9,7 @@ from ...errors import LONGEST_VALUE, shortened
 from ...model.formulations import FORMULATIONS
 from ...model.start import Start, xdot_vanishes
 from ..golden import Files
-from ..manifest import MANIFEST, CrossCheckRecord, Manifest, differences
+from ..manifest import FUNCTION, MANIFEST, CrossCheckRecord, Manifest, differences
 from ..place import changes_in, dataset_id, shipped_scene
 from ..record import ENGINE, OPTIONS, Making, bounds_of, command, completeness, following
 from ..render import derived_texts
@@ -47,7 +47,11 @@ def problems(files: Files) -> Iterator[str]:
         yield f"{MANIFEST}: id = {manifest.id} does not follow from the scene, whose dataset is {dataset_id(scene)}"
     said = OPTIONS.search(manifest.command)
     options = said and (said[0] if manifest.level == "enclosed" else f"{ENGINE} {said[1]}")
-    if not options or command(scene, manifest.id, options) != manifest.command:
+    if (
+        not options
+        or (FUNCTION[0] in manifest.files) != Making.of(options).function
+        or command(scene, manifest.id, options) != manifest.command
+    ):
         yield f"{MANIFEST}: command does not follow from the scene"
         return
     yield from _possible(files)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
@@ -24,6 +24,7 @@ from ...numbers.table import Table
 from ..golden import Files
 from ..manifest import MANIFEST, Kind, Manifest
 from ..sheets import Sheet
+from . import function
 from .tables import largest_jerk
 
 BASE_S, ROW_S, TRANSIT_S = 2.0, 0.01, 0.001  # CPU seconds that the runs may take: some, and more for longer tables
@@ -78,13 +79,15 @@ def _steps(files: Files) -> int:
 
 def _run(files: Files, prec: int, report: Progress | None) -> Run:
     limbs, inputs = engines()["limbs"], files.scene.exact
-    plan = limbs.plan(inputs, prec, tuple(inputs.grid), files.scene.run.transits)
+    times = sorted({*inputs.grid, *map(Fraction, function.moments(files))})
+    plan = limbs.plan(inputs, prec, tuple(times), files.scene.run.transits)
     return limbs.run(plan, report and (lambda t: report(t, float(inputs.t_end))))
 
 
 def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
     """Return the numbers that are off; None where the two runs are too far apart to tell."""
-    kinds: list[tuple[Kind, Table, Table]] = [("grid", coarse.grid, fine.grid)]
+    states = [_at(files.scene.exact.grid, run) for run in (coarse, fine)]
+    kinds: list[tuple[Kind, Table, Table]] = [("grid", states[0], states[1])]
     differing: list[str] = []
     if coarse.transits is not None and fine.transits is not None:
         if coarse.directions != fine.directions:
@@ -104,7 +107,16 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
         if any(apart[name] > bound for name, bound in bounds.items()):
             return None
         differing += _off(kind, files.tables[f"{kind}.csv"], columns, apart, bounds)
-    return differing
+    times = function.moments(files)
+    rough, table = (_at(map(Fraction, times), run) for run in (coarse, fine))
+    return differing + function.contradicted(files, times, table, table.distance(rough).largest())
+
+
+def _at(times: Iterable[Fraction], run: Run) -> Table:
+    """Return the states of a run at some of its times."""
+    row = {t: k for k, t in enumerate(run.plan.times)}
+    values = run.grid.only(GRID).values
+    return Table(GRID, run.grid.bits, [values[row[t]] for t in times])
 
 
 def _outside_intervals(files: Files, plan: Plan, zeros: Table) -> tuple[list[int], list[str]]:

@@ -14,7 +14,7 @@ from compare.papers.checks import JudgedRow
 from compare.studies.row import Row
 from compare.studies.stability import Cell
 from reference import errors
-from reference.dataset import manifest, vectors
+from reference.dataset import function, manifest, vectors
 from reference.dataset.sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER
 from reference.scenes.fields import LEVELS
 from reference.scenes.shipped import DATA_VERSION
@@ -52,6 +52,7 @@ PARTS = {
     "states": own(vectors.StateVector),
     "transits": own(vectors.TransitVector),
     "values": own(vectors.Value),
+    "function.json": own(function.FunctionRecord),
     "grid.csv": list(GRID_HEADER),
     "transits.csv": list(TRANSITS_HEADER),
 }
@@ -63,7 +64,7 @@ def test_a_table_of_the_page_names_what_the_code_writes_in_its_order(title):
 
 
 def test_every_part_of_the_two_documents_has_its_table():
-    parts = {one for module in (manifest, vectors) for one in vars(module).values() if isinstance(one, type)}
+    parts = {one for module in (manifest, vectors, function) for one in vars(module).values() if isinstance(one, type)}
     written = [one for one in parts if issubclass(one, manifest.Part) and one is not manifest.Part]
     described = [set(names) for names in PARTS.values()]
     extended = set(own(manifest.CrossCheckRecord))  # its table continues that of a run

@@ -38,6 +38,8 @@ SCENES = [
     ("weightless", "60", "limbs"),
 ]
 
+WHOLE = ("paris", "pantheon", "hard", "near_inverted", "two_radians", "over_top", "damped", "conical", "pole", "museum")
+
 
 def short(name, end):
     return load_scene(name, [f"run.t_end={end}", f"run.grid_step={end}"])
@@ -62,18 +64,7 @@ def test_no_time_is_outside_of_the_bound(name, end, engine, size):
 def test_a_million_times_over_whole_scenes(capsys):
     """Prints x over the swing, z over l's last place, vx over its size, bytes, and the cost over the proof's."""
     lines, total = [], 0
-    for name in (
-        "paris",
-        "pantheon",
-        "hard",
-        "near_inverted",
-        "two_radians",
-        "over_top",
-        "damped",
-        "conical",
-        "pole",
-        "museum",
-    ):
+    for name in WHOLE:
         scene = load_scene(name)
         proof = proved_function(scene)
         function = evaluator(proof)

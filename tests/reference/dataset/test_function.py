@@ -1,0 +1,256 @@
+"""The golden function of a dataset: its files, what is refused of them, forged coefficients, the motion at any time."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from forgery import seal
+from golden_functions import errors
+from limbs_states import states
+from places import ROOT
+
+pytest.importorskip("flint")
+
+import reference
+from reference import DatasetError, InputError
+from reference.dataset.checks import function as checks
+from reference.dataset.checks import motion
+from reference.dataset.golden import read_files
+from reference.dataset.manifest import FUNCTION, MANIFEST
+from reference.dataset.shipping import making_of
+from reference.dataset.verify import problems_of, recompute, verify
+from reference.numbers.columns import STATE
+from reference.numbers.function import GoldenFunction
+
+
+@pytest.fixture(scope="module")
+def solution():
+    scene = reference.load_scene("paris")
+    return reference.solve(scene, t_end="300", digits=20, level="enclosed", engine="limbs", function=True)
+
+
+@pytest.fixture(scope="module")
+def whole(solution, tmp_path_factory):
+    return reference.write(solution, tmp_path_factory.mktemp("golden") / "paris")
+
+
+@pytest.fixture
+def folder(whole, tmp_path):
+    return shutil.copytree(whole, tmp_path / "paris")
+
+
+def changed(folder, change=None, data=None):
+    """Change function.json and function.f64, and make hashes and seal anew."""
+    said = json.loads((folder / FUNCTION[0]).read_text())
+    if change is not None:
+        change(said)
+    texts = {FUNCTION[0]: json.dumps(said, indent=1) + "\n"}
+    seal(folder, json.loads((folder / MANIFEST).read_text()), texts | ({FUNCTION[1]: data} if data is not None else {}))
+
+
+def test_it_is_written_sealed_and_verified(whole):
+    files = read_files(whole)
+    assert set(FUNCTION) <= set(files.manifest.files)
+    assert files.manifest.command.endswith("--no-confirm --function")
+    assert verify(whole).problems == []
+    assert recompute(whole) == ([], [])
+
+
+def test_it_leaves_the_other_files_as_they_are(whole, solution, tmp_path):
+    proof = replace(solution.proof, function=None)
+    other = read_files(reference.write(replace(solution, proof=proof), tmp_path / "paris"))
+    files = read_files(whole)
+    assert {name: text for name, text in files.texts.items() if name not in FUNCTION} == other.texts
+    assert "--function" not in other.manifest.command
+    assert other.function is None
+
+
+def test_solution_and_dataset_have_the_same_motion_at_times_of_any_shape(whole, solution):
+    golden = reference.load(whole)
+    times = np.array([[299.5, 0.0], [17.25, 300.0], [17.25, 8.0]])
+    at, own = golden.at(times), solution.at(times)
+    off = errors(golden.scene, golden.function, np.unique(times))
+    for name in STATE:
+        column = getattr(at, name)
+        assert column.shape == times.shape
+        assert np.array_equal(column, getattr(own, name))
+        one_by_one = [getattr(golden.at(t), name) for t in times.ravel().tolist()]
+        assert column.ravel().tolist() == one_by_one
+        assert off[name].max() <= at.bound[name]
+    assert isinstance(float(golden.at(3).x), float)
+    assert at.t.tolist() == times.tolist()
+    for t in (-0.1, 300.1, float("nan")):
+        with pytest.raises(InputError, match=r"times from 0 to 300 s"):
+            golden.at(t)
+
+
+def test_without_a_function_a_dataset_is_integrated_anew_and_a_solution_refuses(whole, solution, tmp_path):
+    golden = reference.load(whole)
+    plain = replace(golden, function=None)
+    times = np.array([[299.5, 3.25], [17.25, 300.0]])
+    one, other = golden.at(times), plain.at(times)
+    for name in STATE:
+        gap = np.abs(getattr(one, name) - getattr(other, name))
+        assert gap.shape == (2, 2)
+        assert (gap <= one.bound[name] + other.bound[name]).all()
+        assert 0 < other.bound[name] < 1e-13
+    for t in (-0.1, 300.1, float("nan")):
+        with pytest.raises(InputError, match=r"times from 0 to 300 s"):
+            plain.at(t)
+    with pytest.raises(InputError, match="without a golden function"):
+        replace(solution, proof=None).at(1.0)
+
+
+def test_a_function_needs_a_proof():
+    with pytest.raises(InputError, match="function"):
+        reference.solve("paris", t_end="60", digits=9, level="computed", function=True)
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        (lambda said: said.update(id="other"), "id = other does not follow"),
+        (lambda said: said.update(inputs="binary64"), "inputs = binary64 does not follow"),
+        (lambda said: said.update(frame="upside down"), "frame = upside down does not follow"),
+        (lambda said: said["units"].update({"t": "min"}), "units.t = min does not follow"),
+        (lambda said: said["times"].__setitem__(-1, (299.0).hex()), "ends at 299 s, not at 300 s"),
+        (lambda said: said["times"].__setitem__(5, said["times"][7]), "times must increase"),
+        (lambda said: said["times"].__setitem__(0, (1.0).hex()), "times: must increase from 0"),
+        (lambda said: said["times"].pop(), "function.f64 has another size"),
+        (lambda said: said.update(degree=20), "function.f64 has another size"),
+        (lambda said: said.update(components=["x", "z"]), "components: must be"),
+        (lambda said: said.update(length_squared=None), "components: must be"),
+        (lambda said: said["bounds"].pop("vx"), "bounds: must name"),
+        (lambda said: said.update(more=1), "breaks the schema at more"),
+        (lambda said: said.update(length_squared="4489"), "breaks the schema at length_squared"),
+        (lambda said: said.update(length_squared=(4489.000001).hex()), "z is"),
+    ],
+)
+def test_a_description_that_does_not_fit_is_refused(change, problem, folder):
+    changed(folder, change)
+    (first, *_) = problems_of(folder)
+    assert problem in first
+
+
+def test_files_that_do_not_belong_together_are_refused(folder):
+    document = json.loads((folder / MANIFEST).read_text())
+    numbers = document["files"].pop(FUNCTION[1])
+    seal(folder, document, {})
+    with pytest.raises(DatasetError, match="a golden function has two files, and a proof"):
+        reference.load(folder)
+    document["files"][FUNCTION[1]] = numbers
+    changed(folder, data=np.full(numbers["bytes"] // 8, np.nan).tobytes())
+    with pytest.raises(DatasetError, match="must be finite"):
+        reference.load(folder)
+
+
+def test_bounds_that_are_too_small_are_refused(folder):
+    changed(folder, lambda said: said["bounds"].update(z="1.0e-16"))
+    assert any("z is" in problem for problem in verify(folder).problems)
+
+
+def test_forged_coefficients_are_found_where_the_motion_leaves_the_bound(whole, folder, size):
+    """One coefficient is off by 1, 30 or 1,000 units in its last place: by the seal, or by `verify` without it."""
+    files, rng = read_files(whole), np.random.default_rng(9)
+    record, function = files.function
+    prec = motion._first_prec(files.manifest)
+    coarse, fine = (motion._run(files, bits, None) for bits in (prec - 22, prec))
+    moments = checks.moments(files)
+    rough, table = (motion._at(map(Fraction, moments), run) for run in (coarse, fine))
+    apart, ends = table.distance(rough).largest(), function.times
+    degree, count, pieces = (n - 1 if i == 0 else n for i, n in enumerate(function.coefficients.shape))
+    inside = [
+        np.unique([*rng.uniform(*ends[i : i + 2], 100), ends[i], np.nextafter(ends[i + 1], 0)]) for i in range(pieces)
+    ]
+    truth = [states(files.scene.exact, times) for times in inside]
+    leaving = caught = 0
+    for _ in range(size(60, 300)):
+        k, j, i = int(rng.integers(0, degree + 1)), int(rng.integers(count)), int(rng.integers(pieces))
+        for ulps in (1, 30, 1000):
+            coefficients = function.coefficients.copy()
+            coefficients[k, j, i] += rng.choice([-1, 1]) * ulps * np.spacing(abs(coefficients[k, j, i]))
+            forged = replace(function, coefficients=coefficients)
+            at, (high, low) = forged.at(inside[i]), truth[i]
+            off = {name: np.abs((getattr(at, name) - high[:, n]) - low[:, n]).max() for n, name in enumerate(STATE)}
+            leaves = max(off[name] / forged.bound[name] for name in STATE)
+            found = bool(checks.contradicted(replace(files, function=(record, forged)), moments, table, apart))
+            leaving += leaves > 1
+            caught += found
+            assert found or leaves <= 1, (k, j, i, ulps, leaves)
+            assert leaves > 0.999 or not found
+    assert caught == leaving > size(10, 50)
+    data = bytearray((folder / FUNCTION[1]).read_bytes())
+    data[8 * (degree + 1)] ^= 1
+    (folder / FUNCTION[1]).write_bytes(bytes(data))
+    assert verify(folder).problems == ["function.f64: a byte was changed (sha256 differs)"]
+    numbers = np.frombuffer(whole.joinpath(FUNCTION[1]).read_bytes(), "<f8").copy()
+    numbers[(degree + 1) * 9 + 1] += 1000 * np.spacing(numbers[(degree + 1) * 9 + 1])
+    changed(folder, data=numbers.tobytes())
+    assert problems_of(folder) == []
+    problems = verify(folder).problems
+    assert problems
+    assert all(problem.startswith("function.json: t = ") for problem in problems)
+
+
+def test_generate_makes_it_by_default_and_not_with_no_function(foucault, tmp_path):
+    scene = (ROOT / "data/scenes/laboratory.toml").read_text().replace('id = "laboratory"', 'id = "mine"')
+    (tmp_path / "mine.toml").write_text(scene)
+    words = (
+        "generate",
+        tmp_path / "mine.toml",
+        "--t-end",
+        "20",
+        "--digits",
+        "12",
+        "--level",
+        "enclosed",
+        "--no-confirm",
+    )
+    for option, there in (([], True), (["--no-function"], False), (["--function"], True)):
+        out = tmp_path / f"out{len(option)}{there}"
+        status, _, err = foucault(*words, *option, "--out", out)
+        assert status == 0, err
+        assert {name for name in FUNCTION if (out / name).exists()} == (set(FUNCTION) if there else set())
+        assert ("--function" in json.loads((out / MANIFEST).read_text())["command"]) is there
+    status, _, err = foucault(*words[:-3], "--level", "computed", "--function", "--out", tmp_path / "no")
+    assert (status, "--function" in err) == (2, True)
+
+
+def test_what_ships_has_none_until_it_is_asked_for():
+    """`generate NAME` makes the bytes that ship, and those have no function."""
+    for name in ("laboratory", "paris"):
+        making = making_of(reference.load_scene(name), name, ROOT / "elsewhere")
+        assert (making.function, "--function" in making.options) == (False, False)
+        assert reference.load(name).function is None
+    assert making_of(
+        reference.load_scene("paris", ["site.latitude=1"]), "paris+site.latitude=1", ROOT / "elsewhere"
+    ).function
+
+
+def test_a_span_that_is_no_double_ends_at_the_double_below(tmp_path):
+    scene = reference.load_scene("paris", ["run.t_end=10.1", "run.grid_step=10.1", "run.digits=12"])
+    solution = reference.solve(scene, level="enclosed", function=True, engine="limbs")
+    golden = reference.load(reference.write(solution, tmp_path / "tenth"))
+    end = float(golden.function.times[-1])
+    assert Fraction(end) <= Fraction("10.1") < Fraction(np.nextafter(end, 11))
+    assert verify(tmp_path / "tenth").problems == []
+
+
+def test_a_function_takes_its_coefficients_as_they_lie():
+    facts = {
+        "times": ["0x0.0p+0", "0x1.0p+1", "0x1.8p+1"],
+        "components": ["x", "y", "z"],
+        "degree": 1,
+        "length_squared": None,
+    }
+    numbers = np.arange(12.0)
+    function = GoldenFunction.of(facts, dict.fromkeys(STATE, "1e-15"), numbers.tobytes())
+    at = function.at([0.0, 1.0, 2.0, 3.0])  # u = -1, 0, -1, 1
+    assert at.x.tolist() == [-1.0, 0.0, -1.0, 13.0]
+    assert at.z.tolist() == [-1.0, 4.0, -1.0, 21.0]
+    assert at.vy.tolist() == [3.0, 3.0, 18.0, 18.0]
