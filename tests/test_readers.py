@@ -9,14 +9,18 @@ import subprocess
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
+from golden_functions import random_times
+from limbs_states import states
 from places import ROOT
 
 import reference
+from reference.numbers.columns import STATE
 
 READERS = ROOT / "docs/readers"
 PARIS = ROOT / "data/golden/paris"
-MOST_LINES = 40
+MOST_LINES, MOST_OF_FUNCTIONS = 40, 100
 # the tool that is wanted, what compiles the program (none for scripts), and what runs it
 COMMANDS = {
     "golden.c": (["cc", "-O2", "{file}", "-o", "{program}"], ["{program}"]),
@@ -29,6 +33,15 @@ COMMANDS = {
     "golden.R": ([], ["Rscript", "--vanilla", "{file}"]),
 }
 WITH_JSON = {"golden.mjs", "golden.go", "golden.m"}
+# what evaluates golden functions
+EVALUATORS = {
+    "function.c": (["cc", "-O2", "{file}", "-o", "{program}", "-lm"], ["{program}"]),
+    "function.f90": (["gfortran", "-O2", "{file}", "-o", "{program}"], ["{program}"]),
+    "function.mjs": ([], ["node", "{file}"]),
+    "function.go": (["go", "build", "-o", "{program}", "{file}"], ["{program}"]),
+    "function.rs": (["rustc", "-O", "{file}", "-o", "{program}"], ["{program}"]),
+    "Function.java": ([], ["java", "{file}"]),
+}
 
 
 @pytest.fixture(scope="module")
@@ -38,19 +51,21 @@ def paris():
 
 def test_every_program_is_run_is_short_and_stands_in_the_table():
     files = {path.name for path in READERS.iterdir()} - {"README.md"}
-    assert files == set(COMMANDS)
-    assert all(len((READERS / name).read_text().splitlines()) <= MOST_LINES for name in files)
+    assert files == {*COMMANDS, *EVALUATORS}
+    for names, most in ((COMMANDS, MOST_LINES), (EVALUATORS, MOST_OF_FUNCTIONS)):
+        assert all(len((READERS / name).read_text().splitlines()) <= most for name in names)
     table = re.findall(r"^\|[^|]+\| \[([\w.]+)\]\(\1\) \|", (READERS / "README.md").read_text(), re.M)
     assert set(table) == files
 
 
-def printed(name: str, folder: Path, tmp_path: Path) -> list[list[str]]:
-    """Return the words of each line that a program prints about a dataset."""
-    words = {"file": str(READERS / name), "program": str(tmp_path / "program")}
-    compiling, running = ([word.format(**words) for word in command] for command in COMMANDS[name])
+def printed(name: str, folder: Path, tmp_path: Path, *words: str, flags: tuple[str, ...] = ()) -> list[list[str]]:
+    """Return the words of each line that a program prints about a dataset, given more words."""
+    places = {"file": str(READERS / name), "program": str(tmp_path / "program")}
+    both = (COMMANDS | EVALUATORS)[name]
+    compiling, running = ([word.format(**places) for word in command] for command in both)
     if compiling:
-        subprocess.run(compiling, check=True, capture_output=True, cwd=tmp_path)
-    done = subprocess.run([*running, str(folder)], check=True, capture_output=True, text=True, cwd=tmp_path)
+        subprocess.run([*compiling, *flags], check=True, capture_output=True, cwd=tmp_path)
+    done = subprocess.run([*running, str(folder), *words], check=True, capture_output=True, text=True, cwd=tmp_path)
     return [line.split() for line in done.stdout.splitlines()]
 
 
@@ -61,7 +76,7 @@ def works(tool: str) -> bool:
     )
 
 
-LONG = {"golden.go"}  # a fresh go compiles its own library first, for a quarter of a minute
+LONG = {"golden.go", "function.go"}  # a fresh go compiles its own library first, for a quarter of a minute
 NAMES = [pytest.param(name, marks=[pytest.mark.long] if name in LONG else []) for name in COMMANDS]
 
 
@@ -97,3 +112,48 @@ def test_fortran_reads_as_many_digits_as_quadruple_precision_has(paris, tmp_path
     for column, value, *_ in printed("golden.f90", PARIS, tmp_path)[2:8]:
         exact = paris.exact(column)[-1]
         assert abs(Fraction(value) - exact) <= abs(exact) / 2**111
+
+
+@pytest.fixture(scope="module", params=["paris", "hard"])
+def with_function(request, tmp_path_factory):
+    """A dataset whose z follows from the sphere, and one in which z has a series."""
+    pytest.importorskip("flint")
+    scene = reference.load_scene(request.param, ["run.t_end=120", "run.grid_step=60", "run.digits=12"])
+    solution = reference.solve(scene, level="enclosed", transits=False, engine="limbs", function=True)
+    return reference.write(solution, tmp_path_factory.mktemp("function") / scene.id)
+
+
+FUSED = pytest.param("function.c", ("-O3", "-ffp-contract=fast", "-mfma"), id="function.c-fused")
+EVALUATING = [
+    *(pytest.param(name, (), marks=[pytest.mark.long] if name in LONG else []) for name in EVALUATORS),
+    FUSED,
+]
+
+
+@pytest.mark.parametrize(("name", "flags"), EVALUATING)
+def test_it_evaluates_as_python_does(name, flags, with_function, tmp_path):
+    """At 10,000 times: the same doubles; with fused operations as near to a run in limbs as the bounds say."""
+    tool = (EVALUATORS[name][0] or EVALUATORS[name][1])[0]
+    if not works(tool):
+        pytest.skip(f"{tool} is not installed for this user")
+    if flags and " fma " not in Path("/proc/cpuinfo").read_text():
+        pytest.skip("this processor does not fuse operations")
+    golden = reference.load(with_function)
+    times = random_times(golden.function, 10_000)
+    found = np.array(printed(name, with_function, tmp_path, *map(repr, times.tolist()), flags=flags), dtype=np.float64)
+    at = golden.at(times)
+    expected = np.column_stack([times, *(getattr(at, name) for name in STATE)])
+    assert found.shape == expected.shape
+    if not flags:
+        assert np.array_equal(found, expected)
+        return
+    assert not np.array_equal(found, expected)
+    high, low = states(golden.scene.exact, times)
+    off = np.abs((found[:, 1:] - high) - low).max(axis=0)
+    assert all(gap <= at.bound[name] for gap, name in zip(off, STATE, strict=True))
+
+
+@pytest.mark.parametrize("t", ["-1", "120.5", "nan"])
+def test_a_time_outside_is_refused_in_c(t, with_function, tmp_path):
+    with pytest.raises(subprocess.CalledProcessError):
+        printed("function.c", with_function, tmp_path, t)
