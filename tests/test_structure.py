@@ -129,7 +129,7 @@ PUBLIC = {
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.dataset.manifest": "MANIFEST",
     "reference.dataset.place": "changes golden_folder",
-    "reference.engines.heyoka.model": "Numbers RoundedModel",
+    "reference.engines.heyoka.model": "Numbers RoundedModel compiled",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "Variants",
     "reference.errors": "BeyondDoublesError Stopped did_you_mean finite in_words plain plain_json plain_lines "

@@ -108,7 +108,7 @@ def replacements(
         values[field] = assignment
     for option, (field, given) in options.items():
         if given is not None:
-            if field in values and values[field] != f"{field}={given}":
+            if field in values and not (option == "--t-end" and values[field] == f"{field}={given}"):
                 raise InputError(option, given, f"no such option together with --set {values[field]}", "Keep one.")
             values[field] = f"{field}={given}"
     return list(values.values())

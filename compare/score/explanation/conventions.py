@@ -26,6 +26,7 @@ OFF = 1e-7  # of the cord: a distance from the suspension that changes by more i
 SLIGHT = 1e-9  # and by more than this, heights are left out
 ALIKE = 0.05  # of the cord: heights nearer than this to a bob's are a bob's
 ROUGHLY = 0.03  # of the distance from the vertical: a release in another unit may be off by this
+SINGLE = 1e-6  # of the span: rounding of times in single precision
 SHIFTS = 3  # rows by which a clock may be off
 DECAYS = 0.1  # of its frequency: a swing that decays, or grows, faster tells no unit of time
 LENGTHS_SAID = {unit: f"is in {LONG_NAMES[unit]}" for unit in ("cm", "mm", "km", "ft", "in")}
@@ -86,7 +87,12 @@ def digits(rows: Rows) -> Rows:
             return rows.changed(Deviation("decimals", text, noise), noise=noise)
     single = values.astype(np.float32).astype(float)
     if same(single) or same(np.array([float(f"{value:.8e}") for value in single])):
-        noise = size * float(np.finfo(np.float32).eps)
+        # times in single precision are off as well, by what the bob moves in the meantime
+        even = np.linspace(rows.times[0], rows.times[-1], len(rows.times))
+        late = float(np.abs(rows.times - even).max())
+        late = late if late < SINGLE * rows.times[-1] else 0.0  # else they are not evenly spaced
+        speed = float(np.abs(np.diff(rows.plane, axis=0) / np.diff(rows.times)[:, None]).max())
+        noise = size * float(np.finfo(np.float32).eps) + late * speed
         text = f"holds numbers in single precision, good to {noise:.1g} of its unit"
         return rows.changed(Deviation("single_precision", text, noise), noise=noise)
     for count in range(3, 13):
@@ -140,7 +146,8 @@ def _flat(rows: Rows) -> Rows:
 def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
     """Find the unit of length and the names of the horizontal axes that make row 0 the release."""
     row = rows.positions[0]
-    if is_release(row, release, rows.noise) or not rows.starts or np.hypot(*row[:2]) == 0:
+    released = any(is_release(rows.positions[i], release, rows.noise) for i in (0, -1))
+    if released or not rows.starts or np.hypot(*row[:2]) == 0:
         return rows
     units = [
         (1.0, ""),

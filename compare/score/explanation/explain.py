@@ -14,7 +14,7 @@ from reference.numbers.precision import Array
 from ...approximations import APPROXIMATIONS, Motion
 from ...candidates.candidate import Deviation
 from .causes import NAMED
-from .conventions import made_right
+from .conventions import ROUGHLY, made_right
 from .findings import HARMLESS, Explanation, Model
 from .fitted import MODELS, best_of, explanation_of
 from .formulas import of_formula
@@ -67,7 +67,8 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     if any(convention.id in RENAMED for convention in rows.conventions):
         # the release may be at fault, and not the names of the columns
         other = of_rows(made_right(times, columns, start, right.length, frequency, rename=False))
-        best = min(best, other, key=lambda explanation: explanation.score)
+        if not any(_is_mirrored(cause) for cause in other.causes):
+            best = min(best, other, key=lambda explanation: explanation.score)
     unknown = {cause.stage for cause in best.known} <= {"gravity", "model"} and best.corrected_m > max(
         allowed_m, 1.5 * rows.noise
     )
@@ -128,6 +129,14 @@ def _of_approximation(case: Case, scene: Scene, named: Explanation | None) -> Ex
     corrected = model.exact_to_m
     exact = corrected <= case.enough and all(convention.id in HARMLESS for convention in rows.conventions)
     return case.explanation((cause,), corrected, rms(left), NAMED, model if exact else None)
+
+
+def _is_mirrored(cause: Deviation) -> bool:
+    """Return whether a release is the scene's but for its sign, which is an axis that points the other way."""
+    if not cause.id.endswith(("release.x", "release.y")) or cause.value is None or cause.shift is None:
+        return False
+    scene = cause.value - cause.shift
+    return abs(cause.value + scene) < ROUGHLY * abs(scene)
 
 
 def growth(times: Array, plane: Array) -> str:

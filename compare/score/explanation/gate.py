@@ -16,6 +16,7 @@ TYPED, MOST_DIGITS = 7, 9  # digits that people type, and that anybody does
 SHARE = 3.0  # times what is left, or what is not known: a cause that moves the bob by less is not told from it
 FAR = 1.5  # times the scene's g or length, or less by as much: what no program has that is merely off
 METHOD_SHARE = 0.1  # of what a method does that may be left, or it is not told from another
+EXACTLY = 1e-3  # of the tolerance: a step that leaves less needs no other number to be known
 UNSURE_SHARE = 0.03  # where several steps divide the spacing of the rows
 SLIGHT = 10.0  # times the tolerance: what a number that is nearly the scene's may move
 STEP_LIKE = 1e-4  # of a frequency: errors of a step that a program may well have
@@ -63,7 +64,7 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
         return
     allowed, left, agrees = evidence.allowed_m, evidence.left_m, evidence.agrees
     causes = [_in_whole_steps(cause, evidence) for cause in _drift_as_step(causes, evidence)]
-    causes = [cause for cause in causes if cause.size_m > allowed and not is_the_scenes(cause, allowed)]
+    causes = [cause for cause in causes if cause.size_m > evidence.enough_m and not is_the_scenes(cause, allowed)]
     within = allowed / left if agrees and left else 0.0
     typed = [
         cause.stage == "integrator" or cause.value is None or cause.id in evidence.shown or is_typed(cause, within)
@@ -77,7 +78,7 @@ def may_be_told(causes: Sequence[Deviation], evidence: Evidence) -> Iterator[Dev
         if not agrees and cause.size_m < SHARE * like:
             continue
         if _is_step(cause):
-            run = agrees and cause.uncertainty is None
+            run = agrees and (cause.uncertainty is None or (not cause.uncertainty and left < EXACTLY * allowed))
             share = min(evidence.clean, UNSURE_SHARE if cause.uncertainty else METHOD_SHARE)
             clear = agrees or left < share * cause.size_m
             yield cause if run or (clear and not unknown) else loose(cause.size_m)

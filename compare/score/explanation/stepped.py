@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
 
-import heyoka as hy
 import numpy as np
 import numpy.typing as npt
 
+from reference.engines.heyoka.model import compiled
 from reference.model.constants import Constants
 from reference.model.force import acceleration
 from reference.numbers.precision import Array
@@ -226,10 +226,13 @@ def _apart(swing: Case, steps: Steps, theta: Array, shares: Array, low: int, hig
 @cache
 def _step(method: str) -> Any:
     """Return a step of a method as machine code: of a state over l, with h, pull, turn, centrifugal, drag as `pars`."""
-    state = list(hy.make_vars("x", "y", "z", "vx", "vy", "vz"))
-    h, *numbers = (hy.par[i] for i in range(12))
-    k = Constants(pull=tuple(numbers[:3]), turn=tuple(numbers[3:6]), centrifugal=tuple(numbers[6:10]), drag=numbers[10])
-    return hy.cfunc(_taken(method, state, h, k), state)
+
+    def change(state: State, numbers: State) -> State:
+        pull, turn, centrifugal = tuple(numbers[1:4]), tuple(numbers[4:7]), tuple(numbers[7:11])
+        k = Constants(pull=pull, turn=turn, centrifugal=centrifugal, drag=numbers[11])
+        return _taken(method, state, numbers[0], k)
+
+    return compiled(("x", "y", "z", "vx", "vy", "vz"), 12, change)
 
 
 def _taken(method: str, state: State, h: Any, k: Constants) -> State:

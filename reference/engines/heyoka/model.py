@@ -31,6 +31,18 @@ hy.set_logger_level_critical()  # its log is the process's stdout; what it would
 _HARDWARE = {DOUBLE: (float, np.float64), LONG_DOUBLE: (np.longdouble, np.longdouble)}  # type, and that of arrays
 
 
+def compiled(variables: Sequence[str], parameters: int, change: Callable[..., Sequence[Any]]) -> Any:
+    """Return a map of doubles as machine code, called with an array of states and `pars`.
+
+    Args:
+        variables: names of a state's numbers.
+        parameters: how many there are.
+        change: `change(state, parameters)` returns the next state.
+    """
+    state = list(hy.make_vars(*variables))
+    return hy.cfunc(change(state, [hy.par[i] for i in range(parameters)]), state)
+
+
 class Numbers:
     """Conversions between exact numbers and one of heyoka's number types."""
 

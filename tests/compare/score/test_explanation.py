@@ -187,6 +187,13 @@ def test_steps_on_a_wide_swing_are_named_beside_a_wrong_length(mistaken: Path) -
     assert words[1] >= {"integrator_rk4"}
 
 
+@pytest.mark.parametrize("number", [55, 94, 100, 118, 204, 224, 288])
+def test_what_was_once_named_and_was_not_there(mistaken: Path, number: int) -> None:
+    """Mirrored releases, methods in single precision, other units of reversed rows, rates for a clock."""
+    made = case(number)
+    assert not made.wrong(told(made, *made.rows(mistaken)))
+
+
 def test_mistakes_corrected_as_told_end_at_agreement(
     mistaken: Path, size: Callable[[int, int], int], tally: Callable[[str], None]
 ) -> None:
