@@ -159,6 +159,8 @@ def axes(rows: Rows, release: Array, length: float, rename: bool) -> Rows:
         if is_release(row[[*order]] / scale * np.array(signs), release, rows.noise / scale):
             return _scaled_height(_renamed(_in_metres(rows, scale, text), order, signs), scale, length)
     for scale, text in units[1:]:
+        if abs(scale - 1) < 3 * ROUGHLY:  # a cord of about a metre: the release alone may be off by as much
+            continue
         near = np.abs(row[:2] / scale - release[:2]).max() < ROUGHLY * float(np.hypot(*release[:2]))
         if near:  # another unit, and a release that is a little off
             return _scaled_height(_in_metres(rows, scale, text), scale, length)

@@ -67,7 +67,7 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     if any(convention.id in RENAMED for convention in rows.conventions):
         # the release may be at fault, and not the names of the columns
         other = of_rows(made_right(times, columns, start, right.length, frequency, rename=False))
-        if not any(_is_mirrored(cause) for cause in other.causes):
+        if other.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in other.causes):
             best = min(best, other, key=lambda explanation: explanation.score)
     unknown = {cause.stage for cause in best.known} <= {"gravity", "model"} and best.corrected_m > max(
         allowed_m, 1.5 * rows.noise

@@ -120,7 +120,7 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     if program != reading.program:  # what is not told is not put right
         left = case.left(program)
         corrected = largest(left)
-    more = corrected > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
+    more = evidence.left_m > case.allowed_m and reading.rest > 2 * max(rows.noise, reader.fit.rest)
     if more and reader.like_a_step(reading, causes_of(case, kind)):
         causes.append(loose(corrected))
     model = None
