@@ -7,7 +7,6 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import InputError, UnreachableError
-from ..numbers.precision import digits_that_hold
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import flag_meanings, scene_ids
 from ..scenes.template import template as as_template
@@ -166,6 +165,8 @@ def _motion_line(motion: dict[str, Any], t_end: str) -> str:
     """Return what the motion does in a line, its numbers with the digits that their errors leave."""
     if "reason" in motion:
         return f"[motion] no period: {motion['reason']}"
+    from ..numbers.precision import digits_that_hold
+
     values = iter(motion.items())
     told = [
         f"{name} = {digits_that_hold(value, error)}" for (name, value), (_, error) in zip(values, values, strict=True)
