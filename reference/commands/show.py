@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, Any
 
 import typer
 
-from ..errors import InputError, UnreachableError
+from ..errors import FoucaultError, InputError, UnreachableError
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import flag_meanings, scene_ids
 from ..scenes.template import template as as_template
@@ -16,6 +17,7 @@ FORMS = {  # of the forms that an engine publishes: what its letters mean
     "momentum": "n = r/l, H = n × (n' + Ω × n), c = pull/l",
     "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
 }
+MOST_SWINGS = 10_000  # that are followed for the period and the precession
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -82,7 +84,7 @@ def command(
     for section, table in scene_inputs(scene).items():
         typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
-    typer.echo(_motion_line(document["motion"], scene.run.t_end))
+    typer.echo(_motion_line(document["motion"]))
     if sensitivity:
         lost = document["digits_lost"]
         typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
@@ -144,31 +146,50 @@ def _derived(scene: Scene) -> dict[str, str]:
 
 
 def _motion(scene: Scene) -> dict[str, Any]:
-    """Return period, precession and time of a full turn over the run, each with its estimated error, or the reason."""
-    from ..sweeps.sweep import sweep
+    """Return period, precession and time of a full turn over the run, each with its estimated error, or the reason.
 
-    solved = sweep(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession"], workers=1)
-    row = next(solved.rows())
-    swing, turn = row["swing_hz"], row["precession_deg_per_h"]
-    found: dict[str, Any] = {}
-    if swing:
-        found |= {"period_s": 1 / swing, "period_error_s": row["swing_error_hz"] / swing**2}
-    if turn is not None:
-        found |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": row["precession_error_deg_per_h"]}
-    if turn:
-        full = 360 / abs(turn)
-        found |= {"full_turn_h": full, "full_turn_error_h": full * row["precession_error_deg_per_h"] / abs(turn)}
-    return found or {"reason": row["reason"] or "the bob does not swing to and fro"}
+    They come from the engine of sweeps alone, over `MOST_SWINGS` at most: what it leaves to the solver may take long.
+    """
+    import numpy as np
+
+    from ..model.start import Start
+    from ..sweeps.part import solve_part
+    from ..sweeps.promote import Promoted
+    from ..sweeps.request import request
+
+    def left(*_: Any, doubtful: bool) -> Promoted:
+        return Promoted({}, ([], []), f"`foucault sweep` solves it in more digits{'' if doubtful else ', as asked'}.")
+
+    try:
+        longest = MOST_SWINGS * 2 * math.pi / Start.of(scene.exact, DERIVED_PREC).fastest_rate
+        if scene.exact.t_end > longest:
+            scene = scene.with_values({"run.t_end": f"{longest:.4g}"})
+        asked = request(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession"])
+        with np.errstate(all="ignore"):
+            columns = solve_part(asked, range(1), left).columns
+    except (FoucaultError, ArithmeticError) as error:
+        return {"reason": str(error)}
+    row = {name: values[0] for name, values in columns.items()}
+    found: dict[str, Any] = {"over_s": scene.run.t_end}
+    swing, turn = float(row["swing_hz"]), float(row["precession_deg_per_h"])
+    if swing > 0:
+        found |= {"period_s": 1 / swing, "period_error_s": float(row["swing_error_hz"]) / swing**2}
+    if math.isfinite(turn):
+        error_of_turn = float(row["precession_error_deg_per_h"])
+        found |= {"precession_deg_per_h": turn, "precession_error_deg_per_h": error_of_turn}
+        if turn:
+            full = 360 / abs(turn)
+            found |= {"full_turn_h": full, "full_turn_error_h": full * error_of_turn / abs(turn)}
+    return found if len(found) > 1 else {"reason": row["reason"] or "the bob does not swing to and fro"}
 
 
-def _motion_line(motion: dict[str, Any], t_end: str) -> str:
+def _motion_line(motion: dict[str, Any]) -> str:
     """Return what the motion does in a line, its numbers with the digits that their errors leave."""
     if "reason" in motion:
         return f"[motion] no period: {motion['reason']}"
     from ..numbers.precision import digits_that_hold
 
-    values = iter(motion.items())
-    told = [
-        f"{name} = {digits_that_hold(value, error)}" for (name, value), (_, error) in zip(values, values, strict=True)
-    ]
-    return f"[motion, over {t_end} s, errors estimated] " + ", ".join(told)
+    names = [name for name in motion if name != "over_s"]
+    pairs = zip(names[::2], names[1::2], strict=True)
+    told = [f"{name} = {digits_that_hold(motion[name], motion[error])}" for name, error in pairs]
+    return f"[motion, over {motion['over_s']} s, errors estimated] " + ", ".join(told)
