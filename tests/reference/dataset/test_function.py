@@ -56,7 +56,7 @@ def changed(folder, change=None, data=None):
 def test_it_is_written_sealed_and_verified(whole):
     files = read_files(whole)
     assert set(FUNCTION) <= set(files.manifest.files)
-    assert files.manifest.command.endswith("--no-confirm --function")
+    assert files.manifest.command.endswith("--no-audit --confirm none --function")
     assert verify(whole).problems == []
     assert recompute(whole) == ([], [])
 

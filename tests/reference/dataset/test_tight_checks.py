@@ -298,7 +298,8 @@ def test_a_row_may_be_off_from_the_motion_by_its_bound_and_by_what_the_runs_are_
     """Printed are 1.5 and -1.5, the motion has 1 and -2, in quarters."""
     sheet = Sheet(("t", *GRID), [("0", *["1.5"] * 6), ("1", *["-1.5"] * 6)], {})
     manifest = SimpleNamespace(bound=lambda *_: Fraction(bound))
-    files = SimpleNamespace(manifest=manifest, tables={"grid.csv": sheet})
+    scene = SimpleNamespace(exact=SimpleNamespace(grid=[Fraction(0), Fraction(1)]))
+    files = SimpleNamespace(manifest=manifest, scene=scene, tables={"grid.csv": sheet}, function=None)
 
     def compared(apart):
         tables = (Table(GRID, 2, [(4 + gap,) * 6, (-8,) * 6]) for gap in (int(4 * Fraction(apart)), 0))

@@ -135,7 +135,7 @@ def test_a_user_gets_an_audit_and_a_sampled_confirmation_unasked(foucault, tmp_p
         "generate", "paris", "--t-end", "60", "--digits", "18", *words, "--out", tmp_path / "paris"
     )
     assert status == 0 and f"enclosed, confirmation {named.split()[-1]}\n" in out
-    assert read_files(tmp_path / "paris").manifest.command.endswith(f" {named}")
+    assert read_files(tmp_path / "paris").manifest.command.endswith(f" {named} --function")
 
 
 def test_progress_is_that_of_the_slowest_of_proof_audit_and_confirmation(monkeypatch):
