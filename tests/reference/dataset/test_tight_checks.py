@@ -303,7 +303,9 @@ def test_a_row_may_be_off_from_the_motion_by_its_bound_and_by_what_the_runs_are_
 
     def compared(apart):
         tables = (Table(GRID, 2, [(4 + gap,) * 6, (-8,) * 6]) for gap in (int(4 * Fraction(apart)), 0))
-        return motion._compared(files, *(SimpleNamespace(grid=table, transits=None) for table in tables))
+        plan = SimpleNamespace(times=scene.exact.grid)
+        runs = (SimpleNamespace(grid=table, transits=None, plan=plan) for table in tables)
+        return motion._compared(files, *runs)
 
     assert len(compared(apart)) == found
     assert compared("0.75") is None
