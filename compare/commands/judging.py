@@ -24,7 +24,8 @@ from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
 from ..report.suite import outcome_forms
 from ..score.baseline import document_of, rows_of
-from ..score.verdict import Outcome, Score
+from ..score.outcome import Outcome
+from ..score.verdict import Score
 from .options import announce
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")  # of a suite's files

@@ -14,7 +14,7 @@ from reference.commands.terminal import AsJson, Assignments, chosen, completion,
 from .options import announce, listed
 
 if TYPE_CHECKING:
-    from ..score.verdict import Outcome
+    from ..score.outcome import Outcome
 
 MAX_REPEATS = 1000
 TIMEOUT_S, REPEATS = 600.0, 3  # defaults of --timeout and --repeats

@@ -68,7 +68,7 @@ class Worst(NamedTuple):
 
 @dataclass(frozen=True)
 class Since:
-    """What changed since a baseline.
+    """The changes since a baseline.
 
     Attributes:
         name: of the baseline.

@@ -150,23 +150,20 @@ def _motion(scene: Scene) -> dict[str, Any]:
 
     They come from the engine of sweeps alone, over `MOST_SWINGS` at most: what it leaves to the solver may take long.
     """
-    import numpy as np
-
     from ..model.start import Start
     from ..sweeps.part import solve_part
     from ..sweeps.promote import Promoted
     from ..sweeps.request import request
 
-    def left(*_: Any, doubtful: bool) -> Promoted:
-        return Promoted({}, ([], []), f"`foucault sweep` solves it in more digits{'' if doubtful else ', as asked'}.")
+    def left(*_: Any, **__: Any) -> Promoted:
+        return Promoted({}, ([], []), "`foucault sweep` solves it in more digits.")
 
     try:
         longest = MOST_SWINGS * 2 * math.pi / Start.of(scene.exact, DERIVED_PREC).fastest_rate
         if scene.exact.t_end > longest:
             scene = scene.with_values({"run.t_end": f"{longest:.4g}"})
         asked = request(scene, [f"site.latitude={scene.site.latitude}"], want=["frequency", "precession"])
-        with np.errstate(all="ignore"):
-            columns = solve_part(asked, range(1), left).columns
+        columns = solve_part(asked, range(1), left).columns
     except (FoucaultError, ArithmeticError) as error:
         return {"reason": str(error)}
     row = {name: values[0] for name, values in columns.items()}

@@ -41,7 +41,7 @@ def data_frame(columns: Mapping[str, Any]) -> Any:
 
 
 class Framed:
-    """What can be a pandas.DataFrame, and is shown as one by a notebook where pandas is installed."""
+    """Columns that pandas can hold: a notebook shows them as a table where it is installed."""
 
     def to_pandas(self) -> Any:
         """Return a pandas.DataFrame."""

@@ -21,7 +21,7 @@ from ..numbers.table import Table, decimals_of, resolved
 from ..scenes.fields import Confirmation, Level
 from ..scenes.scene import Scene
 
-SAMPLED = 10  # of so many intervals of the grid a sampled confirmation integrates one
+SAMPLED = 10  # a sampled confirmation integrates one in ten intervals of the grid
 
 
 @dataclass(frozen=True)

@@ -140,7 +140,8 @@ def solve_part(request: Request, numbers: range, promote: Promote = promoted) ->
         before = time.thread_time()
         rows = engine_rows(request.scene, request.table, part.columns["row"][places])
         part.tally.fold_s = time.thread_time() - before
-        _solve(request, part, places, rows, promote)
+        with np.errstate(divide="ignore", invalid="ignore"):  # a NaN goes to the solver
+            _solve(request, part, places, rows, promote)
     part.tally.counts.update(part.columns["status"].tolist())
     part.tally.cpu_s += time.thread_time() - started
     return part

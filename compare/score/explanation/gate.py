@@ -27,7 +27,7 @@ LOOSE = "has a step error: too loose a tolerance or too large a step (phase and 
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a reading leaves, beside what the file can tell.
+    """How much error a reading leaves, and how much the file can show.
 
     Attributes:
         left_m: the largest distance in m that its causes leave.
