@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, ValidationError
 
-from ..numbers.columns import GRID, POSITION, UNITS
+from ..numbers.columns import POSITION, STATE, UNITS
 from ..numbers.function import GoldenFunction
 from ..scenes.scene import Reading
 from .manifest import Decimal, Manifest, Name, Part, Text
@@ -35,13 +35,13 @@ class FunctionRecord(Part):
     def following(manifest: Manifest) -> dict[str, Any]:
         """Return what follows from the manifest of the dataset."""
         same = {name: getattr(manifest, name) for name in ("schema_version", "id", "inputs", "frame")}
-        units = {", ".join(kind): unit for kind, unit in UNITS.items() if {*kind} <= {"t", *GRID}}
+        units = {", ".join(kind): unit for kind, unit in UNITS.items() if {*kind} <= {"t", *STATE}}
         return {**same, "units": units}
 
     @classmethod
     def of(cls, made: Any, manifest: Manifest) -> FunctionRecord:
         """Describe a function as it was proved, in the dataset of a manifest."""
-        bounds = {name: made.bounds[name] for name in GRID}
+        bounds = {name: made.bounds[name] for name in STATE}
         return cls.model_validate({**cls.following(manifest), "bounds": bounds, **made.facts})
 
 
@@ -55,7 +55,7 @@ def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunctio
     count = len(record.times) - 1
     rules = {
         "is not in the form in which it is written": record.text() == text,
-        f"bounds: must name {', '.join(GRID)}": tuple(record.bounds) == GRID,
+        f"bounds: must name {', '.join(STATE)}": tuple(record.bounds) == STATE,
         "components: must be x, y, and z if there is no length_squared": tuple(record.components)
         == POSITION[: 2 if record.length_squared else 3],
         "times: must increase from 0": count > 0 and float.fromhex(record.times[0]) == 0,

@@ -7,7 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ...numbers.columns import GRID
+from ...numbers.columns import STATE
 from ...numbers.precision import double_below
 from ...numbers.table import Table
 from ..function import FunctionRecord
@@ -31,7 +31,7 @@ def problems(files: Files) -> Iterator[str]:
     rows = files.tables["grid.csv"]
     texts = [row for row in rows.rows if Fraction(float(row[0])) == Fraction(row[0])]
     at = function.at([float(row[0]) for row in texts])
-    for i, name in enumerate(GRID, 1):
+    for i, name in enumerate(STATE, 1):
         numbers = np.array([float(row[i]) for row in texts])
         limit = float(files.manifest.bound("grid", name)) + function.bound[name] + np.spacing(np.abs(numbers))
         off = np.abs(getattr(at, name) - numbers)
@@ -54,7 +54,7 @@ def contradicted(files: Files, times: list[float], table: Table, apart: Mapping[
         return []
     record, function = files.function
     at, found = function.at(times), []
-    for name in GRID:
+    for name in STATE:
         limit = Fraction(record.bounds[name]) + apart[name]
         for t, value, whole in zip(times, getattr(at, name).tolist(), table.whole(name, table.bits), strict=True):
             n, d = value.as_integer_ratio()
