@@ -137,7 +137,7 @@ PUBLIC = {
     "reference.model.algebra": "Functions State add cross dot minus plus product scale subtract",
     "reference.model.carried": "carried",
     "reference.model.constants": "Constants Vector axis_distance constants constants_in_double is_zero",
-    "reference.model.force": "acceleration invariant tension",
+    "reference.model.force": "acceleration energy invariant tension",
     "reference.model.formulations": "FORMULATIONS",
     "reference.model.start": "Start scaled",
     "reference.numbers.columns": "STATE",

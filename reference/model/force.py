@@ -50,6 +50,14 @@ def invariant(n: Vector, v: Vector, k: Constants) -> Any:
     return product(k.length, k.length, doubled) / 2
 
 
+def energy(n: Vector, v: Vector, k: Constants) -> Any:
+    """Return v²/2 - c·r - |Ω × r|²/2 in m²/s², which is h + Ω²R²/2: no large constant takes its digits."""
+    across = plus(product(k.cos, n[2]), product(-1, k.sin, n[1]))
+    centrifugal = product(k.rate, k.rate, plus(product(n[0], n[0]), product(across, across)))
+    doubled = minus(minus(dot(v, v), product(2, dot(k.pull, n))), centrifugal)
+    return product(k.length, k.length, doubled) / 2
+
+
 def rest_position(k: Constants, ctx: Any) -> Vector:
     """Return the rest position n = (0, sin θ, -cos θ), where the tangential force vanishes: Mathar (44), (46).
 

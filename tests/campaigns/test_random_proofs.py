@@ -19,6 +19,11 @@ from reference.numbers.precision import real
 from reference.scenes.scene import parse_scene
 
 FINER = 72  # bits that the truth has more than the proof
+ONCE_WRONG = {  # seeds of scenes of a third
+    49,  # without rotation h is a decimal, and was printed from half a unit away, which check.c could not decide
+    90,  # vz is tiny at one row, and its interval left open which double is nearest
+    128,  # h is mostly the speed of the ground, by which `verify` lost the digits of how far h may be off
+}
 CLEARLY = 60  # CPU seconds above which a proof must have the steps to show for it
 
 
@@ -91,8 +96,9 @@ def scene_of_a_third(seed):
 
 def test_random_scenes_are_proved_and_the_checker_proves_them_again(check, monkeypatch, tmp_path, size, tally):
     """A third damped, a third of effective gravity, a tenth by columns: check.c proves every number that is printed."""
-    methods, transits, wrong, begin = Counter(), 0, [], size(198, 0)
-    for seed in range(begin, 200):
+    methods, transits, wrong = Counter(), 0, []
+    seeds = sorted({*ONCE_WRONG, *range(size(198, 0), 200)})
+    for seed in seeds:
         with monkeypatch.context() as patch:
             if seed % 10 == 9:
                 patch.setattr("reference.enclosure.prove.plan_for", lambda *wanted: plan_for(*wanted[:3], "columns"))
@@ -103,9 +109,9 @@ def test_random_scenes_are_proved_and_the_checker_proves_them_again(check, monke
         if done.returncode:
             wrong.append((seed, done.stdout[-300:]))
     assert not wrong, wrong
-    assert methods["columns"] >= (200 - begin) // 10
+    assert methods["columns"] >= len(seeds) // 10
     parts = f"{methods['columns']} of them by columns, {transits} transits"
-    tally(f"random scenes: {200 - begin} proved and proved again by check.c, {parts}")
+    tally(f"random scenes: {len(seeds)} proved and proved again by check.c, {parts}")
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...model.constants import Constants, constants
-from ...model.force import acceleration, invariant
+from ...model.force import acceleration, energy, invariant
 from ...numbers.columns import STATE
 from ...numbers.precision import GUARD_BITS, Array, bits_of, context
 from ...numbers.table import FixedPoint, Integers, integers
@@ -117,8 +117,8 @@ class _Moments:
 
     def with_another_invariant(self, release: _Moments) -> Iterator[str]:
         """Check that h is that of the release."""
-        (first,), (allowed_first,) = release.values(_invariant), release.allowed(_invariant)
-        rows = zip(self.names, self.values(_invariant), self.allowed(_invariant), self._whole, strict=True)
+        (first,), (allowed_first,) = release.values(_invariant), release.allowed(_energy)
+        rows = zip(self.names, self.values(_invariant), self.allowed(_energy), self._whole, strict=True)
         for name, h, allowed, whole in rows:
             if whole and abs(h - first) > allowed + allowed_first:
                 yield f"{name}: the invariant h differs by {float(h - first):.2g} m²/s² from that of the first row"
@@ -209,6 +209,10 @@ def _vertical_velocity(x: Any, y: Any, z: Any, vx: Any, vy: Any) -> Any:
 
 def _invariant(columns: list[Any], k: Constants) -> Any:
     return invariant(*_over_length(columns, k), k)
+
+
+def _energy(columns: list[Any], k: Constants) -> Any:
+    return energy(*_over_length(columns, k), k)
 
 
 def _xddot(columns: list[Any], k: Constants) -> Any:

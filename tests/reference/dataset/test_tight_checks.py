@@ -287,7 +287,7 @@ def test_z_follows_from_x_and_y_where_it_is_more_than_a_quarter_of_the_cord(file
 def test_h_may_be_off_by_its_slopes_along_the_sphere(files, state, gravity, slopes):
     """Where z = -√(1 - x² - y²) and vz = -(x vx + y vy)/z follow; differentiated by hand."""
     made = in_a_swing(files, state, [int(slope > 0) for slope in slopes], gravity)
-    (allowed,) = made.allowed(physics._invariant)
+    (allowed,) = made.allowed(physics._energy)
     assert float(allowed) == pytest.approx(1.05e-18 * sum(slopes), rel=1e-3, abs=0)
 
 

@@ -15,7 +15,7 @@ from reference.engines.heyoka.system import System
 from reference.model.algebra import cross, dot, minus, plus, product
 from reference.model.carried import carried, constant_variables
 from reference.model.constants import Constants, axis_distance, constants
-from reference.model.force import acceleration, force, invariant, rest_position, tension
+from reference.model.force import acceleration, energy, force, invariant, rest_position, tension
 from reference.model.formulations import FORMULATIONS
 from reference.model.start import Start, release
 from reference.numbers.precision import context, real
@@ -155,6 +155,13 @@ def test_the_invariant_does_not_change_along_the_flow_without_drag(seed):
         )
 
     assert abs(shifted(1) - shifted(-1)) / (2 * step) < ctx.mpf(10) ** -60
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_energy_is_the_invariant_without_what_the_axis_is_away(seed):
+    _, k, n, v = model_at(random_scene(seed), PREC)
+    at_the_axis = (k.rate * k.axis_distance * k.length) ** 2 / 2
+    assert abs(energy(n, v, k) - invariant(n, v, k) - at_the_axis) < 1e-60 * max(1, at_the_axis)
 
 
 def test_with_drag_the_invariant_falls_by_the_work_of_the_drag():
