@@ -44,9 +44,9 @@ FLOORS = {
         ["commands", "fixture"],
         ["testing", "papers"],
         ["report"],
-        ["studies", "foucpend", "score"],
+        ["studies", "score"],
         ["methods"],
-        ["approximations", "rhs", "truth"],
+        ["approximations", "truth"],
         ["candidates", "observed"],
     ],
 }

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from ..foucpend.options import SWITCHES, Switch
+from ..papers.foucpend.options import SWITCHES, Switch
 
 ALSO = {"O": "-0", "l": "-1"}  # the letters may be read as digits where they are printed
 
@@ -18,7 +18,7 @@ def command(*, exact: bool = False, **typed: str | None) -> None:
 
     It integrates at a fixed step and prints snapshots and transits.
     """
-    from ..foucpend import Options, lines
+    from ..papers.foucpend import Options, lines
 
     options = Options.parse({letter: text for letter, text in typed.items() if text is not None}, exact)
     output = lines(options)

@@ -71,23 +71,20 @@ def command(
 
 def _motion(source: str, t_end: str | None, assignments: list[str] | None) -> Motion:
     """Return the motion of a dataset if the word means one, of a file, or else of a scene."""
-    from reference import load
     from reference.dataset.place import golden_folder
 
     from ..candidates.read import read
-    from ..report.motion import Motion
-    from ..truth import golden_of
+    from ..report.plot import motion_of
 
     changed = {"--t-end": t_end, "--set": assignments or None}
     path = Path(source)
     if source == "-" or (path.is_file() and path.suffix.lower() != ".toml"):
         refuse(changed, "for a file")
-        return Motion.of_candidate(read(source))
-    if golden_folder(source).is_dir() and not any(changed.values()):
-        return Motion.of_golden(load(source))
-    if golden_folder(source).is_dir() and source not in scene_ids():
+        return motion_of(read(source))
+    if source not in scene_ids() and golden_folder(source).is_dir():
         refuse(changed, "for a dataset")
+    if not any(changed.values()) and golden_folder(source).is_dir():
+        return motion_of(source)
     scene = load_scene(source, replacements(assignments, {"--t-end": ("run.t_end", t_end)}))
     with stoppable("nothing was written"), progress() as show:
-        report = show(f"the motion of {scene.id}", float(scene.exact.t_end))
-        return Motion.of_golden(golden_of(scene, announce=announce, report=report))
+        return motion_of(scene, announce, show(f"the motion of {scene.id}", float(scene.exact.t_end)))

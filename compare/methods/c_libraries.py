@@ -24,10 +24,10 @@ from reference.system.cache import entry, store, temporary
 from reference.system.workspace import workspace
 
 from ..candidates.external import run_program
-from ..rhs.problem import Problem
-from ..rhs.straight_line import Program
+from .library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
 from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, failed, outcome
-from .native.library import BOOST, GSL, SUNDIALS, Library, compiler, library_folders
+from .rhs.problem import Problem
+from .rhs.straight_line import Program
 
 FLAGS = ("-std=c++17", "-O3", "-march=native", "-w")
 HEAD = 4  # numbers before the states: CPU seconds, steps, calls of the right-hand side, rows

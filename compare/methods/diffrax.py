@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..rhs.problem import Problem
 from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Method, Outcome, Work, outcome
+from .rhs.problem import Problem
 
 ONE_THREAD = "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"
 

@@ -16,8 +16,8 @@ from reference.errors import shortened
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..rhs.problem import Problem
 from .method import Method, Outcome, Setting, Work, failed
+from .rhs.problem import Problem
 
 SETTING = "{setting}"  # stands for the step, tolerance or precision in a command
 LONGEST_NAME = 24  # characters of a program's name in tables and charts

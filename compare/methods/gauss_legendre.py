@@ -16,9 +16,9 @@ import numpy as np
 
 from reference.numbers.precision import Array, context
 
-from ..rhs.problem import Problem
-from ..rhs.straight_line import elements, generated, names, unpacked
 from .method import Family, Outcome, Work, outcome
+from .rhs.problem import Problem
+from .rhs.straight_line import elements, generated, names, unpacked
 from .runge_kutta.fixed_step import fixed_step, steps_between
 from .runge_kutta.tableau import TableauError
 

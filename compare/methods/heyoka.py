@@ -21,8 +21,8 @@ from reference.numbers.precision import DOUBLE, DOUBLE_BITS, GUARD_BITS, LONG_DO
 from reference.numbers.table import Table
 from reference.status import Status
 
-from ..rhs.problem import Problem
 from .method import Family, Method, Outcome, Work, failed
+from .rhs.problem import Problem
 
 QUADRUPLE_BITS = 113
 SPARE_BITS = 64  # exact states are written with this many bits below the number type's epsilon

@@ -11,8 +11,8 @@ from reference.numbers.columns import STATE
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from ..rhs.problem import Problem
 from .method import Family, Method, Outcome, Work, failed
+from .rhs.problem import Problem
 
 
 def prepare(problem: Problem, setting: float) -> Work:

@@ -18,8 +18,8 @@ from reference.numbers.table import Table
 from reference.status import Status
 from reference.system.imports import missing, switched_off
 
-from ..rhs.problem import Problem
-from .native.library import Library
+from .library import Library
+from .rhs.problem import Problem
 
 Setting = Literal["step", "tolerance", "precision"]
 

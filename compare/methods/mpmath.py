@@ -13,8 +13,8 @@ from reference.numbers.precision import GUARD_BITS, Array, context, to_fraction,
 from reference.numbers.table import Table
 from reference.status import Status
 
-from ..rhs.problem import Problem
 from .method import Family, Method, Outcome, Work
+from .rhs.problem import Problem
 
 SPARE_BITS = 64  # exact states are written with this many bits below the precision
 

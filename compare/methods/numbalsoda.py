@@ -15,9 +15,9 @@ import numpy as np
 
 from compare.methods.capture import captured
 
-from ..rhs.problem import Problem
-from ..rhs.straight_line import elements, generated
 from .method import HIGH_ORDER, NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
+from .rhs.problem import Problem
+from .rhs.straight_line import elements, generated
 
 MOST_STEPS = 100_000_000  # between two output times for LSODA, in all for DOP853
 

@@ -18,9 +18,9 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from ..rhs.problem import Problem
-from ..rhs.straight_line import elements, generated
 from .method import NINE_DIGITS, SPACE_FIRST, Family, Method, Outcome, Work, outcome
+from .rhs.problem import Problem
+from .rhs.straight_line import elements, generated
 
 _POINTER = """
 @nb.extending.intrinsic

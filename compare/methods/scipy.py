@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from ..rhs.problem import Problem
 from .method import NINE_DIGITS, SPACE_FIRST, TRACEABLE, Family, Method, Outcome, Work, outcome
+from .rhs.problem import Problem
 
 LEAST_RTOL = 100 * float(np.finfo(float).eps)  # solve_ivp raises a smaller one to this, with a warning
 IMPLICIT = ("Radau", "BDF", "LSODA")

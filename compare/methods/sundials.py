@@ -14,8 +14,8 @@ import numpy as np
 from compare.methods.capture import captured
 from reference.numbers.precision import Array
 
-from ..rhs.problem import Problem
 from .method import NINE_DIGITS, Family, Method, Outcome, Work, outcome
+from .rhs.problem import Problem
 
 MOST_STEPS = 100_000_000  # between two output times
 

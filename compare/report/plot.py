@@ -59,13 +59,26 @@ def plot(source: Score | Candidate | Golden | Solution | AnyScene) -> Picture:
     """
     if isinstance(source, Score):
         return Picture(f"errors of {source.candidate.name}", lambda path: error_picture([source], path))
-    motion = _motion(source)
+    motion = motion_of(source)
     return Picture(f"motion of {motion.name}", lambda path: motion_picture(motion, list(panels(motion)), path))
 
 
-def _motion(source: Candidate | Golden | Solution | AnyScene) -> Motion:
+def motion_of(
+    source: Candidate | Golden | Solution | AnyScene,
+    announce: Callable[[str], None] | None = None,
+    report: Callable[[float], None] | None = None,
+) -> Motion:
+    """Return the motion of a candidate, a solution or a dataset, or of a scene, which is solved if no dataset has it.
+
+    Args:
+        source: what moves.
+        announce: called with a message when a scene has to be solved.
+        report: called with the simulated time reached, in s.
+    """
     if isinstance(source, Candidate):
         return Motion.of_candidate(source)
     if isinstance(source, str | Path) and golden_folder(source).is_dir():
         return Motion.of_golden(load(source))
-    return Motion.of_golden(source if isinstance(source, Golden | Solution) else golden_of(as_scene(source)))
+    if isinstance(source, Golden | Solution):
+        return Motion.of_golden(source)
+    return Motion.of_golden(golden_of(as_scene(source), announce=announce, report=report))

@@ -24,7 +24,7 @@ import heyoka as hy
 import numpy as np
 from octet import SPAN, ScalarLoop, cpu_s, many_rows
 
-from compare.methods.native.library import BOOST, compiler
+from compare.methods.library import BOOST, compiler
 from reference.engines.batch_interface import Rows, Wanted
 from reference.engines.heyoka.batch import BATCH as HEYOKA
 from reference.engines.octet.batch import BATCH as OCTET

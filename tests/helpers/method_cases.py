@@ -11,8 +11,8 @@ from small_scenes import make_scene
 
 import reference
 from compare.methods import METHODS, Problem
-from compare.rhs.problem import suited
-from compare.rhs.straight_line import FUNCTIONS
+from compare.methods.rhs.problem import suited
+from compare.methods.rhs.straight_line import FUNCTIONS
 from reference import Scene, Solution
 
 SECTIONS = {

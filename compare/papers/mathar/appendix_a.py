@@ -9,11 +9,11 @@ import numpy as np
 
 from reference import load_scene
 
-from ...foucpend.output import Transits
 from ...methods import rk4, rkng56, rkng67
 from ...methods.runge_kutta.tableau import NystromTableau, Tableau, TableauError
 from ..checks import Check, Finding, PrintedNumber, Statement, section
 from ..digits import MP, mpf, pi, shown
+from ..foucpend.output import Transits
 from ..points import paris
 from ..runs import path_in, transits
 from .paris import swings_surplus

@@ -15,7 +15,7 @@ from compare.approximations import (
     motions,
     quantities,
 )
-from compare.foucpend.output import ITEMS
+from compare.papers.foucpend.output import ITEMS
 from reference import InputError, IntegrationError, UnreachableError, load_scene
 
 PARIS = load_scene("paris")

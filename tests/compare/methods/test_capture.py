@@ -12,7 +12,7 @@ import reference
 from compare import assert_agrees, study
 from compare.methods import METHODS, available, capture
 from compare.methods.capture import captured
-from compare.rhs.problem import Problem
+from compare.methods.rhs.problem import Problem
 from reference.scenes.fields import LEVELS
 
 

@@ -12,7 +12,7 @@ from method_cases import case
 
 from compare.methods import METHODS, available
 from compare.methods.method import Family, Method
-from compare.rhs.problem import suited
+from compare.methods.rhs.problem import suited
 from reference import InputError
 
 # looser than the tight end of the ladder, which would take longer than a test may

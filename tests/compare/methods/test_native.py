@@ -9,9 +9,8 @@ import pytest
 from method_cases import case, python_function
 from small_scenes import make_scene
 
-from compare.methods import METHODS, Problem, available, c_libraries
-from compare.methods.native import library
-from compare.methods.native.library import BOOST, GSL, Library
+from compare.methods import METHODS, Problem, available, c_libraries, library
+from compare.methods.library import BOOST, GSL, Library
 from reference import IntegrationError
 
 HOST = r"""

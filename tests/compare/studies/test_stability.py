@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from compare.methods import METHODS, Problem
+from compare.methods.rhs.problem import suited
 from compare.report.stability_page import document_of, headlines, page_text, text_table
-from compare.rhs.problem import suited
 from compare.studies.character import Character
 from compare.studies.long_runs import LongRun, laws
 from compare.studies.row import Row

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from places import ROOT
 
-from compare.rhs.problem import Problem
+from compare.methods.rhs.problem import Problem
 from reference import load, load_scene
 from reference.numbers.columns import STATE
 

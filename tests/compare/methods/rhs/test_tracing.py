@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from method_cases import python_function
 from small_scenes import make_scene
 
-import compare.rhs.tracing
-from compare.rhs.problem import FirstOrderSystem, Problem
-from compare.rhs.tracing import TracingError, differentiated, record
+import compare.methods.rhs.tracing
+from compare.methods.rhs.problem import FirstOrderSystem, Problem
+from compare.methods.rhs.tracing import TracingError, differentiated, record
 from reference import InputError, load_scene
 from reference.model.constants import constants, constants_in_double
 from reference.model.formulations import FORMULATIONS
@@ -29,7 +29,7 @@ def problem(formulation, **sections):
 
 
 def test_the_example_in_the_module_runs():
-    assert doctest.testmod(compare.rhs.tracing).failed == 0
+    assert doctest.testmod(compare.methods.rhs.tracing).failed == 0
 
 
 @pytest.mark.parametrize("formulation", TRACED)

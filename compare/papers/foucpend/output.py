@@ -18,8 +18,8 @@ from reference.model.start import Start
 from reference.numbers.precision import Array, context, to_mpf
 from reference.scenes.scene import MAX_ROWS
 
-from ..approximations.mathar import VARIABLES, derivatives, truncated
-from ..methods import METHODS, FirstOrderSystem, Problem, available
+from ...approximations.mathar import VARIABLES, derivatives, truncated
+from ...methods import METHODS, FirstOrderSystem, Problem, available
 from .options import METHOD_OF, Options
 
 DIGITS = 17  # decimal digits that identify a double

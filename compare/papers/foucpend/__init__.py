@@ -1,6 +1,6 @@
 """foucPend, the program of Mathar's appendix A, with the same switches: fixed steps, snapshots and transits as text.
 
->>> from compare.foucpend import Options, lines
+>>> from compare.papers.foucpend import Options, lines
 >>> options = Options.parse({"x": "0.3", "y": "0.4", "T": "20", "s": "100"})
 >>> for line in lines(options):                                       # doctest: +SKIP
 ...     print(line)
