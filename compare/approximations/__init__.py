@@ -14,14 +14,13 @@ from collections.abc import Mapping
 
 from reference.system.imports import Registry
 
-from .approximation import Approximation, Motion, Order, Printed, Quantity
+from .approximation import Approximation, Motion, Order, Quantity
 
 __all__ = [
     "APPROXIMATIONS",
     "Approximation",
     "Motion",
     "Order",
-    "Printed",
     "Quantity",
     "motions",
     "quantities",

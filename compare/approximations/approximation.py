@@ -40,21 +40,6 @@ CUBE_IN_AMPLITUDE = Order("amplitude", 3, (0.5, 1.0, 2.0, 4.0), ("site.rotation_
 SQUARE_IN_RATE = Order("rotation_rate", 2, (1e-5, 2e-5, 4e-5, 8e-5), ("release.x=3e-3", "release.y=4e-3"))
 
 
-@dataclass(frozen=True)
-class Printed:
-    """A misprint: the formula as a source paper prints it, beside the right form.
-
-    Attributes:
-        text: the formula as printed.
-        right: the formula as it must be.
-        compute: evaluates the printed form, with the signature of the right one; None if it has no meaning.
-    """
-
-    text: str
-    right: str
-    compute: Callable[..., Any] | None = None
-
-
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Approximation:
     """An analytic or truncated model from the source papers.
@@ -67,7 +52,6 @@ class Approximation:
         drops: terms and effects that it leaves out.
         orders: how its error grows with amplitude, rotation rate or length.
         refuses: `refuses(scene)`, the reason why a scene is outside its domain, or None.
-        printed: the printed form, where it is wrong.
     """
 
     id: str
@@ -77,7 +61,6 @@ class Approximation:
     drops: str
     orders: tuple[Order, ...]
     refuses: Callable[[Scene], str | None] = lambda scene: None
-    printed: Printed | None = None
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.id}: {self.title})"

@@ -1,7 +1,7 @@
 """Numbers of the swing: apparent gravity in m/s², frequency in Hz, and precession period T_f of its plane in s.
 
 Gravity is that of Gastebois 4.2 and Mathar (48), the frequencies are those of Mathar VII, and the precession is that
-of Gastebois 4.1, 4.2, 6.3, where T_p is 2π/Ω.
+of Gastebois 4.1, 4.2, 6.3, where T_p is 2π/Ω. `foucault paper` lists the misprints in them.
 """
 
 from __future__ import annotations
@@ -12,9 +12,8 @@ from typing import Any
 from reference import Scene
 
 from ..observed.swing_plane import frequency, precession_period
-from .approximation import Order, Printed, Quantity
+from .approximation import Order, Quantity
 from .case import Case, at_rest, released_at_rest, swinging, under_gravity
-from .gastebois import small_angles
 from .mathar import slow_down
 
 _STILL = ("site.rotation_rate=0",)
@@ -25,11 +24,6 @@ _CENTRIFUGAL = Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4), (), 1e-2)
 _AT_POLE = ("site.latitude=90", "site.rotation_rate=2e-3")
 _SMALL = 1e-2
 _SQUARE_AT_POLE = Order("amplitude", 2, (2.0, 4.0, 8.0), _AT_POLE)
-
-
-def _apparent_gravity_as_printed(case: Case) -> Any:
-    """Return (g² + Ω² R_p cos λ - 2 g Ω² R_p cos² λ)^(1/2)."""
-    return case.ctx.sqrt(case.gravity**2 + case.outward - 2 * case.gravity * case.outward * case.cos)
 
 
 def harmonic(case: Case) -> Any:
@@ -54,11 +48,6 @@ def anharmonic(case: Case) -> Any:
     return turntable(case, case.apparent_gravity) / slow_down(case)
 
 
-def _anharmonic_as_printed(case: Case) -> Any:
-    """Return the same divided by 4K, as printed."""
-    return anharmonic(case) / (2 * case.ctx.pi)
-
-
 def _over_sine(case: Case) -> Any:
     """Return T_p/sin λ."""
     return abs(2 * case.ctx.pi / (case.rate * case.sin))
@@ -73,12 +62,6 @@ def _spherical(case: Case) -> Any:
     """Return T_p/sin λ_a (1 + 3/8 r0²/L0²), with r0 counted from the plumb line."""
     x, y, _ = case.plumb.inward(case.position)
     return _over_tilted_sine(case) * (1 + 3 * (x**2 + y**2) / (8 * case.length**2))
-
-
-def _swing_over_sine(case: Case) -> Any:
-    """Return T/sin λ_a with the period T of the swing, as 6.3 prints it."""
-    omega, _ = small_angles(case)
-    return abs(2 * case.ctx.pi / (omega * case.ctx.sin(case.apparent_latitude)))
 
 
 def _turning(scene: Scene) -> str | None:
@@ -104,11 +87,6 @@ APPROXIMATIONS = (
         drops="the cord: the bob is nearer to the axis than the suspension",
         orders=(Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4)), Order("length", 1, (10, 20, 40, 80))),
         refuses=under_gravity,
-        printed=Printed(
-            "g_a² = g² + Ω² R_p cos λ - 2 g Ω² R_p cos² λ",
-            "g_a² = g² + Ω⁴ R_p² cos² λ - 2 g Ω² R_p cos² λ: the term a_e² lost its square in print",
-            _apparent_gravity_as_printed,
-        ),
         formula=lambda case: case.apparent_gravity,
         truth=lambda scene: Case.of_scene(scene).pull_at_rest,
         unit="m/s²",
@@ -153,11 +131,6 @@ APPROXIMATIONS = (
         drops="the centrifugal gradient; the effects of the ellipse and of Ω cos φ at finite amplitude",
         orders=(_EXACT, _SQUARE_IN_RATE),
         refuses=released_at_rest,
-        printed=Printed(
-            "slow-down with the factor 4K(sin(φ0/2))",
-            "2K(sin(φ0/2))/π, which is 1 at amplitude 0",
-            _anharmonic_as_printed,
-        ),
         formula=anharmonic,
     ),
     _precession(
@@ -177,7 +150,6 @@ APPROXIMATIONS = (
             Order("rotation_rate", 2, (2e-3, 4e-3, 8e-3), ("site.equatorial_radius=0",), _SMALL),
             _SQUARE_AT_POLE,
         ),
-        printed=Printed("T_f = 2π/Ωz = T/sin λ_a", "T_f = T_p/sin λ_a: T is the period of the swing", _swing_over_sine),
         formula=_over_tilted_sine,
     ),
     _precession(

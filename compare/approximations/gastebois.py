@@ -22,7 +22,7 @@ from reference.model.constants import Constants
 from reference.model.formulations import FORMULATIONS
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, Motion, Order, Printed
+from .approximation import CUBE_IN_AMPLITUDE, Motion, Order
 from .case import Case, hung, integrated, released_at_rest, swinging
 
 Pair = Sequence[Any]
@@ -94,15 +94,11 @@ def _rows(case: Case, z: Any, rate: Any) -> Array:
     return case.plumb.outward(hung(z.real, z.imag, rate.real, rate.imag, case.length))
 
 
-def _any_release(case: Case, times: Array, as_printed: bool = False) -> Array:
-    """Return rows of 6.1, on demand with the sine that is printed at the end of v_x."""
+def _any_release(case: Case, times: Array) -> Array:
+    """Return rows of 6.1."""
     omega, turn = small_angles(case)
     place, speed = case.plumb.inward(case.position)[:2], case.plumb.inward(case.velocity)[:2]
-    z, rate = oscillation(place, speed, omega, turn, times)
-    if as_printed:
-        second, slow = float(constants_of(place, speed, omega, turn)[3]), float(omega - turn)
-        rate = rate + second * slow * (np.cos(slow * times) - np.sin(slow * times))
-    return _rows(case, z, rate)
+    return _rows(case, *oscillation(place, speed, omega, turn, times))
 
 
 def in_turning_axes(minor: Any, omega: Any, turn: Any, t: Any, functions: Any) -> tuple[Any, Any, Any, Any]:
@@ -125,7 +121,7 @@ def in_turning_axes(minor: Any, omega: Any, turn: Any, t: Any, functions: Any) -
 
 
 def _ellipse(case: Case, times: Array, sense: int) -> Array:
-    """Return rows of that motion, X along the release: `sense` 0 is 6.2, 1 is 6.3, and -1 is 6.3 as printed."""
+    """Return rows of that motion, X along the release: `sense` 0 is 6.2, 1 is 6.3."""
     omega, turn = small_angles(case)
     east, north, _ = case.plumb.inward(case.position)
     x, y, vx, vy = in_turning_axes(float(sense * turn / omega), float(omega), float(turn), times, np)
@@ -158,11 +154,6 @@ APPROXIMATIONS = (
         drops=_DROPS,
         orders=(_SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
         refuses=swinging,
-        printed=Printed(
-            "v_x ends with - c'2 (ω - Ωz) sin (ω - Ωz)t; x and y are the integer part (partie entière)",
-            "- c'2 (ω - Ωz) cos (ω - Ωz)t; real part",
-            partial(_any_release, as_printed=True),
-        ),
         path=_any_release,
         rest=hanging,
     ),
@@ -185,11 +176,6 @@ APPROXIMATIONS = (
         drops=_DROPS,
         orders=(_SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
         refuses=released_at_rest,
-        printed=Printed(
-            "the ellipse is run through clockwise, transverse speed -r0 Ωz",
-            "counter-clockwise in the north, +r0 Ωz, as his own X and Y say",
-            partial(_ellipse, sense=-1),
-        ),
         path=partial(_ellipse, sense=1),
         rest=hanging,
     ),

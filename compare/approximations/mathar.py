@@ -22,7 +22,7 @@ from reference.model.algebra import Functions, State, dot, minus, plus, product
 from reference.model.constants import Constants
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion, Order, Printed
+from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion, Order
 from .case import Case, hung, integrated, lowest_point, released_at_rest, swinging
 from .gastebois import oscillation, turntable_frequency
 
@@ -220,7 +220,6 @@ APPROXIMATIONS = (
         domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
         drops="Ω² (so the tilt and strength of the apparent gravity), all powers of x/l and y/l beyond the first",
         orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
-        printed=Printed("ẍ = -x̂ ĝ + 2 Ω sin φ ŷ", "x̂'' = -x̂ ĝ + 2 Ω sin φ ŷ', each with a hat and ŷ with its dot"),
         refuses=swinging,
         path=partial(_harmonic, apparent=False, about_rest=False),
         rest=lowest_point,

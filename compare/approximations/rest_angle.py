@@ -11,7 +11,7 @@ from typing import Any
 from reference import Scene
 from reference.model.constants import Vector
 
-from .approximation import Order, Printed, Quantity
+from .approximation import Order, Quantity
 from .case import Case, under_gravity
 
 
@@ -84,10 +84,6 @@ APPROXIMATIONS = (
         where="Mathar (46); (45) is the same in y",
         drops="nothing",
         orders=(Order("rotation_rate", None, _RATES), Order("length", None, (1, 67, 10000))),
-        printed=Printed(
-            "(45) begins with y²",
-            "y; as printed it has no solution in the north, where its right side is negative for every y near 0",
-        ),
         formula=_equation,
     ),
     *(

@@ -12,7 +12,7 @@ import numpy as np
 
 from reference.numbers.precision import Array
 
-from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion, Printed
+from .approximation import CUBE_IN_AMPLITUDE, SQUARE_IN_RATE, Motion
 from .case import Case, hung, lowest_point, swinging
 
 
@@ -37,14 +37,9 @@ def _rotating_frame(case: Case, times: Array) -> Array:
     return hung(x * c - y * s, x * s + y * c, across * c - along * s, across * s + along * c, case.length)
 
 
-def _coriolis_theorem(case: Case, times: Array, one_error: bool = False) -> Array:
-    """Method 2: the vector x in a frame turning at ω_p = -ω sin α k, where ẋ = ẋ' + ω_p × x'.
-
-    With the double cross product corrected, and F_eff left as printed, `one_error`, ω̃² = g/L - ω_p².
-    """
+def _coriolis_theorem(case: Case, times: Array) -> Array:
+    """Method 2: the vector x in a frame turning at ω_p = -ω sin α k, where ẋ = ẋ' + ω_p × x'."""
     w, turn = _rates(case)
-    if one_error:
-        w = float(np.sqrt(case.gravity / case.length - (case.rate * case.sin) ** 2))
     rotate = np.array([[0.0, turn], [-turn, 0.0]])  # ω_p ×
     start = np.array([float(part) for part in case.position[:2]])
     speed = np.array([float(part) for part in case.velocity[:2]]) - rotate @ start
@@ -90,11 +85,6 @@ APPROXIMATIONS = (
         id="method_2",
         title="harmonic pendulum by the Coriolis theorem",
         where="third source paper, method 2",
-        printed=Printed(
-            "-m ω_p × (ω_p × x') = -m ω_p² x', and F_eff with ẋ' for ẋ: two errors that cancel",
-            "+m ω_p² x', and ẋ = ẋ' + ω_p × x' in F_eff; with one error alone ω̃² is off by 2 ω_p²",
-            partial(_coriolis_theorem, one_error=True),
-        ),
         path=_coriolis_theorem,
     ),
     _motion(

@@ -11,27 +11,21 @@ from reference.commands.progress import progress
 from reference.commands.terminal import AsJson, emit, stoppable
 from reference.scenes.shipped import golden_root
 
+from .options import option
+
+OUT = option("--out", "Write the pages into this folder (extra plot).", "DIR")
+DATA = option("--data", "The folder of the datasets (default: those that ship).", "DIR")
+STUDIES = option(
+    "--studies", "Results of `foucault study` and `stability`, as JSON (default: docs/studies in a checkout).", "DIR"
+)
+FILES = option("--files", "Link files to URL/DATASET/FILE (default: name them alone).", "URL")
+
 
 def command(
-    out: Annotated[
-        Path, typer.Option("--out", metavar="DIR", help="Write the pages into this folder (extra plot).")
-    ] = Path("atlas"),
-    data: Annotated[
-        Path | None,
-        typer.Option("--data", metavar="DIR", help="The folder of the datasets (default: those that ship)."),
-    ] = None,
-    studies: Annotated[
-        Path | None,
-        typer.Option(
-            "--studies",
-            metavar="DIR",
-            help="Results of `foucault study` and `stability`, as JSON (default: docs/studies in a checkout).",
-        ),
-    ] = None,
-    files: Annotated[
-        str,
-        typer.Option("--files", metavar="URL", help="Link files to URL/DATASET/FILE (default: name them alone)."),
-    ] = "",
+    out: Annotated[Path, OUT] = Path("atlas"),
+    data: Annotated[Path | None, DATA] = None,
+    studies: Annotated[Path | None, STUDIES] = None,
+    files: Annotated[str, FILES] = "",
     as_json: AsJson = False,
 ) -> None:
     """Make a page over all golden datasets.

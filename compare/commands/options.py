@@ -8,8 +8,13 @@ from typing import Annotated, Any
 
 import typer
 
-from reference import InputError, Scene, scene_ids
+from reference import InputError, Scene
 from reference.commands.terminal import emit, refuse
+
+
+def option(word: str, text: str, value: str | None = None, names: Callable[[str], list[str]] | None = None) -> Any:
+    """Return an option: its word, what the help says of it, the word for its value, and what a shell may complete."""
+    return typer.Option(word, help=text, metavar=value, autocompletion=names)
 
 
 def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:
@@ -30,38 +35,20 @@ def method_ids() -> list[str]:
     return list(METHODS)
 
 
-Methods = Annotated[
-    str | None,
-    typer.Option(
-        "--methods",
-        metavar="A,B,…",
-        help="Ids of methods, as `foucault methods` lists them (default: all that have runs for it).",
-        autocompletion=completion_of_lists(method_ids),
-    ),
-]
-Scenes = Annotated[
-    str | None,
-    typer.Option(
-        "--scenes",
-        metavar="A,B,…",
-        help="Ids of scenes (default: paris and all that have flags).",
-        autocompletion=completion_of_lists(scene_ids),
-    ),
-]
-Folder = Annotated[
-    Path | None,
-    typer.Option("--out", metavar="DIR", help="Write CSV, JSON and an HTML page into this folder (default: none)."),
-]
-Commands = Annotated[
-    list[str] | None,
-    typer.Option("--run", metavar="'COMMAND'", help="Study your program too; {setting} is its step. May be repeated."),
-]
-Names = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--name", metavar="WORD", help="Name of the program of --run, one for each (default: its file's name)."
-    ),
-]
+METHODS = option(
+    "--methods",
+    "Ids of methods, as `foucault methods` lists them (default: all that have runs for it).",
+    "A,B,…",
+    completion_of_lists(method_ids),
+)
+FOLDER = option("--out", "Write CSV, JSON and an HTML page into this folder (default: none).", "DIR")
+PROGRAM = option("--run", "Study your program too; {setting} is its step. May be repeated.", "'COMMAND'")
+NAME = option("--name", "Name of the program of --run, one for each (default: its file's name).", "WORD")
+
+Methods = Annotated[str | None, METHODS]
+Folder = Annotated[Path | None, FOLDER]
+Commands = Annotated[list[str] | None, PROGRAM]
+Names = Annotated[list[str] | None, NAME]
 
 
 def listed(text: str | None, field: str) -> list[str] | None:

@@ -6,21 +6,16 @@ from collections import Counter
 from pathlib import Path
 from typing import Annotated, Any
 
-import typer
-
 from reference.commands.progress import progress
 from reference.commands.terminal import AsJson, stoppable
 
-from .options import finish
+from .options import finish, option
+
+OUT = option("--out", "Write a page with figures, CSV and JSON into this folder (extra plot).", "DIR")
 
 
 def command(
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out", metavar="DIR", help="Write a page with figures, CSV and JSON into this folder (extra plot)."
-        ),
-    ] = None,
+    out: Annotated[Path | None, OUT] = None,
     as_json: AsJson = False,
 ) -> None:
     """Judge every formula of the source papers.

@@ -13,12 +13,21 @@ from reference.commands.terminal import Assignments, EndTime, completion, refuse
 from reference.errors import did_you_mean, in_words
 from reference.scenes.shipped import seals
 
-from .options import announce, completion_of_lists, listed
+from .options import announce, completion_of_lists, listed, option
 
 if TYPE_CHECKING:
     from ..report.motion import Motion
 
 WHAT = ("path", "sphere", "plane", "transits")
+
+
+OUT = option("--out", "The picture: .svg, .png or .pdf (default: the name, and .svg).", "FILE")
+WHAT = option(
+    "--what",
+    f"Which of {', '.join(WHAT)} to draw, side by side (default: all that there are).",
+    "A,B,…",
+    names=completion_of_lists(lambda: WHAT),
+)
 
 
 def command(
@@ -30,19 +39,8 @@ def command(
             autocompletion=completion(lambda: {*scene_ids(), *seals()}),
         ),
     ],
-    out: Annotated[
-        Path | None,
-        typer.Option("--out", metavar="FILE", help="The picture: .svg, .png or .pdf (default: the name, and .svg)."),
-    ] = None,
-    what: Annotated[
-        str | None,
-        typer.Option(
-            "--what",
-            metavar="A,B,…",
-            help=f"Which of {', '.join(WHAT)} to draw, side by side (default: all that there are).",
-            autocompletion=completion_of_lists(lambda: WHAT),
-        ),
-    ] = None,
+    out: Annotated[Path | None, OUT] = None,
+    what: Annotated[str | None, WHAT] = None,
     t_end: EndTime = None,
     set_: Assignments = None,
 ) -> None:

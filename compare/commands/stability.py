@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-import typer
-
-from reference import load_scene
+from reference import load_scene, scene_ids
 from reference.commands.progress import progress
 from reference.commands.terminal import AsJson, stoppable
 
@@ -15,10 +13,11 @@ from .options import (
     Folder,
     Methods,
     Names,
-    Scenes,
     check_limit,
+    completion_of_lists,
     finish,
     listed,
+    option,
     programs_of,
     resumes,
 )
@@ -27,17 +26,20 @@ LIMIT_S = 3.0  # default of --limit
 PARIS = "paris"  # the scene with whose values a command is tried for its placeholders
 
 
+SCENES = option(
+    "--scenes", "Ids of scenes (default: paris and all that have flags).", "A,B,…", completion_of_lists(scene_ids)
+)
+LIMIT = option("--limit", "Allow one run this many CPU seconds.", "S")
+LONG = option("--long", "Also measure how errors grow over 30 days (takes minutes more).")
+
+
 def command(
-    scenes: Scenes = None,
+    scenes: Annotated[str | None, SCENES] = None,
     methods: Methods = None,
     run: Commands = None,
     name: Names = None,
-    limit: Annotated[
-        float, typer.Option("--limit", metavar="S", help="Allow one run this many CPU seconds.")
-    ] = LIMIT_S,
-    long: Annotated[
-        bool, typer.Option("--long", help="Also measure how errors grow over 30 days (takes minutes more).")
-    ] = False,
+    limit: Annotated[float, LIMIT] = LIMIT_S,
+    long: Annotated[bool, LONG] = False,
     out: Folder = None,
     as_json: AsJson = False,
 ) -> None:

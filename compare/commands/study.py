@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from reference import Scene, load_scene
 from reference.commands.progress import progress
 from reference.commands.terminal import AsJson, Assignments, SceneWord, refuse, replacements, stoppable
@@ -21,6 +19,7 @@ from .options import (
     finish,
     listed,
     numbers,
+    option,
     programs_of,
     resumes,
 )
@@ -38,52 +37,31 @@ OF_APPROXIMATIONS = dict.fromkeys(
 )
 
 
+PRECISIONS = option("--precisions", "Bits: measure run time against digits at these precisions.", "53,113,…")
+APPROXIMATIONS = option(
+    "--approximations", "Study the source papers' approximations instead: where each stops being good."
+)
+CANDIDATES = option("--candidates", "Put a file of somebody's output beside the methods. May be repeated.", "FILE")
+CPU = option("--cpu", "CPU seconds that each file of --candidates took; - where nobody knows.", "S,-,…")
+SETTINGS = option("--settings", f"Values of {{setting}} in --run (default: {SETTINGS}).", "S,S,…")
+T_END = option("--t-end", "End of the run in s (default: the scene's; at most 14400 with --precisions).", "S")
+LIMIT = option("--limit", f"Allow one run this many CPU seconds (default: {LIMIT_S:g}).", "S")
+NO_FORMULATIONS = option("--no-formulations", "Leave out the comparison of formulations.")
+
+
 def command(
     scene_word: SceneWord,
     methods: Methods = None,
-    precisions: Annotated[
-        str | None,
-        typer.Option(
-            "--precisions", metavar="53,113,…", help="Bits: measure run time against digits at these precisions."
-        ),
-    ] = None,
-    approximations: Annotated[
-        bool,
-        typer.Option(
-            "--approximations", help="Study the source papers' approximations instead: where each stops being good."
-        ),
-    ] = False,
+    precisions: Annotated[str | None, PRECISIONS] = None,
+    approximations: Annotated[bool, APPROXIMATIONS] = False,
     run: Commands = None,
     name: Names = None,
-    candidates: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--candidates", metavar="FILE", help="Put a file of somebody's output beside the methods. May be repeated."
-        ),
-    ] = None,
-    cpu: Annotated[
-        str | None,
-        typer.Option(
-            "--cpu", metavar="S,-,…", help="CPU seconds that each file of --candidates took; - where nobody knows."
-        ),
-    ] = None,
-    settings: Annotated[
-        str | None,
-        typer.Option("--settings", metavar="S,S,…", help=f"Values of {{setting}} in --run (default: {SETTINGS})."),
-    ] = None,
-    t_end: Annotated[
-        str | None,
-        typer.Option(
-            "--t-end", metavar="S", help="End of the run in s (default: the scene's; at most 14400 with --precisions)."
-        ),
-    ] = None,
-    limit: Annotated[
-        float | None,
-        typer.Option("--limit", metavar="S", help=f"Allow one run this many CPU seconds (default: {LIMIT_S:g})."),
-    ] = None,
-    no_formulations: Annotated[
-        bool, typer.Option("--no-formulations", help="Leave out the comparison of formulations.")
-    ] = False,
+    candidates: Annotated[list[str] | None, CANDIDATES] = None,
+    cpu: Annotated[str | None, CPU] = None,
+    settings: Annotated[str | None, SETTINGS] = None,
+    t_end: Annotated[str | None, T_END] = None,
+    limit: Annotated[float | None, LIMIT] = None,
+    no_formulations: Annotated[bool, NO_FORMULATIONS] = False,
     out: Folder = None,
     set_: Assignments = None,
     as_json: AsJson = False,

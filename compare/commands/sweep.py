@@ -25,6 +25,8 @@ from reference.commands.terminal import (
 from reference.scenes.fields import LEVELS
 from reference.status import Status
 
+from .options import option
+
 if TYPE_CHECKING:
     from reference import Swept
     from reference.sweeps.request import Request
@@ -32,6 +34,22 @@ if TYPE_CHECKING:
 _NO_GRID = dict.fromkeys(
     ("run.grid_step", "run.digits", "run.level", "run.transits"), "Give --t-end, --digits, --level or --want."
 )
+
+
+OVER = option(
+    "--over", "Vary a field: START:STOP:STEP, or V1,V2,…, or @FILE.csv; several give all combinations.", "KEY=VALUES"
+)
+ROWS = option("--rows", "Instead: CSV or Parquet, a column for each field, a row a scene.", "FILE")
+WANT = option(
+    "--want", "frequency, precession, transits, state, amplitude, all of these (default), transit-times.", "A,B,…"
+)
+LEVEL = option("--level", "Above computed, every row goes through the solver.", "L", names=completion(lambda: LEVELS))
+DIGITS = option("--digits", "Significant digits of every row, by the solver (default: those of double).", "D")
+TOLERANCE = option("--tolerance", "Solve rows again whose position may be off by more, in m.", "M")
+ENGINE = option("--engine", "Solve the rows with this engine (default: the fastest).", "E")
+AUDIT = option("--audit", "Solve N rows again in 28 digits (default: with --out a thousandth, else none).", "N")
+OUT = option("--out", "Write the rows into this folder, in Parquet; the same command goes on.", "DIR")
+PLOT = option("--plot", "Draw frequency and precession: .svg, .png or .pdf.", "FILE")
 
 
 def command(
@@ -43,71 +61,20 @@ def command(
             autocompletion=completion(scene_ids),
         ),
     ] = None,
-    over: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--over",
-            metavar="KEY=VALUES",
-            help="Vary a field: START:STOP:STEP, or V1,V2,…, or @FILE.csv; several give all combinations.",
-        ),
-    ] = None,
-    rows: Annotated[
-        Path | None,
-        typer.Option("--rows", metavar="FILE", help="Instead: CSV or Parquet, a column for each field, a row a scene."),
-    ] = None,
+    over: Annotated[list[str] | None, OVER] = None,
+    rows: Annotated[Path | None, ROWS] = None,
     set_: Assignments = None,
     t_end: EndTime = None,
-    want: Annotated[
-        str | None,
-        typer.Option(
-            "--want",
-            metavar="A,B,…",
-            help="frequency, precession, transits, state, amplitude, all of these (default), transit-times.",
-        ),
-    ] = None,
-    level: Annotated[
-        str | None,
-        typer.Option(
-            "--level",
-            metavar="L",
-            help="Above computed, every row goes through the solver.",
-            autocompletion=completion(lambda: LEVELS),
-        ),
-    ] = None,
-    digits: Annotated[
-        int | None,
-        typer.Option(
-            "--digits", metavar="D", help="Significant digits of every row, by the solver (default: those of double)."
-        ),
-    ] = None,
-    tolerance: Annotated[
-        float | None,
-        typer.Option("--tolerance", metavar="M", help="Solve rows again whose position may be off by more, in m."),
-    ] = None,
-    engine: Annotated[
-        str | None,
-        typer.Option("--engine", metavar="E", help="Solve the rows with this engine (default: the fastest)."),
-    ] = None,
-    audit: Annotated[
-        int | None,
-        typer.Option(
-            "--audit",
-            metavar="N",
-            help="Solve N rows again in 28 digits (default: with --out a thousandth, else none).",
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out", metavar="DIR", help="Write the rows into this folder, in Parquet; the same command goes on."
-        ),
-    ] = None,
+    want: Annotated[str | None, WANT] = None,
+    level: Annotated[str | None, LEVEL] = None,
+    digits: Annotated[int | None, DIGITS] = None,
+    tolerance: Annotated[float | None, TOLERANCE] = None,
+    engine: Annotated[str | None, ENGINE] = None,
+    audit: Annotated[int | None, AUDIT] = None,
+    out: Annotated[Path | None, OUT] = None,
     workers: Workers = None,
     cluster: Cluster = None,
-    plot: Annotated[
-        Path | None,
-        typer.Option("--plot", metavar="FILE", help="Draw frequency and precession: .svg, .png or .pdf."),
-    ] = None,
+    plot: Annotated[Path | None, PLOT] = None,
     as_json: AsJson = False,
 ) -> None:
     """Solve a scene for many values of its fields.

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 
-from compare.approximations import APPROXIMATIONS, Motion
+from compare.approximations import APPROXIMATIONS
 from compare.approximations.case import Case
 from compare.approximations.gastebois import small_angles
 from compare.observed.swing_plane import frequency, precession_period
@@ -96,68 +95,6 @@ def test_the_spherical_drift_is_nearer_to_the_truth_at_the_pole_than_without():
     }
     assert gaps["precession_tilted"] == pytest.approx(3 / 8 * (6.5 / 67) ** 2, rel=0.01)
     assert gaps["precession_spherical"] < 0.02 * gaps["precession_tilted"]
-
-
-# Printed forms -------------------------------------------------------------------------------------------------------
-MOVING = PARIS.with_values(["release.vx=0.05", "release.vy=-0.11"])
-TIMES = np.linspace(0.0, 3600.0, 3601)
-
-
-def printed_motion(word, scene, times=TIMES):
-    declared = APPROXIMATIONS[word]
-    return declared.printed.compute(Case.of_scene(scene), times), declared.trajectory(scene, times)
-
-
-def test_every_printed_form_that_has_a_meaning_differs_from_the_right_one():
-    with_meaning = [declared for declared in APPROXIMATIONS.values() if declared.printed and declared.printed.compute]
-    assert len(with_meaning) >= 6
-    for declared in with_meaning:
-        assert declared.printed.text != declared.printed.right
-        if isinstance(declared, Motion):
-            printed, right = printed_motion(declared.id, MOVING if declared.id != "gastebois_6_3" else PARIS)
-            assert np.max(np.abs(printed - right)) > 1e-6, declared.id
-        else:
-            assert abs(declared.printed.compute(Case.of_scene(PARIS)) / declared.value(PARIS) - 1) > 1e-6, declared.id
-
-
-def test_the_printed_velocity_of_6_1_is_not_that_of_its_positions():
-    step = 1e-3
-    times = np.array([0.0, 20.0 - step, 20.0, 20.0 + step])
-    printed, right = printed_motion("gastebois_6_1", MOVING, times)
-    assert printed[:, 1:3] == pytest.approx(right[:, 1:3], abs=1e-12)
-    slope = (right[3, 0] - right[1, 0]) / (2 * step)
-    assert right[2, 3] == pytest.approx(slope, abs=1e-7)
-    assert abs(printed[2, 3] - slope) > 1e-2
-
-
-def test_the_printed_sense_of_the_ellipse_of_6_3_is_no_release_at_rest():
-    printed, right = printed_motion("gastebois_6_3", PARIS)
-    _, turn = small_angles(Case.of_scene(PARIS))
-    away = float(np.hypot(0.3, 0.4 + 67 * 0.00171948))
-    assert np.linalg.norm(right[0, 3:]) < 1e-14
-    assert np.linalg.norm(printed[0, 3:]) == pytest.approx(2 * float(turn) * away, rel=1e-4)
-
-
-def test_one_error_of_method_2_alone_changes_the_square_of_the_frequency_by_two_squares_of_the_turn():
-    far = np.linspace(86380.0, 86400.0, 401)
-    printed, right = printed_motion("method_2", PARIS, far)
-    turn, omega = 7.292115e-5 * math.sin(math.radians(48.846111)), math.sqrt(9.80665 / 67)
-    late = turn**2 / omega * 86400  # rad of phase
-    assert np.max(np.linalg.norm((printed - right)[:, :2], axis=1)) == pytest.approx(0.5 * late, rel=2e-3)
-
-
-def test_printed_numbers_miss_by_their_lost_factor():
-    case = Case.of_scene(PARIS)
-
-    def both(word):
-        return APPROXIMATIONS[word].printed.compute(case), APPROXIMATIONS[word].value(PARIS)
-
-    printed, right = both("frequency_anharmonic")
-    assert float(right / printed) == pytest.approx(2 * math.pi, rel=1e-14)
-    printed, _ = both("precession_tilted")
-    assert float(printed) == pytest.approx(16.4358 / math.sin(math.radians(48.9446)), rel=1e-4)
-    printed, right = both("apparent_gravity")
-    assert float(printed**2 - right**2) == pytest.approx(float(case.outward - case.outward**2), rel=1e-14)
 
 
 def test_the_printed_45_has_no_solution_in_paris():
