@@ -37,7 +37,6 @@ FLOORS = {
         ["octet"],
         [*engine_names()],
         ["row_zeros"],
-        ["interface"],
         ["plan", "batch_interface"],
     ],
     "compare": [
@@ -145,7 +144,7 @@ PUBLIC = {
     "bits_of context digits_that_hold fixed_decimal real to_fraction to_mpf",
     "reference.numbers.table": "Table",
     "reference.scenes.inputs": "Inputs",
-    "reference.scenes.scene": "AnyScene MAX_ROWS as_scene",
+    "reference.scenes.scene": "AnyScene MAX_ROWS as_scene unit_of",
     "reference.scenes.shipped": "DATA_VERSION data_root golden_root in_checkout seals",
     "reference.scenes.fields": "LEVELS RunTable",
     "reference.solver.sensitivity": "digits_lost sensitivity",

@@ -18,15 +18,15 @@ from .options import announce, completion_of_lists, listed, option
 if TYPE_CHECKING:
     from ..report.motion import Motion
 
-WHAT = ("path", "sphere", "plane", "transits")
+PICTURES = ("path", "sphere", "plane", "transits")
 
 
 OUT = option("--out", "The picture: .svg, .png or .pdf (default: the name, and .svg).", "FILE")
 WHAT = option(
     "--what",
-    f"Which of {', '.join(WHAT)} to draw, side by side (default: all that there are).",
+    f"Which of {', '.join(PICTURES)} to draw, side by side (default: all that there are).",
     "A,B,…",
-    names=completion_of_lists(lambda: WHAT),
+    names=completion_of_lists(lambda: PICTURES),
 )
 
 
@@ -54,8 +54,8 @@ def command(
 
     wanted = listed(what, "--what")
     for word in wanted or ():
-        if word not in WHAT:
-            raise InputError("--what", word, in_words(WHAT), did_you_mean(word, WHAT, ""))
+        if word not in PICTURES:
+            raise InputError("--what", word, in_words(PICTURES), did_you_mean(word, PICTURES, ""))
     target = out or Path(f"{'stdin' if source == '-' else Path(source).stem}.svg")
     check_target(target, "--out")
     motion = _motion(source, t_end, set_)

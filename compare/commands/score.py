@@ -259,8 +259,8 @@ def _show(outcomes: list[Outcome], as_json: bool, plot: Path | None, junit: Path
 
     scores = [outcome.score for outcome in outcomes if outcome.score is not None]
     if plot is not None and scores:
-        from ..report.charts.score_chart import error_picture
         from ..report.folder import write_file
+        from ..report.plot import error_picture
 
         write_file(plot, error_picture(scores, plot), "--plot")
     if junit is not None:

@@ -24,7 +24,7 @@ from .options import (
     resumes,
 )
 
-LIMIT_S, SETTINGS = 8.0, "0.1,0.01"  # defaults of --limit and --settings
+LIMIT_S, STEPS_S = 8.0, "0.1,0.01"  # defaults of --limit and --settings
 # fields of a scene that make no difference to a study of these, and why
 OF_METHODS = {
     "run.level": "Methods are held against a confirmed solution, or a dataset that ships.",
@@ -43,7 +43,7 @@ APPROXIMATIONS = option(
 )
 CANDIDATES = option("--candidates", "Put a file of somebody's output beside the methods. May be repeated.", "FILE")
 CPU = option("--cpu", "CPU seconds that each file of --candidates took; - where nobody knows.", "S,-,…")
-SETTINGS = option("--settings", f"Values of {{setting}} in --run (default: {SETTINGS}).", "S,S,…")
+SETTINGS = option("--settings", f"Values of {{setting}} in --run (default: {STEPS_S}).", "S,S,…")
 T_END = option("--t-end", "End of the run in s (default: the scene's; at most 14400 with --precisions).", "S")
 LIMIT = option("--limit", f"Allow one run this many CPU seconds (default: {LIMIT_S:g}).", "S")
 NO_FORMULATIONS = option("--no-formulations", "Leave out the comparison of formulations.")
@@ -113,7 +113,7 @@ def command(
     if not any(SETTING in program for program in programs.values()):
         refuse({"--settings": settings}, f"with a --run that has no {SETTING}")
     files = files_of(candidates or (), cpu, programs)
-    steps = numbers(SETTINGS if settings is None else settings, "--settings")
+    steps = numbers(STEPS_S if settings is None else settings, "--settings")
     for program, words in programs.items():
         items += [(program, "momentum", step) for step in (steps if SETTING in words else steps[:1])]
     with stoppable(resumes(out)), progress() as show:

@@ -94,7 +94,7 @@ def command(
     )  # fmt: skip
     check_workers(workers, cluster)
     if plot is not None:
-        from ..report.charts.sweep_chart import check
+        from ..report.sweep_report import check
 
         check(request, plot)
     kept = (
@@ -109,7 +109,7 @@ def command(
 
         swept = run(request, out, workers, cluster, report)
     if plot is not None:
-        from ..report.charts.sweep_chart import draw
+        from ..report.sweep_report import draw
 
         draw(swept, plot)
     if as_json:

@@ -76,7 +76,6 @@ METHODS = (
         requires=("diffrax",),
         extra="methods-jax",
         order=8,
-        libraries=("numpy", "diffrax"),
         stability=NINE_DIGITS,
     ),
 )

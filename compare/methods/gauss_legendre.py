@@ -165,7 +165,6 @@ METHODS = (
         formulations=("momentum", "spin", "space", "plane", "angles"),
         order=2 * STAGES,
         family=Family.GEOMETRIC,
-        libraries=("numpy", "numba", "mpmath"),
         stability=((None, 1 / 20),),
         long_runs=(("momentum", 4.0),),
     ),

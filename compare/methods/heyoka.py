@@ -72,7 +72,6 @@ _heyoka = partial(
     licence="MPL-2.0",
     formulations=("space", *(word for word in FORMULATIONS if word != "space")),
     family=Family.HEYOKA,
-    libraries=("numpy", "heyoka"),
 )
 _many_digits = partial(
     _heyoka,

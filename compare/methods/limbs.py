@@ -60,7 +60,6 @@ METHODS = (
         extra="methods",
         family=Family.MANY_DIGITS,
         number="100 bits",
-        libraries=("numpy", "numba"),
         stability=((None, 100),),
         long_runs=(("inertial", 100),),
         precision_runs=precision_runs,

@@ -103,7 +103,6 @@ class Method:
         order: where it is fixed, proved by the tableau of this project's methods; None where the method chooses it.
         family: methods of a family share a colour and a panel in reports.
         number: number type that it computes in, as tables print it.
-        libraries: distributions whose versions a study records.
         stability: the runs of it that `foucault stability` makes, each a formulation (None: the first that can describe
             the motion) and a setting; a step is given as a part of 2π over the fastest rate of the scene.
         long_runs: the runs of it over thirty days, each a formulation and a setting.
@@ -125,7 +124,6 @@ class Method:
     order: int | None = None
     family: Family = Family.OTHERS
     number: str = "double"
-    libraries: tuple[str, ...] = ("numpy",)
     stability: tuple[tuple[str | None, float], ...] = ()
     long_runs: tuple[tuple[str, float], ...] = ()
     precision_runs: Callable[[Sequence[int]], list[tuple[str, float]]] = field(default=lambda bits: [], repr=False)

@@ -69,6 +69,5 @@ METHODS = (
         longest_s=60.0,
         family=Family.MANY_DIGITS,
         number="mpf",
-        libraries=("numpy", "mpmath"),
     ),
 )

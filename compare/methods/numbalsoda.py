@@ -71,7 +71,6 @@ _numbalsoda = partial(
     requires=("numbalsoda", "numba"),
     extra="methods-fortran",
     family=Family.COMPILED,
-    libraries=("numpy", "numba", "numbalsoda"),
     stability=NINE_DIGITS,
 )
 

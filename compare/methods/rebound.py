@@ -154,7 +154,6 @@ _rebound = partial(
     requires=("rebound", "numba"),
     extra="methods-gpl",
     family=Family.REBOUND,
-    libraries=("numpy", "numba", "rebound"),
     stability=NINE_DIGITS,
 )
 

@@ -51,7 +51,6 @@ _scipy = partial(
     requires=("scipy", "numba"),
     extra="methods",
     family=Family.SCIPY,
-    libraries=("numpy", "numba", "scipy"),
     stability=NINE_DIGITS,
 )
 

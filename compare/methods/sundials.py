@@ -57,7 +57,6 @@ _cvode = partial(
     requires=("sksundae", "numba"),
     extra="methods",
     family=Family.COMPILED,
-    libraries=("numpy", "numba", "scikit-sundae"),
     stability=NINE_DIGITS,
 )
 

@@ -32,7 +32,8 @@ from .row import Record
 
 JUDGED = 3  # changes when equal runs are measured or judged otherwise, so that old results are not used again
 STARTING_S = 180.0  # wall-clock time for imports and compilation, also on a busy machine, on top of the first patience
-TRUTH_LIBRARIES = {"heyoka", "python-flint"}  # of the reference
+LIBRARIES = {"heyoka", "mpmath", "numpy", "python-flint"}  # that are always there, besides those that methods require
+DISTRIBUTIONS = {"sksundae": "scikit-sundae"}  # of modules that are called otherwise
 ONE_THREAD = {
     **dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"),
     "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1",
@@ -187,7 +188,8 @@ def machine() -> dict[str, str]:
     """Return processor, system, Python, and the versions of the libraries that are measured."""
     description = {"processor": _processor(), "system": f"{platform.system()} {platform.machine()}"}
     description["python"] = platform.python_version()
-    for name in sorted(TRUTH_LIBRARIES.union(*(method.libraries for method in METHODS.values()))):
+    required = {module for method in METHODS.values() for module in method.requires}
+    for name in sorted(LIBRARIES | {DISTRIBUTIONS.get(module, module) for module in required}):
         try:
             description[name] = version(name)
         except PackageNotFoundError:

@@ -1,7 +1,7 @@
 """The engines, integrators of the model, each in a folder; one run of a scene with its transits, and two at a time.
 
 - `batch_interface`: many scenes in double, what goes in and what comes out.
-- `plan`: the input of an engine, `Plan`, and its output, `Run`; `interface`: what an engine declares.
+- `plan`: the input of an engine, `Plan`, its output, `Run`, and what it declares, `Engine`.
 - `registry`: the engines by name, which of them a run takes, and the run itself.
 - `background`: a run, or other work, at the same time as this process works.
 - `trajectory`: single unconfirmed runs as binary64, of any system and with changed constants.

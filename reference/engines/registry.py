@@ -9,8 +9,7 @@ from ..errors import InputError
 from ..system.imports import switched_off
 from . import AUTO, batch_names, engine_names
 from .batch_interface import Batch
-from .interface import Engine
-from .plan import Pace, Plan, Report, Run
+from .plan import Engine, Pace, Plan, Report, Run
 
 MANY_STEPS = 10**6  # of a run in which starting an engine costs nothing beside its steps
 

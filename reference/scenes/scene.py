@@ -162,7 +162,7 @@ def checked_value(name: str, value: str, reading: Reading) -> str:
         InputError: the value is wrong, whatever the other fields are.
     """
     try:
-        _field(name).validate_python(value, context={"inputs": reading})
+        _check_of(name).validate_python(value, context={"inputs": reading})
     except ValidationError as error:
         wrong = explained(error, ())[0]
         raise InputError(name, value, wrong.expected, wrong.advice) from None
@@ -170,11 +170,20 @@ def checked_value(name: str, value: str, reading: Reading) -> str:
 
 
 @cache
-def _field(name: str) -> TypeAdapter[Any]:
+def _check_of(name: str) -> TypeAdapter[Any]:
     """Return what checks one field."""
+    return TypeAdapter(_declared(name).rebuild_annotation())
+
+
+def _declared(name: str) -> Any:
     table, _, key = name.rpartition(".")
     model: Any = Scene.model_fields[table].annotation if table else Scene
-    return TypeAdapter(model.model_fields[key].rebuild_annotation())
+    return model.model_fields[key]
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of a field, one of `field_names`; "" for none."""
+    return str((_declared(name).json_schema_extra or {}).get("unit", ""))
 
 
 def parse_scene(document: Mapping[str, Any]) -> Scene:

@@ -1,5 +1,7 @@
 """How large the error of a row is: from a second run of another order, with every constant and start moved by an ulp.
 
+`columns_of` makes the columns of rows from results and errors: no value without its error.
+
 Both runs round differently everywhere, the constants included, so that their difference is of the size of the error.
 It may be smaller by chance: therefore the factor, and a least difference, what half an ulp in the constants may do.
 Where errors have grown to many ulps, or where the bob has the energy to rise to the pivot and they may grow, they point
@@ -18,6 +20,7 @@ import numpy as np
 
 from ..engines.batch_interface import LEAST_BEND, STOPPED, Batch, Outcomes, Rows, Wanted
 from ..numbers.precision import Array
+from .parquet import COLUMNS, STATE_COLUMNS
 
 FACTOR = 16.0
 WILD_FACTOR = 64.0  # where there are three runs
@@ -196,3 +199,44 @@ def _unsure_of_highest(rows: Rows, run: Outcomes, position: Array, velocity: Arr
     round_ = ~some & (4 * position >= LEAST_BEND * length * lean)  # of two squares, each twice its relative error
     unsure: Array = some & at_end | near | round_
     return unsure
+
+
+def columns_of(rows: Rows, run: Outcomes, errors: Errors) -> tuple[dict[str, Any], Any]:
+    """Return the columns by name, and in which rows a number has no error: there neither stands.
+
+    Each error includes an ulp of the numbers that it belongs to, for the rounding of the column.
+    """
+    span, swings = run.t_last - run.t_first, run.apsis_last - run.apsis_first
+    with np.errstate(divide="ignore", invalid="ignore"):
+        precession = np.where(run.apsides > 1, run.turn / swings * DEGREES_PER_HOUR, np.nan)
+        vertical = np.where(rows.turn[:, 2, 0] != 0, -rows.turn[:, 2, 0] * DEGREES_PER_HOUR, np.nan)
+        columns = {
+            "steps": run.steps,
+            "transits": run.transits,
+            "close_pairs": run.close_pairs,
+            "t_first_s": run.t_first,
+            "t_last_s": run.t_last,
+            "transit_error_s": errors.transit,
+            "frequency_hz": np.where(run.transits > 1, (run.transits - 1) / (2 * span), np.nan),
+            "frequency_error_hz": errors.frequency,
+            "swing_hz": np.where(run.apsides > 1, (run.apsides - 1) / (2 * swings), np.nan),
+            "swing_error_hz": errors.swing,
+            "precession_deg_per_h": precession,
+            "precession_error_deg_per_h": errors.precession,
+            "precession_ratio": precession / vertical,
+            "precession_ratio_error": errors.precession / np.abs(vertical),
+            **dict(zip(STATE_COLUMNS, run.state.T, strict=True)),
+            "position_error_m": errors.position,
+            "velocity_error_m_s": errors.velocity,
+            "max_angle_deg": np.degrees(run.largest_angle),
+            "max_angle_error_deg": errors.angle,
+        }
+        unknown = np.zeros(len(rows), bool)
+        for name in {column.error for column in COLUMNS if column.error}:
+            own = [column.name for column in COLUMNS if column.error == name]
+            error = columns[name] + np.spacing(np.max(np.abs([columns[value] for value in own]), axis=0))
+            none = ~np.isfinite(error)
+            unknown |= none & np.isfinite([columns[value] for value in own]).any(axis=0)
+            columns |= {value: np.where(none, np.nan, columns[value]) for value in own}
+            columns[name] = np.where(none, np.nan, error)
+    return columns, unknown

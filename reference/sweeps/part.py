@@ -16,11 +16,10 @@ from ..engines.registry import batches
 from ..errors import FoucaultError, InputError
 from ..status import Status
 from .axes import TEXTS
-from .estimate import judged
+from .estimate import columns_of, judged
 from .parquet import COLUMNS, TRANSIT_COLUMNS
 from .promote import Promoted, promoted
 from .request import Request
-from .row_columns import columns_of
 from .row_constants import engine_rows
 
 Promote = Callable[..., Promoted]

@@ -16,8 +16,8 @@ import numpy as np
 from ..errors import FoucaultError
 from ..scenes.fields import LEVELS, Level
 from ..status import Status
+from .estimate import columns_of
 from .request import Request
-from .row_columns import columns_of
 from .row_constants import engine_rows
 from .solved import outcomes_of
 

@@ -47,7 +47,6 @@ fixed_step = partial(
     licence="this project's",
     requires=("numba",),
     extra="methods",
-    libraries=("numpy", "numba"),
 )
 
 

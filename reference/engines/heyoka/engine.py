@@ -8,8 +8,7 @@ from fractions import Fraction
 from ...numbers.precision import LONG_DOUBLE_BITS, cheapest_type
 from ...numbers.taylor_step import TaylorStep
 from ...scenes.inputs import Inputs
-from ..interface import Engine
-from ..plan import Pace, Plan, Report, Run
+from ..plan import Engine, Pace, Plan, Report, Run
 
 STEP_S = 6e-4  # CPU seconds of a step at 160 bits; a step's cost grows with the square of the bits
 HARDWARE_STEP_S = 4e-5  # in double and long double

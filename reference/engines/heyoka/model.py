@@ -14,6 +14,7 @@ from typing import Any
 
 import heyoka as hy
 import numpy as np
+from mpmath.libmp import from_rational
 
 from ...errors import InputError, IntegrationError
 from ...model.constants import Constants
@@ -21,7 +22,7 @@ from ...model.force import acceleration
 from ...model.formulations import Formulation
 from ...model.start import Start
 from ...numbers.columns import RUN
-from ...numbers.precision import DOUBLE, LONG_DOUBLE, Array, NumberType
+from ...numbers.precision import DOUBLE, LONG_DOUBLE, Array, NumberType, to_fraction
 from ...numbers.table import Table
 from .system import as_pairs, keep_on_disk, rates
 
@@ -60,15 +61,11 @@ class Numbers:
             if self.number.hardware and np.isfinite(value):
                 return self.type(value)
             value = Fraction(*value.as_integer_ratio())
-        if isinstance(value, int | Fraction):
-            top, bottom = value.numerator, value.denominator
-        else:
-            sign, mantissa, exponent, _ = value._mpf_
-            mantissa = -int(mantissa) if sign else int(mantissa)
-            top, bottom = (mantissa << exponent, 1) if exponent >= 0 else (mantissa, 1 << -exponent)
+        exact = value if isinstance(value, int | Fraction) else to_fraction(value)
         if self.number == DOUBLE:
-            return top / bottom
-        rounded, shift = _rounded(top, bottom, self.number.prec)
+            return exact.numerator / exact.denominator
+        sign, mantissa, shift, _ = from_rational(exact.numerator, exact.denominator, self.number.prec, "n")
+        rounded = -int(mantissa) if sign else int(mantissa)
         if not self.number.hardware:
             return hy.real(rounded, self.number.prec) * hy.real(2, self.number.prec) ** shift
         high = rounded >> 32 << 32
@@ -109,17 +106,6 @@ class Numbers:
         if outcome != hy.taylor_outcome.time_limit or len(states) != len(times):
             raise IntegrationError(f"heyoka stopped at t = {float(integrator.time)} s with outcome {outcome}.")
         return states, int(steps)
-
-
-def _rounded(top: int, bottom: int, prec: int) -> tuple[int, int]:
-    """Return an integer m of at most `prec` bits and an e with m 2**e nearest to top/bottom."""
-    if top == 0:
-        return 0, 0
-    shift = abs(top).bit_length() - bottom.bit_length() - prec
-    scaled = Fraction(top, bottom) / Fraction(2) ** shift
-    if abs(scaled) >= 1 << prec:
-        shift, scaled = shift + 1, scaled / 2
-    return round(scaled), shift
 
 
 class Propagator:

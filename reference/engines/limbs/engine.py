@@ -8,8 +8,7 @@ from fractions import Fraction
 from ...numbers.precision import NumberType
 from ...numbers.taylor_step import TaylorStep
 from ...scenes.inputs import Inputs
-from ..interface import Engine
-from ..plan import Pace, Plan, Report, Run
+from ..plan import Engine, Pace, Plan, Report, Run
 from .size import LEAST_PREC, MOST_PREC
 
 STEP_S = 1.2e-5  # CPU seconds of a step at 160 bits: a fiftieth of heyoka's; it grows with the square of the bits

@@ -69,7 +69,7 @@ def test_the_version_is_that_of_the_package(foucault):
         ("study", "--methods", "all"),
         ("study", "--t-end", f"the scene's; at most {SPAN_S} with --precisions"),
         ("study", "--limit", f"{STUDY_LIMIT_S:g}"),
-        ("study", "--settings", study.SETTINGS),
+        ("study", "--settings", study.STEPS_S),
         ("stability", "--methods", "all"),
         ("stability", "--scenes", "paris and all that have flags"),
     ],
