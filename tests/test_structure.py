@@ -154,7 +154,7 @@ PUBLIC = {
     "reference.sweeps.store": "Store",
     "reference.sweeps.sweep": "asked_for run",
     "reference.system": "cache",
-    "reference.system.cache": "arrays discard entry store temporary",
+    "reference.system.cache": "arrays discard entry kept",
     "reference.system.documents": "json_document json_lines open_at_once",
     "reference.system.imports": "Registry lazy missing switched_off",
     "reference.system.interruption": "terminable",

@@ -1,4 +1,4 @@
-"""Declaration of an approximation: its source, domain, dropped terms, order of its error, and formula."""
+"""Declaration of an approximation: its source, dropped terms, order of its error, and formula."""
 
 from __future__ import annotations
 
@@ -48,7 +48,6 @@ class Approximation:
         id: its name on the command line, in files and in tests.
         title: its description in one line.
         where: source paper and equation numbers.
-        domain: amplitude, latitude and time that it is meant for.
         drops: terms and effects that it leaves out.
         orders: how its error grows with amplitude, rotation rate or length.
         refuses: `refuses(scene)`, the reason why a scene is outside its domain, or None.
@@ -57,7 +56,6 @@ class Approximation:
     id: str
     title: str
     where: str
-    domain: str
     drops: str
     orders: tuple[Order, ...]
     refuses: Callable[[Scene], str | None] = lambda scene: None

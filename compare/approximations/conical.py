@@ -59,7 +59,6 @@ APPROXIMATIONS = (
         id="conical",
         title="conical pendulum without the Foucault effect",
         where="Mathar section III, limit of Ω to 0, and [23]: angular velocity sqrt(g/(l cos φ))",
-        domain="any cone below the suspension, released with the speed of the circle, no rotation",
         drops="Ω",
         orders=(
             Order("amplitude", None, (7.35,), ("site.rotation_rate=0", *_CIRCLE)),

@@ -69,10 +69,9 @@ def _turning(scene: Scene) -> str | None:
     return "The plane does not turn: give a rotation rate and a latitude other than 0" if still else swinging(scene)
 
 
-_frequency = partial(Quantity, domain="small amplitudes, slow rotation", refuses=swinging, truth=frequency, unit="Hz")
+_frequency = partial(Quantity, refuses=swinging, truth=frequency, unit="Hz")
 _precession = partial(
     Quantity,
-    domain="small angles, away from the equator; the mean over a half turn",
     refuses=_turning,
     truth=precession_period,
     unit="s",
@@ -83,7 +82,6 @@ APPROXIMATIONS = (
         id="apparent_gravity",
         title="gravity and centrifugal force at the suspension",
         where="Gastebois 4.2; Mathar (48)",
-        domain="any latitude",
         drops="the cord: the bob is nearer to the axis than the suspension",
         orders=(Order("rotation_rate", 2, (5e-5, 1e-4, 2e-4)), Order("length", 1, (10, 20, 40, 80))),
         refuses=under_gravity,

@@ -75,7 +75,6 @@ APPROXIMATIONS = (
         id="linear_3d",
         title="the full system, linearised about its rest position, with every centrifugal term",
         where="linearisation of Mathar (43) at (46); 'exact for the linear system' in the third source paper",
-        domain="small amplitudes about the rest position, any rotation; exact at all times as the amplitude goes to 0",
         drops="second and higher powers of the displacement from the rest position",
         orders=(
             Order("amplitude", 2, (0.1, 0.2, 0.4, 0.8), ("site.equatorial_radius=0", "site.rotation_rate=0.02")),

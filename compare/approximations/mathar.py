@@ -154,7 +154,6 @@ APPROXIMATIONS = (
         id="mathar_item_1",
         title="Mathar's equations without the terms in Ω²",
         drops="β of (35), (41): centrifugal force, tilted plumb line; RΩ² is 2.3e-3 of g, not Ω² = 5e-9 as printed",
-        domain="any amplitude below the suspension; slow rotation",
         orders=(SQUARE_IN_RATE,),
     ),
     _without(
@@ -162,7 +161,6 @@ APPROXIMATIONS = (
         id="mathar_item_1_variant",
         title="Mathar's equations without the terms in Ω², gravity less RΩ² cos φ",
         drops="β of (35), (41) apart from the term in R cos φ: the tilt of the plumb line is left out",
-        domain="any amplitude below the suspension; slow rotation; best at the equator",
         orders=(SQUARE_IN_RATE,),
     ),
     _without(
@@ -170,7 +168,6 @@ APPROXIMATIONS = (
         id="mathar_item_2",
         title="Mathar's equations without the off-diagonal elements -xy",
         drops="the matrix elements -xy of (43)",
-        domain="small amplitudes",
         orders=(CUBE_IN_AMPLITUDE,),
     ),
     _without(
@@ -178,7 +175,6 @@ APPROXIMATIONS = (
         id="mathar_item_3",
         title="Mathar's equations with gravity alone in β0",
         drops="the velocities in (33), (39): the centripetal pull of the cord",
-        domain="small amplitudes",
         orders=(CUBE_IN_AMPLITUDE,),
     ),
     _without(
@@ -186,7 +182,6 @@ APPROXIMATIONS = (
         id="mathar_item_4",
         title="Mathar's equations without Ω cos φ",
         drops="the terms with cos φ of (34), (40): the Coriolis force of the north component of Ω",
-        domain="small amplitudes",
         orders=_CORIOLIS,
     ),
     _without(
@@ -194,7 +189,6 @@ APPROXIMATIONS = (
         id="mathar_item_5",
         title="Mathar's equations with z replaced by l",
         drops="the change of z along the sphere",
-        domain="small amplitudes",
         orders=(CUBE_IN_AMPLITUDE,),
     ),
     _without(
@@ -202,7 +196,6 @@ APPROXIMATIONS = (
         id="mathar_items_1_2",
         title="both approximations of the paper's program, foucPend -a 3",
         drops="the terms in Ω² and the off-diagonal elements -xy",
-        domain="small amplitudes, slow rotation",
         orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
     ),
     _without(
@@ -210,14 +203,12 @@ APPROXIMATIONS = (
         id="mathar_items_1_to_5",
         title="Mathar's five items together",
         drops="everything that section VI names; the diagonal of (43) still holds x² + l² and y² + l²",
-        domain="small amplitudes, slow rotation",
         orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
     ),
     Motion(
         id="linear_g",
         title="harmonic pendulum on a turntable",
         where="Mathar (51)-(52)",
-        domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
         drops="Ω² (so the tilt and strength of the apparent gravity), all powers of x/l and y/l beyond the first",
         orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
         refuses=swinging,
@@ -228,7 +219,6 @@ APPROXIMATIONS = (
         id="linear_apparent",
         title="harmonic pendulum on a turntable, apparent gravity",
         where="Mathar (51)-(52) with g' of (48), section VII",
-        domain="small amplitudes; the frequency holds for hours, the centre does not",
         drops="the tilt of the plumb line, the centrifugal gradient, all powers of x/l and y/l beyond the first",
         orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
         refuses=swinging,
@@ -239,7 +229,6 @@ APPROXIMATIONS = (
         id="linear_recentred",
         title="harmonic pendulum on a turntable, about the rest position",
         where="Mathar (51)-(52) with g' of (48), about the point of section V",
-        domain="small amplitudes; an hour",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the anharmonic slow-down",
         orders=(_ABOUT_REST, CUBE_IN_AMPLITUDE),
         refuses=swinging,
@@ -249,7 +238,6 @@ APPROXIMATIONS = (
         id="linear_anharmonic",
         title="harmonic pendulum on a turntable, about the rest position, with the slow-down of the plane pendulum",
         where="Mathar section VII, fifth frequency: 2K(sin(φ0/2))/π, where 4K is printed",
-        domain="amplitudes of some degrees, released at rest; a day",
         drops="Ω at the tilted latitude (Ω³), the centrifugal gradient (Ω²), the overtones of the swing",
         orders=(_ABOUT_REST, CUBE_IN_AMPLITUDE),
         refuses=released_at_rest,

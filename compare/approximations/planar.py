@@ -63,7 +63,6 @@ APPROXIMATIONS = (
         id="planar",
         title="plane pendulum without the Foucault effect",
         where="Mathar section VII and figure 7 (Ω = 0): period 4 sqrt(l/g) K(sin(φ0/2))",
-        domain="any amplitude, released at rest, no rotation",
         drops="Ω",
         orders=(
             Order("amplitude", None, (0.5, 8.0, 66.0), ("site.rotation_rate=0",)),

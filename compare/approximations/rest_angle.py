@@ -67,7 +67,6 @@ def _not_at_a_pole(scene: Scene) -> str | None:
 
 _rest_angle = partial(
     Quantity,
-    domain="any length and latitude on a body that gravity holds together",
     refuses=under_gravity,
     truth=lambda scene: Case.of_scene(scene).rest_angle,
     unit="rad",

@@ -67,7 +67,6 @@ def _complex_variable(case: Case, times: Array) -> Array:
 
 _motion = partial(
     Motion,
-    domain="small amplitudes, slow rotation; some seconds, because the plumb line is not vertical",
     drops="the centrifugal force, the vertical motion, all powers of x/L beyond the first",
     orders=(SQUARE_IN_RATE, CUBE_IN_AMPLITUDE),
     refuses=swinging,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,7 +24,6 @@ def command(
     Every formula and number is computed again; with --out the figures are drawn again too.
     """
     from ..papers import build, rows
-    from ..papers.papers_page import document
     from ..report.folder import PAGE
 
     with stoppable("nothing half was written"), progress() as show:
@@ -33,7 +33,7 @@ def command(
             judging(completed, total, place)
 
         judged = rows(report) if out is None else build(out, report)
-    result = {"out": None if out is None else str(out), "rows": [document(row) for row in judged]}
+    result = {"out": None if out is None else str(out), "rows": list(map(asdict, judged))}
     finish(result, _text, None if out is None else out / PAGE, as_json)
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from reference import InputError, IntegrationError
-from reference.system.cache import entry, store, temporary
+from reference.system.cache import kept
 from reference.system.workspace import workspace
 
 from ..candidates.external import run_program
@@ -134,12 +134,7 @@ def _compiled(text: str, library: Library, defines: Sequence[str], link: Sequenc
                 raise IntegrationError(f"a program for {library.name} does not compile here: {first}")
             made.replace(path)
 
-    path = entry("native", name) or store("native", name, put)
-    if path is None:
-        path = temporary() / name
-        if not path.exists():
-            put(path)
-    return path
+    return kept("native", name, put)
 
 
 _native = partial(Method, setting="tolerance", family=Family.COMPILED, stability=NINE_DIGITS)

@@ -16,7 +16,7 @@ from reference.errors import shortened
 from reference.numbers.precision import Array
 from reference.status import Status
 
-from .method import Method, Outcome, Setting, Work, failed
+from .method import Method, Outcome, Work, failed
 from .rhs.problem import Problem
 
 SETTING = "{setting}"  # stands for the step, tolerance or precision in a command
@@ -32,22 +32,13 @@ def file_name(command: str) -> str:
     return shortened(Path(script).name, LONGEST_NAME)
 
 
-def external(
-    command: str, *, name: str = "external", setting: Setting = "step", ladder: tuple[float, ...] = (0.01,)
-) -> Method:
-    """Declare a method that runs a command.
-
-    Args:
-        command: with placeholders in braces; `{setting}` is the step, tolerance or precision.
-        name: its id in tables.
-        setting: which of step, tolerance and precision is varied.
-        ladder: settings from loose to tight; a single one if the command does not use it.
-    """
+def external(command: str, *, name: str = "external") -> Method:
+    """Declare a method that runs a command, with placeholders in braces; `name` is its id in tables."""
     return Method(
         id=name,
         title=command,
-        setting=setting,
-        ladder=ladder,
+        setting="step",
+        ladder=(),  # a study is told the settings
         source="the user's",
         licence="the user's",
         prepare=lambda problem, value: _prepare(problem, value, command),

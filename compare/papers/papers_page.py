@@ -29,11 +29,6 @@ NOT_JUDGED = (
 )
 
 
-def document(row: JudgedRow) -> dict[str, str]:
-    """Return a row for JSON and CSV."""
-    return asdict(row)
-
-
 def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, str]:
     """Return every file of the page by name; the page itself comes last, after the figures that it shows.
 
@@ -41,7 +36,7 @@ def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, st
         rows: rows of the table.
         figures: SVG text by the paper's figure number.
     """
-    documents = [document(row) for row in rows]
+    documents = list(map(asdict, rows))
     return {
         **{f"figure_{number}.svg": svg for number, svg in figures.items()},
         "rows.csv": Table.of_records((field.name for field in fields(JudgedRow)), documents).csv(),

@@ -62,6 +62,16 @@ def store(kind: str, name: str, put: Callable[[Path], object]) -> Path | None:
     return folder / name
 
 
+def kept(kind: str, name: str, put: Callable[[Path], object]) -> Path:
+    """Return the path of an entry, which `put(path)` writes if need be: where there is no cache, for this process."""
+    path = entry(kind, name) or store(kind, name, put)
+    if path is None:
+        path = temporary() / name
+        if not path.exists():
+            put(path)
+    return path
+
+
 def check() -> None:
     """Find out whether the cache can be used before child processes do, so that only one line says that it cannot."""
     path = store("generated", ".room", lambda path: replace_file(path, lambda stream: stream.write(_ROOM)))

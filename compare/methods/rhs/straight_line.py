@@ -14,9 +14,8 @@ from functools import cache
 from pathlib import Path
 from string import Template
 from types import ModuleType
-from typing import Any
 
-from reference.system.cache import discard, entry, store
+from reference.system.cache import discard, entry, kept
 from reference.system.workspace import replace_file
 
 FUNCTIONS = ("atan2", "cos", "sin", "sqrt")
@@ -25,7 +24,7 @@ HEADER = f"""import numba as nb
 import numpy as np
 from math import {", ".join(FUNCTIONS)}
 
-OPTIONS = dict(cache=CACHE, error_model="numpy", fastmath=False)
+OPTIONS = dict(cache=True, error_model="numpy", fastmath=False)
 STATE = nb.types.Array(nb.float64, 1, "A", readonly=True)
 
 """
@@ -93,30 +92,22 @@ def unpacked(letter: str, array: str, count: int) -> str:
 def compiled(body: str) -> ModuleType:
     """Return the module of a source whose functions numba compiles; decorators write `**OPTIONS`.
 
-    Machine code is read from the cache if it belongs to the very same text; if that cannot be used, it stays in memory.
+    Machine code is read from the cache if it belongs to the very same text.
     """
-    on_disk = HEADER.replace("CACHE", "True") + body
-    name = f"f{hashlib.sha256(on_disk.encode()).hexdigest()[:32]}"
-    path = _stored(f"{name}.py", on_disk.encode())
-    if path is None:
-        return _executed(HEADER.replace("CACHE", "False") + body, name, f"<{name}>")
-    return _executed(on_disk, name, str(path))
-
-
-def _stored(name: str, text: bytes) -> Path | None:
-    """Return the cached file of a text, written if need be; None if the cache cannot be used."""
-    path = entry("generated", name)
-    if path is not None:
-        with suppress(OSError):
-            if path.read_bytes() == text:  # rewriting it would make numba compile again
-                return path
-        discard(path)
-    return store("generated", name, lambda path: replace_file(path, lambda stream: stream.write(text)))
-
-
-def _executed(text: str, name: str, file: str) -> ModuleType:
+    text = (HEADER + body).encode()
+    name = f"f{hashlib.sha256(text).hexdigest()[:32]}"
+    stored = entry("generated", f"{name}.py")
+    if stored is not None and not _holds(stored, text):
+        discard(stored)
+    path = kept("generated", f"{name}.py", lambda path: replace_file(path, lambda stream: stream.write(text)))
     module = ModuleType(name)
     sys.modules[name] = module  # numba's cache unpickles its functions by the module's name
-    namespace: dict[str, Any] = module.__dict__
-    exec(compile(text, file, "exec"), namespace)
+    exec(compile(text, str(path), "exec"), module.__dict__)
     return module
+
+
+def _holds(path: Path, text: bytes) -> bool:
+    """Return whether a file has just this text: else it was damaged, or cannot be read."""
+    with suppress(OSError):
+        return path.read_bytes() == text
+    return False

@@ -79,7 +79,7 @@ def test_a_program_of_somebody_else_is_a_method_too():
         " [print(i * g, x + s, 0.4, sep=',') for i in range(n + 1)]"
     )
     problem = Problem.of(make_scene(run={"t_end": "3", "grid_step": "1"}), "momentum")
-    outcome = external(program(body), ladder=(0.5,)).prepare(problem, 0.5)()
+    outcome = external(program(body)).prepare(problem, 0.5)()
     assert (outcome.status, outcome.reached_t) == ("ok", 3.0)
     np.testing.assert_allclose(outcome.states[:, :2], [[0.8, 0.4]] * 4)
     np.testing.assert_allclose(outcome.states[:, 2], -np.sqrt(67**2 - 0.8**2 - 0.4**2))
