@@ -33,7 +33,7 @@ COMMANDS = {
     "golden.R": ([], ["Rscript", "--vanilla", "{file}"]),
 }
 WITH_JSON = {"golden.mjs", "golden.go", "golden.m"}
-# what evaluates golden functions
+# what evaluates golden functions; R is given hexfloats, as it rounds decimals by itself not always right
 EVALUATORS = {
     "function.c": (["cc", "-O2", "{file}", "-o", "{program}", "-lm"], ["{program}"]),
     "function.f90": (["gfortran", "-O2", "{file}", "-o", "{program}"], ["{program}"]),
@@ -41,6 +41,8 @@ EVALUATORS = {
     "function.go": (["go", "build", "-o", "{program}", "{file}"], ["{program}"]),
     "function.rs": (["rustc", "-O", "{file}", "-o", "{program}"], ["{program}"]),
     "Function.java": ([], ["java", "{file}"]),
+    "function_at.m": ([], ["octave-cli", "--norc", "{file}"]),
+    "function.R": ([], ["Rscript", "--vanilla", "{file}"]),
 }
 
 
@@ -140,7 +142,8 @@ def test_it_evaluates_as_python_does(name, flags, with_function, tmp_path):
         pytest.skip("this processor does not fuse operations")
     golden = reference.load(with_function)
     times = random_times(golden.function, 10_000)
-    found = np.array(printed(name, with_function, tmp_path, *map(repr, times.tolist()), flags=flags), dtype=np.float64)
+    words = [t.hex() if name.endswith(".R") else repr(t) for t in times.tolist()]
+    found = np.array(printed(name, with_function, tmp_path, *words, flags=flags), dtype=np.float64)
     at = golden.at(times)
     expected = np.column_stack([times, *(getattr(at, name) for name in STATE)])
     assert found.shape == expected.shape
@@ -153,7 +156,12 @@ def test_it_evaluates_as_python_does(name, flags, with_function, tmp_path):
     assert all(gap <= at.bound[name] for gap, name in zip(off, STATE, strict=True))
 
 
+@pytest.mark.parametrize("name", ["function.c", "function.mjs", "function_at.m", "function.R"])
 @pytest.mark.parametrize("t", ["-1", "120.5", "nan"])
-def test_a_time_outside_is_refused_in_c(t, with_function, tmp_path):
-    with pytest.raises(subprocess.CalledProcessError):
-        printed("function.c", with_function, tmp_path, t)
+def test_a_time_outside_is_refused(name, t, with_function, tmp_path):
+    tool = (EVALUATORS[name][0] or EVALUATORS[name][1])[0]
+    if not works(tool):
+        pytest.skip(f"{tool} is not installed for this user")
+    with pytest.raises(subprocess.CalledProcessError) as refused:
+        printed(name, with_function, tmp_path, t)
+    assert "not within 0 to 120 s" in refused.value.stderr
