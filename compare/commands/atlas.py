@@ -42,4 +42,5 @@ def command(
     if as_json:
         emit({"out": str(out), "pages": [{"page": name, "bytes": size} for name, size in sizes.items()]})
         return
-    typer.echo(f"{out / PAGE}: {scenes_of(len(sizes) - 1)}, {sum(sizes.values()) / 1e6:.1f} MB in {len(sizes)} pages")
+    scenes = scenes_of(sum(name.endswith(".html") for name in sizes) - 1)
+    typer.echo(f"{out / PAGE}: {scenes}, {sum(sizes.values()) / 1e6:.1f} MB in {len(sizes)} files")

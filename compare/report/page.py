@@ -21,7 +21,7 @@ from reference.errors import plain_lines
 MARK = '<meta name="generator" content="foucault">'  # in every page; shows that a folder was written by us
 _POLICY = (
     "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
-    "script-src 'unsafe-inline'; img-src data:\">"
+    "script-src 'self' 'unsafe-inline'; worker-src blob:; img-src data:\">"
 )
 _FORMULA = ("=", "+", "-", "@", "\t", "\n")  # may begin a formula in a spreadsheet, as OWASP lists them
 
@@ -109,7 +109,7 @@ def page(title: str, sections: Sequence[str], *, lead: str = "", script: str = "
         title: title of the page.
         sections: results of `section`; the page links to their headings at the top.
         lead: introduction below the title.
-        script: elements with data and scripts; a page that has any may load nothing from anywhere.
+        script: elements with data and scripts; a page that has any may load nothing but scripts beside it.
         styles: further styles.
     """
     headings = re.findall(r'<section id="([^"]+)">\n<h2>(.*?)</h2>', "\n".join(sections))

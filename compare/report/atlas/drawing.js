@@ -2,25 +2,17 @@
 "use strict";
 
 const [TALL, LEFT, TOP, BOTTOM] = [260, 48, 12, 36];
-const MOST_POINTS = 800;
 const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 
 const raised = (exponent) => `10${exponent < 0 ? "⁻" : ""}${[...String(Math.abs(exponent))].map((one) => RAISED[one]).join("")}`;
 
-// The largest error in each of as many equal parts as a picture resolves.
-function thinned(t, errors) {
-  const each = Math.ceil(t.length / MOST_POINTS);
-  const points = [];
-  for (let i = 0; i < t.length; i += each) points.push([t[i], Math.max(...errors.slice(i, i + each))]);
-  return points;
-}
-
-function errorPicture({ errors, tolerance, bound, end, wide }) {
+// Points [[t, error], …] and lines at the tolerance and at the bound; it spans the file.
+function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, wide) {
   const floor = bound / 10;
-  const points = thinned(errors.t, errors.position);
   const low = Math.floor(Math.log10(floor));
   const high = Math.ceil(Math.log10(Math.max(tolerance, bound, ...points.map((point) => point[1])) * 1.5));
-  const x = (t) => (LEFT + (t / end) * (wide - LEFT - 10)).toFixed(1);
+  const [begin, end] = path.covered_s;
+  const x = (t) => (LEFT + ((t - begin) / (end - begin || 1)) * (wide - LEFT - 10)).toFixed(1);
   const y = (error) => (TOP + ((high - Math.log10(Math.max(error, floor))) / (high - low)) * (TALL - TOP - BOTTOM)).toFixed(1);
   const every = Math.ceil((high - low) / 6);
   const parts = [];
@@ -29,10 +21,11 @@ function errorPicture({ errors, tolerance, bound, end, wide }) {
     parts.push(`<text x="${LEFT - 6}" y="${Number(y(10 ** n)) + 4}" text-anchor="end">${raised(n)}</text>`);
   }
   for (const share of wide < 450 ? [0, 0.5, 1] : [0, 0.25, 0.5, 0.75, 1]) {
-    parts.push(`<text x="${x(share * end)}" y="${TALL - BOTTOM + 16}" text-anchor="${share === 1 ? "end" : "middle"}">${Number((share * end).toPrecision(4))}</text>`);
+    const t = begin + share * (end - begin);
+    parts.push(`<text x="${x(t)}" y="${TALL - BOTTOM + 16}" text-anchor="${share === 1 ? "end" : "middle"}">${Number(t.toPrecision(6))}</text>`);
   }
   const line = (value, word) => `<path class="guide" d="M${LEFT} ${y(value)}H${wide - 10}"/><text x="${wide - 12}" y="${Number(y(value)) - 4}" text-anchor="end">${word}</text>`;
-  parts.push(line(tolerance, "tolerance"), line(bound, "bound of the golden doubles"));
+  parts.push(line(tolerance, "tolerance"), line(bound, "bound of the truth"));
   parts.push(`<path class="error" d="${points.map(([t, error], i) => `${i ? "L" : "M"}${x(t)} ${y(error)}`).join("")}"/>`);
   if (points.length === 1) parts.push(`<circle cx="${x(points[0][0])}" cy="${y(points[0][1])}" r="3"/>`);
   parts.push(`<text x="${(LEFT + wide) / 2}" y="${TALL - 4}" text-anchor="middle">t in s</text>`);

@@ -1,52 +1,48 @@
-// The page of a scene: take files that are dropped or chosen, judge them, and show the verdict.
+// The page of a scene: take files that are dropped or chosen, have them judged, and show the verdict.
 "use strict";
 
 const page = JSON.parse(document.getElementById("truth").textContent);
-const truth = unpacked(page);
 const zone = document.getElementById("drop");
 const shown = document.getElementById("verdict");
 const tolerance = document.getElementById("tolerance");
+const listeners = []; // called with the columns t, x, y of what was judged
 let last = [];
+let asked = 0; // drops so far: of two the later one is shown
 
 const escaped = (text) => String(text).replace(/[&<>"]/g, (one) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[one]);
 const small = (value) => (value === 0 ? "0" : value.toPrecision(3).replace(/\.?0+(e|$)/, "$1"));
 
-// Times of xdot = 0 stand in a file that is called so, or has a column t and neither x nor y.
-function isOfTransits({ name, text }) {
-  if (/transit/i.test(name)) return true;
-  try {
-    const { columns } = readColumns(text, ["t"], page.words);
-    return !("x" in columns) && !("y" in columns);
-  } catch (error) {
-    if (error instanceof Unreadable) return false;
-    throw error;
-  }
+// The golden function {record, coefficients, end, bound_m}: in the page, or in a script beside it; null without one.
+let made = null;
+function functionMade() {
+  made ??= page.beside === null ? Promise.resolve(page.function) : new Promise((done) => {
+    const script = document.createElement("script");
+    script.onload = () => done(globalThis.goldenFunction);
+    script.onerror = () => {
+      page.missing = `${page.beside} is not beside this page: only rows at the golden times are judged.`;
+      done(null);
+    };
+    script.src = page.beside;
+    document.head.append(script);
+  });
+  return made;
 }
 
-// Put the files of one drop together to a candidate.
-function candidateOf(files) {
-  const candidate = { columns: null, transits: null, notes: [] };
-  for (const file of files) {
-    const ofTransits = isOfTransits(file);
-    if (ofTransits ? candidate.transits : candidate.columns) throw new Unreadable("Drop one trajectory, and one file of transits at most.");
-    try {
-      const read = (ofTransits ? readTransits : readTrajectory)(file.text, page.words);
-      candidate.columns ??= read.columns && !ofTransits ? read.columns : null;
-      candidate.transits ??= read.transits;
-      candidate.notes.push(...read.notes);
-    } catch (error) {
-      if (error instanceof Unreadable) error.message = `${file.name}: ${error.message}`;
-      throw error;
-    }
-  }
-  return candidate;
-}
-
-function allowedBy(text) {
-  if (!text.trim()) return null;
-  const value = Number(text);
-  if (!(value > 0 && value < Infinity)) throw new Unreadable("The tolerance is a positive number of metres.");
-  return value;
+// What answers files: a worker of the page's own scripts.
+let worker = null;
+async function answered(files, mine) {
+  worker ??= functionMade().then((made) => {
+    const scripts = [...document.querySelectorAll("script.judging")].map((one) => one.textContent);
+    const one = new Worker(URL.createObjectURL(new Blob(scripts, { type: "text/javascript" })));
+    one.postMessage({ truth: page, made });
+    return one;
+  });
+  const one = await worker;
+  return new Promise((done) => {
+    one.onmessage = ({ data }) => data.asked === mine && done(data);
+    one.onerror = (event) => done({ refused: `The script failed: ${event.message}.` });
+    one.postMessage({ files, tolerance: tolerance.value, asked: mine });
+  });
 }
 
 // A number with its digits, the first wrong one marked.
@@ -57,15 +53,16 @@ function marked(value, place) {
   return `${digits.slice(0, at)}<mark>${digits[at]}</mark>${digits.slice(at + 1)}`;
 }
 
-function rowsOf({ path, transits, tolerance_m: allowed }) {
+function rowsOf({ path, transits, tolerance_m: allowed, bound_m: bound, amplitude_m: amplitude, at_any_time: exact }) {
   const rows = [];
   if (path) {
     const { worst } = path;
-    const place = firstWrongPlace(worst.difference || truth.bound_m);
-    rows.push(["judged", `${path.rows} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${truth.t_end} s`]);
+    const place = firstWrongPlace(worst.difference || bound);
+    rows.push(["judged", `${path.rows} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${page.t_end} s`]);
     rows.push(["largest error", `${small(path.max_error_m)} m (tolerance ${small(allowed)} m), at t = ${worst.t} s`]);
+    rows.push(["held against", exact ? `the golden function, which is within ${small(bound)} m of the truth at every time (proven)` : `the golden rows, as doubles within ${small(bound)} m of the truth`]);
     rows.push(["rms, at the end", `${small(path.rms_error_m)} m, ${small(path.end_error_m)} m`]);
-    rows.push(["digits", `${Math.max(path.digits, 0).toFixed(1)} of the amplitude of ${small(truth.amplitude_m)} m`]);
+    rows.push(["digits", `${Math.max(path.digits, 0).toFixed(1)} of the amplitude of ${small(amplitude)} m`]);
     rows.push(["first wrong digit", `${place > 0 ? `decimal ${place}` : "before the point"} of ${worst.component} at t = ${worst.t} s`]);
     rows.push(["expected", marked(worst.expected, place)], ["got", marked(worst.got, place)]);
     if (path.wrong_from_s !== null) rows.push(["beyond tolerance", `from t = ${path.wrong_from_s} s on`]);
@@ -78,33 +75,34 @@ function rowsOf({ path, transits, tolerance_m: allowed }) {
   return rows;
 }
 
-function show(files) {
-  shown.className = "";
-  try {
-    const result = judge(candidateOf(files), truth, allowedBy(tolerance.value));
-    const list = rowsOf(result).map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
-    const notes = result.notes.map((note) => `<li>${escaped(note)}</li>`).join("");
-    const errors = result.path?.errors;
-    const wide = Math.max(280, Math.min(640, shown.clientWidth - 20)); // px
-    const picture = errors ? errorPicture({ errors, tolerance: result.tolerance_m, bound: truth.bound_m, end: truth.t_end, wide }) : "";
-    const names = files.map((file) => escaped(file.name)).join(" and ");
-    shown.className = result.verdict;
-    shown.innerHTML = `<p class="word"><strong>${names} ${result.verdict}</strong> with ${escaped(truth.id)}</p><dl>${list}</dl><ul>${notes}</ul>${picture}`;
-  } catch (error) {
-    if (!(error instanceof Unreadable)) throw error;
+function show(files, result) {
+  if (result.refused) {
     shown.className = "refused";
-    shown.innerHTML = `<p class="word"><strong>Not judged</strong></p><p>${escaped(error.message)}</p>`;
+    shown.innerHTML = `<p class="word"><strong>Not judged</strong></p><p>${escaped(result.refused)}</p>`;
+    return;
   }
+  const list = rowsOf(result).map(([name, value]) => `<dt>${name}</dt><dd>${value}</dd>`).join("");
+  const notes = [...result.notes, ...(page.missing ? [page.missing] : [])].map((note) => `<li>${escaped(note)}</li>`).join("");
+  const wide = Math.max(280, Math.min(640, shown.clientWidth - 20)); // px
+  const names = files.map((file) => escaped(file.name)).join(" and ");
+  shown.className = result.verdict;
+  shown.innerHTML = `<p class="word"><strong>${names} ${result.verdict}</strong> with ${escaped(page.id)}</p><dl>${list}</dl><ul>${notes}</ul>${result.points ? errorPicture(result, wide) : ""}`;
 }
 
 async function take(files) {
   if (!files.length) return;
-  last = await Promise.all([...files].map(async (file) => ({ name: file.name, text: await file.text() })));
-  show(last);
+  last = [...files];
+  const mine = ++asked;
+  shown.className = "working";
+  shown.innerHTML = `<p class="word">Judging ${last.map((file) => escaped(file.name)).join(" and ")} …</p>`;
+  const result = await answered(last, mine);
+  if (mine !== asked) return;
+  show(last, result);
+  if (result.mine) for (const listener of listeners) listener(result.mine, result.path.max_error_m);
 }
 
-tolerance.placeholder = small(truth.words.TOLERANCE * truth.amplitude_m);
-tolerance.addEventListener("change", () => last.length && show(last));
+tolerance.placeholder = small(page.words.TOLERANCE * page.amplitude_m);
+tolerance.addEventListener("change", () => take(last));
 document.getElementById("files").addEventListener("change", (event) => take(event.target.files));
 for (const kind of ["dragenter", "dragover", "dragleave", "drop"]) {
   zone.addEventListener(kind, (event) => {

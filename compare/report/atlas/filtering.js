@@ -9,8 +9,8 @@ function filter() {
   for (const card of cards) {
     const fits = (name, words) => !chosen(name) || words.split(" ").includes(chosen(name));
     card.hidden = !(fits("flag", card.dataset.flags) && fits("level", card.dataset.levels));
-    document.querySelector(`.jumps a[href="#${card.id}"]`).hidden = card.hidden;
   }
+  for (const group of document.querySelectorAll("section")) group.hidden = !group.querySelector(".card:not([hidden])");
   const shown = cards.filter((card) => !card.hidden).length;
   document.getElementById("count").textContent = `${shown} of ${cards.length} scenes`;
 }

@@ -1,11 +1,14 @@
-// Judge a trajectory at the golden times as `foucault score` does (compare/score); pure functions, without the page.
-// `truth` is what parts.py embeds: columns as doubles in base64, bounds, scales and words. Needs reading.js.
+// Judge a trajectory as `foucault score` does (compare/score); pure functions, without the page. Rows are judged at any
+// time where the dataset has a golden function, else at the golden times. `truth` is what parts.py embeds: columns as
+// doubles in base64, bounds, scales and words. Needs evaluator (docs/readers/function.mjs) and reading.js.
 "use strict";
 
-const SAME_TIME = 1e-6; // rad of the swing: a row that is this near to a golden time is judged there
+const SAME_TIME = 1e-6; // rad of the swing: a row that is this near to a time at which the truth is known is judged there
 const EXPLAINED = 0.02; // part of the error that a suspected mistake may leave
 const MOST_EXTRA = 1000; // extra transits that are looked at one by one
+const SAMPLE = 1000; // rows that show whether a suspicion is worth a look at all
 const POSITION = ["x", "y", "z"];
+const STATE = [...POSITION, "vx", "vy", "vz"];
 
 function doubles(base64) {
   const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
@@ -13,11 +16,17 @@ function doubles(base64) {
   return Float64Array.from({ length: bytes.length / 8 }, (_, i) => view.getFloat64(8 * i, true));
 }
 
-// Unpack the numbers once.
-function unpacked(truth) {
+// Unpack the numbers once, and those of the golden function; null where only the rows are known.
+function unpacked(truth, made = truth.function) {
   const grid = Object.fromEntries(Object.entries(truth.grid).map(([name, text]) => [name, doubles(text)]));
   const transits = truth.transits && { t: doubles(truth.transits.t), weight: doubles(truth.transits.weight) };
-  return { ...truth, grid, transits };
+  return { ...truth, grid, transits, ...functionOf(made) };
+}
+
+function functionOf(made) {
+  if (!made) return { at: null };
+  const numbers = new DataView(Uint8Array.from(atob(made.coefficients), (letter) => letter.charCodeAt(0)).buffer);
+  return { at: evaluator(made.record, numbers), end: made.end, bound_m: made.bound_m };
 }
 
 // Index of the number in an increasing array that is nearest to a value.
@@ -32,20 +41,30 @@ function nearest(values, value) {
 }
 
 const ratio = ([above, below]) => above / below;
+const most = (values) => values.reduce((best, value) => Math.max(best, value), 0);
+const picked = (columns, rows) => Object.fromEntries(Object.entries(columns).map(([name, of]) => [name, rows.map((row) => of[row])]));
 
-// Which rows are at golden times: [[row, golden row], …].
-function matches(t, { grid, grid_step: step, omega }) {
+// The truth at those of some times at which it is known: {rows: their indices, golden: columns}. A row that is a little
+// off such a time has the state there, moved on by its velocity.
+function truthAt(t, { grid, grid_step: step, omega, at, end }) {
   const within = SAME_TIME * Math.min(step, omega ? 1 / omega : step);
-  const found = [];
+  const [rows, golden] = [[], Object.fromEntries(STATE.map((name) => [name, []]))];
+  let before = -1;
   t.forEach((time, row) => {
-    const at = nearest(grid.t, time);
-    if (Math.abs(time - grid.t[at]) <= within && !(found.length && found[found.length - 1][1] === at)) found.push([row, at]);
+    const i = at ? row : nearest(grid.t, time);
+    const known = at ? Math.min(time, end) : grid.t[i];
+    const gap = time - known;
+    if (Math.abs(gap) > within || i === before) return;
+    const state = at ? at(known) : STATE.map((name) => grid[name][i]);
+    STATE.forEach((name, k) => golden[name].push(k < 3 && gap ? state[k] + gap * state[k + 3] : state[k]));
+    rows.push(row);
+    before = i;
   });
-  return found;
+  return { rows, golden };
 }
 
-// The same, or throws Unreadable where no row after t = 0 is at a golden time, with what may be the reason.
-function pairs(columns, truth) {
+// The same of a candidate, or throws Unreadable where it says nothing of the motion, with what may be the reason.
+function judgedRows(columns, truth) {
   const { grid, t_end: end, grid_step: step, words } = truth;
   const { t } = columns;
   const last = t[t.length - 1];
@@ -54,60 +73,59 @@ function pairs(columns, truth) {
     const advice = unit ? `They look like ${words.LONG_NAMES[unit]}: name the column t (${unit}).` : "Leave later rows out.";
     throw new Unreadable(`The last time is ${last} s, and the scene ends at ${end} s. ${advice}`);
   }
-  const found = matches(t, truth);
-  if (!found.some(([, at]) => grid.t[at] > 0)) {
-    const within = SAME_TIME * Math.min(step, truth.omega ? 1 / truth.omega : step);
-    const offsets = t.filter((time) => time > 0).map((time) => time - grid.t[nearest(grid.t, time)]);
-    const shift = offsets[0] ?? 0;
-    const shifted = offsets.length > 1 && offsets.every((offset) => Math.abs(offset - shift) <= within);
-    const why = shifted ? ` All are ${Math.abs(shift).toPrecision(3)} s ${shift > 0 ? "after" : "before"} one: is the clock shifted?` : "";
-    const golden = [...grid.t.slice(0, 3)].join(", ");
-    const unit = unitOfTime(columns, truth).map((text) => ` ${text}`).join("");
-    throw new Unreadable(`No row after t = 0 is at a golden time (${golden} … s).${why}${unit} Print rows there, or use foucault score, which judges at any time.`);
-  }
-  return found;
+  const found = truthAt(t, truth);
+  const within = SAME_TIME * Math.min(step, truth.omega ? 1 / truth.omega : step);
+  if (found.rows.some((row) => t[row] > (truth.at ? 0 : within))) return found;
+  if (truth.at) throw new Unreadable("No row after t = 0: the file says nothing of the motion.");
+  const offsets = t.filter((time) => time > 0).map((time) => time - grid.t[nearest(grid.t, time)]);
+  const shift = offsets[0] ?? 0;
+  const shifted = offsets.length > 1 && offsets.every((offset) => Math.abs(offset - shift) <= within);
+  const why = shifted ? ` All are ${Math.abs(shift).toPrecision(3)} s ${shift > 0 ? "after" : "before"} one: is the clock shifted?` : "";
+  const golden = [...grid.t.slice(0, 3)].join(", ");
+  const unit = unitOfTime(columns, truth).map((text) => ` ${text}`).join("");
+  throw new Unreadable(`No row after t = 0 is at a golden time (${golden} … s).${why}${unit} Print rows there, or use foucault score, which judges at any time.`);
 }
 
-// Errors of the rows at golden times: candidate minus truth, the truth moved on by its velocity to the row's own time.
-function errorsOf(columns, matched, truth) {
-  const names = allColumns(truth.words).filter((name) => name !== "t" && name in columns);
-  const rates = { x: "vx", y: "vy", z: "vz" };
+// Errors of these rows: candidate minus truth.
+function errorsOf(columns, { rows, golden }) {
   const components = {};
-  for (const name of names) {
-    components[name] = matched.map(([row, at]) => {
-      const rate = rates[name] ? truth.grid[rates[name]][at] * (columns.t[row] - truth.grid.t[at]) : 0;
-      return columns[name][row] - truth.grid[name][at] - rate;
-    });
+  for (const name of STATE.filter((one) => one in columns)) {
+    components[name] = Float64Array.from(rows, (row, i) => columns[name][row] - golden[name][i]);
   }
-  const present = POSITION.filter((name) => name in columns);
-  const position = matched.map((_, i) => Math.hypot(...present.map((name) => components[name][i])));
-  return { components, position, t: matched.map(([row]) => columns.t[row]) };
+  const present = POSITION.filter((name) => name in columns).map((name) => components[name]);
+  const position = Float64Array.from(rows, (_, i) => Math.hypot(...present.map((error) => error[i])));
+  return { components, position, t: Float64Array.from(rows, (row) => columns.t[row]) };
 }
 
 const largest = (values) => values.reduce((best, value, i) => (Math.abs(value) > Math.abs(values[best]) ? i : best), 0);
+const reach = (xs, ys) => xs.reduce((best, x, i) => Math.max(best, Math.hypot(x, ys[i])), 0);
 
-// Judge a candidate {columns or null, transits or null, notes}; `tolerance` in m, null for a millionth of the amplitude.
+// Judge a candidate {columns or null, transits or null, notes}; `tolerance` in m, null for a millionth of the amplitude,
+// or of what a candidate reaches that swings far less.
 function judge(candidate, truth, tolerance = null) {
-  const allowance = tolerance ?? truth.words.TOLERANCE * truth.amplitude_m;
+  const { columns, transits: times } = candidate;
+  const judged = columns && judgedRows(columns, truth);
+  const amplitude = judged && truth.at ? Math.max(truth.amplitude_m, reach(judged.golden.x, judged.golden.y)) : truth.amplitude_m;
+  const part = judged ? reach(columns.x, columns.y) / reach(judged.golden.x, judged.golden.y) : 1;
+  const allowance = tolerance ?? truth.words.TOLERANCE * amplitude * (part > 0 && part < truth.words.SMALL ? part : 1);
   const allowed = allowance + truth.bound_m;
-  const verdict = { tolerance_m: allowance, bound_m: truth.bound_m, notes: [...candidate.notes], path: null, transits: null };
-  let until = Math.min(truth.t_end, candidate.transits?.at(-1) ?? 0); // later transits are not missed
-  if (candidate.columns) {
-    const matched = pairs(candidate.columns, truth);
-    const errors = errorsOf(candidate.columns, matched, truth);
-    verdict.path = { ...pathVerdict(candidate.columns, matched, errors, truth, allowed), errors };
+  const verdict = { tolerance_m: allowance, bound_m: truth.bound_m, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], path: null, transits: null };
+  let until = Math.min(truth.t_end, times?.at(-1) ?? 0); // later transits are not missed
+  if (columns) {
+    const errors = errorsOf(columns, judged);
+    verdict.path = { ...pathVerdict(columns, judged, errors, truth, allowed, amplitude), errors };
     until = errors.t[errors.t.length - 1];
-    const apart = candidate.columns.t.length - matched.length;
-    if (apart) verdict.notes.push(`${apart} of ${candidate.columns.t.length} rows are not at golden times and were not judged.`);
+    const apart = columns.t.length - judged.rows.length;
+    if (apart) verdict.notes.push(`${apart} of ${columns.t.length} rows are ${truth.at ? "after the scene's end" : "not at golden times"} and were not judged.`);
     if (verdict.path.max_error_m > allowed) {
-      const found = suspicions(candidate.columns, matched, errors, truth);
-      verdict.notes.push(...(found.length ? found : unitOfTime(candidate.columns, truth)));
+      const found = suspicions(columns, judged, errors, truth);
+      verdict.notes.push(...(found.length ? found : unitOfTime(columns, truth)));
     }
   }
-  if (candidate.transits && truth.transits) {
-    verdict.transits = transitErrors(candidate.transits, truth, until, allowance);
-  } else if (candidate.transits) {
-    if (!candidate.columns) throw new Unreadable(`${truth.no_transits}: drop a trajectory.`);
+  if (times && truth.transits) {
+    verdict.transits = transitErrors(times, truth, until, allowance);
+  } else if (times) {
+    if (!columns) throw new Unreadable(`${truth.no_transits}: drop a trajectory.`);
     verdict.notes.push(`${truth.no_transits}: its transits were not judged.`);
   }
   const { path, transits } = verdict;
@@ -116,13 +134,12 @@ function judge(candidate, truth, tolerance = null) {
   return { ...verdict, verdict: right && timely ? "agrees" : "disagrees" };
 }
 
-function pathVerdict(columns, matched, errors, truth, allowed) {
+function pathVerdict(columns, { rows, golden }, errors, truth, allowed, amplitude) {
   const { components, position, t } = errors;
   const row = largest(position);
   const component = POSITION.filter((name) => name in columns).reduce((best, name) =>
     Math.abs(components[name][row]) > Math.abs(components[best][row]) ? name : best);
   const top = position[row];
-  const [mine, golden] = matched[row];
   const wrong = position.findIndex((error) => error > allowed);
   const last = t[t.length - 1];
   return {
@@ -132,8 +149,8 @@ function pathVerdict(columns, matched, errors, truth, allowed) {
     max_error_m: top,
     rms_error_m: top && top * Math.sqrt(position.reduce((sum, error) => sum + (error / top) ** 2, 0) / position.length),
     end_error_m: position[position.length - 1],
-    digits: -Math.log10(Math.max(top, truth.bound_m) / truth.amplitude_m),
-    worst: { t: t[row], component, expected: truth.grid[component][golden], got: columns[component][mine], difference: components[component][row] },
+    digits: -Math.log10(Math.max(top, truth.bound_m) / amplitude),
+    worst: { t: t[row], component, expected: golden[component][row], got: columns[component][rows[row]], difference: components[component][row] },
     wrong_from_s: wrong < 0 ? null : t[wrong],
   };
 }
@@ -144,37 +161,43 @@ function firstWrongPlace(error) {
 }
 
 // What plain mistakes explain, and what they leave: another unit, axes turned round or exchanged, a clock that is late.
-function suspicions(columns, matched, errors, truth) {
+function suspicions(columns, { rows, golden }, errors, truth) {
   const { words } = truth;
-  const top = errors.position.reduce((most, error) => Math.max(most, error), 0);
-  const enough = EXPLAINED * Math.min(top, truth.amplitude_m);
+  const enough = EXPLAINED * Math.min(most(errors.position), truth.amplitude_m);
   const told = (texts, rest) => (rest <= enough ? [`${texts.filter(Boolean).join(", and ")}: put right, ${rest.toPrecision(2)} m are left.`] : []);
-  const rows = matched.map(([row, at]) => [columns.x[row], columns.y[row], truth.grid.x[at], truth.grid.y[at]]);
   for (const [size, unit] of [[1, ""], ...Object.entries(words.LENGTHS_SAID).map(([unit, text]) => [ratio(words.LENGTHS[unit]), text])]) {
     for (const [first, second, xSign, ySign, axes] of words.AXES_SAID) {
       if (!unit && !axes) continue;
-      const left = rows.map((row) => Math.hypot(xSign * size * row[first] - row[2], ySign * size * row[second] - row[3]));
-      const found = told([unit && `Your file ${unit}`, axes && `${unit ? "it" : "Your file"} ${axes}`], left.reduce((most, one) => Math.max(most, one), 0));
-      if (found.length) return found;
+      const own = [columns.x, columns.y];
+      const left = (row, i) => Math.hypot(xSign * size * own[first][row] - golden.x[i], ySign * size * own[second][row] - golden.y[i]);
+      if (rows.some((row, i) => left(row, i) > enough)) continue;
+      return told([unit && `Your file ${unit}`, axes && `${unit ? "it" : "Your file"} ${axes}`], most(rows.map(left)));
     }
   }
-  const [vx, vy] = ["vx", "vy"].map((name) => matched.map(([, at]) => truth.grid[name][at]));
+  const { vx, vy } = golden;
   const { x: ex, y: ey } = errors.components;
   const square = vx.reduce((sum, one, i) => sum + one ** 2 + vy[i] ** 2, 0);
   const late = -vx.reduce((sum, one, i) => sum + one * ex[i] + vy[i] * ey[i], 0) / square;
-  const rest = vx.reduce((most, one, i) => Math.max(most, Math.hypot(ex[i] + late * one, ey[i] + late * vy[i])), 0);
+  const rest = most(vx.map((one, i) => Math.hypot(ex[i] + late * one, ey[i] + late * vy[i])));
   return square ? told([`Your clock is ${Math.abs(late).toPrecision(4)} s ${late > 0 ? "slow" : "fast"}`], rest) : [];
 }
 
-// The unit in which times are meant: rows at golden times in it are within 2 % of the truth there; a sentence or none.
+// The unit in which times are meant: the rows, their times in it, are within 2 % of the truth; a sentence or none.
 function unitOfTime(columns, truth) {
-  for (const [unit, text] of Object.entries(truth.words.TIMES_SAID)) {
-    const t = columns.t.map((time) => time * ratio(truth.words.TIMES[unit]));
-    if (t[t.length - 1] > truth.t_end + truth.grid_step) continue;
-    const matched = matches(t, truth);
-    const { position } = errorsOf({ ...columns, t }, matched, truth);
-    const rest = position.reduce((most, error) => Math.max(most, error), 0);
-    if (matched.length > 2 && rest <= EXPLAINED * truth.amplitude_m) return [`Your file ${text}: put right, ${rest.toPrecision(2)} m are left.`];
+  const { words, amplitude_m: amplitude } = truth;
+  const each = Math.ceil(columns.t.length / SAMPLE);
+  for (const [unit, text] of Object.entries(words.TIMES_SAID)) {
+    const left = (rows) => {
+      const mine = picked(columns, rows);
+      mine.t = mine.t.map((time) => time * ratio(words.TIMES[unit]));
+      if (mine.t[mine.t.length - 1] > truth.t_end + truth.grid_step) return Infinity;
+      const known = truthAt(mine.t, truth);
+      return known.rows.length > 2 ? most(errorsOf(mine, known).position) : Infinity;
+    };
+    const all = [...columns.t.keys()];
+    if (each > 1 && truth.at && left(all.filter((i) => i % each === 0)) > EXPLAINED * amplitude) continue;
+    const rest = left(all);
+    if (rest <= EXPLAINED * amplitude) return [`Your file ${text}: put right, ${rest.toPrecision(2)} m are left.`];
   }
   return [];
 }
@@ -192,8 +215,9 @@ function transitErrors(times, truth, until, tolerance) {
   const missed = [...t.keys()].filter((k) => owner[k] < 0 && t[k] <= until);
   const excused = vanishing(missed, t, weight, until, tolerance);
   const extra = mine.filter((_, i) => !used.has(i));
-  // the truth's xdot near a transit is ax times the distance; a time that stands there twice is no transit of any motion
-  const near = (time) => t.length > 0 && Math.abs(time - t[nearest(t, time)]) * weight[nearest(t, time)] <= tolerance;
+  // xdot as the function has it, else near a transit ax times the distance; what stands there twice is no transit at all
+  const tangent = (time) => (t.length ? Math.abs(time - t[nearest(t, time)]) * weight[nearest(t, time)] : Infinity);
+  const near = (time) => (truth.at ? Math.abs(truth.at(Math.min(time, truth.end))[3]) / truth.omega : tangent(time)) <= tolerance;
   const few = extra.length <= MOST_EXTRA; // of more, none is excused
   const spurious = extra.map((time) => few && near(time) && mine.filter((other) => other === time).length === 1);
   const size = (values) => values.reduce((best, value) => Math.max(best, Math.abs(value)), 0);
@@ -236,5 +260,3 @@ function vanishing(missed, t, weight, until, tolerance) {
   }
   return excused;
 }
-
-if (typeof module !== "undefined") module.exports = { judge, meaning, readTrajectory, readTransits, unpacked, Unreadable };

@@ -3,68 +3,95 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 from reference.scenes.fields import LEVELS
+from reference.scenes.shipped import data_root, in_checkout
 
 from ..charts.drawing import check_matplotlib
-from ..charts.motion_pictures import motion_svgs
+from ..charts.motion_pictures import motion_svgs, thumbnail
 from ..folder import PAGE, check_folder, write_files
 from ..motion import Motion
-from ..page import Html, facts, page, paragraph, section, text
+from ..page import Html, page, paragraph, section, text
 from . import parts
 from .entry import Entry, entries
 
-SHOWN = ("level", "behind it", "bounds", "transits")  # on the page over all scenes
+EVALUATOR = "function.mjs"
+MOST_EMBEDDED = 500_000  # characters of coefficients in a page; more are in a script beside it
+PLAIN = "Begin here: pendulums as they hang"  # scenes without flags, but for a long run
+GROUPS = {  # and the others: each stands in the first group that has one of its flags, or in the last
+    "Wide swings, and over the top": {"large_angle"},
+    "Drag": {"damped", "stiff"},
+    "Fast rotation, no gravity": {"fast_rotation", "weightless"},
+    "Very small and very large": {"scale", "tiny_amplitude", "at_rest"},
+    "Special places and releases": set[str](),
+}
 
 
-def index_page(scenes: Sequence[Entry], svgs: Sequence[Sequence[str]], base: str) -> str:
-    """Return the page over all scenes.
-
-    Args:
-        scenes: sorted by id.
-        svgs: the pictures of each.
-        base: where the datasets' folders stand, as a URL or a path; empty for no links to files.
-    """
-    cards = [_card(entry, pictures, base) for entry, pictures in zip(scenes, svgs, strict=True)]
+def index_page(scenes: Sequence[Entry], thumbs: Sequence[str]) -> str:
+    """Return the page over all scenes, sorted by id: a thumbnail of each, in groups."""
+    cards: dict[str, list[str]] = {name: [] for name in (PLAIN, *GROUPS)}
+    for entry, thumb in zip(scenes, thumbs, strict=True):
+        cards[_group(entry)].append(_card(entry, thumb))
     datasets = sum(len(entry.datasets) for entry in scenes)
+    sections = [
+        section(name, Html(f'<div class="thumbs">\n{chr(10).join(of)}\n</div>')) for name, of in cards.items() if of
+    ]
     return page(
         "Atlas of the Foucault pendulum",
-        [section("Scenes", _jumps(scenes), _filters(scenes), Html("\n".join(cards)))],
+        [_filters(scenes), *sections],
         lead=paragraph(
-            f"{scenes_of(len(scenes))} and {datasets} golden datasets: what each catches, how the bob moves, the state "
-            "at the end with a bound on every number, and what stands behind it. The page of a scene judges the output "
-            "of your program in the browser."
+            f"{scenes_of(len(scenes))} and {datasets} golden datasets. The page of a scene plays its motion, says what "
+            "it catches and what stands behind its numbers, and judges the output of your program in the browser."
         ),
         script=_script("filtering.js"),
-        styles=_text("atlas.css"),
+        styles=source("atlas.css"),
     )
 
 
-def scene_page(entry: Entry, svgs: Sequence[str], base: str) -> str:
-    """Return the page of a scene, which holds its golden rows and judges a file by them."""
+def _group(entry: Entry) -> str:
+    flags = {*entry.flags} - {"long"}
+    return next((name for name, of in GROUPS.items() if flags & of), [*GROUPS][-1]) if flags else PLAIN
+
+
+def scene_page(entry: Entry, svgs: Sequence[str], base: str, made: dict[str, Any] | None, beside: str | None) -> str:
+    """Return the page of a scene, which holds its golden rows and judges a file by them.
+
+    Args:
+        entry: the scene.
+        svgs: its pictures.
+        base: where the datasets' folders stand, as a URL or a path; empty for no links to files.
+        made: the golden function, None if it has none.
+        beside: the file beside the page that holds the function; None if the page itself does.
+    """
     first, *others = entry.datasets
     fared = parts.methods(entry.studied)
     readings = [Html(f"<h3>{text(golden.manifest.id)}</h3>\n{parts.dataset(golden, base)}") for golden in others]
     return page(
         entry.id,
         [
-            section("The motion", parts.pictures(svgs)),
-            section("Judge your program", _drop(entry)),
+            section("The motion", *([Html(source("player.html"))] if made else []), parts.pictures(svgs)),
+            section("Judge your program", _drop(entry, made, beside)),
             section("The state at the end", parts.state(entry.golden)),
             section("The dataset", parts.dataset(first, base), *readings),
-            *([section("How methods fare", *fared)] if fared else []),
+            *([section("How methods fare", paragraph(entry.studied.sentence()), *fared)] if fared else []),
             section("Inputs", paragraph("SI units, angles in degrees."), parts.inputs(entry.golden)),
         ],
         lead=Html(
             f"{paragraph(_sentence(entry))}\n{parts.flags(entry)}\n"
             f'<p><a href="index.html">All scenes</a> · {text(entry.golden.manifest.source)}</p>'
         ),
-        script=_truth(entry) + _script("reading.js", "judging.js", "drawing.js", "dropping.js"),
-        styles=_text("atlas.css"),
+        script=Html(
+            _data(parts.embedded(entry.judged, None if beside else made, beside))
+            + _script("function.mjs", "reading.js", "judging.js", "answering.js", kind="judging")
+            + _script("drawing.js", "dropping.js", "playing.js")
+        ),
+        styles=source("atlas.css"),
     )
 
 
@@ -77,37 +104,14 @@ def _sentence(entry: Entry) -> str:
     return f"{entry.golden.manifest.title.rstrip('.')}."
 
 
-def _card(entry: Entry, svgs: Sequence[str], base: str) -> Html:
-    manifest, trust = entry.golden.manifest, parts.trust(entry.golden)
-    shown = {name: trust[name] for name in SHOWN}
-    of_files = [
-        " ".join(parts.linked(golden, name, base) for name in golden.manifest.files) for golden in entry.datasets
-    ]
-    shown |= {
-        f"files of {golden.manifest.id}": Html(names) for golden, names in zip(entry.datasets, of_files, strict=True)
-    }
-    shown["to score"] = Html(
-        f"<code>{text(entry.score_command())}</code>, or drop a file on {_link(entry, 'its page')}"
-    )
-    if entry.studied.sentence():
-        shown["methods"] = entry.studied.sentence()
+def _card(entry: Entry, thumb: str) -> str:
     levels = " ".join(golden.manifest.level for golden in entry.datasets)
-    return Html(
-        f'<article class="card" id="{text(entry.id)}" data-flags="{text(" ".join(entry.flags))}" '
-        f'data-levels="{levels}">\n<div class="head">\n'
-        f'<h3>{_link(entry, entry.id)} <span class="level">{manifest.level}</span></h3>\n'
-        f"{paragraph(_sentence(entry))}\n{parts.flags(entry)}\n{parts.pictures(svgs)}\n</div>\n"
-        f'<div class="told">\n{parts.state(entry.golden)}\n{facts(shown)}\n</div>\n</article>'
+    about = entry.golden.manifest.title.partition(":")[0]
+    return (
+        f'<a class="card" id="{text(entry.id)}" href="{text(entry.id)}.html" '
+        f'data-flags="{text(" ".join(entry.flags))}" data-levels="{levels}">'
+        f"{thumb}<strong>{text(entry.id)}</strong> {text(about)}</a>"
     )
-
-
-def _link(entry: Entry, words: str) -> Html:
-    return Html(f'<a href="{text(entry.id)}.html">{text(words)}</a>')
-
-
-def _jumps(scenes: Sequence[Entry]) -> Html:
-    links = "\n".join(f'<a href="#{text(entry.id)}">{text(entry.id)}</a>' for entry in scenes)
-    return Html(f'<p class="jumps">\n{links}\n</p>')
 
 
 def _filters(scenes: Sequence[Entry]) -> Html:
@@ -128,7 +132,7 @@ def _choice(name: str, words: Iterable[str]) -> str:
     return f'<label>{name} <select id="{name}"><option value="">any</option>{options}</select></label>'
 
 
-def _drop(entry: Entry) -> Html:
+def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html:
     golden, command = entry.judged, text(entry.score_command())
     times = ", ".join(golden.decimals("t")[:3])
     transits = (
@@ -136,33 +140,42 @@ def _drop(entry: Entry) -> Html:
         if golden.manifest.counts.transits
         else ""
     )
+    wanted, known = f"a row for {times} s, or for some of them", "no golden function: the page has golden rows alone"
+    if made:
+        wanted = f"rows at any times up to {text(golden.decimals('t')[-1])} s"
+        known = f"the golden function, which is within {made['bound_m']:.1e} m of the truth at every time"
+    if made and beside:
+        size = f"{len(made['coefficients']) / 1e6:.1f} MB"
+        known += f"; its {size} are in {beside} beside this page, read with the first file or at the first play"
     return Html(
         '<div id="drop">\n<p><label>Drop the output of your program here, or choose it: '
         '<input type="file" id="files" multiple></label></p>\n'
         '<p><label>Tolerance in m <input id="tolerance" size="9" inputmode="decimal"></label></p>\n</div>\n'
         '<div id="verdict" aria-live="polite"><noscript>Without JavaScript: use the command below.</noscript></div>\n'
-        f"<p>Wanted is text with a header <code>t,x,y</code>, and any of <code>z,vx,vy,vz</code>, and a row for the "
-        f"golden times {text(times)} … s, or for some of them. Axes x east, y north, z up from the suspension, in SI "
-        f"units; other units and names are understood.{text(transits)} The file stays on this computer: the page has "
-        "the golden rows in it. On the command line, at any times and with the likely mistake: "
-        f"<code>{command}</code></p>"
+        f"<p>Wanted is text with a header <code>t,x,y</code>, and any of <code>z,vx,vy,vz</code>, and {wanted}. Axes x "
+        "east, y north, z up from the suspension, in SI units; other units and names are understood."
+        f"{text(transits)} It is judged by {known}. The file stays on this computer. On the command line, with the "
+        f"likely mistake: <code>{command}</code></p>"
     )
 
 
-def _truth(entry: Entry) -> Html:
-    document = parts.embedded(entry.judged)
-    content = json.dumps(document, separators=(",", ":"), ensure_ascii=False, default=parts.plain).replace(
-        "<", "\\u003c"
-    )
+def _data(document: dict[str, Any]) -> Html:
+    content = json.dumps(document, separators=(",", ":"), ensure_ascii=False, default=parts.plain)
+    content = content.replace("<", "\\u003c")
     return Html(f'<script type="application/json" id="truth">{content}</script>\n')
 
 
-def _script(*names: str) -> Html:
-    return Html("".join(f"<script>\n{_text(name)}</script>\n" for name in names))
+def _script(*names: str, kind: str = "page") -> Html:
+    return Html("".join(f'<script class="{kind}">\n{source(name)}</script>\n' for name in names))
 
 
 @cache
-def _text(name: str) -> str:
+def source(name: str) -> str:
+    """Return a style, a script or a part of a page; of the program in docs/readers the function that evaluates."""
+    if name == EVALUATOR:
+        folder = data_root().parent / "docs" / "readers" if in_checkout() else files(__package__)
+        program = folder.joinpath(name).read_text(encoding="utf-8")
+        return str(re.findall(r"^// Return what.*?^export (function.*?^}\n)", program, re.MULTILINE | re.DOTALL)[0])
     return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
@@ -189,12 +202,16 @@ def build(
     check_folder(out, [PAGE])
     scenes = entries(data, studies)
     check_folder(out, [f"{entry.id}.html" for entry in scenes])
-    pages, svgs = {}, []
+    pages, thumbs = {}, []
     for count, entry in enumerate(scenes):
         report(count, len(scenes), entry.id)
-        svgs.append(motion_svgs(Motion.of_golden(entry.golden)))
-        pages[f"{entry.id}.html"] = scene_page(entry, svgs[-1], base)
-    pages[PAGE] = index_page(scenes, svgs, base)
+        motion, made = Motion.of_golden(entry.golden), parts.function_made(entry.judged)
+        beside = f"{entry.id}.function.js" if made and len(made["coefficients"]) > MOST_EMBEDDED else None
+        if beside:
+            pages[beside] = f"globalThis.goldenFunction = {json.dumps(made, separators=(',', ':'))};\n"
+        pages[f"{entry.id}.html"] = scene_page(entry, motion_svgs(motion), base, made, beside)
+        thumbs.append(thumbnail(motion))
+    pages[PAGE] = index_page(scenes, thumbs)
     write_files(out, pages)
     report(len(scenes), len(scenes), PAGE)
     return {name: len(content.encode()) for name, content in pages.items()}

@@ -6,6 +6,8 @@ Besides: the numbers and words by which the script of a page judges a file in th
 from __future__ import annotations
 
 import base64
+import json
+import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
@@ -13,9 +15,10 @@ from typing import Any
 import numpy as np
 
 from reference import Golden
+from reference.dataset.manifest import FUNCTION
 from reference.dataset.render import MEANING
-from reference.numbers.columns import STATE
-from reference.numbers.precision import DOUBLE_BITS, Array
+from reference.numbers.columns import POSITION, STATE
+from reference.numbers.precision import DOUBLE_BITS, Array, rounded_up
 from reference.status import Status
 
 from ...candidates import candidate, layout, names, spelling
@@ -144,10 +147,24 @@ def _cpu(result: MethodResult) -> str:
     return "" if result.cpu_s is None else f"{result.cpu_s:.2g}"
 
 
-def embedded(golden: Golden) -> dict[str, Any]:
+def function_made(golden: Golden) -> dict[str, Any] | None:
+    """Return what `evaluator` in docs/readers/function.mjs needs of the golden function; None if there is none."""
+    if golden.function is None:
+        return None
+    record, numbers = (golden.path.joinpath(name).read_bytes() for name in FUNCTION)
+    return {
+        "record": json.loads(record),
+        "coefficients": base64.b64encode(numbers).decode(),
+        "end": float(golden.function.times[-1]),
+        "bound_m": float(rounded_up(Fraction(math.hypot(*(golden.function.bound[name] for name in POSITION))))),
+    }
+
+
+def embedded(golden: Golden, made: dict[str, Any] | None = None, beside: str | None = None) -> dict[str, Any]:
     """Return what `judging.js` needs of a dataset: doubles of its grid and transits in base64, bounds, scales, words.
 
-    Transits come with the weight |ax|/ω in 1/s·m, by which an error of time becomes one of position.
+    Transits come with the weight |ax|/ω in 1/s·m, by which an error of time becomes one of position. The golden
+    function is `made`, or in a file `beside` the page.
     """
     inputs, speed = golden.scene.exact, float(distance((golden.vx, golden.vy, golden.vz)).max())
     omega, length = swing_rate(golden.scene, speed), float(inputs.length)
@@ -157,6 +174,7 @@ def embedded(golden: Golden) -> dict[str, Any]:
         "id": golden.manifest.id,
         "t_end": float(inputs.t_end),
         "grid_step": float(inputs.grid_step),
+        "length_m": length,
         "amplitude_m": float(np.hypot(golden.x, golden.y).max()) or length,
         "bound_m": float(golden.manifest.bounds.position_m) + length * 2.0**-DOUBLE_BITS,
         "omega": omega,
@@ -164,6 +182,8 @@ def embedded(golden: Golden) -> dict[str, Any]:
         "transits": None if reason else {"t": _doubles(transits["t"]), "weight": _doubles(weight)},
         "no_transits": reason,
         "possible": [[float(span.from_s), float(span.to_s)] for span in golden.manifest.possible],
+        "function": made,
+        "beside": beside,
         "words": _vocabulary(),
     }
 
@@ -173,7 +193,14 @@ def _vocabulary() -> dict[str, Any]:
     reading = names, layout, spelling, text_reader, candidate
     found = {name: value for module in reading for name, value in vars(module).items() if name.isupper()}
     said = {name: getattr(conventions, name) for name in ("LENGTHS_SAID", "TIMES_SAID")}
-    limits = {"TOLERANCE": judge.TOLERANCE, "FINER": judge.FINER, "FAR": judge.FAR, "SAME": judge.SAME, "WHOLE": WHOLE}
+    limits = {
+        "TOLERANCE": judge.TOLERANCE,
+        "FINER": judge.FINER,
+        "FAR": judge.FAR,
+        "SAME": judge.SAME,
+        "WHOLE": WHOLE,
+        "SMALL": judge.SMALL,
+    }
     axes = [[*order, *signs, text] for (order, signs), (_, text) in conventions.AXES_SAID.items()]
     return found | said | limits | {"AXES_SAID": axes}
 

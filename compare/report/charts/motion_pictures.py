@@ -26,6 +26,7 @@ _ELEMENT = re.compile(r"<[^>]*>")  # the coordinates in it, not the text after i
 _FONTS = re.compile(r"font-family: [^;\"]+")
 _MARKERS = re.compile(r"(?:<use [^>]*style=\"fill: ([^;\"]*)[^>]*/>\s*){2,}")
 _PLACE = re.compile(r'x="(\S+)" y="(\S+)"')
+THUMB, THUMB_POINTS = 200, 400  # a thumbnail's side in units of its own, and its points at most
 LONGEST_NAME = 40  # characters of a file's name above its picture
 
 
@@ -131,6 +132,18 @@ def motion_svgs(motion: Motion) -> list[str]:
         )
         elements.append(_MARKERS.sub(_strokes, text))
     return elements
+
+
+def thumbnail(motion: Motion) -> str:
+    """Return the path, from above or on its sphere, as a small SVG element without words."""
+    points = _few(_line(motion) if len(motion.line) else motion.rows, THUMB_POINTS)
+    right, up = _seen(points / motion.length)[:2] if motion.wide else points[:, :2].T
+    size = 1.0 if motion.wide else float(np.nanmax(np.hypot(right, up))) or 1.0
+    places = np.column_stack([right, -up]) * (0.46 * THUMB / size) + THUMB / 2
+    words = ["M" if np.isnan(x) else f"{x:.0f} {y:.0f}" for x, y in places]
+    ring = f'<circle cx="{THUMB // 2}" cy="{THUMB // 2}" r="{0.46 * THUMB:.0f}"/>' if motion.wide else ""
+    path = f"M{' '.join(words)}".removesuffix(" M")
+    return f'<svg viewBox="0 0 {THUMB} {THUMB}" aria-hidden="true">{ring}<path d="{path}"/></svg>'
 
 
 def _strokes(markers: re.Match[str]) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -14,7 +13,8 @@ import reference
 from compare import judge
 from compare.candidates.names import meaning
 from compare.candidates.read import read, read_transits
-from compare.report.atlas.parts import embedded, plain
+from compare.report.atlas.pages import source
+from compare.report.atlas.parts import embedded, function_made, plain
 from compare.score.explanation.conventions import AXES_SAID, LENGTHS_SAID, TIMES_SAID
 from reference import InputError
 
@@ -41,10 +41,9 @@ console.log(JSON.stringify({ told, meanings: headers.map((word) => meaning(word,
 
 def run(golden, cases=(), headers=()):
     """Run the script on cases of (trajectory or None, transits or None, tolerance or None)."""
-    folder = files("compare.report.atlas")
-    script = "".join(folder.joinpath(name).read_text("utf-8") for name in ("reading.js", "judging.js")) + RUN
+    script = "".join(map(source, ("function.mjs", "reading.js", "judging.js"))) + RUN
     asked = [{"text": text, "times": times, "tolerance": tolerance} for text, times, tolerance in cases]
-    truth = embedded(golden)
+    truth = embedded(golden, function_made(golden))
     document = {"truth": truth, "words": truth["words"], "cases": asked, "headers": list(headers)}
     done = subprocess.run(
         ["node", "-e", script], input=json.dumps(document, default=plain), capture_output=True, text=True, check=True
@@ -233,3 +232,94 @@ def test_headers_mean_what_they_mean_to_score(golden):
             factor = mine.get("factor") and mine["factor"][0] / mine["factor"][1]
             assert (mine["column"], mine["rank"]) == (one.column, one.rank), word
             assert factor == (None if one.factor is None else float(one.factor)), word
+
+
+@pytest.fixture(scope="module", params=["paris", "hard"])
+def at_any_time(request, tmp_path_factory):
+    """A scene and a dataset of it that has a golden function: z from the sphere, and z as a series."""
+    pytest.importorskip("flint")
+    scene = reference.load_scene(request.param, ["inputs=binary64", "run.t_end=600"])
+    short = scene.with_values(["run.digits=12"])
+    solution = reference.solve(short, level="enclosed", engine="limbs", function=True)
+    return scene, reference.load(reference.write(solution, tmp_path_factory.mktemp("function") / scene.id))
+
+
+def odd_files(golden):
+    """Files at times of no grid: right and wrong ones, and such as begin late, end early or have one row."""
+    t = np.sort(np.random.default_rng(34).uniform(0, 600, 997))
+    at = golden.at(t)
+    x, y, z = at.x, at.y, at.z
+    size = float(np.hypot(golden.x, golden.y).max())
+    wave = np.sin(7 * t)
+    return {
+        "exact": csv("t,x,y,z,vx,vy,vz", t, x, y, z, at.vx, at.vy, at.vz),
+        "in_order": csv("t,x,y,z", t, x + 3e-7 * size * wave, y, z),
+        "just_within": csv("t,x,y", t, x + 0.999e-6 * size * np.sign(wave), y),
+        "just_beyond": csv("t,x,y", t, x + 1.001e-6 * size * (0.5 + t / t[-1] / 2), y),
+        "grows": csv("t,x,y", t, x, y + 1e-5 * size * t / 600),
+        "height": csv("t,x,y,z", t, x, y, z + 2e-6 * size * t / 600),
+        "exchanged": csv("t,x,y", t, y, x),
+        "west": csv("t,x,y", t, -x, y),
+        "centimetres": csv("t,x,y", t, 100 * x, 100 * y),
+        "minutes": csv("t,x,y", t / 60, x, y),
+        "units": csv("time (ms),x (mm),y (cm)", 1000 * t, 1000 * x, 100 * (y + 1e-7 * size)),
+        "late": csv("t,x,y", t, *(np.array(part) for part in (golden.at(t * (1 - 1e-9)).x, golden.at(t).y))),
+        "small": csv("t,x,y", t, 3e-3 * x, 3e-3 * y),
+        "one_row": csv("t,x,y", t[500:501], x[500:501], y[500:501]),
+        "late_begin": csv("t,x,y", t[900:], x[900:] + 1e-9, y[900:]),
+        "early_end": csv("t,x,y", t[:90], x[:90] + 2e-6 * size * (1 + t[:90]), y[:90]),
+    }
+
+
+SAID_AT_ODD_TIMES = {"exchanged", "west", "centimetres", "minutes"}
+
+
+def test_rows_at_any_times_are_judged_as_score_does(at_any_time, tmp_path):
+    """The truth of `score` comes from the rows that ship, that of the page from a golden function."""
+    scene, golden = at_any_time
+    texts = odd_files(golden)
+    # paris ships with a day of rows, and so with another amplitude than ten minutes of it have
+    tolerance = None if scene.id == "hard" else 1e-6 * float(np.hypot(golden.x, golden.y).max())
+    told = run(golden, [(text, None, tolerance) for text in texts.values()])["told"]
+    verdicts = {}
+    for (name, text), mine in zip(texts.items(), told, strict=True):
+        path = tmp_path / f"{name}.csv"
+        path.write_text(text)
+        score = judge(path, scene, tolerance=tolerance, explain=False)
+        verdicts[name] = mine["verdict"]
+        assert mine["verdict"] == score.verdict and mine["at_any_time"], name
+        assert mine["path"]["rows"] == len(text.splitlines()) - 1
+        expected = (score.errors.max_m, score.errors.rms_m, score.errors.end_m, score.covered)
+        known = 1e-14 * float(golden.scene.exact.length)
+        assert [mine["path"][key] for key in SAME] == pytest.approx(expected, rel=1e-5, abs=known), name
+        assert mine["tolerance_m"] == pytest.approx(score.tolerance_m, rel=1e-12), name
+        if score.verdict == "disagrees":
+            assert tolerance or mine["path"]["digits"] == pytest.approx(score.errors.digits, rel=1e-5), name
+            assert mine["path"]["worst"]["t"] == score.worst[0], name
+            assert name == "exchanged" or mine["path"]["worst"]["component"] == score.worst[1], name
+        said = [note for note in mine["notes"] if note.startswith("Your file")]
+        assert bool(said) == (name in SAID_AT_ODD_TIMES), (name, said)
+    right = {"exact", "in_order", "just_within", "units", "one_row", "late_begin"}
+    assert {name for name, word in verdicts.items() if word == "agrees"} >= right
+    assert {"just_beyond", "grows", "height", "small", "early_end", *SAID_AT_ODD_TIMES} <= {
+        name for name, word in verdicts.items() if word == "disagrees"
+    }
+
+
+def test_an_extra_transit_is_excused_by_xdot_as_score_does(at_any_time, tmp_path):
+    scene, golden = at_any_time
+    times = golden.transits["t"]
+    size = float(np.hypot(golden.x, golden.y).max())
+    rate = np.abs(golden.transits["ax"]) / embedded(golden)["omega"]  # of the position, for an error of the time
+    cases = {
+        "two_within": np.sort([*times, times[3] + 0.5e-6 * size / rate[3]]),
+        "two_beyond": np.sort([*times, times[3] + 2e-6 * size / rate[3]]),
+    }
+    texts = {name: csv("t", of) for name, of in cases.items()}
+    told = run(golden, [(None, text, None) for text in texts.values()])["told"]
+    for (name, text), mine in zip(texts.items(), told, strict=True):
+        path = tmp_path / f"{name}.csv"
+        path.write_text(text)
+        score = judge(None, scene, transits=read_transits(path), explain=False)
+        assert mine["verdict"] == score.verdict == ("agrees" if name == "two_within" else "disagrees"), name
+        assert mine["transits"]["extra"] == score.transits.extra, name

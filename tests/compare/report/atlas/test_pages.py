@@ -35,11 +35,13 @@ def test_a_page_for_each_scene_and_one_over_all(atlas):
     assert sorted(path.name for path in atlas.iterdir()) == ["hard.html", "index.html", "paris.html"]
     text = (atlas / "index.html").read_text()
     golden = reference.load("paris")
-    assert golden.decimals("x")[-1] in text and golden.manifest.bounds.grid["x"] in text
-    assert golden.manifest.title in text and "Path from above" in text and "On the sphere" in text
-    assert "foucault score hard mine.csv --t-end 5 --inputs decimal" in text
-    assert "https://example.org/golden/paris.binary64/grid.csv" in text
+    assert golden.manifest.title in text and text.count("<svg") == 2 == text.count('class="card"')
     page = (atlas / "paris.html").read_text()
+    assert golden.decimals("x")[-1] in page and golden.manifest.bounds.grid["x"] in page
+    assert "https://example.org/golden/paris.binary64/grid.csv" in page
+    hard = (atlas / "hard.html").read_text()
+    assert "Path from above" in hard and "On the sphere" in hard
+    assert "foucault score hard mine.csv --t-end 5 --inputs decimal" in hard
     assert all(record.sha256 in page for record in golden.manifest.files.values())
     assert golden.manifest.cross_checks[0].position_m in page and golden.manifest.seal in page
 
@@ -92,7 +94,7 @@ def test_a_study_is_a_regular_file(tmp_path):
 def test_without_a_study_the_page_says_nothing_of_methods(atlas, readings):
     (paris,) = entries(readings, None)
     assert "How methods fare" in (atlas / "paris.html").read_text()
-    assert "How methods fare" not in scene_page(paris, [], "")
+    assert "How methods fare" not in scene_page(paris, [], "", None, None)
 
 
 def test_a_dataset_of_hostile_words_has_a_page(foucault, tmp_path):
@@ -144,7 +146,7 @@ TOLD = """
     const data = new DataTransfer();
     for (const [name, text] of files) data.items.add(new File([text], name));
     zone.dispatchEvent(new DragEvent("drop", { dataTransfer: data, cancelable: true }));
-    while (!shown.innerHTML) await new Promise((done) => setTimeout(done, 5));
+    while (!shown.innerHTML || shown.className === "working") await new Promise((done) => setTimeout(done, 5));
     const drawn = Boolean(shown.querySelector("svg path.error"));
     told.push([shown.className, shown.innerText, drawn, shown.scrollWidth <= shown.clientWidth]);
   }
@@ -174,7 +176,7 @@ def in_browser(page, script, tmp_path):
     path.write_text(page.read_text().replace("</body>", script))
     done = subprocess.run(
         [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}",
-         "--window-size=390,844", "--virtual-time-budget=20000", "--dump-dom", path.as_uri()],
+         "--window-size=390,844", "--virtual-time-budget=100000000", "--dump-dom", path.as_uri()],
         capture_output=True, text=True, check=True, timeout=300,
     )  # fmt: skip
     return json.loads(html.unescape(re.search(r'<pre id="told">(.*?)</pre>', done.stdout, re.S)[1]))

@@ -1,0 +1,78 @@
+// Answer what files are dropped, in a worker, so that the page can be used meanwhile. Needs judging.js.
+"use strict";
+
+const MOST_POINTS = 800; // of the picture of the errors
+const HEAD = 65536; // characters of a file that tell its columns
+
+// Times of xdot = 0 stand in a file that is called so, or has a column t and neither x nor y.
+function isOfTransits({ name, text }, words) {
+  if (/transit/i.test(name)) return true;
+  try {
+    const head = text.slice(0, HEAD);
+    const { columns } = readColumns(text.length > HEAD ? head.slice(0, head.lastIndexOf("\n")) : text, ["t"], words);
+    return !("x" in columns) && !("y" in columns);
+  } catch (error) {
+    if (error instanceof Unreadable) return false;
+    throw error;
+  }
+}
+
+// Put the files of one drop together to a candidate.
+function candidateOf(files, words) {
+  const candidate = { columns: null, transits: null, notes: [] };
+  for (const file of files) {
+    const ofTransits = isOfTransits(file, words);
+    if (ofTransits ? candidate.transits : candidate.columns) throw new Unreadable("Drop one trajectory, and one file of transits at most.");
+    try {
+      const read = (ofTransits ? readTransits : readTrajectory)(file.text, words);
+      candidate.columns ??= read.columns && !ofTransits ? read.columns : null;
+      candidate.transits ??= read.transits;
+      candidate.notes.push(...read.notes);
+    } catch (error) {
+      if (error instanceof Unreadable) error.message = `${file.name}: ${error.message}`;
+      throw error;
+    }
+  }
+  return candidate;
+}
+
+function allowedBy(text) {
+  if (!text.trim()) return null;
+  const value = Number(text);
+  if (!(value > 0 && value < Infinity)) throw new Unreadable("The tolerance is a positive number of metres.");
+  return value;
+}
+
+// The largest error in each of as many equal parts as a picture resolves: [[t, error], …].
+function thinned({ t, position }) {
+  const each = Math.ceil(t.length / MOST_POINTS);
+  const points = [];
+  for (let i = 0; i < t.length; i += each) points.push([t[i], most(position.subarray(i, i + each))]);
+  return points;
+}
+
+const textsOf = (files) => Promise.all([...files].map(async (file) => ({ name: file.name, text: await file.text() })));
+
+// The verdict on files [{name, text}], and what is drawn of it; {refused} says why there is none.
+function answer(files, tolerance, truth) {
+  try {
+    const candidate = candidateOf(files, truth.words);
+    const { path, ...result } = judge(candidate, truth, allowedBy(tolerance));
+    if (!path) return { ...result, path };
+    const { errors, ...told } = path;
+    const { t, x, y } = candidate.columns;
+    const mine = [t, x, y].map((column) => Float64Array.from(column));
+    return { ...result, path: told, points: thinned(errors), mine };
+  } catch (error) {
+    if (!(error instanceof Unreadable)) throw error;
+    return { refused: error.message };
+  }
+}
+
+if (typeof WorkerGlobalScope !== "undefined") {
+  let truth = null;
+  onmessage = async ({ data }) => {
+    if (data.truth) truth = unpacked(data.truth, data.made);
+    else postMessage({ ...answer(await textsOf(data.files), data.tolerance, truth), asked: data.asked });
+  };
+}
