@@ -30,7 +30,7 @@ def command(
 ) -> None:
     """Make a page over all golden datasets.
 
-    Pictures, bounds and files of each; the page of a scene judges a program's output that is dropped on it.
+    The page of a scene plays its motion, has pictures, bounds and files, and judges a program's output dropped on it.
     """
     from ..report.atlas.entry import studies_folder
     from ..report.atlas.pages import build, scenes_of

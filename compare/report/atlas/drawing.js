@@ -8,8 +8,8 @@ const raised = (exponent) => `10${exponent < 0 ? "⁻" : ""}${[...String(Math.ab
 
 // Points [[t, error], …] and lines at the tolerance and at the bound; it spans the file.
 function errorPicture({ points, path, tolerance_m: tolerance, bound_m: bound }, wide) {
-  const floor = bound / 10;
-  const low = Math.floor(Math.log10(floor));
+  const low = Math.floor(Math.log10(bound / 10));
+  const floor = 10 ** low;
   const high = Math.ceil(Math.log10(Math.max(tolerance, bound, ...points.map((point) => point[1])) * 1.5));
   const [begin, end] = path.covered_s;
   const x = (t) => (LEFT + ((t - begin) / (end - begin || 1)) * (wide - LEFT - 10)).toFixed(1);

@@ -58,7 +58,7 @@ function rowsOf({ path, transits, tolerance_m: allowed, bound_m: bound, amplitud
   if (path) {
     const { worst } = path;
     const place = firstWrongPlace(worst.difference || bound);
-    rows.push(["judged", `${path.rows} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${page.t_end} s`]);
+    rows.push(["judged", `${path.rows.toLocaleString("en")} rows, t = ${path.covered_s[0]} to ${path.covered_s[1]} s of ${page.t_end} s`]);
     rows.push(["largest error", `${small(path.max_error_m)} m (tolerance ${small(allowed)} m), at t = ${worst.t} s`]);
     rows.push(["held against", exact ? `the golden function, which is within ${small(bound)} m of the truth at every time (proven)` : `the golden rows, as doubles within ${small(bound)} m of the truth`]);
     rows.push(["rms, at the end", `${small(path.rms_error_m)} m, ${small(path.end_error_m)} m`]);

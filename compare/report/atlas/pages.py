@@ -134,15 +134,15 @@ def _choice(name: str, words: Iterable[str]) -> str:
 
 def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html:
     golden, command = entry.judged, text(entry.score_command())
-    times = ", ".join(golden.decimals("t")[:3])
+    times = ", ".join(f"{t:.15g}" for t in golden.t[:3])
     transits = (
         " A second file with the times of xdot = 0 in a column t has your transits judged as well."
         if golden.manifest.counts.transits
         else ""
     )
-    wanted, known = f"a row for {times} s, or for some of them", "no golden function: the page has golden rows alone"
+    wanted, known = f"a row for {times} … s, or for some of them", "no golden function: the page has golden rows alone"
     if made:
-        wanted = f"rows at any times up to {text(golden.decimals('t')[-1])} s"
+        wanted = f"rows at any times up to {golden.t[-1]:.15g} s"
         known = f"the golden function, which is within {made['bound_m']:.1e} m of the truth at every time"
     if made and beside:
         size = f"{len(made['coefficients']) / 1e6:.1f} MB"

@@ -17,7 +17,7 @@ import numpy as np
 from reference import Golden
 from reference.dataset.manifest import FUNCTION
 from reference.dataset.render import MEANING
-from reference.numbers.columns import POSITION, STATE
+from reference.numbers.columns import STATE
 from reference.numbers.precision import DOUBLE_BITS, Array, rounded_up
 from reference.status import Status
 
@@ -49,13 +49,13 @@ def flags(entry: Entry) -> Html:
 
 def state(golden: Golden) -> Html:
     """Return the state at the end, as printed, with the bound of each number."""
-    manifest, last = golden.manifest, {name: golden.decimals(name)[-1] for name in ("t", *STATE)}
+    manifest, last = golden.manifest, {name: golden.decimals(name)[-1] for name in STATE}
     units = {name: "m/s" if name.startswith("v") else "m" for name in STATE}
     rows = [
         (name, Html(f'<span class="digits">{last[name]}</span>'), units[name], manifest.bounds.grid[name])
         for name in STATE
     ]
-    return Table({"": "", f"state at t = {last['t']} s": "value", "in": "", "within": "number"}, rows).html()
+    return Table({"": "", f"state at t = {golden.t[-1]:.15g} s": "value", "in": "", "within": "number"}, rows).html()
 
 
 def trust(golden: Golden) -> Mapping[str, str]:
@@ -156,7 +156,7 @@ def function_made(golden: Golden) -> dict[str, Any] | None:
         "record": json.loads(record),
         "coefficients": base64.b64encode(numbers).decode(),
         "end": float(golden.function.times[-1]),
-        "bound_m": float(rounded_up(Fraction(math.hypot(*(golden.function.bound[name] for name in POSITION))))),
+        "bound_m": float(rounded_up(Fraction(math.hypot(*(golden.function.bound[name] for name in STATE[:3]))))),
     }
 
 

@@ -89,8 +89,9 @@ function draw() {
   player.querySelector("output").textContent = `t = ${now.toPrecision(7)} s of ${page.t_end} s${enlarged}`;
 }
 
-function frame(time) {
+function frame() {
   if (!playing) return;
+  const time = performance.now();
   if (!still.matches || time - before >= 1000) { // with reduced motion, a still picture each second
     now += (Math.min(time - before, 1000) / 1000) * (Number(speed.value) * scene.period || 1);
     if (now >= scene.end) now %= scene.end;
@@ -108,7 +109,7 @@ async function press() {
   if (playing) requestAnimationFrame(frame);
 }
 
-function drawnOwn({ t, x, y }, error) {
+function drawOwn([t, x, y], error) {
   const room = (SHARE * page.amplitude_m) / error;
   own = { t, x, y, scale: room > 1 ? 10 ** Math.floor(Math.log10(room)) : 1 };
   ready().then((there) => {
@@ -123,6 +124,6 @@ if (player) {
   slider.addEventListener("input", async () => (await ready()) && ((now = slider.value * scene.end), draw()));
   addEventListener("resize", () => scene && draw());
   still.addEventListener("change", () => playing && press());
-  listeners.push(drawnOwn);
+  listeners.push(drawOwn);
   if (page.beside === null) ready().then(draw);
 }

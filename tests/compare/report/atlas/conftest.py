@@ -1,4 +1,4 @@
-"""An atlas of the shipped datasets of Paris and of one short scene, made once."""
+"""An atlas, made once, of the datasets of Paris, of a short scene without a golden function and of one with it."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from reference.scenes.shipped import golden_root
 @pytest.fixture(scope="session")
 def atlas(tmp_path_factory: pytest.TempPathFactory) -> Path:
     pytest.importorskip("matplotlib")
+    pytest.importorskip("flint")
     folder = tmp_path_factory.mktemp("atlas")
     data, out = folder / "data", folder / "pages"
     data.mkdir()
@@ -23,6 +24,9 @@ def atlas(tmp_path_factory: pytest.TempPathFactory) -> Path:
         (data / name).symlink_to(golden_root() / name)
     short = reference.load_scene("hard", ["run.t_end=5", "run.digits=10", "run.level=computed"])
     reference.write(reference.solve(short), data / "hard")
+    circling = reference.load_scene("conical", ["inputs=binary64", "run.digits=12", "run.t_end=120"])
+    made = reference.solve(circling, level="enclosed", engine="limbs", function=True)
+    reference.write(made, data / "conical.binary64")
     words = ["atlas", "--data", data, "--out", out, "--files", "https://example.org/golden/", "--json"]
     done = CliRunner().invoke(commands(), list(map(str, words)), catch_exceptions=False)
     told = {page["page"]: page["bytes"] for page in json.loads(done.stdout)["pages"]}

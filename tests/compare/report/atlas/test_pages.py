@@ -8,11 +8,13 @@ import re
 import shutil
 import subprocess
 
+import numpy as np
 import pytest
 from forgery import forge
 
 import reference
 from compare import judge
+from compare.report.atlas import pages, parts
 from compare.report.atlas.entry import Entry, StudyResults, entries, kept_studies, studies_folder
 from compare.report.atlas.pages import scene_page
 from reference.scenes.shipped import golden_root
@@ -32,10 +34,10 @@ def readings(tmp_path):
 
 
 def test_a_page_for_each_scene_and_one_over_all(atlas):
-    assert sorted(path.name for path in atlas.iterdir()) == ["hard.html", "index.html", "paris.html"]
+    assert sorted(path.name for path in atlas.iterdir()) == ["conical.html", "hard.html", "index.html", "paris.html"]
     text = (atlas / "index.html").read_text()
     golden = reference.load("paris")
-    assert golden.manifest.title in text and text.count("<svg") == 2 == text.count('class="card"')
+    assert golden.manifest.title in text and text.count("<svg") == 3 == text.count('class="card"')
     page = (atlas / "paris.html").read_text()
     assert golden.decimals("x")[-1] in page and golden.manifest.bounds.grid["x"] in page
     assert "https://example.org/golden/paris.binary64/grid.csv" in page
@@ -141,6 +143,8 @@ TOLD = """
 <script>
 (async () => {
   const told = [];
+  const errors = [];
+  addEventListener("unhandledrejection", (event) => errors.push(String(event.reason)));
   for (const files of %s) {
     shown.innerHTML = "";
     const data = new DataTransfer();
@@ -150,9 +154,23 @@ TOLD = """
     const drawn = Boolean(shown.querySelector("svg path.error"));
     told.push([shown.className, shown.innerText, drawn, shown.scrollWidth <= shown.clientWidth]);
   }
+  const output = player?.querySelector("output");
+  const moved = [output?.textContent];
+  if (player) {
+    let drawn = 0;
+    requestAnimationFrame = (next) => setTimeout(next, 16); // no frames are drawn in this browser's quick time
+    const really = draw;
+    draw = () => { drawn += 1; really(); };
+    button.click();
+    await new Promise((done) => setTimeout(done, 4200));
+    button.click();
+    const count = drawn;
+    await new Promise((done) => setTimeout(done, 1200));
+    moved.push(output.textContent, count, drawn);
+  }
   const fits = document.documentElement.scrollWidth <= innerWidth;
   document.body.innerHTML = '<pre id="told"></pre>';
-  document.getElementById("told").textContent = JSON.stringify({ told, fits, wide: innerWidth });
+  document.getElementById("told").textContent = JSON.stringify({ told, fits, moved, errors, wide: innerWidth });
 })();
 </script></body>"""
 FILTERED = """
@@ -162,7 +180,8 @@ for (const [name, value] of [["flag", "large_angle"], ["level", "enclosed"], ["f
   document.getElementById(name).value = value;
   form.dispatchEvent(new Event("input"));
   const left = cards.filter((card) => !card.hidden).map((card) => card.id);
-  told.push([document.getElementById("count").textContent, left]);
+  const groups = [...document.querySelectorAll("section")].filter((group) => !group.hidden).length;
+  told.push([document.getElementById("count").textContent, left.sort(), groups]);
 }
 const fits = document.documentElement.scrollWidth <= innerWidth;
 document.body.innerHTML = '<pre id="told"></pre>';
@@ -170,12 +189,15 @@ document.getElementById("told").textContent = JSON.stringify({ told, fits, wide:
 </script></body>"""
 
 
-def in_browser(page, script, tmp_path):
-    """Return what a script at the end of a page wrote, in a window as wide as a phone's."""
+def in_browser(page, script, tmp_path, *flags):
+    """Return what a script at the end of a page wrote, in a window as wide as a phone's.
+
+    The page's time passes quickly while the worker works in ours.
+    """
     path = tmp_path / "page.html"
     path.write_text(page.read_text().replace("</body>", script))
     done = subprocess.run(
-        [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}",
+        [CHROMIUM, *flags, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={tmp_path / 'profile'}",
          "--window-size=390,844", "--virtual-time-budget=100000000", "--dump-dom", path.as_uri()],
         capture_output=True, text=True, check=True, timeout=300,
     )  # fmt: skip
@@ -204,6 +226,7 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, tmp_path):
     ]
     told = in_browser(atlas / "paris.html", TOLD % json.dumps(dropped).replace("<", "\\u003c"), tmp_path)
     assert told["fits"], "the page is wider than a phone"
+    assert told["errors"] == []
     words = [one[0] for one in told["told"]]
     assert words == ["agrees", "agrees", "disagrees", "disagrees", "refused", "refused"]
     texts = [one[1] for one in told["told"]]
@@ -222,9 +245,67 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, tmp_path):
     assert "All are 7.00 s after one" in texts[4] and "fields, and the first row has 3" in texts[5]
 
 
+def odd(golden, wrong=0.0):
+    """A file at times of no grid, late in the run, whose x is too large by a part of it."""
+    t = np.sort(np.random.default_rng(6).uniform(61.5, 93.25, 500))
+    t[0], t[-1] = 61.5, 93.25
+    at = golden.at(t)
+    rows = zip(t.tolist(), (at.x * (1 + wrong)).tolist(), at.y.tolist(), strict=True)
+    return "t,x,y\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows)
+
+
+@pytest.fixture(scope="session")
+def circling(atlas):
+    return reference.load(atlas.parent / "data" / "conical.binary64")
+
+
+def dropped_on(page, files, tmp_path, *flags):
+    return in_browser(page, TOLD % json.dumps([[file] for file in files]), tmp_path, *flags)
+
+
+@browser
+@pytest.mark.parametrize("flag", ["", "--force-prefers-reduced-motion"])
+def test_a_file_at_any_times_is_judged_and_the_motion_played_beside_it(atlas, circling, flag, tmp_path):
+    files = [["right.csv", odd(circling, 1e-9)], ["wrong.csv", odd(circling, 1e-4)]]
+    told = dropped_on(atlas / "conical.html", files, tmp_path, *filter(None, [flag]))
+    assert told["fits"] and told["errors"] == []
+    (right, words, *_), (wrong, *_) = told["told"]
+    assert (right, wrong) == ("agrees", "disagrees")
+    bound = parts.function_made(circling)["bound_m"]
+    assert f"the golden function, which is within {bound:g}".replace("e-0", "e-") in words and "500 rows" in words
+    begin, end = (re.search(rf"^{text}$", words, re.M) for text in ("61.5", "93.25"))
+    assert begin and end, "the chart spans the file"
+    before, after, drawn, later = told["moved"]
+    assert before != after and all("yours in orange, its error times 1,000" in text for text in (before, after))
+    assert later == drawn, "a press of the button stops it"
+    assert drawn > 40 if not flag else 3 <= drawn <= 5
+
+
+@browser
+def test_many_coefficients_stand_beside_the_page(circling, monkeypatch, tmp_path):
+    monkeypatch.setattr(pages, "MOST_EMBEDDED", 100)
+    out, alone = tmp_path / "out", tmp_path / "alone"
+    alone.mkdir()
+    sizes = pages.build(circling.path.parent, out, None, "", lambda *_: None)
+    assert {*sizes} == {"conical.function.js", *(f"{name}.html" for name in ("conical", "hard", "index", "paris"))}
+    page = (out / "conical.html").read_text()
+    assert "are in conical.function.js beside this page" in page
+    assert json.loads(re.search(r'id="truth">(.*?)</script>', page)[1])["function"] is None
+    files = [["right.csv", odd(circling, 1e-9)], ["rows.csv", (circling.path / "grid.csv").read_text()]]
+    told = dropped_on(out / "conical.html", files, out)
+    assert [one[0] for one in told["told"]] == ["agrees", "agrees"] and told["errors"] == []
+    told = dropped_on(out / "conical.html", files, alone)
+    assert [one[0] for one in told["told"]] == ["refused", "agrees"] and told["errors"] == []
+    assert "conical.function.js is not beside this page" in told["told"][1][1]
+
+
 @browser
 def test_scenes_are_filtered_by_flag_and_level(atlas, tmp_path):
     told = in_browser(atlas / "index.html", FILTERED, tmp_path)
     every, *chosen = told["told"]
-    assert every == "2 of 2 scenes" and told["fits"]
-    assert chosen == [["1 of 2 scenes", ["hard"]], ["0 of 2 scenes", []], ["1 of 2 scenes", ["paris"]]]
+    assert every == "3 of 3 scenes" and told["fits"]
+    assert chosen == [
+        ["1 of 3 scenes", ["hard"], 1],
+        ["0 of 3 scenes", [], 0],
+        ["2 of 3 scenes", ["conical", "paris"], 2],
+    ]
