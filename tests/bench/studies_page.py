@@ -39,6 +39,13 @@ COMMANDS = {
 Document = dict[str, Any]
 Documents = dict[str, Document]
 WIDTH = 120
+DIGITS_ANCHOR, STIFF_ANCHOR = "what-a-digit-costs-paris-14400-s", "stiff-and-extreme-{count}-scenes"
+KINDS = {  # who somebody may want a method from, and the methods that take one step at a time
+    "heyoka, a Taylor method": ("heyoka_double", "heyoka_long_double"),
+    "a library of C or C++": ("odeint_rkf78", "odeint_bulirsch_stoer", "gsl_rk8pd", "arkode_erk8"),
+    "a method to write yourself": ("rk4", "rkmk4", "rkng56", "rkng67", "gauss_legendre"),
+    "SciPy": ("scipy_rk45", "scipy_dop853", "scipy_radau"),
+}
 SAME_ORDER = 0.9  # Kendall's tau of two rankings that count as the same
 
 
@@ -60,13 +67,13 @@ def page(kept: Documents) -> str:
 
 def lines(kept: Documents) -> Iterator[str]:
     """Yield the paragraphs, list items, commands and rows of tables of docs/studies.md."""
-    for part in (_head, _paris, _precisions, _stability, _long):
+    for part in (_choice, _head, _paris, _precisions, _stability, _long):
         yield from part(kept)
 
 
 def _wrapped(line: str) -> str:
     """Return a line in lines of the page's width; tables, commands and headings as they are."""
-    if line.startswith(("|", "`foucault", "foucault", " ", "#")):
+    if line.startswith(("|", "`foucault", "foucault", " ", "#", "!")):
         return line
     indent = "  " if line.startswith("- ") else ""
     return "\n".join(
@@ -74,8 +81,62 @@ def _wrapped(line: str) -> str:
     )
 
 
-def _head(kept: Documents) -> Iterator[str]:
+def _choice(kept: Documents) -> Iterator[str]:
+    """Yield which method to take for which error."""
     yield "# What the studies show"
+    yield ""
+    rows = [row for row in rows_of(kept["paris"]) if row.measured]
+    heyoka, library, own, scipy = (_taken(_reaching(rows, names, 1e-6)) for names in KINDS.values())
+    yield (
+        f"For 1e-6 m over a day of the Paris pendulum take {heyoka} of CPU time. From a library of C or C++ take "
+        f"{library}. To write a method yourself, take {own}. In SciPy take {scipy}."
+    )
+    yield ""
+    yield "![Position error against CPU time of six integrators, a day of the Paris pendulum](error_time.svg)"
+    yield ""
+    yield f"| error wanted | {' | '.join(KINDS)} |"
+    yield "|---|" + "---|" * len(KINDS)
+    for error_m in TARGETS_M:
+        found = [_reaching(rows, names, error_m) for names in KINDS.values()]
+        yield f"| {tidy(error_m)} m | {' | '.join(_taken(row) if row else '–' for row in found)} |"
+    yield ""
+    best = {name: _best(_ladders(kept["paris"])[name]) for name in ("heyoka_long_double", "heyoka_real128")}
+    yield (
+        "Each entry is the cheapest setting that was measured and reached the error; in brackets are the equations that "
+        "were integrated. Double precision ends near "
+        f"1e-12 m. Beyond that `heyoka_long_double` reaches {best['heyoka_long_double']:.1e} m, and "
+        f"`heyoka_real128` {best['heyoka_real128']:.1e} m; [more digits](#{DIGITS_ANCHOR}) are a matter of CPU time."
+    )
+    yield ""
+    wrong = Counter(cell.method for cell in cells(kept["stability"]) if cell.status == Status.SILENTLY_WRONG)
+    yield so(
+        wrong["cvode_bdf"] + wrong["scipy_bdf"] > 10 * (wrong["scipy_radau"] + wrong["gauss_legendre"]),
+        "Two warnings. On [difficult scenes](#" + STIFF_ANCHOR.format(count=len(_scenes(kept))) + ") the multistep "
+        "methods (BDF, Adams, LSODA) often report success and are wrong: do not take them unchecked. Where drag makes "
+        "the motion stiff, take an implicit method such as SciPy's Radau.",
+    )
+    yield ""
+
+
+def _scenes(kept: Documents) -> set[str]:
+    return {cell.scene for cell in cells(kept["stability"])}
+
+
+def _reaching(rows: Sequence[Row], names: Sequence[str], error_m: float) -> Row | None:
+    """Return the cheapest row of some methods whose error is no larger than one, or None."""
+    found = [row for row in rows if row.method in names and row.error_m is not None and row.error_m <= error_m]
+    return min(found, key=cost_of, default=None)
+
+
+def _taken(row: Row | None) -> str:
+    """Return a method, its equations, its setting and its cost."""
+    if row is None:
+        raise NotSoError("no method of a kind reaches 1e-6 m")
+    return f"`{row.method}` ({row.formulation}) at a {row.kind} of {setting(row)}: {seconds(cost_of(row))}"
+
+
+def _head(kept: Documents) -> Iterator[str]:
+    yield "## How it was measured"
     yield ""
     yield (
         "This page is written by `make studies`, which runs the commands below one after the other, keeps their "

@@ -109,7 +109,7 @@ def test_statuses_that_are_others_are_refused_or_counted(kept: dict[str, Any]) -
     others = copy.deepcopy(kept)
     for row in others["stability"]["rows"]:
         row["status"] = "ok"
-    with pytest.raises(studies_page.NotSoError, match="The multistep methods"):
+    with pytest.raises(studies_page.NotSoError, match="multistep methods"):
         studies_page.page(others)
 
 
