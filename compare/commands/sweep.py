@@ -83,6 +83,7 @@ def command(
 
     foucault sweep paris --over site.latitude=-90:90:1 --t-end 12000
     """
+    from reference.sweeps.request import worth_compiling
     from reference.sweeps.sweep import run
 
     from ..report.sweep_report import document, text
@@ -118,6 +119,9 @@ def command(
         typer.echo(text(swept, out))
         if plot is not None:
             typer.echo(f"{plot}: the picture")
+        advice = worth_compiling(request) if scene_word is not None and engine is None else ""
+        if advice:
+            typer.echo(advice, err=True)
     _judge(swept)
 
 

@@ -33,6 +33,7 @@ PART_S = 10.0  # CPU seconds of a part, by the cost model
 LEAST_PART, MOST_PART = 8, 65_536  # rows
 ALL = "all"
 PROMOTED_S = 0.1  # CPU seconds of a row that the solver solves, at least
+WORTH_A_LINE_S = 1.0  # CPU seconds of rows, above which it is told that a compiled engine would be cheaper
 
 
 @checked(frozen=True)
@@ -224,6 +225,26 @@ def _swings(scene: Scene) -> float:
     start = Start.of(scene.exact, DOUBLE_BITS + GUARD_BITS)
     rate = float(start.ctx.norm(start.k.pull) ** 0.5)
     return max(1.0, float(scene.exact.t_end) * rate / (2 * math.pi))
+
+
+def worth_compiling(request: Request) -> str:
+    """Return from how many rows it pays to compile an engine that would be cheaper for each, or "" if there is none."""
+    swings, taken = _swings(request.scene), batches()[request.engine]
+    drag = request.scene.exact.drag != 0 or "pendulum.drag" in request.table.values
+
+    def row_s(engine: Batch) -> float:
+        return engine.expected_s(swings) - engine.expected_s(0)
+
+    if request.level != "computed" or request.digits is not None or row_s(taken) * request.table.count < WORTH_A_LINE_S:
+        return ""
+    for other in batches().values():
+        if other.installed and not other.saved_s and (other.drag or not drag) and row_s(other) < row_s(taken):
+            rows = (other.expected_s(0) - taken.expected_s(0)) / (row_s(taken) - row_s(other))
+            return (
+                f"From some {float(f'{rows:.1g}'):,.0f} such rows on, in one sweep or several, {other.name} costs less "
+                f"than {taken.name}: it is compiled once, for about {other.expected_s(0):.0f} s (--engine {other.name})."
+            )
+    return ""
 
 
 def _engine(name: str, swings: float) -> Batch:

@@ -3,10 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 
 import pytest
 
 from compare.report.sweep_report import _cell
+from reference import load_scene
+from reference.engines.octet.rows import SOURCES
+from reference.sweeps.request import worth_compiling
+from reference.sweeps.sweep import asked_for
+from reference.system.machine_code import folder_of
 
 pytest.importorskip("pyarrow")
 SMALL = ["paris", "--t-end", "60", "--engine", "heyoka"]
@@ -25,6 +31,30 @@ def test_a_table_shows_no_digit_beyond_its_error():
     assert [_cell(*pair) for pair in ((0.0608436338, 2e-7), (-5.66254630543, 4e4), (-11.3426, 1e-2), (73, None))] == [
         "0.060844", "± 4.0e+04", "-11.34", "73"
     ]  # fmt: skip
+
+
+def test_auto_takes_octet_wherever_its_code_is_kept_and_else_says_when_compiling_it_pays(tmp_path, monkeypatch):
+    pytest.importorskip("numba")
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    latitudes = ["site.latitude=-90:90:1"]
+    paris = load_scene("paris", {"run.t_end": 12000})
+    cold = asked_for(paris, latitudes, None, None, audit=0)
+    line = worth_compiling(cold)
+    assert cold.engine == "heyoka"
+    found = re.fullmatch(r"From some ([\d,]+) such rows on, .* once, for about 15 s \(--engine octet\)\.", line)
+    assert found
+    rows = int(found[1].replace(",", ""))
+    fewer, more = (asked_for(paris, [f"pendulum.length=67:68:{step / rows}"], None, None, audit=0) for step in (2, 0.5))
+    assert [fewer.engine, more.engine] == ["heyoka", "octet"]  # where the line says, auto changes its mind
+    assert worth_compiling(asked_for(paris, ["site.latitude=0,90"], None, None, audit=0)) == ""  # too few to tell
+    damped = load_scene("paris", {"run.t_end": 12000, "pendulum.drag": "0.001"})
+    assert worth_compiling(asked_for(damped, latitudes, None, None, audit=0)) == ""  # octet knows no drag
+    folder = folder_of(SOURCES)
+    assert folder is not None
+    folder.mkdir()
+    (folder / "march.march-1.py311.nbi").touch()
+    kept = asked_for(paris, latitudes, None, None, audit=0)
+    assert (kept.engine, worth_compiling(kept)) == ("octet", "")
 
 
 def test_json_holds_every_row_and_the_costs(foucault):
