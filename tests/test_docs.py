@@ -12,8 +12,10 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Iterator
+from decimal import Decimal
 from pathlib import Path
 
+import causes_page
 import commands_page
 import numpy as np
 import pytest
@@ -23,12 +25,14 @@ from places import ROOT
 
 import compare
 import reference
+from compare.score.explanation import conventions
 from foucault import commands as commands_of_foucault
 from reference.scenes.scene import Scene
 
-TUTORIAL, SCENE, SWEEPS, STUDIES, CONTRIBUTING, API = (
+TUTORIAL, SCENE, ORACLE, SWEEPS, STUDIES, CONTRIBUTING, API = (
     "docs/tutorial.md",
     "docs/scene.md",
+    "docs/oracle.md",
     "docs/sweeps.md",
     "docs/studies.md",
     "CONTRIBUTING.md",
@@ -43,7 +47,8 @@ LANGUAGES = {
     CONTRIBUTING: {"sh"},
     TUTORIAL: {"sh", "console", "python", "toml"},
     SCENE: {"console", "toml"},
-    SWEEPS: {"sh", "bash"},
+    ORACLE: {"python", "console"},
+    SWEEPS: {"console", "sh", "bash"},
     STUDIES: {"sh"},
     API: {"{eval-rst}", "pycon", "python"},
     "docs/commands.md": {"text"},
@@ -74,6 +79,24 @@ def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path):
         assert shows(shown, got), f"{command}\n{got}"
     template = reference.load_scene(tmp_path / "mine.toml")
     assert (template.id, template.site.gravity_is, template.release.angle) == ("mine", "effective", "5")
+
+
+def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path):
+    assert write_files(ORACLE, tmp_path) == ["swing.py"]
+    ((command, shown),) = commands(ORACLE)
+    got = output(command, tmp_path)
+    assert shows(shown, got), got
+    assert float(re.findall(r"With all this put right, (\S+) m are left", got)[0]) < 1e-12
+
+
+def test_the_table_of_causes_is_that_of_the_code():
+    assert causes_page.page() == causes_page.PAGE.read_text("utf-8"), "run: python tests/helpers/causes_page.py"
+    source = (ROOT / "compare/score/explanation/conventions.py").read_text(encoding="utf-8")
+    words = set(re.findall(r'Deviation\("(\w+)"', source)) | {
+        word for word, _ in conventions.AXES_SAID.values() if word
+    }
+    told = {word for words in causes_page.HABITS for word in words.split(", ")}
+    assert words | {"z_down", "z_from_lowest", "rows_late", "rows_early"} == told  # those are made of parts
 
 
 def test_the_page_on_scenes_has_every_field_with_its_default_unit_and_meaning():
@@ -153,6 +176,24 @@ def shell(page: str) -> Iterator[list[str]]:
     for block in of_language(page, "sh"):
         for line in block.replace("\\\n", " ").splitlines():
             yield shlex.split(line, comments=True)
+
+
+def test_the_table_of_the_page_on_sweeps_is_what_is_printed(tmp_path):
+    """Digit by digit but the last, and the size of the errors: octet and heyoka round differently."""
+    ((command, shown),) = commands(SWEEPS)
+    pairs = [*zip(shown.splitlines(), output(command, tmp_path).splitlines(), strict=False)]
+    for number, (line, printed) in enumerate(pairs[:-1]):
+        if number == 0 or "rows" in line:
+            assert line.split() == printed.split()
+            continue
+        latitude, hertz, turn, transits, angle, error = line.split()
+        assert [latitude, transits] == [printed.split()[0], printed.split()[3]]
+        for one, other in zip((hertz, turn, angle), (printed.split()[i] for i in (1, 2, 4)), strict=True):
+            unit = min(float(Decimal(word).as_tuple().exponent) for word in (one, other))
+            assert float(one) == pytest.approx(float(other), abs=10 ** max(unit + 2, -12))
+        assert 0.02 < float(error) / float(printed.split()[5]) < 50
+    assert pairs[-1][0] == "…"
+    assert len(pairs) == 10
 
 
 def test_the_commands_of_the_page_on_sweeps_work(foucault, tmp_path, monkeypatch):

@@ -239,10 +239,11 @@ def worth_compiling(request: Request) -> str:
         return ""
     for other in batches().values():
         if other.installed and not other.saved_s and (other.drag or not drag) and row_s(other) < row_s(taken):
-            rows = (other.expected_s(0) - taken.expected_s(0)) / (row_s(taken) - row_s(other))
+            once_s = other.expected_s(0)
+            rows = (once_s - taken.expected_s(0)) / (row_s(taken) - row_s(other))
             return (
                 f"From some {float(f'{rows:.1g}'):,.0f} such rows on, in one sweep or several, {other.name} costs less "
-                f"than {taken.name}: it is compiled once, for about {other.expected_s(0):.0f} s (--engine {other.name})."
+                f"than {taken.name}: it is compiled once, for about {once_s:.0f} s (--engine {other.name})."
             )
     return ""
 

@@ -9,7 +9,7 @@ from ..batch_interface import Batch, Outcomes, Rows, Wanted
 TOLERANCE = 2.0**-52  # of a run, the relative error of a step: order 20
 MOVED_TOLERANCE = 2.0**-61  # of the run that tells the error: order 23
 COMPILE_S = 1.5  # CPU seconds, cold
-SWING_S = 1.3e-5  # of a default row over the period of a small swing
+SWING_S = 2.4e-5  # of a default row over the period of a small swing
 
 
 class HeyokaBatch(Batch):

@@ -14,7 +14,7 @@ from ..batch_interface import Batch, Outcomes, Rows, Wanted
 from .rows import COLUMNS, COMPILE_S, READ_S, RESULTS, SOURCES, TOLERANCE, outcomes, packed
 
 ORDER, MOVED_ORDER = 24, 22  # of a run, and of the run that tells the error
-SWING_S = 2.4e-6  # of a default row over the period of a small swing
+SWING_S = 1.6e-6  # of a default row over the period of a small swing
 STEPS_PER_CALL = 20_000  # then an interrupt is heard
 ROOM = 1 << 16  # times that one call may find
 
