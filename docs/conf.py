@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import sys
+from collections.abc import Iterator
 from pathlib import Path
+
+from docutils import nodes
+from myst_parser.parsers.sphinx_ import MystParser
+from sphinx.application import Sphinx
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
@@ -14,7 +20,14 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 
 # The source is the checkout: pages stay where a forge shows them, and their links lead to the same places.
 root_doc = "docs/index"
-include_patterns = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/**.md", "reference/enclosure/THEOREM.md"]
+include_patterns = [
+    "README.md",
+    "CONTRIBUTING.md",
+    "CHANGELOG.md",
+    "docs/**.md",
+    "docs/gallery/*.ipynb",
+    "reference/enclosure/THEOREM.md",
+]
 exclude_patterns = [".*", "build", "compare", "data", "dist", "golden", "atlas", "tests"]
 myst_heading_anchors = 4
 highlight_language = "text"
@@ -34,3 +47,34 @@ html_copy_source = False
 html_show_copyright = False
 html_static_path, html_css_files = ["site/style.css"], ["style.css"]
 html_extra_path = ["site/index.html"]  # leads to the start page
+
+
+class Notebook(MystParser):
+    """Reads a notebook as the page that it is: text, code, and the output that it keeps."""
+
+    supported = ("ipynb",)
+
+    def parse(self, inputstring: str, document: nodes.document) -> None:
+        """Read the text of a notebook."""
+        super().parse("\n\n".join(part for cell in json.loads(inputstring)["cells"] for part in _parts(cell)), document)
+
+
+def _parts(cell: dict) -> Iterator[str]:
+    """Yield a cell of a notebook in Markdown."""
+    source = "".join(cell["source"])
+    if cell["cell_type"] == "markdown":
+        yield source
+        return
+    yield f"```python\n{source}\n```"
+    for output in cell["outputs"]:
+        data = output.get("data", {"text/plain": output.get("text", [])})
+        if "image/png" in data:
+            yield f'<img class="kept" alt="what this cell draws" src="data:image/png;base64,{data["image/png"]}">'
+        else:
+            yield f"```text\n{''.join(data['text/plain']).rstrip()}\n```"
+
+
+def setup(app: Sphinx) -> None:
+    """Have Sphinx read notebooks."""
+    app.add_source_suffix(".ipynb", "ipynb")
+    app.add_source_parser(Notebook)

@@ -1,0 +1,53 @@
+"""The notebooks of docs/gallery: each runs, and prints what it keeps as its output."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from notebooks import NOTEBOOKS, code_cells, outputs, run, text_of
+from places import ROOT
+
+MOST_BYTES = 40_000
+WITHOUT_FLINT = "no FLINT for C here"
+TINY = 1e-9  # of a distance in m: below it rounding decides what is printed
+
+
+def same(kept: str, printed: str) -> bool:
+    """Whether two outputs have the same words and, but for rounding, the same numbers."""
+    pairs = [*zip(kept.split(), printed.split(), strict=False)]
+    return len(kept.split()) == len(printed.split()) and all(_alike(*pair) for pair in pairs)
+
+
+def _alike(one: str, other: str) -> bool:
+    try:
+        return float(one) == pytest.approx(float(other), rel=2e-3, abs=TINY)
+    except ValueError:
+        return one == other
+
+
+@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+def test_every_cell_prints_what_the_notebook_keeps(path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    cells = code_cells(json.loads(path.read_text(encoding="utf-8")))
+    for cell, (printed, value) in zip(cells, run(path), strict=True):
+        now = text_of({"outputs": outputs(printed, value)})
+        optional = "optional" in cell["metadata"].get("tags", ())
+        assert same(text_of(cell), now) or (optional and WITHOUT_FLINT in now), "run: python tests/helpers/notebooks.py"
+
+
+def test_a_number_or_a_word_that_is_another_is_found() -> None:
+    assert same("x = 0.5 m, within 5.7e-14 m", "x = 0.5001 m, within 3e-14 m")
+    assert not same("x = 0.5 m", "x = 0.502 m")
+    assert not same("x = 0.5 m", "y = 0.5 m")
+    assert not same("x = 0.5 m", "x = 0.5 m more")
+
+
+def test_the_gallery_lists_five_small_notebooks_with_pictures() -> None:
+    listed = (ROOT / "docs/gallery/README.md").read_text(encoding="utf-8")
+    assert len(NOTEBOOKS) == 5
+    for path in NOTEBOOKS:
+        assert f"({path.name})" in listed
+        assert path.stat().st_size < MOST_BYTES
+    assert sum("image/png" in path.read_text(encoding="utf-8") for path in NOTEBOOKS) == 4
