@@ -150,7 +150,7 @@ PUBLIC = {
     "reference.solver.sensitivity": "digits_lost sensitivity",
     "reference.status": "Status",
     "reference.sweeps.axes": "TEXTS",
-    "reference.sweeps.request": "Request",
+    "reference.sweeps.request": "Request worth_compiling",
     "reference.sweeps.store": "Store",
     "reference.sweeps.sweep": "asked_for run",
     "reference.system": "cache",
