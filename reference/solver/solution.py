@@ -127,8 +127,8 @@ class Solution(GridColumns):
     zeros: Table | None = field(repr=False)
     directions: list[int] = field(repr=False)
     run: Source
-    checks: tuple[CrossCheck, ...] = ()
-    pilot_s: float = 0.0
+    checks: tuple[CrossCheck, ...]
+    pilot_s: float
     proof: Proof | None = None
     possible: tuple[tuple[Fraction, Fraction, str], ...] = ()
     guard: CrossCheck | None = None

@@ -326,3 +326,19 @@ def test_a_possible_transit_is_refuted_where_xdot_cannot_come_near_zero_to_the_l
     plan, later = limbs.plan(files.scene.exact, 110, (Fraction(0),), True), Table(("t", "ax"), 0, [(6, 1)])
     outside, problems = motion._outside_intervals(SimpleNamespace(manifest=manifest), plan, later)
     assert (outside, bool(problems)) == ([0], refuted)
+
+
+@pytest.mark.parametrize(("slope", "refuted"), [(4, True), (3, False)])
+def test_a_possible_transit_is_refuted_by_a_zero_that_xdot_surely_crosses(files, monkeypatch, slope, refuted):
+    """At 3 s xdot is zero with 1/4 m/s² or 3/16 m/s²; it surely crosses above the root of 1/20, near times jerk."""
+    limbs = engines()["limbs"]
+    middles = Table(("vx", "ax"), 4, [(0, 0), (0, slope)])
+    monkeypatch.setattr(type(limbs), "run", lambda *_: SimpleNamespace(grid=middles))
+    monkeypatch.setattr(motion, "largest_jerk", lambda _: Fraction(1, 20))
+    part = SimpleNamespace(from_s="1", to_s="5", parity="odd")
+    manifest = SimpleNamespace(possible=[part], bound=lambda *_: Fraction(1, motion.GRAZES))
+    plan = limbs.plan(files.scene.exact, 110, (Fraction(0),), True)
+    outside, problems = motion._outside_intervals(
+        SimpleNamespace(manifest=manifest), plan, Table(("t", "ax"), 4, [(3 << 4, slope)])
+    )
+    assert (outside, bool(problems)) == ([], refuted)

@@ -106,6 +106,9 @@ def test_doubles_are_nearest_to_the_truth_that_is_known_and_not_to_the_digits_th
                 nearest["decimals"] += float(text) == float(exact)
                 nearest["all"] += 1
         assert nearest["doubles"] > 0.95 * nearest["all"] > nearest["decimals"]
+    states = json.loads((dataset / "vectors.json").read_text())["states"]
+    hexfloats = columns_of(dataset, "grid.binary64.csv")["x_hex"]
+    assert [state["values"]["x"]["hexfloat"] for state in states] == [hexfloats[state["row"] - 1] for state in states]
 
 
 @pytest.mark.parametrize("name", ["manifest.json", "vectors.json", "function.json"])
@@ -382,6 +385,16 @@ def test_the_command_in_the_manifest_names_everything_that_was_set(paris):
     assert paris.with_values(words) == changed
     assert command(make_scene("mine"), "mine", Making().options).startswith("foucault generate mine.toml --t-end")
     assert command(make_scene("mine"), "mine+site.latitude=1", Making().options).endswith("--set site.latitude=1")
+
+
+def test_what_was_solved_is_held_against_what_was_proved_before_it_is_in_place(solution, monkeypatch, tmp_path):
+    seen = []
+    monkeypatch.setattr(writer, "check_proved", lambda contents, solved: seen.append((sorted(contents), solved)))
+    texts = render(solution)
+    writer.write_texts(texts, tmp_path / "checked", solution)
+    assert seen == [(sorted(texts), solution)]
+    writer.write_texts(texts, tmp_path / "unchecked")
+    assert len(seen) == 1
 
 
 def test_no_proof_goes_to_the_golden_folder_unaudited(monkeypatch, tmp_path):
