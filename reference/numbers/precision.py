@@ -87,7 +87,7 @@ def bits_of(digits: float) -> int:
 
 def log2(value: float) -> float:
     """Return the logarithm to base 2, the same on every machine: that of libm may differ in its last bit."""
-    return float(context(2 * DOUBLE_BITS).log(value, 2))
+    return float(context(DOUBLE_BITS + GUARD_BITS).log(value, 2))
 
 
 def rounded(numerator: int, denominator: int) -> int:
