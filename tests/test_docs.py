@@ -39,7 +39,7 @@ TUTORIAL, SCENE, ORACLE, SWEEPS, STUDIES, CONTRIBUTING, API = (
     "docs/api.md",
 )
 INDENTED = None
-BESIDE = {"docs/oracle.md": ["compare/score"]}  # where the files are that a page names without a folder
+BESIDE = {ORACLE: ["compare/score"]}  # where the files are that a page names without a folder
 EVERYWHERE = ["compare", "reference", "tests", "docs"]
 # what the blocks of each page are in; all but formulas, and what Sphinx itself carries out, is run
 LANGUAGES = {
@@ -83,7 +83,7 @@ def test_every_command_of_the_page_on_scenes_prints_what_it_shows(tmp_path):
 
 def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path):
     assert write_files(ORACLE, tmp_path) == ["swing.py"]
-    ((command, shown),) = commands(ORACLE)
+    (command, shown), *_ = commands(ORACLE)
     got = output(command, tmp_path)
     assert shows(shown, got), got
     assert float(re.findall(r"With all this put right, (\S+) m are left", got)[0]) < 1e-12
@@ -148,6 +148,14 @@ def test_the_error_budget_is_that_of_the_dataset():
     assert f"depart by {apart:.1e} m" in page
     late = max(float(abs(p - q)) for p, q in zip(golden.transits.exact("t"), doubles.transits.exact("t"), strict=True))
     assert f"its transits by {late:.1e} s" in page
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+def test_the_experiments_of_the_oracle_measure_what_the_page_shows(tmp_path):
+    for command, shown in list(commands(ORACLE))[1:]:
+        got = output(command.replace("/tmp/", f"{tmp_path}/"), ROOT).replace(f"{tmp_path}/", "/tmp/")
+        assert shows(shown, got), f"{command}\n{got}"
+    assert {path.stem for path in (tmp_path / "runs").iterdir()} == {"as_given", "experiments", "four_g", "no_rotation"}
 
 
 def test_what_the_tutorial_installs_can_be_had():

@@ -19,13 +19,14 @@ from reference.numbers.precision import Array
 from .. import judge
 from ..approximations import APPROXIMATIONS, Motion
 from ..candidates.candidate import COLUMNS, Candidate, candidate_of
-from ..candidates.external import Timing, arguments, timed
+from ..candidates.external import Timing, timed
 from ..candidates.layout import Naming
 from ..candidates.read import read, read_stream, read_transits
 from ..report.suite import outcome_forms
 from ..score.baseline import document_of, rows_of
 from ..score.outcome import Outcome
 from ..score.verdict import Score
+from .experimenting import GIVEN, Program
 from .options import announce
 
 SUFFIXES = (".csv", ".tsv", ".txt", ".dat", ".out", ".npy", ".npz")  # of a suite's files
@@ -132,24 +133,30 @@ class Judging:
         """Judge transits alone."""
         return self.outcome(name, scene.id, lambda: Trial(scene, None, self.times(name)))
 
-    def program(
-        self, scene: Scene, words: str, name: str, transits: str | None, timeout: float, repeats: int
-    ) -> Outcome:
-        """Run a program, and judge what it prints."""
+    def program(self, program: Program, name: str, transits: str | None, repeats: int, experiments: bool) -> Outcome:
+        """Run a program, and judge what it prints; with experiments, run it again where its positions are off."""
+        scene = program.scene
 
         def trial() -> Trial:
             times = self.times(transits)
-            candidate, timing = printed(words, name, repeats)
+            candidate, timing = printed(program.command, name, repeats)
             if self.baseline is not None and not Path(self.baseline).is_file():
                 return Trial(scene, candidate, times, timing, printed(self.baseline, self.baseline, 0)[0])
             return Trial(scene, candidate, times, timing, self._earlier())
 
-        def printed(words: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
-            output, timing = timed(arguments(words, scene), timeout, repeats)
+        def printed(command: str, name: str, repeats: int) -> tuple[Candidate, Timing]:
+            output, timing = timed(program.words(scene, command), program.timeout, repeats)
             with output:
+                if command == program.command:
+                    program.keep(output, GIVEN)
                 return read_stream(output, plain(name), naming=self.naming), timing
 
-        return self.outcome(name, scene.id, trial)
+        outcome = self.outcome(name, scene.id, trial)
+        told = None if outcome.score is None else outcome.score.explanation
+        if not experiments or told is None or not (told.causes or told.corrected_m > told.allowed_m):
+            return outcome
+        assert outcome.score is not None
+        return replace(outcome, score=program.experimented(outcome.score, self.naming))
 
     def approximation(self, scene: Scene, word: str, transits: str | None) -> Outcome:
         """Judge the motion of an approximation at the scene's grid times."""

@@ -95,6 +95,17 @@ def command(
     name: Annotated[
         str | None, typer.Option("--name", metavar="WORD", help="Name of the program of --run (default: the program).")
     ] = None,
+    setting: Annotated[
+        float | None,
+        typer.Option("--setting", metavar="S", help="Value of {setting} in --run, in s (default: 200 a period)."),
+    ] = None,
+    experiments: Annotated[
+        bool,
+        typer.Option(
+            "--experiments",
+            help="Where the program of --run is off, run it up to ten times with other numbers, and measure the cause.",
+        ),
+    ] = False,
     approximation: Annotated[
         str | None,
         typer.Option(
@@ -168,7 +179,9 @@ def command(
     out: Annotated[
         Path | None,
         typer.Option(
-            "--out", metavar="DIR", help="With --suite: write a page, a badge, CSV and JSON into this folder."
+            "--out",
+            metavar="DIR",
+            help="With --suite: write a page, a badge, CSV and JSON into this folder; with --experiments: the outputs.",
         ),
     ] = None,
     junit: Annotated[
@@ -187,19 +200,20 @@ def command(
 
     --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
     {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
-    {azimuth_rate} {t_end} {grid_step}.
+    {azimuth_rate} {t_end} {grid_step} {setting}.
     """
     reading = None if chosen("--inputs", inputs, INPUTS) == "auto" else inputs
     if no_diagnosis:
-        refuse({"--as-model": as_model}, "together with --no-diagnosis")
+        refuse({"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis")
     if as_json:
         refuse({"--github": github}, "together with --json")
     if run is None:
-        refuse({"--timeout": timeout, "--repeats": repeats, "--name": name}, "without --run")
+        alone = {"--timeout": timeout, "--repeats": repeats, "--name": name, "--setting": setting}
+        refuse({**alone, "--experiments": experiments}, "without --run")
     if not (candidates or run or suite):
         refuse({"--baseline": baseline}, "without a file, --run or --suite")
     if suite is None:
-        refuse({"--out": out}, "without --suite")
+        refuse({"--out": None if experiments else out}, "without --suite or --experiments")
         options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
         if scene_word is None:
             raise InputError("SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them.")
@@ -216,6 +230,8 @@ def command(
     timeout, repeats = TIMEOUT_S if timeout is None else timeout, REPEATS if repeats is None else repeats
     if not 0 < timeout < float("inf"):
         raise InputError("--timeout", f"{timeout:g}", "a positive number of seconds")
+    if setting is not None and not 0 < setting < float("inf"):
+        raise InputError("--setting", f"{setting:g}", "a positive number of seconds")
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:
@@ -223,6 +239,7 @@ def command(
 
         check_target(plot)
     from ..candidates.layout import Naming
+    from .experimenting import Program
     from .judging import Judging
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
@@ -235,7 +252,10 @@ def command(
         times = judging.times(transits) if candidates else None
         outcomes = [judging.file(scene, file, times) for file in candidates or ()]
         if run is not None:
-            outcomes.append(judging.program(scene, run, name or "the program", transits, timeout, repeats))
+            program = Program(scene, run, setting, timeout, out)
+            if experiments:
+                program.check()
+            outcomes.append(judging.program(program, name or "the program", transits, repeats, experiments))
         if approximation is not None:
             outcomes.append(judging.approximation(scene, approximation, transits))
         if not outcomes and transits is not None:
@@ -246,7 +266,7 @@ def command(
         if len(outcomes) == 1 and outcomes[0].error is not None and not (github or junit):
             raise outcomes[0].error
     _show(outcomes, as_json, plot, junit, github)
-    if out is not None and not as_json:
+    if suite is not None and out is not None and not as_json:
         typer.echo(f"{out / 'index.html'}: the page; badge.svg is beside it")
     status = max(outcome.exit_status for outcome in outcomes)
     if status:

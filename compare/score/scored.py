@@ -19,6 +19,7 @@ from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
 from ..observed.swing_plane import SwingErrors
 from .errors import TrajectoryErrors
+from .experiments.findings import Experiments
 from .explanation.findings import Explanation
 from .transit_matching import TransitErrors
 
@@ -128,6 +129,7 @@ class Scored:
     timing: Timing | None = None
     explanation: Explanation | None = None
     since: Since | None = None
+    experiments: Experiments | None = None
 
     @cached_property
     def input_floor_m(self) -> float:

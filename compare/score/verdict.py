@@ -35,6 +35,7 @@ class Score(Scored):
         transits: errors of its transits, or None.
         timing: run time of the program, or None.
         explanation: the likely reasons for the error; None if they were not looked for.
+        experiments: runs of the program with other numbers, and what they measured; None if none were asked for.
         since: the changes since a baseline, if there is one.
     """
 
@@ -83,8 +84,11 @@ def lines(score: Scored) -> Iterator[str]:
         yield _row("took", f"{timing.cpu_s:.3g} CPU s, {timing.wall_s:.3g} s", how)
     yield _row("inputs read as", score.scene.inputs, score.why_inputs)
     yield _row("reference", f"{score.golden.manifest.level}", f"within {errors.bound_m:.2g} m at these times")
-    if score.explanation is not None:
-        yield from score.explanation.lines()
+    if score.experiments is not None:
+        yield from score.experiments.lines()
+    told = score.explanation
+    if told is not None and (score.experiments is None or told.causes or told.conventions):
+        yield from told.lines()
     for convention in score.candidate.conventions:
         yield f"Reading: {convention.text}."
     for note in score.notes:
@@ -227,6 +231,8 @@ def document(score: Scored) -> dict[str, Any]:
         }
     if score.timing is not None:
         fields["timing"] = vars(score.timing)
+    if score.experiments is not None:
+        fields["experiments"] = score.experiments.document()
     if score.explanation is not None:
         fields |= explained(score.explanation, fields["conventions"])
     return fields

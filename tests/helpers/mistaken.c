@@ -10,7 +10,7 @@ static double l = 67, g = 9.80665, lat = 45, rate = 7.292115e-5, radius = 637813
 static double xs = 1, ys = 0, vx0 = 0, vy0 = 0, stars = 0, tend = 600, out = 2, h = 0.01;
 static double half = 1, north_factor = 1, up_factor = 1, corlat = 1e9, turnby = 0, point = 0;
 static double scale = 1, tscale = 1, toffset = 0, zsign = 1, zshift = 0;
-static double xsign = 1, ysign = 1, fast = 1, outward = -1;
+static double xsign = 1, ysign = 1, fast = 1, outward = -1, gtimes = 1, ltimes = 1, ratetimes = 1, counts_ends = 0;
 static int model = 0;   /* 0 sphere, 1 linear, 2 linear in the angle, 3 linear with the centrifugal force */
 static int reading = 0; /* 0 centrifugal force added, 1 none, 2 effective g */
 static int method = 4;  /* 4 Runge-Kutta, 3 velocity Verlet, 2 midpoint, 1 Euler, 0 semi-implicit Euler, 5 position first */
@@ -96,7 +96,8 @@ int main(int argc, char **argv) {
         {"h", &h}, {"half", &half}, {"north", &north_factor}, {"up", &up_factor}, {"corlat", &corlat},
         {"turnby", &turnby}, {"point", &point}, {"scale", &scale}, {"tscale", &tscale}, {"toffset", &toffset},
         {"zsign", &zsign}, {"zshift", &zshift}, {"xsign", &xsign}, {"ysign", &ysign}, {"fast", &fast},
-        {"outward", &outward}};
+        {"outward", &outward}, {"gtimes", &gtimes}, {"ltimes", &ltimes}, {"ratetimes", &ratetimes},
+        {"counts_ends", &counts_ends}};
     struct { const char *name; int *value; } flags[] = {
         {"model", &model}, {"reading", &reading}, {"method", &method}, {"decimals", &decimals}, {"swap", &swap},
         {"reversed", &reversed}, {"single", &single}};
@@ -113,6 +114,8 @@ int main(int argc, char **argv) {
                 *flags[k].value = atoi(eq + 1), known = 1;
         if (!known) return 2;
     }
+    g *= gtimes, l *= ltimes, rate *= ratetimes;
+    if (counts_ends != 0) fast = 1 + counts_ends * out / tend;
     double p = lat * M_PI / 180, cp = (corlat < 1e8 ? corlat : lat) * M_PI / 180;
     double f = invf > 1e8 ? 0 : 1 / invf, e2 = f * (2 - f);
     double axis = radius / sqrt(1 - e2 * sin(p) * sin(p)) * cos(p);

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from .phasors import METHODS
 from .programs import Program
@@ -92,7 +92,7 @@ def causes_of(case: Case, kind: str) -> Iterator[Cause]:
 
 
 def _set(**fields: object) -> Callable[[Program], Program]:
-    return lambda program: replace(program, **fields)  # type: ignore[arg-type]
+    return lambda program: program.changed(**fields)
 
 
 def _fitted(word: str, group: str, text: str, free: str, cost: float = FITTED, stage: str = "input") -> Cause:
@@ -135,7 +135,7 @@ def _gravity(right: Program) -> Iterator[Cause]:
 
         def both(program: Program) -> Program:
             """To first order in l/R, for small swings: 2 l/R for the fall-off and l/R for the direction."""
-            return replace(program, g=program.g * (1 + 3 * program.length / program.radius))
+            return program.changed(g=program.g * (1 + 3 * program.length / program.radius))
 
         yield Cause("point_mass", "point_mass", text, both, stage="gravity")
     if right.flattening and right.rate and ellipsoid:
@@ -240,9 +240,7 @@ def _latitude(right: Program) -> Iterator[Cause]:
 
 def _everywhere(program: Program, degrees: float) -> Program:
     """Use a latitude of any size for all: it is folded to the domain of a latitude, its cosine's sign in the turn."""
-    return replace(
-        program, latitude=math.degrees(math.asin(math.sin(math.radians(degrees)))), coriolis_latitude=degrees
-    )
+    return program.changed(latitude=math.degrees(math.asin(math.sin(math.radians(degrees)))), coriolis_latitude=degrees)
 
 
 def _release() -> Iterator[Cause]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -48,25 +48,56 @@ def explain(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: fl
         return Explanation()
 
 
-def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
-    model = Variants()
-    start = model.states(scene.exact, np.zeros(1))[0]
-    right = Program.of(scene.exact, start)
-    frequency = math.sqrt(abs(right.theta()[5]))
-    pendulum = Pendulum(model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate)))
+@dataclass(frozen=True)
+class Problem:
+    """A scene as the explanation of a file wants it.
 
-    def of_rows(rows: Rows) -> Explanation:
+    Attributes:
+        scene: in the reading that the file was scored in.
+        model: runs it.
+        start: x, y, z, vx, vy, vz at the release in m and m/s.
+        right: what a right program computes with.
+    """
+
+    scene: Scene
+    model: Variants
+    start: Array
+    right: Program
+
+    @classmethod
+    def of(cls, scene: Scene) -> Problem:
+        """Return the problem of a scene."""
+        model = Variants()
+        start = model.states(scene.exact, np.zeros(1))[0]
+        return cls(scene, model, start, Program.of(scene.exact, start))
+
+    @property
+    def frequency(self) -> float:
+        """The frequency of its swing in rad/s."""
+        return math.sqrt(abs(self.right.theta()[5]))
+
+    def rows(self, times: Array, columns: dict[str, Array], rename: bool = True) -> Rows:
+        """Return the rows of a file in the scene's conventions; `rename` as in `made_right`."""
+        return made_right(times, columns, self.start, self.right.length, self.frequency, rename)
+
+    def case(self, rows: Rows, allowed_m: float) -> Case:
+        """Return what is to be explained of rows, of which some are taken."""
         chosen = _sample(len(rows.times))
         rows = replace(rows, times=rows.times[chosen], positions=rows.positions[chosen])
         since_release = rows.times if rows.times[0] == 0 else np.concatenate([[0.0], rows.times])
-        truth = model.states(scene.exact, since_release)[-len(rows.times) :, : rows.positions.shape[1]]
-        return _of_case(Case(rows, truth, right, pendulum, frequency, allowed_m), scene)
+        truth = self.model.states(self.scene.exact, since_release)[-len(rows.times) :, : rows.positions.shape[1]]
+        right, frequency = self.right, self.frequency
+        pendulum = Pendulum(self.model, right.radius, right.gradient_square, FAST * (frequency + abs(right.rate)))
+        return Case(rows, truth, right, pendulum, frequency, allowed_m)
 
-    rows = made_right(times, columns, start, right.length, frequency)
-    best = of_rows(rows)
+
+def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m: float) -> Explanation:
+    problem = Problem.of(scene)
+    rows = problem.rows(times, columns)
+    best = explanation_of_case(problem.case(rows, allowed_m), scene)
     if any(convention.id in RENAMED for convention in rows.conventions):
         # the release may be at fault, and not the names of the columns
-        other = of_rows(made_right(times, columns, start, right.length, frequency, rename=False))
+        other = explanation_of_case(problem.case(problem.rows(times, columns, rename=False), allowed_m), scene)
         if other.corrected_m <= allowed_m and not any(_is_mirrored(cause) for cause in other.causes):
             best = min(best, other, key=lambda explanation: explanation.score)
     unknown = {cause.stage for cause in best.known} <= {"gravity", "model"} and best.corrected_m > max(
@@ -81,7 +112,7 @@ def _explained(times: Array, columns: dict[str, Array], scene: Scene, allowed_m:
     return best
 
 
-def _of_case(case: Case, scene: Scene) -> Explanation:
+def explanation_of_case(case: Case, scene: Scene) -> Explanation:
     """Return the first explanation that is good enough, in the order in which one would believe them."""
     if case.error <= case.floor:
         return _plain(case)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +12,8 @@ from reference.numbers.precision import Array
 
 from ...candidates.candidate import Deviation
 from ...observed.least_squares import by_differences, gauss_newton
-from .causes import causes_of
-from .families import fits_of
+from .causes import Cause, causes_of
+from .families import Fit, fits_of
 from .findings import AS_IF, HARMLESS, Explanation, Model
 from .gate import CLEAN, Evidence, loose, may_be_told
 from .programs import Program
@@ -55,31 +55,49 @@ def best_of(case: Case, integrators: bool = True, sure: bool = True) -> Reading 
     least = min((fit.rest for fit in fits), default=math.inf)
     if sure and least > max(NAMED_SHARE * case.error, noise):
         return None
-    floor = max(case.floor, 1.2 * least)
-    best: Reading | None = None
-    lowest = math.inf
-    for fit in fits:
-        if fit.rest > 3 * max(least, floor / 1.2):
-            continue
-        reader = Reader(replace(case.right, kind=fit.kind), fit, floor, least)
-        causes = [cause for cause in causes_of(case, fit.kind) if integrators or cause.stage != "integrator"]
-        likely = reader.readings(causes)[:TRIED]
-        likely += [reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes]
-        for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
-            leaves = rms(case.left(reading.program))
-            if math.isfinite(leaves):
-                run = reader.scored(reading.causes, reading.program, leaves)
-                if run.score + EXTRA[fit.kind] < lowest:
-                    best, lowest = run, run.score + EXTRA[fit.kind]
-    if best is not None:
-        best = _polished(case, best)
+
+    def causes(kind: str) -> list[Cause]:
+        return [cause for cause in causes_of(case, kind) if integrators or cause.stage != "integrator"]
+
+    run = ranked(case, readers_of(case, fits), causes)
+    best = polished(case, run[0]) if run else None
     if best is None or not sure:
         return best
     share = FITTED_SHARE if any(cause.free for cause in best.causes) else NAMED_SHARE
     return best if best.rest <= max(share * case.error, noise) else None
 
 
-def _polished(case: Case, reading: Reading) -> Reading:
+def readers_of(case: Case, fits: Sequence[Fit]) -> list[Reader]:
+    """Return what reads a case, for each family that fits it about as well as the best."""
+    least = min((fit.rest for fit in fits), default=math.inf)
+    floor = max(case.floor, 1.2 * least)
+    near = [fit for fit in fits if not fit.rest > 3 * max(least, floor / 1.2)]
+    return [Reader(replace(case.right, kind=fit.kind), fit, floor, least) for fit in near]
+
+
+def ranked(
+    case: Case, readers: Sequence[Reader], causes_of: Callable[[str], Sequence[Cause]], tried: int = TRIED
+) -> list[Reading]:
+    """Return the likeliest readings of a case, their programs run, the best first.
+
+    Args:
+        case: the file.
+        readers: of the families that it may be of.
+        causes_of: the causes that a family may have.
+        tried: number of readings of a family that are run.
+    """
+    run = []
+    for reader in readers:
+        likely = reader.readings(causes_of(reader.right.kind))[:tried]
+        likely += [reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes]
+        for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
+            leaves = rms(case.left(reading.program))
+            if math.isfinite(leaves):
+                run.append(reader.scored(reading.causes, reading.program, leaves))
+    return sorted(run, key=lambda reading: reading.score + EXTRA[reading.reader.right.kind])
+
+
+def polished(case: Case, reading: Reading) -> Reading:
     """Return the best reading with its fitted numbers moved to where its program, run, leaves least.
 
     The numbers of a reading are linear in those of the fit, which a number that is far off is not.
@@ -109,11 +127,9 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
     kind, reading = reader.right.kind, _without_needless_step(case, reading)
     left = case.left(reading.program)
     corrected = largest(left)
-    width = float(np.hypot(*rows.plane.T).max()) / case.right.length if kind == "sphere" else 0.0
-    clean = max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
     spacing, enough = float(rows.times[1] - rows.times[0]), max(case.allowed_m, 2 * rows.noise)
     shown = ("release.x", "release.y") if rows.starts and rows.times[0] == 0 else ()
-    evidence = Evidence(corrected, case.allowed_m, enough, spacing, case.frequency, clean, shown)
+    evidence = Evidence(corrected, case.allowed_m, enough, spacing, case.frequency, clean_share(case, kind), shown)
     read = [*sized(case, reading), *([] if step is None else [step])]
     causes = list(may_be_told(read, evidence))
     program = _with(reading, causes)
@@ -129,6 +145,12 @@ def explanation_of(case: Case, reading: Reading, step: Deviation | None = None) 
         model = _model_of(kind, case.right, causes, corrected, largest(rows.positions - case.truth))
     price = sum(cause.cost for cause in reading.causes)
     return case.explanation(tuple(causes), corrected, rms(left), price, model)
+
+
+def clean_share(case: Case, kind: str) -> float:
+    """Return the share of what an integrator does that its leading error may leave."""
+    width = float(np.hypot(*case.rows.plane.T).max()) / case.right.length if kind == "sphere" else 0.0
+    return max(CLEAN, WIDE * width**2, WIDE * CLEAN if width else 0.0)
 
 
 def _with(reading: Reading, told: Sequence[Deviation]) -> Program:

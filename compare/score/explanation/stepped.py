@@ -157,13 +157,18 @@ def _of_steps(case: Case, steps: Steps) -> Explanation | None:
     left = rms(rows.positions - moved)
     if best is None or not largest(rows.positions - moved) <= case.enough:
         return None
-    step = steps.spacing / steps.every
-    text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
-    word = f"integrator_{'rk2' if steps.method == 'heun' else steps.method}"
-    cause = Deviation(word, text, largest(effect), "integrator", step, step)
+    cause = step_cause(steps, effect)
     seen = replace(case, rows=replace(rows, positions=rows.positions - effect))
     told = explanation_of(seen, best, cause)
     return case.explanation(told.causes, told.corrected_m, left, sum(cause.cost for cause in best.causes) + FITTED)
+
+
+def step_cause(steps: Steps, effect: Array) -> Deviation:
+    """Return the cause that a program takes some steps, which have an effect on its rows."""
+    step = steps.spacing / steps.every
+    text = f"integrates with {TITLES[steps.method]} at a step of {step:.3g} s"
+    word = f"integrator_{'rk2' if steps.method == 'heun' else steps.method}"
+    return Deviation(word, text, largest(effect), "integrator", step, step)
 
 
 def likely_steps(case: Case, near: Program | None) -> list[Steps]:

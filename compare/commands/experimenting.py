@@ -1,0 +1,104 @@
+"""Run somebody's program for `foucault score`: its step, its output kept, and experiments with their progress."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import BinaryIO
+
+from reference import InputError, Scene
+from reference.commands.progress import progress
+from reference.commands.terminal import stoppable
+from reference.model.start import Start
+from reference.numbers.precision import DOUBLE
+
+from ..candidates.candidate import Candidate
+from ..candidates.external import arguments, run_program
+from ..candidates.layout import Naming
+from ..candidates.read import read_stream
+from ..methods.external import SETTING
+from ..report.folder import json_text, write_file, writing
+from ..score.experiments.findings import MOST_RUNS, Experiment, possible
+from ..score.verdict import Score
+from ..studies.users_program import STEPS
+
+DOCUMENT, GIVEN = "experiments.json", "as_given"  # in the folder
+
+
+@dataclass(frozen=True)
+class Program:
+    """Somebody's program, to be run more than once.
+
+    Attributes:
+        scene: that it is given first.
+        command: with its placeholders.
+        setting: value of {setting} in the first run; None for the usual step.
+        timeout: seconds that a run may take.
+        out: folder for what the program prints, or None.
+    """
+
+    scene: Scene
+    command: str
+    setting: float | None
+    timeout: float
+    out: Path | None = None
+
+    def check(self) -> None:
+        """Refuse a command that no experiment can change, and a folder with somebody else's files, before a run.
+
+        Raises:
+            InputError: it is one of these.
+        """
+        possible(self.scene, self.command)
+        if self.out is None:
+            return
+        with writing("--out", self.out):
+            self.out.mkdir(parents=True, exist_ok=True)
+            if any(self.out.iterdir()) and not (self.out / f"{GIVEN}.txt").exists():
+                expected = "a new folder, or one of earlier experiments"
+                raise InputError("--out", str(self.out), expected, "It has other files: choose another name.")
+
+    @property
+    def step(self) -> float:
+        """The value of {setting}, if none is given a step in s, whole ones to a grid step, at least 200 a period."""
+        grid, rate = float(self.scene.exact.grid_step), Start.of(self.scene.exact, DOUBLE.prec).fastest_rate
+        return self.setting or grid / math.ceil(grid * rate * STEPS / (2 * math.pi))
+
+    def words(self, scene: Scene, command: str = "", finer: int = 1) -> list[str]:
+        """Return the words of a run in a scene, {setting} divided by a number; of another version's command."""
+        return arguments((command or self.command).replace(SETTING, repr(self.step / finer)), scene)
+
+    def keep(self, output: BinaryIO, word: str) -> None:
+        """Write what a run has printed into the folder, and set it back to its start."""
+        if self.out is not None:
+            write_file(self.out / f"{word}.txt", output.read(), "--out")
+            output.seek(0)
+
+    def experimented(self, score: Score, naming: Naming) -> Score:
+        """Return a score with what experiments measure, which are made now."""
+        from ..score.experiments.laboratory import UNSOLVED, Laboratory
+
+        assert score.explanation is not None
+        made, kept = 0, "what the program has printed is kept" if self.out else "nothing was written"
+        with stoppable(kept), progress() as show:
+            move = show("experiments", MOST_RUNS, "runs")
+
+            def run(experiment: Experiment, scene: Scene) -> Candidate:
+                nonlocal made
+                move(made, item=experiment.title)
+                made += 1
+                output, *_ = run_program(self.words(scene, finer=experiment.finer), self.timeout)
+                with output:
+                    self.keep(output, experiment.id)
+                    return read_stream(output, experiment.title, naming=naming)
+
+            try:
+                first = Laboratory(score.candidate, score.scene, score.allowed_m, score.explanation, run)
+            except UNSOLVED:
+                return score
+            found, told = first.measured(possible(score.scene, self.command))
+            move(MOST_RUNS)
+        if self.out is not None:
+            write_file(self.out / DOCUMENT, json_text(found.document()), "--out")
+        return replace(score, experiments=found, explanation=told)

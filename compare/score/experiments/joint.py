@@ -1,0 +1,255 @@
+"""The explanations of several runs together: causes, and the way in which each follows the scene.
+
+One file does not tell whether a program takes g to be 9.81, or 1.0003 times what it is given, or has a fast clock. Of a
+scene with another g these are different motions. So the numbers of all runs stand side by side as those of one file do,
+and are read in the same way.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from reference.numbers.precision import Array
+
+from ...candidates.candidate import Deviation
+from ..explanation.causes import FITTED, Cause, causes_of
+from ..explanation.explain import Problem
+from ..explanation.families import Fit, fits_of
+from ..explanation.findings import Explanation
+from ..explanation.fitted import MODELS, clean_share, polished, ranked, readers_of, sized
+from ..explanation.gate import Evidence, may_be_told
+from ..explanation.programs import Program
+from ..explanation.readings import Reader, Reading
+from ..explanation.stepped import LONGEST, Steps, step_cause
+from ..explanation.unexplained import Case, largest
+
+RULE, TYPED, FACTOR = (
+    "",
+    ", whatever it is given",
+    ", in proportion to what it is given",
+)  # how a cause follows the scene
+INPUTS = ("g", "length", "latitude", "rate", "x", "y", "vx", "vy", "step")  # numbers that a scene, or {setting}, tells
+CLOCK = Cause(
+    "clock", "clock", "moves on by {value} s while its clock counts one", lambda p: p, FITTED, "pace", "clock"
+)
+STEEP = 5  # power of the frequency with which the error of a step of order 4 grows in a time
+TRIED = 30  # readings of a family that are run
+EQUAL = 0.35  # decades by which a reading that makes all files may be dearer than the cheapest
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A run of a program.
+
+    Attributes:
+        problem: of the scene that it was given.
+        case: its rows.
+        setting: its {setting} over that of the first run.
+    """
+
+    problem: Problem
+    case: Case
+    setting: float = 1.0
+
+    @cached_property
+    def fits(self) -> dict[str, Fit]:
+        """The fits of its rows by family."""
+        return {fit.kind: fit for fit in fits_of(self.case)}
+
+    @cached_property
+    def causes(self) -> dict[tuple[str, str, int], Cause]:
+        """What a program of its scene may do otherwise, by family, word, and place among those of one word."""
+        found, seen = {}, Counter[tuple[str, str]]()
+        for kind in ("sphere", *MODELS):
+            for cause in (*causes_of(self.case, kind), CLOCK):
+                word = kind, cause.id
+                found[*word, seen[word]] = cause
+                seen[word] += 1
+        return found
+
+    def given(self, name: str) -> float:
+        """Return a number that the program was given."""
+        return self.setting if name == "step" else float(getattr(self.case.right, name))
+
+    def enough(self, first: Trial) -> float:
+        """Return the distance in m that may be left: a step's error that is too small to be seen in the first grows."""
+        return self.case.enough * max(self.case.frequency / first.case.frequency, 1.0) ** STEEP
+
+
+class Part(NamedTuple):
+    """A cause of the first scene, and the way in which it follows the scene."""
+
+    key: tuple[str, str, int]
+    cause: Cause
+    way: str
+
+    def applied(self, program: Program, value: float, first: Trial, trial: Trial) -> Program:
+        """Return the program of a trial's scene with it; `value` is its number in the first scene."""
+        if self.way == RULE:  # a cause that the scene does not know, such as a sign of no rotation, does nothing there
+            return trial.causes[self.key].change(program) if self.key in trial.causes else program
+        program, free = self.cause.change(program), self.cause.free
+        if self.way == FACTOR and first.given(free):
+            value *= trial.given(free) / first.given(free)
+        return program.with_input(free, value) if free else program
+
+
+@dataclass(frozen=True)
+class Joint(Program):
+    """The program of the first run, from which those of the others follow.
+
+    Attributes:
+        runs: all of them.
+        parts: its causes.
+    """
+
+    runs: tuple[Trial, ...] = field(default=(), compare=False, repr=False)
+    parts: tuple[Part, ...] = ()
+
+    def programs(self) -> list[Program]:
+        """Return the program of each run."""
+        made = []
+        for trial in self.runs:
+            program = trial.case.right.changed(kind=self.kind)
+            for part in self.parts:
+                value = getattr(self, part.cause.free) if part.cause.free else 0.0
+                program = part.applied(program, value, self.runs[0], trial)
+            made.append(program)
+        return made
+
+    @property
+    def sensible(self) -> bool:
+        """False if no program can have its inputs in one of the runs."""
+        return all(program.sensible for program in self.programs())
+
+    def theta(self) -> Array:
+        """Return the numbers of all runs, those of the first before."""
+        return np.concatenate([program.theta() for program in self.programs()])
+
+
+@dataclass(frozen=True)
+class JointCase(Case):
+    """The rows of all runs as those of one file, each in units of what may be left of it."""
+
+    runs: tuple[Trial, ...] = ()
+
+    @classmethod
+    def of(cls, runs: Sequence[Trial]) -> JointCase:
+        """Return the case of some runs."""
+        first, runs = runs[0].case, tuple(runs)
+        joint = cls(**vars(first), runs=runs)
+        rows = replace(
+            first.rows,
+            times=np.concatenate([run.case.rows.times for run in runs]),
+            positions=joint.side_by_side([run.case.rows.positions for run in runs]),
+        )
+        truth = joint.side_by_side([run.case.truth for run in runs])
+        return replace(joint, rows=rows, truth=truth, right=Joint(**vars(first.right), runs=runs))
+
+    def weight(self, run: Trial) -> float:
+        """Return by what the rows of a run are multiplied."""
+        return self.runs[0].case.enough / run.enough(self.runs[0])
+
+    def side_by_side(self, rows: Sequence[Array]) -> Array:
+        """Return rows of each run as those of one."""
+        return np.concatenate([one * self.weight(run) for one, run in zip(rows, self.runs, strict=True)])
+
+    def positions(self, program: Program) -> Array:
+        """Return what a program writes in all runs."""
+        assert isinstance(program, Joint)
+        made = zip(self.runs, program.programs(), strict=True)
+        return self.side_by_side([run.case.positions(one) for run, one in made])
+
+    def fits(self) -> list[Fit]:
+        """Return the fits of the families that fit every run."""
+        kinds = [kind for kind in self.runs[0].fits if all(kind in run.fits for run in self.runs)]
+        return [self._fit(kind, [run.fits[kind] for run in self.runs]) for kind in kinds]
+
+    def _fit(self, kind: str, fits: Sequence[Fit]) -> Fit:
+        weights = [self.weight(run) * math.sqrt(len(run.case.rows.times) / len(self.rows.times)) for run in self.runs]
+        fits = [replace(one, rest=w * one.rest, slopes=w * one.slopes) for w, one in zip(weights, fits, strict=True)]
+        blocks = [np.asarray(np.linalg.qr(fit.slopes, mode="r")) for fit in fits]
+        return Fit(
+            kind,
+            np.concatenate([fit.theta for fit in fits]),
+            math.hypot(*(fit.rest for fit in fits)),
+            tuple(at * len(fit.theta) + i for at, fit in enumerate(fits) for i in fit.free),
+            np.block([[a if a is b else np.zeros((len(a), b.shape[1])) for b in blocks] for a in blocks]),
+        )
+
+    def causes(self, kind: str) -> list[Cause]:
+        """Return the causes of a family in every way in which the runs may tell them apart."""
+        found = []
+        for key, cause in self.runs[0].causes.items():
+            told = cause.free in INPUTS and len({run.given(cause.free) for run in self.runs}) > 1
+            ways = (TYPED, FACTOR)[: 1 + told] if cause.free else (RULE, TYPED)
+            found += [_following(Part(key, cause, way), told) for way in ways if key[0] == kind]
+        return found
+
+    def readings(self, most: float = 1.0) -> list[Reading]:
+        """Return the readings of all runs that leave of each no more than may be left, `most` times; the best first."""
+        fits = [fit for fit in self.fits() if np.isfinite(fit.slopes).all()]
+        readers = [_JointReader(**vars(reader)) for reader in readers_of(self, fits)]
+        run = [polished(self, reading) for reading in ranked(self, readers, self.causes, TRIED)]
+        return sorted((reading for reading in run if self.off(reading) <= most), key=lambda reading: reading.score)
+
+    def off(self, reading: Reading) -> float:
+        """Return the most that a reading leaves of a run, over what may be left."""
+        assert isinstance(reading.program, Joint)
+        most = 0.0
+        for run, program in zip(self.runs, reading.program.programs(), strict=True):
+            made, allowed = run.case.positions(program), run.enough(self.runs[0])
+            if program.method is not None:
+                effect = largest(made - run.case.positions(replace(program, method=None, step=0.0)))
+                allowed += clean_share(run.case, program.kind) * effect
+            most = max(most, largest(run.case.rows.positions - made) / allowed)
+        return most
+
+    def without_steps(self, steps: Steps, way: str, reading: Reading | None = None) -> tuple[JointCase, Deviation]:
+        """Return the case with what steps do to the programs of a reading taken from the rows, and that cause."""
+        program, seen, causes = self.right if reading is None else reading.program, [], []
+        assert isinstance(program, Joint)
+        for run, one in zip(self.runs, program.programs(), strict=True):
+            taken = replace(steps, every=round(steps.every / (run.setting if way == FACTOR else 1.0)))
+            case = run.case.part(int((run.case.rows.times <= taken.spacing / taken.every * LONGEST).sum()))
+            pendulum, theta = case.pendulum_of(one)
+            moved = Steps.of(pendulum, taken.method, taken.every, taken.spacing).rows(theta, case.rows.times, 2)
+            effect = moved - pendulum.rows(theta, case.rows.times, 2)
+            case = replace(case, rows=replace(case.rows, positions=case.rows.positions - effect))
+            seen.append(replace(run, case=case))
+            causes.append(step_cause(taken, effect))
+        return JointCase.of(seen), causes[0]
+
+    def told(self, reading: Reading, *besides: Deviation) -> Explanation:
+        """Return the explanation of the first run that a reading makes up, beside what was taken from its rows."""
+        assert isinstance(reading.program, Joint)
+        case, program = self.runs[0].case, reading.program.programs()[0]
+        read, left_m, times = [*sized(case, reading), *besides], largest(case.left(program)), case.rows.times
+        known, clean = tuple(cause.id for cause in read), clean_share(case, program.kind)
+        spacing = float(times[1] - times[0])
+        evidence = Evidence(left_m, case.allowed_m, case.enough, spacing, case.frequency, clean, known)
+        causes = tuple(may_be_told(read, evidence))
+        return Explanation(causes=causes, corrected_m=left_m, score=reading.score, allowed_m=case.allowed_m)
+
+
+class _JointReader(Reader):
+    """A reader that puts no name in place of a number that follows the scene."""
+
+    def _exactly_named(self, reading: Reading, causes: Sequence[Cause]) -> Reading:
+        return reading
+
+
+def _following(part: Part, told: bool) -> Cause:
+    """Return a cause that changes the programs of all runs; its text says how, if the runs tell that."""
+
+    def change(program: Program) -> Program:
+        changed = part.cause.change(program)
+        return changed.changed(parts=(*changed.parts, part)) if isinstance(changed, Joint) else changed
+
+    return replace(part.cause, change=change, text=part.cause.text + part.way * told)

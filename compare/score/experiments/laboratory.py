@@ -1,0 +1,161 @@
+"""Run a program again with other numbers in its placeholders, until one explanation of all its files is left."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from reference import FoucaultError, Scene
+from reference.numbers.precision import Array
+
+from ...candidates.candidate import Candidate, Deviation
+from ...methods.external import SETTING
+from ..explanation.explain import RENAMED, Problem, explanation_of_case
+from ..explanation.findings import UNCORRECTED, Explanation
+from ..explanation.gate import loose
+from ..explanation.stepped import Steps, likely_steps
+from ..explanation.unexplained import largest
+from .findings import Experiment, Experiments, Finding
+from .joint import EQUAL, FACTOR, TYPED, JointCase, Trial
+
+WAYS = TYPED, FACTOR  # how a step follows {setting}
+LEAST_RUNS = 2  # by which a cause is measured
+UNSOLVED = (FoucaultError, ArithmeticError, np.linalg.LinAlgError)  # no program solves such a scene, or fits its rows
+Run = Callable[[Experiment, Scene], Candidate]
+
+
+class Laboratory:
+    """The runs of a program so far, and what they show."""
+
+    def __init__(self, candidate: Candidate, scene: Scene, allowed_m: float, told: Explanation, run: Run) -> None:
+        """Begin with the first run.
+
+        Args:
+            candidate: its output as it was given.
+            scene: that it was given, in the reading that it was scored in.
+            allowed_m: distance in m that counts as agreement.
+            told: of its one file.
+            run: runs it for an experiment in a scene; raises a FoucaultError.
+        """
+        self._problem, self._allowed_m, self._told, self._run = Problem.of(scene), allowed_m, told, run
+        self._rename = any(convention.id in RENAMED for convention in told.conventions)  # axes as they were read
+        self._reach = 0.0
+        self._findings: list[Finding] = []
+        self._likely: list[tuple[Steps, str]] | None = None
+        self._runs = [self._trial(self._problem, candidate, 1.0)]
+
+    def measured(self, possible: Sequence[Experiment]) -> tuple[Experiments, Explanation]:
+        """Make experiments until they tell one explanation, and return what they found, and that explanation."""
+        told: list[Explanation] = []
+        with np.errstate(all="ignore"):
+            for experiment in possible:
+                if self._make(experiment) and len(self._runs) > LEAST_RUNS:
+                    told = self._explanations()
+                if len(told) == 1:
+                    break
+            if 1 < len(self._runs) <= LEAST_RUNS:  # the program is fit for no more
+                told = self._explanations()
+            known = bool(told)
+            told = told or self._of_integrator()
+        texts = ["; it ".join(cause.text for cause in one.causes) for one in told]
+        files = f"the {len(self._runs)} files"
+        text = f"Measured: {'one explanation makes' if known else 'an integrator is at fault, say'} {files}."
+        if len(told) > 1:
+            text = f"Cannot be told apart by these experiments: your program {', or '.join(texts)}."
+        elif not told:
+            text = f"No known mistake makes {files}: nothing is named."
+        ids = tuple(tuple(cause.id for cause in one.causes) for one in told)
+        best = (
+            told[0] if len(told) == 1 else replace(self._told, causes=(), slip="", corrected_m=_error_m(self._runs[0]))
+        )
+        same = {cause.id for cause in self._told.causes} == set().union(*ids)
+        best = replace(best, conventions=self._told.conventions, model=self._told.model if same else None)
+        return Experiments(tuple(self._findings), ids, text), self._told if len(self._runs) == 1 else best
+
+    def _explanations(self) -> list[Explanation]:
+        """Return what makes the files of all runs; where nothing does, with the steps of a method on the sphere."""
+        try:
+            case = JointCase.of(self._runs)
+            told = _told(case)
+            if self._likely is None and not told:
+                self._likely = [(steps, way) for steps in likely_steps(self._runs[0].case, None) for way in WAYS]
+            while not told and self._likely:  # what does not make these files makes no more of them
+                steps, way = self._likely[0]
+                near = case.without_steps(steps, way)[0].readings(math.inf)
+                told = _told(*case.without_steps(steps, way, near[0])) if near else []
+                self._likely = self._likely[not told :]
+            return told
+        except UNSOLVED:
+            return []
+
+    def _of_integrator(self) -> list[Explanation]:
+        """Return that an integrator is too loose, where another step shows it, or files that say nothing else."""
+        first = self._runs[0]
+        for run in self._runs:
+            if run.setting != 1 and len(run.case.rows.times) == len(first.case.rows.times):
+                changed = largest(run.case.rows.positions - first.case.rows.positions)
+                if changed > first.case.enough:
+                    return [first.case.explanation((loose(changed),), _error_m(run), 0.0, 0.0)]
+        try:
+            said = [explanation_of_case(run.case, run.problem.scene) for run in self._runs]
+        except UNSOLVED:
+            return []
+        said = [one for one in said if one.causes]
+        words = {cause.id for one in said for cause in one.causes}
+        return said[:1] if words == {"integrator_loose"} and len(said) >= LEAST_RUNS else []
+
+    def _make(self, experiment: Experiment) -> bool:
+        """Make a run; return whether its file is read as the first was."""
+        problem, changes = Problem.of(experiment.changed(self._problem.scene)), experiment.values(self._problem.scene)
+        if experiment.finer > 1:
+            changes[SETTING] = f"1/{experiment.finer} of the first"
+        made, conclusion = None, "its file is read in another way than the first; nothing follows from it"
+        try:
+            candidate = self._run(experiment, problem.scene)
+            made = self._trial(problem, candidate, 1 / experiment.finer) if candidate.positions else None
+        except UNSOLVED as error:
+            conclusion = f"{str(error).rstrip('.')}; nothing follows from it"
+        error_m = None
+        if made is not None and _conventions(made) == _conventions(self._runs[0]):
+            self._runs.append(made)
+            error_m = _error_m(made)
+            gone = error_m <= made.case.enough
+            conclusion = f"what is wrong is {experiment.where}" if gone else f"it is not {experiment.where} alone"
+        said = conclusion if experiment.where or error_m is None else ""
+        self._findings.append(Finding(experiment.id, experiment.title, changes, error_m, said))
+        return error_m is not None
+
+    def _trial(self, problem: Problem, candidate: Candidate, setting: float) -> Trial:
+        """Return a trial of x and y; what may be left of them is as large a part of the swing as of the first."""
+        rows = problem.rows(candidate.t, candidate.columns, self._rename)
+        rows = replace(rows, positions=np.ascontiguousarray(rows.plane), cord=None)
+        case = problem.case(rows, self._allowed_m)
+        reach = largest(case.truth)
+        self._reach = self._reach or reach
+        return Trial(problem, replace(case, allowed_m=self._allowed_m * reach / self._reach), setting)
+
+
+def _told(case: JointCase, *step: Deviation) -> list[Explanation]:
+    """Return the explanations of a case, beside a step, the likeliest first; of those of one motion one."""
+    told: list[Explanation] = []
+    motions: list[Array] = []
+    for reading in case.readings():
+        one, motion = case.told(reading, *step), case.positions(reading.program)
+        ids = {cause.id for cause in one.causes}
+        same = any({cause.id for cause in other.causes} <= ids for other in told)
+        same = same or any(largest(motion - other) <= case.enough for other in motions)
+        if ids and not same and one.score <= (told or [one])[0].score + EQUAL:
+            told.append(one)
+            motions.append(motion)
+    return told
+
+
+def _error_m(trial: Trial) -> float:
+    return largest(trial.case.rows.positions - trial.case.truth)
+
+
+def _conventions(trial: Trial) -> list[str]:
+    return [convention.id for convention in trial.case.rows.conventions if convention.id not in UNCORRECTED]
