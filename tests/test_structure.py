@@ -141,7 +141,7 @@ PUBLIC = {
     "reference.model.start": "Start scaled",
     "reference.numbers.columns": "STATE",
     "reference.numbers.precision": "Array DOUBLE DOUBLE_BITS GUARD_BITS LONG_DOUBLE LONG_DOUBLE_BITS NumberType "
-    "bits_of context digits_that_hold fixed_decimal real rounded_up to_fraction to_mpf",
+    "bits_of context digits_that_hold fixed_decimal real to_fraction to_mpf",
     "reference.numbers.table": "Table",
     "reference.scenes.inputs": "Inputs",
     "reference.scenes.scene": "AnyScene MAX_ROWS as_scene unit_of",

@@ -26,7 +26,7 @@ function unpacked(truth, made = truth.function) {
 function functionOf(made) {
   if (!made) return { at: null };
   const numbers = new DataView(Uint8Array.from(atob(made.coefficients), (letter) => letter.charCodeAt(0)).buffer);
-  return { at: evaluator(made.record, numbers), end: made.end, bound_m: made.bound_m };
+  return { at: evaluator(made.record, numbers), end: made.end, bounds: made.record.bounds };
 }
 
 // Index of the number in an increasing array that is nearest to a value.
@@ -100,6 +100,12 @@ function errorsOf(columns, { rows, golden }) {
 const largest = (values) => values.reduce((best, value, i) => (Math.abs(value) > Math.abs(values[best]) ? i : best), 0);
 const reach = (xs, ys) => xs.reduce((best, x, i) => Math.max(best, Math.hypot(x, ys[i])), 0);
 
+// How far the truth of a file's position columns may be off, in m.
+function boundOf(columns, { at, bounds, bound_m: bound }) {
+  if (!at) return bound;
+  return Math.hypot(...POSITION.filter((name) => !columns || name in columns).map((name) => Number(bounds[name])));
+}
+
 // Judge a candidate {columns or null, transits or null, notes}; `tolerance` in m, null for a millionth of the amplitude,
 // or of what a candidate reaches that swings far less.
 function judge(candidate, truth, tolerance = null) {
@@ -108,12 +114,13 @@ function judge(candidate, truth, tolerance = null) {
   const amplitude = judged && truth.at ? Math.max(truth.amplitude_m, reach(judged.golden.x, judged.golden.y)) : truth.amplitude_m;
   const part = judged ? reach(columns.x, columns.y) / reach(judged.golden.x, judged.golden.y) : 1;
   const allowance = tolerance ?? truth.words.TOLERANCE * amplitude * (part > 0 && part < truth.words.SMALL ? part : 1);
-  const allowed = allowance + truth.bound_m;
-  const verdict = { tolerance_m: allowance, bound_m: truth.bound_m, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], path: null, transits: null };
+  const bound = boundOf(columns, truth);
+  const allowed = allowance + bound;
+  const verdict = { tolerance_m: allowance, bound_m: bound, amplitude_m: amplitude, at_any_time: Boolean(truth.at), notes: [...candidate.notes], path: null, transits: null };
   let until = Math.min(truth.t_end, times?.at(-1) ?? 0); // later transits are not missed
   if (columns) {
     const errors = errorsOf(columns, judged);
-    verdict.path = { ...pathVerdict(columns, judged, errors, truth, allowed, amplitude), errors };
+    verdict.path = { ...pathVerdict(columns, judged, errors, truth, { allowed, amplitude, bound }), errors };
     until = errors.t[errors.t.length - 1];
     const apart = columns.t.length - judged.rows.length;
     if (apart) verdict.notes.push(`${apart} of ${columns.t.length} rows are ${truth.at ? "after the scene's end" : "not at golden times"} and were not judged.`);
@@ -134,7 +141,7 @@ function judge(candidate, truth, tolerance = null) {
   return { ...verdict, verdict: right && timely ? "agrees" : "disagrees" };
 }
 
-function pathVerdict(columns, { rows, golden }, errors, truth, allowed, amplitude) {
+function pathVerdict(columns, { rows, golden }, errors, truth, { allowed, amplitude, bound }) {
   const { components, position, t } = errors;
   const row = largest(position);
   const component = POSITION.filter((name) => name in columns).reduce((best, name) =>
@@ -149,7 +156,7 @@ function pathVerdict(columns, { rows, golden }, errors, truth, allowed, amplitud
     max_error_m: top,
     rms_error_m: top && top * Math.sqrt(position.reduce((sum, error) => sum + (error / top) ** 2, 0) / position.length),
     end_error_m: position[position.length - 1],
-    digits: -Math.log10(Math.max(top, truth.bound_m) / amplitude),
+    digits: -Math.log10(Math.max(top, bound) / amplitude),
     worst: { t: t[row], component, expected: golden[component][row], got: columns[component][rows[row]], difference: components[component][row] },
     wrong_from_s: wrong < 0 ? null : t[wrong],
   };

@@ -143,7 +143,8 @@ def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html
     wanted, known = f"a row for {times} … s, or for some of them", "no golden function: the page has golden rows alone"
     if made:
         wanted = f"rows at any times up to {golden.t[-1]:.15g} s"
-        known = f"the golden function, which is within {made['bound_m']:.1e} m of the truth at every time"
+        bounds = ", ".join(f"{name} within {made['record']['bounds'][name]} m" for name in ("x", "y", "z"))
+        known = f"the golden function, which has {bounds} of the truth at every time (proven)"
     if made and beside:
         size = f"{len(made['coefficients']) / 1e6:.1f} MB"
         known += f"; its {size} are in {beside} beside this page, read with the first file or at the first play"

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import base64
 import json
-import math
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
@@ -18,7 +17,7 @@ from reference import Golden
 from reference.dataset.manifest import FUNCTION
 from reference.dataset.render import MEANING
 from reference.numbers.columns import STATE
-from reference.numbers.precision import DOUBLE_BITS, Array, rounded_up
+from reference.numbers.precision import DOUBLE_BITS, Array
 from reference.status import Status
 
 from ...candidates import candidate, layout, names, spelling
@@ -156,7 +155,6 @@ def function_made(golden: Golden) -> dict[str, Any] | None:
         "record": json.loads(record),
         "coefficients": base64.b64encode(numbers).decode(),
         "end": float(golden.function.times[-1]),
-        "bound_m": float(rounded_up(Fraction(math.hypot(*(golden.function.bound[name] for name in STATE[:3]))))),
     }
 
 
