@@ -69,10 +69,14 @@ def names_of(root: Path, *parts: str) -> set[str]:
     return {str(path.relative_to(root)) for path in files if path.is_file() and "__pycache__" not in path.parts}
 
 
+EVALUATOR = "compare/report/atlas/function.mjs"  # of docs/readers, which the pages of the atlas evaluate by
+
+
 def test_the_wheel_holds_every_module_and_all_data_and_no_more(wheel: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         found = {name for name in archive.namelist() if ".dist-info/" not in name}
-    code = names_of(ROOT, "foucault.py", "reference", "compare")
+        assert archive.read(EVALUATOR) == (ROOT / "docs/readers/function.mjs").read_bytes()
+    code = {EVALUATOR} | names_of(ROOT, "foucault.py", "reference", "compare")
     data = {f"reference/{name}" for name in names_of(ROOT, "data")}
     assert found >= code | data
     assert {name for name in found - code - data if not name.startswith("reference/data/golden/")} == set()

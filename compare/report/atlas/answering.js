@@ -73,6 +73,9 @@ if (typeof WorkerGlobalScope !== "undefined") {
   let truth = null;
   onmessage = async ({ data }) => {
     if (data.truth) truth = unpacked(data.truth, data.made);
-    else postMessage({ ...answer(await textsOf(data.files), data.tolerance, truth), asked: data.asked });
+    else {
+      const result = answer(await textsOf(data.files), data.tolerance, truth);
+      postMessage({ ...result, asked: data.asked }, (result.mine ?? []).map((column) => column.buffer));
+    }
   };
 }

@@ -10,10 +10,16 @@ const SAMPLE = 1000; // rows that show whether a suspicion is worth a look at al
 const POSITION = ["x", "y", "z"];
 const STATE = [...POSITION, "vx", "vy", "vz"];
 
+function numbersOf(base64) {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i += 1) bytes[i] = text.charCodeAt(i);
+  return new DataView(bytes.buffer);
+}
+
 function doubles(base64) {
-  const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-  const view = new DataView(bytes.buffer);
-  return Float64Array.from({ length: bytes.length / 8 }, (_, i) => view.getFloat64(8 * i, true));
+  const view = numbersOf(base64);
+  return Float64Array.from({ length: view.byteLength / 8 }, (_, i) => view.getFloat64(8 * i, true));
 }
 
 // Unpack the numbers once, and those of the golden function; null where only the rows are known.
@@ -25,8 +31,7 @@ function unpacked(truth, made = truth.function) {
 
 function functionOf(made) {
   if (!made) return { at: null };
-  const numbers = new DataView(Uint8Array.from(atob(made.coefficients), (letter) => letter.charCodeAt(0)).buffer);
-  return { at: evaluator(made.record, numbers), end: made.end, bounds: made.record.bounds };
+  return { at: evaluator(made.record, numbersOf(made.coefficients)), end: made.end, bounds: made.record.bounds };
 }
 
 // Index of the number in an increasing array that is nearest to a value.
