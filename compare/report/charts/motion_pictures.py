@@ -143,7 +143,8 @@ def thumbnail(motion: Motion) -> str:
     words = ["M" if np.isnan(x) else f"{x:.0f} {y:.0f}" for x, y in places]
     ring = f'<circle cx="{THUMB // 2}" cy="{THUMB // 2}" r="{0.46 * THUMB:.0f}"/>' if motion.wide else ""
     path = f"M{' '.join(words)}".removesuffix(" M")
-    return f'<svg viewBox="0 0 {THUMB} {THUMB}" aria-hidden="true">{ring}<path d="{path}"/></svg>'
+    release = f'<path class="release" d="M{words[0]}h0"/>'
+    return f'<svg viewBox="0 0 {THUMB} {THUMB}" aria-hidden="true">{ring}<path d="{path}"/>{release}</svg>'
 
 
 def _strokes(markers: re.Match[str]) -> str:

@@ -48,6 +48,20 @@ def test_a_page_for_each_scene_and_one_over_all(atlas):
     assert golden.manifest.cross_checks[0].position_m in page and golden.manifest.seal in page
 
 
+def test_a_thumbnail_shows_the_path_from_its_release_on(atlas):
+    card = re.search(r'id="paris" .*?</a>', (atlas / "index.html").read_text(), re.S)[0]
+    x, y = (float(word) for word in re.search(r'class="release" d="M(\S+) (\S+?)h0"', card).groups())
+    golden = reference.load("paris")
+    unit = 0.46 * 200 / np.hypot(golden.x, golden.y).max()
+    assert (x - 100, 100 - y) == pytest.approx((0.3 * unit, 0.4 * unit), abs=1.5)  # 0.3 m east, 0.4 m north
+    path = re.search(r'<path d="M(.*?)"', card)[1]
+    places = np.array(
+        [[float(word) for word in place.split()] for part in path.split("M") for place in re.findall(r"\d+ \d+", part)]
+    )
+    assert path.count("M") == 8 and len(places) == 9 * 41, "nine swings, spread over the day"
+    assert places.min() >= 0 and places.max() <= 200
+
+
 def test_pages_load_nothing_stay_small_and_have_each_id_once(atlas):
     for path in atlas.iterdir():
         text = path.read_text()
