@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,7 +16,7 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 project = "Reference solver for the Foucault pendulum"
-author = "The Foucault reference authors"
+author = ", ".join(one["name"] for one in tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["authors"])
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
 
 # The source is the checkout: pages stay where a forge shows them, and their links lead to the same places.

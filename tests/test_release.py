@@ -11,6 +11,7 @@ import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import citation
 import pytest
 from places import ROOT
 
@@ -45,6 +46,20 @@ golden = reference.load("paris")
 print(json.dumps({"statuses": statuses, "from": [m.__file__ for m in (foucault, reference, compare)],
                   "release": [float(golden.grid[name][0]) for name in "xy"]}))
 """
+
+
+def test_what_is_cited_is_what_is_released():
+    """One place has version, authors and addresses: pyproject.toml."""
+    assert citation.text() == citation.PAGE.read_text(encoding="utf-8"), "run: python tests/helpers/citation.py"
+
+
+def test_a_person_and_the_addresses_come_from_the_one_place():
+    urls = {"Repository": "https://example.org/code", "Documentation": "https://example.org/pages"}
+    told = citation.project() | {"urls": urls, "authors": [{"name": "Ada M. Lovelace", "email": "ada@example.org"}]}
+    lines = [*citation.lines(told)]
+    assert "repository-code: https://example.org/code" in lines
+    assert "url: https://example.org/pages" in lines
+    assert lines[-1] == "  - family-names: Lovelace\n    given-names: Ada M."
 
 
 @pytest.fixture(scope="module")
