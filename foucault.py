@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import signal
 import sys
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -37,6 +38,16 @@ def commands() -> typer.Typer:
                 with formatter.section(heading):
                     helps = {name: self.commands[name].help or "" for name in names}
                     formatter.write_dl([(name, text.partition("\n")[0]) for name, text in helps.items()])
+
+        def invoke(self, ctx: Any) -> Any:
+            """Run a command; a number that is none is told in plain words."""
+            try:
+                return super().invoke(ctx)
+            except typer.BadParameter as error:
+                told = re.match("Input should be a valid (number|integer)", error.message)
+                if told:
+                    error.message = f"expected a {'whole ' * (told[1] == 'integer')}number, without a unit"
+                raise
 
     app = typer.Typer(
         cls=Grouped,

@@ -182,6 +182,8 @@ def _arrays(data: BinaryIO, name: str) -> dict[str, object]:
     try:
         with zipfile.ZipFile(data) as archive:
             members = {member.filename.removesuffix(".npy"): member for member in archive.infolist()[:MOST_ARRAYS]}
+        if any(word.startswith("xl/") for word in members):
+            raise InputError(name, "an Excel workbook", "text with named columns", "Save the sheet as CSV.")
         chosen = [word for word in members if word == TRANSITS or meaning(word, {}) is not None]
         chosen = chosen or [word for word in members if word == TABLE]
         size = sum(members[word].file_size for word in chosen)
@@ -189,6 +191,8 @@ def _arrays(data: BinaryIO, name: str) -> dict[str, object]:
             data.seek(0)
             with np.load(data, allow_pickle=False) as arrays:
                 return {word: arrays[word] for word in chosen}
+    except InputError:
+        raise
     except Exception as error:  # zipfile and numpy raise half a dozen kinds of errors for a damaged archive
         raise InputError(name, "a damaged .npz archive", _EXPECTED, f"{error}.") from None
     raise InputError(name, f"{size} bytes unpacked", f"at most {MAX_UNPACKED}", "Thin the output out.")

@@ -81,8 +81,12 @@ def judge(
             the tolerance is not positive.
         UnreachableError: the scene cannot be solved.
     """
-    if tolerance is not None and not 0 < tolerance < math.inf:
-        raise InputError("tolerance", f"{tolerance:g}", "a positive number of metres")
+    if tolerance is not None and (isinstance(tolerance, str) or not 0 < tolerance < math.inf):
+        raise InputError("tolerance", tolerance, "a positive number of metres")
+    if isinstance(scene, Mapping) and "t" in scene:
+        raise InputError(
+            "scene", f"columns {', '.join(map(str, scene))}", "a scene", "The rows stand before the scene."
+        )
     scene = as_scene(scene)
     if not 0 <= covers <= 1:
         raise InputError("covers", f"{covers:g}", "a share of the scene's span, from 0 to 1")

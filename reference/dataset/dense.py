@@ -20,7 +20,7 @@ from ..errors import InputError
 from ..model.constants import Constants, constants
 from ..model.formulations import FORMULATIONS
 from ..numbers.columns import POSITION, STATE
-from ..numbers.function import States, check_span
+from ..numbers.function import States, moments_of
 from ..numbers.precision import GUARD_BITS, LONG_DOUBLE, Array, NumberType, context, real
 
 TYPES = (LONG_DOUBLE, real(128), real(192), real(256))  # if one loses too many digits, the next is tried
@@ -88,8 +88,7 @@ def states_at(golden: Any, times: npt.ArrayLike) -> States:
     Raises:
         InputError: a time is not finite, or outside of the dataset's span.
     """
-    moments = np.asarray(times, dtype=np.float64)
-    check_span(moments, golden.times[-1])
+    moments = moments_of(times, golden.times[-1])
     if not moments.size:
         return States.of(moments, np.empty((6, 0)), {})
     found = dense(golden, moments)

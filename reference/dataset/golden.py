@@ -150,7 +150,7 @@ def read_manifest(folder: Path) -> Manifest:
 
 
 def _no_dataset(folder: Path) -> InputError:
-    advice = did_you_mean(folder.name, seals(), "Make it with `foucault generate`.")
+    advice = did_you_mean(folder.name, () if folder.exists() else seals(), "Make it with `foucault generate`.")
     return InputError("PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", advice)
 
 

@@ -62,6 +62,8 @@ def write(solution: Solution, folder: str | Path, name: str | None = None) -> Pa
         InputError: the folder cannot be written, or it ships and the proof is not audited.
         DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as it is.
     """
+    if not isinstance(solution, Solution):
+        raise InputError("solution", solution, "what reference.solve returns", "Solve the scene first.")
     folder = Path(folder)
     if ships(folder) and solution.proof is not None and not solution.proof.audited:
         raise InputError(

@@ -72,8 +72,7 @@ class GoldenFunction:
         Raises:
             InputError: a time lies outside of the span, or is not finite.
         """
-        moments = np.asarray(t, dtype=np.float64)
-        check_span(moments, self.times[-1])
+        moments = moments_of(t, self.times[-1])
         return States.of(moments, self._evaluated(moments.ravel()), self.bound)
 
     def _evaluated(self, t: Array) -> tuple[Array, ...]:
@@ -97,9 +96,18 @@ class GoldenFunction:
         return (*position, *velocity)
 
 
-def check_span(t: Array, end: float | Fraction) -> None:
-    """Raise InputError where a time is not finite, or outside of 0 to `end` s."""
+def moments_of(times: npt.ArrayLike, end: float | Fraction) -> Array:
+    """Return times as doubles.
+
+    Raises:
+        InputError: one is no number, not finite, or outside of 0 to `end` s.
+    """
+    expected = f"times from 0 to {float(end):.17g} s"
+    try:
+        t = np.asarray(times, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError("t", times, expected) from None
     outside = t[~((t >= 0) & (t <= float(end)))]
     if outside.size:
-        expected = f"times from 0 to {float(end):.17g} s"
         raise InputError("t", f"{outside[0]:.17g}", expected, "The scene ends there: run.t_end.")
+    return t

@@ -215,7 +215,9 @@ def _wanted(words: Sequence[str]) -> tuple[str, ...]:
     chosen: set[str] = set()
     for word in words:
         if word not in (*WANTS, TIMES, ALL):
-            raise unknown("--want", word, "a quantity of a sweep", (*WANTS, TIMES, ALL), "")
+            raise unknown(
+                "--want", word, "a quantity of a sweep", (*WANTS, TIMES, ALL), f"There are {', '.join(WANTS)}."
+            )
         chosen |= set(WANTS) if word == ALL else {word}
     return tuple(word for word in (*WANTS, TIMES) if word in chosen)
 

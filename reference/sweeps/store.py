@@ -76,7 +76,8 @@ class Store:
             request = Request.of(document)
             unchanged = request.hash == document["hash"]
         except FileNotFoundError:
-            raise InputError("--out", str(folder), f"a folder of a sweep, with {PLAN}") from None
+            advice = "Give a scene and --over to begin one."
+            raise InputError("--out", str(folder), f"a folder of a sweep, with {PLAN}", advice) from None
         except (ValueError, KeyError, TypeError, AttributeError, InputError):
             unchanged = False
         if not unchanged:

@@ -186,7 +186,8 @@ def sweep(
         InputError: a wrong axis, option or folder; before any work.
     """
     file, folder = (Path(path) if path is not None else None for path in (rows, out))
-    options = {"want": want, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
+    wanted = tuple(want.split(",")) if isinstance(want, str) else want
+    options = {"want": wanted, "level": level, "digits": digits, "tolerance": tolerance, "engine": engine}
     scene = as_scene(scene)
     if t_end is not None:
         scene = scene.with_values({"run.t_end": t_end})

@@ -51,6 +51,12 @@ def test_every_command_has_help_and_pend_keeps_the_papers_switch_h(foucault, com
         assert foucault(command, "-h") == (0, out, "")
 
 
+def test_the_help_of_score_fits_on_two_screens(foucault, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = foucault("score", "--help")[1].splitlines()
+    assert len(lines) <= 80 and max(map(len, lines)) <= 80
+
+
 def test_the_version_is_that_of_the_package(foucault):
     assert foucault("--version") == (0, f"foucault {version('foucault-reference')}, data {DATA_VERSION}\n", "")
 

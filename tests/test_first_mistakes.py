@@ -1,0 +1,161 @@
+"""The first mistakes that people make, on the command line and in Python: each message says what to do."""
+
+from __future__ import annotations
+
+import shlex
+import zipfile
+
+import numpy as np
+import pandas as pd
+import pytest
+
+import compare
+import reference
+from reference import InputError
+
+FILES = {
+    "mine.csv": "t,x,y\n0,0.3,0.4\n60,-0.176326733,-0.415867688\n",
+    "headless.csv": "0 1\n",
+    "empty.csv": "",
+    "text.csv": "t,x,y\n0,a,0.4\n",
+    "nan.csv": "t,x,y\n0,0.3,0.4\n60,nan,0.4\n",
+    "backwards.csv": "t,x,y\n60,0.3,0.4\n0,0.3,0.4\n",
+    "typo.toml": '[pendulum]\nlenght = "12"\n[release]\nangle = 5\nazimuth = 0\n',
+    "float.toml": '[pendulum]\nlength = 12.3\n[release]\nangle = "5"\nazimuth = "0"\n',
+    "broken.toml": '[pendulum\nlength = "12"\n',
+    "both.toml": '[release]\nx = "1"\nangle = "5"\nazimuth = "0"\n',
+    "nothing.toml": 'pendulum = {length = "12"}\n',
+    "short.toml": '[pendulum]\nlength = "0.4"\n[release]\nx = "0.5"\ny = "0"\n',
+}
+LINE = {  # what is typed, and what the message has to say
+    "scor paris mine.csv": "Did you mean 'score'?",
+    "score mine.csv": "`foucault score SCENE mine.csv`",
+    "score mine.csv paris": "`foucault score SCENE mine.csv`",
+    "score pari mine.csv": "Did you mean paris?",
+    "score paris mien.csv": "CANDIDATE: got 'mien.csv', expected a readable file",
+    "score paris": "Name what is to be scored.",
+    "score paris headless.csv": "The first line names the columns: t, x, y",
+    "score paris empty.csv": "The first line names the columns: t, x, y",
+    "score paris text.csv": "text.csv: line 2: x: got 'a', expected a number",
+    "score paris nan.csv": "score the rows before it, or correct it",
+    "score paris backwards.csv": "Sort the rows and drop repeated times.",
+    "score paris book.xlsx": "Save the sheet as CSV.",
+    "score paris folder": "expected a readable file",
+    "score paris mine.csv --tolerance 1mm": "'--tolerance': expected a number, without a unit",
+    "score paris mine.csv --tolerance -1": "expected a positive number of metres",
+    "score paris mine.csv --set site.latitude": "section.key=value, such as site.latitude=0",
+    "score paris mine.csv --set site.lattitude=40": "Did you mean site.latitude or",
+    "score paris mine.csv --set site.latitude=forty": "a decimal number such as 67",
+    "score paris mine.csv --set site.latitude=100": "at least -90 and at most 90",
+    "score paris mine.csv --t-end 0": "expected a number above 0",
+    "score paris mine.csv --t-end 1h": "a decimal number such as 67",
+    "score paris --run ./mien": "a program that can be started",
+    "score paris --run false": "expected exit status 0",
+    "score paris --run 'echo {x}'": "Write {{x}} for {x} itself.",
+    "score --how basic": "expected c, c++, fortran",
+    "score paris mine.csv --columns t,x": "a name for each of the 3 columns",
+    "score paris mine.csv --units hours": "--t-end 86400 leaves out later rows",
+    "score paris mine.csv --plot error.bmp": "a path that ends in .svg, .png, .pdf",
+    "show typo.toml": "Did you mean pendulum.length?",
+    "show float.toml": "write it as a string",
+    "show broken.toml": "Expected ']' at the end of a table declaration (at line 1, column 10)",
+    "show both.toml": "Keep one kind.",
+    "show nothing.toml": "a table with x and y, or with angle and azimuth",
+    "show short.toml": "For a release at or above the horizontal give angle and azimuth.",
+    "show missing.toml": "`foucault scenes` lists the ids.",
+    "generate paris --digits many": "expected a whole number",
+    "generate paris --digits 0": "from 1 to 1000",
+    "generate paris --level proven": "computed, self_consistent, confirmed or enclosed",
+    "generate": "a scene, or --all. `foucault scenes` lists them.",
+    "generate paris --out mine.csv": "A file of that name is in the way.",
+    "verify folder": "Make it with `foucault generate`.",
+    "verify paris2": "Did you mean paris?",
+    "sweep paris": "--over KEY=…, or --rows FILE",
+    "sweep paris --over latitude=0:90:10": "Did you mean site.latitude?",
+    "sweep paris --over site.latitude=90:0:10": "a STEP that leads from START to STOP",
+    "sweep paris --over release.angle=1,2": "the scene's kind of release",
+    "sweep paris --over site.latitude=@none.csv": "expected a readable file",
+    "sweep paris --over site.latitude=1 --want period": "There are frequency, precession",
+    "sweep --out folder": "Give a scene and --over to begin one.",
+    "plot paris --out picture": "a path that ends in .svg, .png, .pdf",
+    "study paris --methods rk5": "Did you mean rkng56 or rk4?",
+    "study paris --settings 0.1": "no such option without --run",
+    "atlas --data nowhere": "`foucault generate --all`",
+    "methods all": "unexpected extra argument",
+}
+ROWS = {"t": [0, 60], "x": [0.3, -0.1763], "y": [0.4, -0.4158]}
+FLOAT = {"id": "a", "pendulum": {"length": 12.3}, "release": {"angle": "5", "azimuth": "0"}}
+TYPO = {"id": "a", "pendulum": {"lenght": "12.3"}, "release": {"angle": "5", "azimuth": "0"}}
+PYTHON = {
+    'reference.solve("pari")': "Did you mean paris?",
+    'reference.solve("paris", digits="many")': "expected a whole number",
+    'reference.solve("paris", digits=20.5)': "expected a whole number",
+    'reference.solve("paris", level="proven")': "'computed', 'self_consistent', 'confirmed' or 'enclosed'",
+    'reference.solve("paris", t_end=-1)': "expected a number above 0",
+    'reference.solve("paris", t_end="1h")': "a decimal number such as 67",
+    "reference.solve(None)": "a Scene, an id, the path of a TOML file, or nested mappings",
+    'reference.solve("missing.toml")': "`foucault scenes` lists the ids.",
+    "reference.solve(FLOAT)": "write it as a string",
+    "reference.solve(TYPO)": "Did you mean pendulum.length?",
+    'reference.load("pari")': "Did you mean paris?",
+    'reference.load_scene("paris", "site.latitude")': "section.key=value",
+    'reference.load_scene("paris", {"site.latitude": 100})': "at least -90 and at most 90",
+    'reference.load_scene("paris", {"site.latitude": None})': "a decimal number such as 67",
+    'reference.sweep("paris")': "--over KEY=…",
+    'reference.sweep("paris", {"latitude": [0, 10]})': "Did you mean site.latitude?",
+    'reference.sweep("paris", {"site.latitude": []})': "V1,V2,…",
+    'reference.sweep("paris", {"site.latitude": ["a"]})': "a decimal number such as 67",
+    'reference.sweep("paris", {"site.latitude": [0]}, engine="octo")': "Did you mean octet?",
+    'reference.sweep("paris", {"site.latitude": [0]}, want="period")': "There are frequency, precession",
+    'reference.load_sweep("nowhere")': "a folder of a sweep",
+    'reference.write("paris", "out")': "Solve the scene first.",
+    'reference.load("paris").at("noon")': "times from 0 to 86400 s",
+    'reference.load("paris").at(-1)': "The scene ends there: run.t_end.",
+    'compare.judge("paris", ROWS)': "The rows stand before the scene.",
+    'compare.judge(ROWS, "pari")': "Did you mean paris?",
+    'compare.judge({"x": [1], "y": [2]}, "paris")': "Wanted: t, x, y",
+    'compare.judge({"t": [0, 1], "x": [1], "y": [2, 3]}, "paris")': "of 2 numbers, as t",
+    'compare.judge(np.zeros((3, 3)), "paris")': "columns by name with t, x and y",
+    'compare.judge(pd.DataFrame({"a": [1]}), "paris")': "Wanted: t, x, y",
+    'compare.judge("mien.csv", "paris")': "a readable file",
+    'compare.judge(ROWS, "paris", tolerance="1mm")': "a positive number of metres",
+    'compare.assert_agrees("paris", [0, 60], [0.3, 0.4])': "shape (rows, 2), (rows, 3) or (rows, 6)",
+    "compare.plot(42)": "a Scene, an id, the path of a TOML file",
+    'compare.plot("paris").save("p.bmp")': "a path that ends in .svg, .png, .pdf",
+    'compare.study("paris", methods=["rk5"])': "Did you mean rkng56 or rk4?",
+}
+
+
+@pytest.fixture
+def desk(tmp_path, monkeypatch):
+    """A folder with the files that the mistakes are about."""
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    (tmp_path / "folder").mkdir()
+    with zipfile.ZipFile(tmp_path / "book.xlsx", "w") as book:
+        book.writestr("xl/workbook.xml", "<workbook/>")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("line", LINE)
+def test_a_first_mistake_on_the_command_line_ends_with_2_and_what_to_do(desk, foucault, line):
+    before = sorted(desk.rglob("*"))
+    status, out, err = foucault(*shlex.split(line))
+    assert (status, out) == (2, "")
+    assert LINE[line] in err
+    assert "Traceback" not in err
+    assert sorted(desk.rglob("*")) == before
+
+
+@pytest.mark.parametrize("expression", PYTHON)
+def test_a_first_mistake_in_python_is_an_input_error_that_says_what_to_do(desk, expression):
+    names = {"reference": reference, "compare": compare, "np": np, "pd": pd, "ROWS": ROWS, "FLOAT": FLOAT, "TYPO": TYPO}
+    with pytest.raises(InputError) as error:
+        eval(expression, names)
+    assert PYTHON[expression] in str(error.value)
+
+
+def test_forty_and_thirty_are_held():
+    assert len(LINE) >= 40
+    assert len(PYTHON) >= 30
