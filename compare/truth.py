@@ -1,4 +1,4 @@
-"""The truth at a candidate's times: from a golden dataset that ships, or that is solved now and cached."""
+"""The truth at a candidate's times: by a golden function that ships, from a dataset that ships, or solved now."""
 
 from __future__ import annotations
 
@@ -15,14 +15,18 @@ from typing import Any
 
 import numpy as np
 
-from reference import DatasetError, Golden, InputError, Scene, load
+from reference import DatasetError, FoucaultError, Golden, InputError, Scene, Solution, load, load_scene
 from reference.dataset.dense import WITHIN, Dense, dense
+from reference.model.constants import constants_in_double
+from reference.model.force import rates
+from reference.numbers.columns import POSITION, STATE, VELOCITY
 from reference.numbers.precision import Array
-from reference.scenes.shipped import data_root
+from reference.scenes.shipped import WITHOUT_FUNCTION, data_root
 from reference.system import cache
 
 DIGITS = 22  # decimal digits of a dataset that is solved only to judge programs in double
-DENSE_FORMAT = b"dense 5"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
+DENSE_FORMAT = b"dense 6"  # changes with the results of `reference.dataset.dense`, so that older entries are made again
+STEEP = 0.25  # of the length: where z is less, it does not follow well from x and y
 FINE = 2.0**-110  # of the cord length: how near the truth is evaluated for candidates with more digits than a double's
 
 _here: dict[str, Path] = {}  # datasets that this process has solved and the cache could not keep
@@ -55,7 +59,7 @@ def golden_of(
     """
     for folder in shipped(scene):
         golden = _loaded(folder)
-        fits = solves(golden, scene) and golden.manifest.digits >= digits
+        fits = solves(golden, scene) and golden.manifest.digits >= digits and not golden.manifest.alone
         if fits and not (grid and _grid_until(golden.scene, scene.exact.t_end) != scene.exact.grid):
             return golden
     problem = _shortened(scene, until).with_values([f"run.digits={digits}", f"run.level={level}"])
@@ -68,6 +72,89 @@ def golden_of(
                 return golden
         cache.discard(path)  # damaged, or another problem's under this name: it is solved again
     return _loaded(_solved(problem, name, announce, report))
+
+
+def with_function(scene: Scene) -> Golden | None:
+    """Return the dataset that ships with the golden function of a scene, or None."""
+    for folder in shipped(scene):
+        golden = _loaded(folder)
+        if golden.function is not None and solves(golden, scene):
+            return golden
+    return None
+
+
+def by_function(golden: Golden, times: Array) -> Dense | None:
+    """Return the truth at a candidate's times by the golden function of a dataset; None if they go on beyond its end.
+
+    A last time that a program has added up may be a little later: the state there follows from its rates.
+    """
+    function = golden.function
+    assert function is not None
+    at = function.at(np.minimum(times, function.times[-1]))
+    states, late = np.array([getattr(at, name) for name in STATE]), np.maximum(times - function.times[-1], 0.0)
+    low, bound = np.zeros_like(states), dict(function.bound)
+    if function.square is not None:  # how far it is above the lowest point is known far better than z in doubles
+        exact, aside = golden.scene.exact.length, states[0] ** 2 + states[1] ** 2
+        near = float(exact)
+        height = aside / (near + np.sqrt(near**2 - aside))
+        states[2] = height - near
+        low[2] = (height - (states[2] + near)) + float(Fraction(near) - exact)
+        slope = float(np.abs(states[:2]).sum(axis=0).max() / np.abs(states[2]).min())
+        bound["z"] = slope * max(bound["x"], bound["y"]) + 2.0**-50 * float(height.max())
+    bound_m, bound_m_s = (max(bound[name] for name in kind) for kind in (POSITION, VELOCITY))
+    if late.any():
+        moved = np.array(rates([*states], constants_in_double(golden.scene.exact)))
+        length, speed, pull = (
+            float(golden.scene.exact.length),
+            *(float(np.abs(part).max()) for part in np.vsplit(moved, 2)),
+        )
+        left_out = float(late.max()) ** 2 * pull  # of the position
+        if left_out > bound_m:
+            return None
+        bound_m, bound_m_s = bound_m + left_out, bound_m_s + left_out * (math.sqrt(pull / length) + speed / length)
+        states += late * moved
+    return Dense(times, states.T, low.T, bound_m, bound_m_s)
+
+
+def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | None) -> tuple[Solution, Dense] | None:
+    """Return a scene solved cheaply at a candidate's times and on its grid up to them, and the truth at those times.
+
+    None where two cheap runs contradict each other or fail.
+    """
+    from reference.solver.solve import roughly
+
+    exact = [Fraction(t) for t in times.tolist()]
+    grid = [Fraction(float(t)) for t in _shortened(scene, float(times[-1])).exact.grid]  # as the runs take them
+    wanted = scene if transits else scene.with_values(["run.transits=false"])
+    try:
+        solution = roughly(wanted, {*exact, *grid}, report)
+    except (ArithmeticError, FoucaultError):
+        return None
+    row = {t: i for i, t in enumerate(solution.times)} if solution else {}
+    return (solution, Dense.of(times, solution.grid, [row[t] for t in exact])) if solution else None
+
+
+def floor_of_what_ships(scene: Scene, until: float) -> float | None:
+    """Return how far, in m, rounding the inputs to binary64 moves the bob up to a row of the grid that is not before.
+
+    It is the distance of the two motions that ship, decimal and binary64, and known to the bound of the latter's x and
+    y; z follows from the sphere. None where they do not ship.
+    """
+    one, other = (scene.with_values([f"inputs={reading}"]) for reading in ("decimal", "binary64"))
+    golden = next((each for each in map(_loaded, shipped(one)) if solves(each, one)), None)
+    rounded = with_function(other)
+    if golden is None or rounded is None:
+        return None
+    rows = slice(0, int(np.searchsorted(golden.t, until)) + 1)
+    later = np.array([float(t - Fraction(float(t))) for t in golden.times[rows]])
+    truth = by_function(rounded, golden.t[rows])
+    assert truth is not None
+    x, y, z = truth.states.T[:3] + later * truth.states.T[3:]
+    dx, dy, length = golden.x[rows] - x, golden.y[rows] - y, float(one.exact.length)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        dz = (length * float(one.exact.length - other.exact.length) - x * dx - y * dy) / z
+    dz = np.where(np.abs(z) > STEEP * length, dz, golden.z[rows] - z)
+    return float(np.sqrt(dx**2 + dy**2 + dz**2).max())
 
 
 def _is_of(golden: Golden, problem: Scene) -> bool:
@@ -101,12 +188,21 @@ def _solved(scene: Scene, name: str, announce: Callable[[str], None] | None, rep
     from reference import solve, write
 
     if announce is not None:
-        announce(f"no golden dataset has the problem of {scene.id}: solving it to {scene.run.digits} digits")
+        announce(f"{_why_solved(scene)}: solving it to {scene.run.digits} digits")
     solution = solve(scene, report=report)
     path = cache.store("golden", name, lambda path: write(solution, path))
     if path is None:
         path = _here[name] = write(solution, cache.temporary() / name)
     return path
+
+
+def _why_solved(scene: Scene) -> str:
+    """Return why no dataset that ships serves."""
+    if scene.inputs == "binary64" and with_function(scene):
+        return f"the golden function of {scene.id} is in doubles, and does not decide"
+    if scene.id in WITHOUT_FUNCTION and _same_problem(load_scene(scene.id), scene):
+        return f"the golden function of {scene.id} does not ship, as it takes {WITHOUT_FUNCTION[scene.id]} MB"
+    return f"no golden dataset has the problem of {scene.id}"
 
 
 def _hash_of_problem(scene: Scene) -> str:
@@ -126,9 +222,13 @@ def shipped(scene: Scene) -> list[Path]:
 def solves(golden: Golden, scene: Scene) -> bool:
     """Return True if a dataset has the scene's inputs and their reading, its span, and transits if it asks for any."""
     other = golden.scene
-    same = all(getattr(other, part) == getattr(scene, part) for part in ("inputs", "pendulum", "site", "release"))
+    same = other.inputs == scene.inputs and _same_problem(other, scene)
     spans = other.exact.t_end >= scene.exact.t_end
     return same and spans and (other.run.transits or not scene.run.transits)
+
+
+def _same_problem(one: Scene, other: Scene) -> bool:
+    return all(getattr(one, part) == getattr(other, part) for part in ("pendulum", "site", "release"))
 
 
 def _grid_until(scene: Scene, t_end: Fraction) -> list[Fraction]:
@@ -142,9 +242,8 @@ def truth_at(golden: Golden, times: Array, within: float = WITHIN) -> Dense:
 
     def make() -> dict[str, Array]:
         truth = dense(golden, times, within)
-        numbers = {name: np.array(getattr(truth, name)) for name in ("bound_m", "bound_m_s", "number")}
-        return {"t": truth.t, "states": truth.states, "low": truth.low, **numbers}
+        return {name: np.array(part) for name, part in vars(truth).items()}
 
     stored = cache.arrays("dense", f"{recipe.hexdigest()[:32]}.npz", make)
     bounds = float(stored["bound_m"]), float(stored["bound_m_s"])
-    return Dense(stored["t"], stored["states"], stored["low"], *bounds, str(stored["number"]))
+    return Dense(stored["t"], stored["states"], stored["low"], *bounds)

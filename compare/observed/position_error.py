@@ -92,8 +92,8 @@ def largest_so_far(t: Array, error: Array, parts: int) -> tuple[Array, Array]:
         error: errors at these times.
         parts: number of points, so that late times do not weigh more.
     """
-    at = np.unique(np.searchsorted(t, np.geomspace(t[0], t[-1], parts), side="right") - 1)
-    at = at[at >= 0]
+    at = np.searchsorted(t, np.geomspace(t[0], t[-1], parts), side="right") - 1
+    at = at[np.diff(at, prepend=-1) > 0]  # not by np.unique, which imports numpy.ma
     return t[at], np.maximum.accumulate(error)[at]
 
 

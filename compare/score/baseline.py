@@ -16,7 +16,6 @@ import numpy as np
 from reference import InputError
 from reference.system.documents import json_document
 
-from .explanation.explain import explain
 from .explanation.findings import AS_IF
 from .outcome import REFUSED
 from .scored import WHOLE, Since
@@ -100,6 +99,8 @@ def _since(new: Score, rows: Score | None, said: Mapping[str, Any], explains: bo
     allowed = max(min(SHARE * apart, new.tolerance_m), level)
     if changed and explains and new.candidate.positions:
         files = [(score.candidate, score.scene) for score in (new, rows) if score is not None]
+        from .explanation.explain import explain
+
         both = [explain(file.t, file.columns, scene, allowed) for file, scene in files]
         now, then = explained(both[0], []), said if rows is None else explained(both[1], [])
         left = _left(then, before), _left(now, after)

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from reference import Golden, Scene
+from reference import Golden, Scene, Solution
 from reference.dataset.dense import Dense
-from reference.model.constants import Constants, constants_in_double
-from reference.model.force import acceleration, energy
+from reference.model.constants import constants_in_double
+from reference.model.force import energy, rates
 from reference.numbers.precision import Array
 from reference.scenes.inputs import Inputs
 
@@ -133,17 +133,18 @@ class TrajectoryErrors:
         return swing_errors(self.t, self.truth.states, error, rest)
 
 
-def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden) -> TrajectoryErrors:
+def trajectory_errors(candidate: Candidate, truth: Dense, golden: Golden | Solution) -> TrajectoryErrors:
     """Subtract the truth, evaluated at the candidate's times, from the candidate.
 
     Args:
         candidate: the trajectory, each number a double and its low part.
         truth: at the candidate's times.
-        golden: the dataset of the truth; the scales are those of its whole grid, whatever the candidate's rows.
+        golden: dataset or solution of the truth; the scales are those of its whole grid, whatever the candidate has.
     """
     t_low = candidate.low.get("t")
     # the truth is known at the double t; the candidate's row belongs to t + t_low
-    later = None if t_low is None else _rates(truth.states, constants_in_double(golden.scene.exact)) * t_low[:, None]
+    k = constants_in_double(golden.scene.exact)
+    later = None if t_low is None else np.column_stack(rates([*truth.states.T], k)) * t_low[:, None]
     components = {}
     for i, name in enumerate(COLUMNS):
         if name in candidate.columns:
@@ -164,13 +165,6 @@ def swing_rate(scene: Scene, speed_m_s: float) -> float:
     """Return the rate in rad/s by which an error of vx becomes one of position: of small swings, or of a faster bob."""
     k = constants_in_double(scene.exact)
     return max(math.sqrt(math.hypot(k.pull[1], k.pull[2])), speed_m_s / float(k.length))
-
-
-def _rates(states: Array, k: Constants) -> Array:
-    """Return velocity and acceleration, shape (rows, 6), in m/s and m/s²."""
-    n, v = (tuple(part.T / k.length) for part in (states[:, :3], states[:, 3:]))
-    accelerations = acceleration(n, v, k)
-    return np.hstack([states[:, 3:], np.column_stack(accelerations) * k.length])
 
 
 def drifts(candidate: Candidate, scene: Scene | Inputs) -> dict[str, float]:

@@ -9,15 +9,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from reference import Golden, InputError, Scene, UnreachableError
-from reference.dataset.dense import WITHIN
+from reference import Golden, InputError, Scene, Solution, UnreachableError
+from reference.dataset.dense import WITHIN, Dense
 from reference.model.constants import constants_in_double
 from reference.model.start import Start
 from reference.numbers.precision import Array
@@ -28,16 +28,16 @@ from ..candidates.external import PLACEHOLDER_BITS
 from ..candidates.names import LENGTHS, LONG_NAMES, TIMES
 from ..candidates.read import read
 from ..observed.swing_plane import rest_in_metres
-from ..truth import DIGITS, FINE, Report, golden_of, truth_at
+from ..truth import DIGITS, FINE, Report, by_function, golden_of, roughly_solved, truth_at, with_function
 from .baseline import document_of, since
 from .errors import TrajectoryErrors, drifts, swing_rate, trajectory_errors
-from .explanation.explain import explain as explained
 from .transit_matching import TransitErrors, transit_errors
 from .verdict import Score
 
 TOLERANCE = 1e-6  # default tolerance, as a part of the amplitude
 FINER = ("ms", "us", "ns")  # units of time in which a run looks longer than its scene
 BEYOND = 1.01  # times the cord: farther out, no rounding and no stretching puts the bob
+ROUGHLY = 1e-3  # of the tolerance: how far cheap runs may be off
 SMALL = 0.1  # of the truth's reach: a candidate that stays within has a tolerance of its own size
 FAR = 10  # times the scene's span: a run that ends later is rather in another unit than longer
 SAME = 1e-3  # relative difference of ratios that count as one scale
@@ -104,28 +104,31 @@ def judge(
     if scale is not None:
         candidate = replace(candidate, conventions=(*candidate.conventions, scale))
     problem, why = _reading(candidate, scene, inputs)
-    digits = scene.run.digits if candidate.extended else DIGITS
-    golden = golden_of(problem, digits, announce, report, float(candidate.t[-1]))
-    errors = trajectory_errors(candidate, truth_at(golden, candidate.t, FINE if candidate.extended else WITHIN), golden)
-    allowed = TOLERANCE * _amplitude(candidate, errors) if tolerance is None else tolerance
-    unjudged = None if times is None else unjudged_transits(golden)
-    if unjudged and not candidate.positions:
-        raise InputError("transits", unjudged, "a trajectory as well", "Print t,x,y.")
-    result = Score(
-        candidate=candidate,
-        scene=problem,
-        why_inputs=why,
-        golden=golden,
-        errors=errors,
-        tolerance_m=allowed,
-        swing=errors.swing(_rest(scene)),
-        drifts=drifts(candidate, problem),
-        transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
-        notes=candidate.notes + ((unjudged,) if unjudged else ()) + _flung_off(problem),
-        covers=covers,
-        as_model=as_model,
-    )
+    for golden, truth in _truths(candidate, problem, times is not None, announce, report):
+        errors = trajectory_errors(candidate, truth, golden)
+        allowed = TOLERANCE * _amplitude(candidate, errors) if tolerance is None else tolerance
+        unjudged = None if times is None else unjudged_transits(golden)
+        if unjudged and not candidate.positions:
+            raise InputError("transits", unjudged, "a trajectory as well", "Print t,x,y.")
+        result = Score(
+            candidate=candidate,
+            scene=problem,
+            why_inputs=why,
+            golden=golden,
+            errors=errors,
+            tolerance_m=allowed,
+            swing=errors.swing(_rest(scene)),
+            drifts=drifts(candidate, problem),
+            transits=None if times is None or unjudged else _transits(times, golden, errors, allowed),
+            notes=candidate.notes + ((unjudged,) if unjudged else ()) + _flung_off(problem),
+            covers=covers,
+            as_model=as_model,
+        )
+        if not result.in_doubt and (isinstance(golden, Golden) or errors.bound_m <= ROUGHLY * allowed):
+            break
     if explain and result.off_path and candidate.positions and result.covered:
+        from .explanation.explain import explain as explained  # heyoka too
+
         result = replace(result, explanation=explained(candidate.t, candidate.columns, problem, result.allowed_m))
     if baseline is None:
         return result
@@ -138,6 +141,27 @@ def judge(
     changed = since(result, baseline, explain)
     alone = () if changed else ("the baseline has no score of it: this verdict stands alone",)
     return replace(result, since=changed, notes=result.notes + alone)
+
+
+def _truths(
+    candidate: Candidate,
+    problem: Scene,
+    transits: bool,
+    announce: Callable[[str], None] | None,
+    report: Report | None,
+) -> Iterator[tuple[Golden | Solution, Dense]]:
+    """Yield datasets or solutions with the truth at the times, each known more closely than the one before."""
+    if not candidate.extended:
+        ships = with_function(problem)
+        truth = ships and by_function(ships, candidate.t)
+        if ships and truth:
+            yield ships, truth
+        rough = None if ships else roughly_solved(problem, candidate.t, transits, report)
+        if rough is not None:
+            yield rough
+    digits, within = (problem.run.digits, FINE) if candidate.extended else (DIGITS, WITHIN)
+    golden = golden_of(problem, digits, announce, report, float(candidate.t[-1]))
+    yield golden, truth_at(golden, candidate.t, within)
 
 
 def _amplitude(candidate: Candidate, errors: TrajectoryErrors) -> float:
@@ -242,18 +266,30 @@ def _flung_off(scene: Scene) -> tuple[str, ...]:
     return (f"the centrifugal force at the suspension, {outward:.3g} m/s², is larger than g: {advice}",)
 
 
-def unjudged_transits(golden: Golden) -> str | None:
+def unjudged_transits(golden: Golden | Solution) -> str | None:
     """Return the reason why a candidate's transits cannot be judged, or None."""
-    transits = golden.manifest.transits
+    if isinstance(golden, Golden):
+        transits = golden.manifest.transits
+    else:
+        asked = golden.scene.run.transits
+        transits = "complete" if golden.zeros else "xdot is identically zero" if asked else "not asked for"
     if transits == "not asked for":
         return "the scene asks for no transits (run.transits): the candidate's were not judged"
     return f"{transits}: the candidate's transits were not judged" if transits == "xdot is identically zero" else None
 
 
-def _transits(times: Array, golden: Golden, errors: TrajectoryErrors, tolerance_m: float) -> TransitErrors:
+def _truth(golden: Golden | Solution, times: Array) -> Dense:
+    if isinstance(golden, Solution):
+        again = roughly_solved(golden.scene, times, False, None)
+        assert again is not None  # as before, at other times
+        return again[1]
+    return (golden.function and by_function(golden, times)) or truth_at(golden, times)
+
+
+def _transits(times: Array, golden: Golden | Solution, errors: TrajectoryErrors, tolerance_m: float) -> TransitErrors:
     end = float(golden.scene.exact.t_end)
     judged = times[times <= end]  # beyond its end the truth is not known
-    for interval in golden.manifest.possible:
+    for interval in golden.manifest.possible if isinstance(golden, Golden) else ():
         judged = judged[(judged < float(interval.from_s)) | (judged > float(interval.to_s))]
     truth = golden.transits
     return transit_errors(
@@ -263,5 +299,5 @@ def _transits(times: Array, golden: Golden, errors: TrajectoryErrors, tolerance_
         swing_rate(golden.scene, errors.speed_m_s),
         min(float(errors.t[-1]), end),
         tolerance_m=tolerance_m,
-        xdot=lambda at: truth_at(golden, at).states[:, 3],
+        xdot=lambda at: _truth(golden, at).states[:, 3],
     )

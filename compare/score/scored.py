@@ -10,14 +10,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from reference import Golden, Scene
+from reference import Golden, Scene, Solution
 from reference.numbers.precision import Array
-from reference.solver.sensitivity import sensitivity
 from reference.system.cache import arrays
 
 from ..candidates.candidate import COLUMNS, Candidate
 from ..candidates.external import Timing
 from ..observed.swing_plane import SwingErrors
+from ..truth import floor_of_what_ships
 from .errors import TrajectoryErrors
 from .experiments.findings import Experiments
 from .explanation.findings import Explanation
@@ -30,9 +30,14 @@ _FORMAT = "floor 3"  # changes with the content of the cached entries, so that o
 def input_floor(scene: Scene, until: float) -> float:
     """Return how far, in m, rounding the decimal inputs to binary64 moves the bob up to a time in s.
 
-    It depends on the scene alone and is the same for every candidate: one cached run serves all ends within a factor
-    of two.
+    It depends on the scene alone and is the same for every candidate. Where both motions ship it is their distance;
+    else one cached run serves all ends within a factor of two.
     """
+    ships = floor_of_what_ships(scene, until)
+    if ships is not None:
+        return ships
+    from reference.solver.sensitivity import sensitivity
+
     decimal = scene.with_values(["inputs=decimal"])
     document = decimal.model_dump(mode="json")
     parts = [document[key] for key in ("pendulum", "site", "release")]
@@ -54,6 +59,7 @@ def _span(t_end: float, until: float) -> float:
     return max(t_end, until)
 
 
+DOUBT = 3  # times the reference's bound, which each of the three coordinates may be off by
 WHOLE = 1e-6  # a last row within this part of t_end counts as complete: a program that adds up its steps rounds
 
 
@@ -117,7 +123,7 @@ class Scored:
     candidate: Candidate
     scene: Scene
     why_inputs: str
-    golden: Golden
+    golden: Golden | Solution
     errors: TrajectoryErrors
     tolerance_m: float
     swing: SwingErrors
@@ -175,6 +181,13 @@ class Scored:
     def off_path(self) -> bool:
         """True if the largest position error is above `allowed_m`."""
         return self.errors.max_m > self.allowed_m
+
+    @property
+    def in_doubt(self) -> bool:
+        """True if the reference's own error could change the verdict."""
+        transits, tolerance = self.transits, self.tolerance_m
+        measured = [self.errors.max_m, *([transits.max_conditioned_m] if transits else [])]
+        return any(abs(error - tolerance) <= DOUBT * self.errors.bound_m for error in measured)
 
     @property
     def agrees(self) -> bool:

@@ -109,6 +109,9 @@ def command(
             "but for what ships without it).",
         ),
     ] = None,
+    no_tables: Annotated[
+        bool, typer.Option("--no-tables", help="Write the golden function and its manifest alone.")
+    ] = False,
     set_: Assignments = None,
     every: Annotated[
         bool, typer.Option("--all", help="Make every dataset that ships and is missing or not sealed.")
@@ -129,6 +132,7 @@ def command(
     }
     proving: dict[str, object] = {"--audit": audit, "--no-audit": audit is False, "--confirm": confirm}
     proving |= {"--no-confirm": no_confirm, "--function": function, "--no-function": function is False}
+    proving["--no-tables"] = no_tables
     if every:
         unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
         unused |= {"--set": set_, "--engine": engine if engine != AUTO else None}
@@ -159,7 +163,10 @@ def command(
         audit=usual.audit if audit is None else audit,
         confirm=cast("Confirmation", confirm),
         function=usual.function if function is None else function,
+        tables=usual.tables and not no_tables,
     )
+    if not (making.tables or making.function):
+        refuse({"--no-tables": True}, "without --function")
     with stoppable("nothing was written"), progress() as show:
         report = show(scene.id, float(scene.exact.t_end))
         solution = solved(scene, making, report)
@@ -167,7 +174,7 @@ def command(
         few = f"So few digits need only {solution.run.number}, which {engine} does not have."
         raise InputError("--engine", engine, f"{AUTO} or {solution.run.engine}", few)
     with stoppable("nothing half was written"):
-        write(solution, folder, name)
+        write(solution, folder, name, tables=making.tables)
     measured, run = summary(solution, folder), solution.run
     if as_json:
         emit(measured)

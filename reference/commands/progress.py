@@ -37,14 +37,14 @@ class Show(Protocol):
 @contextmanager
 def progress() -> Iterator[Show]:
     """Yield the function that begins a piece of work; it is shown on stderr from its first move on."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-
-    console = Console(file=terminal_of(sys.stderr))
-    if not console.is_terminal:
+    if not sys.stderr.isatty():
         with announced_to(partial(typer.echo, err=True)):
             yield Notice
         return
+    from rich.console import Console  # takes a tenth of a second
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+    console = Console(file=terminal_of(sys.stderr))
     columns = (
         TextColumn("{task.description}", markup=False),
         BarColumn(),

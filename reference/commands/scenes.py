@@ -5,12 +5,12 @@ from __future__ import annotations
 import typer
 
 from ..scenes.scene import load_scene
-from ..scenes.shipped import scene_ids
+from ..scenes.shipped import WITHOUT_FUNCTION, scene_ids
 from .terminal import AsJson, emit
 
 
 def command(as_json: AsJson = False) -> None:
-    """List the scenes that come with the project."""
+    """List the scenes that come with the project; of those without a golden function in doubles, why."""
     scenes = [load_scene(name) for name in scene_ids()]
     if as_json:
         emit({"scenes": [scene.model_dump(exclude_none=True) for scene in scenes]})
@@ -18,4 +18,6 @@ def command(as_json: AsJson = False) -> None:
     width = max((len(scene.id) for scene in scenes), default=0)
     for scene in scenes:
         flags = f"  [{', '.join(scene.flags)}]" if scene.flags else ""
-        typer.echo(f"{scene.id:{width}}  {scene.title}{flags}")
+        megabytes = WITHOUT_FUNCTION.get(scene.id)
+        lacking = f"  (without a golden function, which takes {megabytes} MB)" if megabytes else ""
+        typer.echo(f"{scene.id:{width}}  {scene.title}{flags}{lacking}")

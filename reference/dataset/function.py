@@ -1,18 +1,27 @@
-"""`function.json` and `function.f64`, the golden function of a dataset: written, and read as what evaluates it."""
+"""`function.json` and `function.f64`, the golden function of a dataset: written, read, and as tables in doubles."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
+from fractions import Fraction
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, ValidationError
 
+from ..model.constants import constants_in_double
+from ..model.force import rates
 from ..numbers.columns import POSITION, STATE, UNITS
 from ..numbers.function import GoldenFunction
-from ..scenes.scene import Reading
+from ..numbers.precision import Array, rounded_up
+from ..scenes.scene import Reading, Scene
 from .manifest import Decimal, Manifest, Name, Part, Text
+from .sheets import GRID_HEADER, TRANSITS_HEADER, Sheet
+
+INSIDE = (32, 256, 2048)  # times in a piece at which the sign of xdot is looked at, for the transits between them
+HALVINGS = 64  # of the time between two signs
 
 Hexfloat = Annotated[str, Field(pattern=r"^0x[01]\.[0-9a-f]{1,13}p[+-][0-9]{1,4}$")]
 
@@ -68,3 +77,74 @@ def read_function(text: str, data: bytes) -> tuple[FunctionRecord, GoldenFunctio
     if any(b <= a for a, b in pairwise(function.times)) or not np.isfinite(function.coefficients).all():
         raise ValueError("times must increase, and coefficients must be finite")
     return record, function
+
+
+Bounded = tuple[Sheet, dict[str, str]]  # a table, and the bounds of its columns
+
+
+def evaluated(function: GoldenFunction, scene: Scene, manifest: Manifest) -> tuple[Bounded, Bounded]:
+    """Return the grid and the transits of a dataset without tables, in doubles, each with the bounds of its columns.
+
+    The manifest says how many transits the proof found: as many changes of sign of xdot, beyond its bound, are all.
+
+    Raises:
+        ValueError: the function has others.
+    """
+    exact, k = scene.exact.grid, constants_in_double(scene.exact)
+    times = np.minimum([float(t) for t in exact], function.times[-1])
+    state = _states(function, times)
+    later = np.array([float(t - Fraction(near)) for t, near in zip(exact, times.tolist(), strict=True)])
+    moved = [column + later * rate for column, rate in zip(state, rates(state, k), strict=True)]
+    grid = Sheet(GRID_HEADER, _rows([map(repr, map(float, exact)), *moved]), {})
+    count = manifest.counts.transits
+    for inside in INSIDE:  # close pairs need more
+        zeros, signs = _turns(function, inside)
+        for part in manifest.possible:
+            outside = (zeros < float(part.from_s)) | (zeros > float(part.to_s))
+            zeros, signs = zeros[outside], signs[outside]
+        if len(zeros) >= count:
+            break
+    if scene.run.transits and count != len(zeros):
+        raise ValueError(f"xdot has {len(zeros)} zeros, the manifest counts {count}")
+    zeros, signs = zeros[:count], signs[:count]
+    state = _states(function, zeros)
+    of_zeros = rates(state, k)
+    x, y, z, _, vy, _ = state
+    late = function.bound["vx"] / np.abs(of_zeros[3]) + np.spacing(zeros)
+    numbers = map(str, range(1, len(zeros) + 1)), zeros, [f"{sign:+d}" for sign in signs.tolist()]
+    transits = Sheet(TRANSITS_HEADER, _rows([*numbers, x, y, z, vy, of_zeros[3], late]), {})
+    rounding = [np.spacing(np.abs(column).max()) for column in moved]
+    wrong = [np.max(np.abs(rate) * late, initial=0.0) for rate in of_zeros]
+    return (grid, _bounds(function, rounding)), (transits, _bounds(function, wrong))
+
+
+def _bounds(function: GoldenFunction, more: Iterable[Any]) -> dict[str, str]:
+    """Return the function's bounds with something added to each."""
+    sums = {name: function.bound[name] + float(extra) for name, extra in zip(STATE, more, strict=True)}
+    return {name: rounded_up(Fraction(bound)) for name, bound in sums.items()}
+
+
+def _states(function: GoldenFunction, times: Array) -> list[Array]:
+    at = function.at(times)
+    return [np.asarray(getattr(at, name)) for name in STATE]
+
+
+def _rows(columns: Iterable[Any]) -> list[tuple[str, ...]]:
+    texts = [map(repr, column.tolist()) if isinstance(column, np.ndarray) else column for column in columns]
+    return list(zip(*texts, strict=True))
+
+
+def _turns(function: GoldenFunction, inside: int) -> tuple[Array, Array]:
+    """Return the times in s at which xdot changes its sign, and the sign after each."""
+    begins, widths = function.times[:-1, None], np.diff(function.times)[:, None]
+    t = np.append((begins + widths * (np.arange(inside) / inside)).ravel(), function.times[-1])
+    vx = np.asarray(function.at(t).vx)
+    known = np.abs(vx) > function.bound["vx"]
+    t, sign = t[known], np.sign(vx[known]).astype(int)
+    turn = np.flatnonzero(np.diff(sign))
+    low, high, after = t[turn], t[turn + 1], sign[turn + 1]
+    for _ in range(HALVINGS):
+        middle = low + (high - low) / 2
+        passed = np.sign(function.at(middle).vx) == after
+        low, high = np.where(passed, low, middle), np.where(passed, middle, high)
+    return high, after

@@ -23,7 +23,7 @@ from ..numbers.precision import Array
 from ..scenes.fields import Level
 from ..scenes.scene import Scene, parse_scene
 from ..scenes.shipped import seals
-from .function import FunctionRecord, read_function
+from .function import FunctionRecord, evaluated, read_function
 from .manifest import FORMAT, FUNCTION, MANIFEST, Manifest
 from .place import golden_folder
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
@@ -262,7 +262,7 @@ class Golden(GridColumns):
     def at(self, t: npt.ArrayLike) -> States:
         """Return the states at times in s, of any shape and in any order, with their bounds.
 
-        They come from the golden function, or are integrated anew from the row before (needs heyoka, takes longer).
+        They come from the golden function, or the scene is solved again (needs heyoka, takes longer).
 
         Raises:
             InputError: a time is not finite, or outside of the dataset's span.
@@ -307,7 +307,15 @@ def load(name: str | Path) -> Golden:
         DatasetError: a file is missing, changed or malformed, or the manifest breaks its schema or its seal.
     """
     files = read_files(golden_folder(name))
-    bounds, none = files.manifest.bounds, Sheet(TRANSITS_HEADER, [], {})
-    grid = PrintedTable(files.tables["grid.csv"], bounds.grid)
-    transits = PrintedTable(files.tables.get("transits.csv", none), bounds.transits)
-    return Golden(files.folder, files.manifest, files.scene, grid, transits, files.function and files.function[1])
+    function, bounds = files.function and files.function[1], files.manifest.bounds
+    if function is not None and files.manifest.alone:
+        try:
+            tables = evaluated(function, files.scene, files.manifest)
+        except ValueError as error:
+            raise DatasetError(str(files.folder), [f"{FUNCTION[0]}: {error}"]) from None
+    else:
+        none = Sheet(TRANSITS_HEADER, [], {})
+        printed = files.tables["grid.csv"], files.tables.get("transits.csv", none)
+        tables = (printed[0], bounds.grid), (printed[1], bounds.transits)
+    grid, transits = (PrintedTable(*table) for table in tables)
+    return Golden(files.folder, files.manifest, files.scene, grid, transits, function)

@@ -197,8 +197,12 @@ class Manifest(Part):
             == {"t", *GRID},
             f"decimals.transits: must name the columns {', '.join(TRANSITS)}": {*self.decimals.get("transits", ())}
             in ({*TRANSITS}, {*transits}),
-            f"files: {' and '.join(ALWAYS)} belong to every dataset": set(ALWAYS) <= set(self.files),
-            "files: transits.csv belongs to a dataset with transits": not transits or "transits.csv" in self.files,
+            f"files: {' and '.join(ALWAYS)} belong to every dataset but a golden function alone": set(ALWAYS)
+            <= set(self.files)
+            or self.alone,
+            "files: transits.csv belongs to a dataset with transits": not transits
+            or "transits.csv" in self.files
+            or self.alone,
             "files: a golden function has two files, and a proof": (FUNCTION[0] in self.files)
             == (FUNCTION[1] in self.files)
             <= bool(self.enclosure),
@@ -207,6 +211,11 @@ class Manifest(Part):
         if broken:
             raise ValueError(broken[0])
         return self
+
+    @property
+    def alone(self) -> bool:
+        """Whether the dataset is a golden function alone, without tables."""
+        return tuple(self.files) == FUNCTION
 
     def expected_seal(self) -> str:
         """Return the seal that belongs to everything else in the manifest."""

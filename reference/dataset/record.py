@@ -36,12 +36,12 @@ from .sheets import Sheet, column_bounds, scene_inputs
 
 _UP = {"ellipsoid": "z up", "effective": "z up along the plumb line"}
 UNIT_OF = {", ".join(kind): unit for kind, unit in UNITS.items()} | {"bound": "s", "angles": "degrees"}
-ENGINE, AUDIT, CONFIRM, WITH_FUNCTION = "--engine", "--audit", "--confirm", "--function"
+ENGINE, AUDIT, CONFIRM, WITH_FUNCTION, BARE = "--engine", "--audit", "--confirm", "--function", "--no-tables"
 # How a dataset is made, in its command. What was made before there was --confirm says --no-confirm or, of a whole
 # confirmation, nothing; and nothing of an audit that there was not.
 OPTIONS = re.compile(
     rf"{ENGINE} ({'|'.join(engine_names())})( {AUDIT}| --no-audit|)"
-    rf"(?: {CONFIRM} (whole|sampled|none)|( --no-confirm)|)( {WITH_FUNCTION}|)"
+    rf"(?: {CONFIRM} (whole|sampled|none)|( --no-confirm)|)( {WITH_FUNCTION}|)( {BARE}|)"
 )
 PACKAGES = ("heyoka", "mpmath", "numba", "numpy", "python-flint")
 INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of a small swing far less
@@ -49,24 +49,27 @@ INVARIANT_BITS = 96  # beyond the digits: (R Ω)²/2 is about 5e4 m²/s², h of 
 
 @dataclass(frozen=True)
 class Making:
-    """How a dataset is made: by which engine, whether audited, what is confirmed, and whether with a function."""
+    """How a dataset is made: by which engine, whether audited, what is confirmed, with a function, with its tables."""
 
     engine: str = "limbs"
     audit: bool = True
     confirm: Confirmation = "whole"
     function: bool = False
+    tables: bool = True
 
     @classmethod
     def of(cls, command: str) -> Making:
         """Read it off a dataset's command, or off the options in the index of what ships."""
-        engine, audit, confirm, nothing, function = OPTIONS.findall(command)[0]
-        return cls(engine, audit.strip() == AUDIT, "none" if nothing else confirm or "whole", bool(function))
+        engine, audit, confirm, nothing, function, bare = OPTIONS.findall(command)[0]
+        made: dict[str, Any] = {"confirm": "none" if nothing else confirm or "whole", "tables": not bare}
+        return cls(engine, audit.strip() == AUDIT, function=bool(function), **made)
 
     @property
     def options(self) -> str:
         """The options that say it, of a proof."""
         audit = AUDIT if self.audit else "--no-audit"
-        return " ".join([ENGINE, self.engine, audit, CONFIRM, self.confirm, *[WITH_FUNCTION] * self.function])
+        last = [*[WITH_FUNCTION] * self.function, *[BARE] * (not self.tables)]
+        return " ".join([ENGINE, self.engine, audit, CONFIRM, self.confirm, *last])
 
     def options_for(self, scene: Scene, name: str) -> str:
         """Return the options of a dataset's command: those in the index where a shipped scene is made as it says."""
@@ -74,13 +77,18 @@ class Making:
         return said if is_of_shipped_scene(scene, name) and Making.of(said) == self else self.options
 
 
-def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | None = None) -> Manifest:
-    """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id."""
+def manifest_of(
+    solution: Solution, grid: Sheet, transits: Sheet, name: str | None = None, *, tables: bool = True
+) -> Manifest:
+    """Return the manifest of a solution with these tables, still without files and seal; `name` is the dataset's id.
+
+    Without `tables` its command says that they are left out.
+    """
     scene, run, proof = solution.scene, solution.run, solution.proof
     name = name or dataset_id(scene)
     options = f"{ENGINE} {run.engine}"
     if proof is not None:
-        making = Making(run.engine, proof.audited, proof.confirmed, proof.function is not None)
+        making = Making(run.engine, proof.audited, proof.confirmed, proof.function is not None, tables)
         options = making.options_for(scene, name)
     end = grid.rows[-1][0]
     return Manifest.model_construct(
@@ -114,18 +122,17 @@ def manifest_of(solution: Solution, grid: Sheet, transits: Sheet, name: str | No
     )
 
 
-def following(scene: Scene, formulation: str, number: str, grid: Sheet) -> dict[str, Any]:
+def following(scene: Scene, formulation: str, number: str, grid: Sheet | None) -> dict[str, Any]:
     """Return the fields of a manifest that follow from its scene, its run's formulation and number, and its grid."""
     lines, left_out = lines_and_left_out(scene, formulation, number)
-    initial, drift = invariant_drift(scene, grid)
     up = _UP[scene.site.gravity_is]
     return {
         "notes": flag_meanings(scene.flags),
         "scene": scene_inputs(scene),
         "frame": f"topocentric, axes x east, y north, {up}, origin at the suspension, z < 0 below it",
         "units": UNIT_OF,
-        "invariant": Invariant.model_construct(h_m2_s2=initial, drift_m2_s2=drift),
         "equations": Equations(formulation=formulation, lines=lines, left_out=left_out),
+        **({"invariant": invariant_drift(scene, grid)} if grid is not None else {}),
     }
 
 
@@ -198,7 +205,7 @@ def _enclosure(proof: Proof) -> EnclosureRecord:
     return EnclosureRecord.model_validate(same | radii)
 
 
-def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
+def invariant_drift(scene: Scene, grid: Sheet) -> Invariant:
     """Return h of the first printed row in m²/s², and its largest change over the rows (rounded up)."""
     bits = bits_of(scene.run.digits) + INVARIANT_BITS
     k = constants(scene.exact, context(bits)).converted(lambda number: FixedPoint.of(number, bits))
@@ -206,4 +213,5 @@ def invariant_drift(scene: Scene, grid: Sheet) -> tuple[str, str]:
     x, y, z, vx, vy, vz = (FixedPoint.column(column, unit, bits) / k.length for column in states)
     h: FixedPoint = invariant((x, y, z), (vx, vy, vz), k)
     values = h.fractions()
-    return fixed_decimal(values[0], scene.run.digits), rounded_up(max(abs(value - values[0]) for value in values))
+    drift = rounded_up(max(abs(value - values[0]) for value in values))
+    return Invariant.model_construct(h_m2_s2=fixed_decimal(values[0], scene.run.digits), drift_m2_s2=drift)

@@ -10,7 +10,7 @@ from ..errors import DatasetError
 from ..scenes.fields import Confirmation, Level
 from ..solver.solution import SAMPLED, Solution
 from .function import FunctionRecord
-from .manifest import FUNCTION, MANIFEST, Content, FileRecord, Manifest
+from .manifest import ALWAYS, FUNCTION, MANIFEST, Content, FileRecord, Manifest
 from .record import CONFIRM, Making, manifest_of
 from .sheets import GRID_HEADER, Sheet, binary64_sheet, by_field, grid_sheet, nearest_doubles, transits_sheet
 from .vectors import vectors
@@ -33,19 +33,23 @@ _GRAVITY = {
 }
 
 
-def render(solution: Solution, name: str | None = None) -> dict[str, Content]:
-    """Return the content of every file of a dataset, by file name; `name` is its id, by default the scene's own."""
+def render(solution: Solution, name: str | None = None, *, tables: bool = True) -> dict[str, Content]:
+    """Return the content of every file of a dataset, by file name; `name` is its id, by default the scene's own.
+
+    Without `tables` they are manifest and golden function alone.
+    """
     grid, transits = grid_sheet(solution), transits_sheet(solution)
     of_grid = {"t": [float(t) for t in solution.times], **nearest_doubles(solution.grid, grid)}
-    tables = {"grid.csv": grid, "grid.binary64.csv": binary64_sheet(grid, of_grid)}
+    sheets = {"grid.csv": grid, "grid.binary64.csv": binary64_sheet(grid, of_grid)}
     if solution.scene.run.transits:
-        tables["transits.csv"] = transits
+        sheets["transits.csv"] = transits
         if len(transits.rows) <= MOST_DOUBLES:
             of_transits = nearest_doubles(solution.transits, transits)
-            tables["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
-    record = manifest_of(solution, grid, transits, name)
-    contents: dict[str, Content] = {name: sheet.csv() for name, sheet in tables.items()}
-    contents |= derived_texts(record, tables)
+            sheets["transits.binary64.csv"] = binary64_sheet(transits, of_transits)
+    record = manifest_of(solution, grid, transits, name, tables=tables)
+    contents: dict[str, Content] = {}
+    if tables:
+        contents |= {name: sheet.csv() for name, sheet in sheets.items()} | derived_texts(record, sheets)
     if solution.proof and solution.proof.function:
         said = FunctionRecord.of(solution.proof.function, record)
         contents |= zip(FUNCTION, (said.text(), solution.proof.function.data), strict=True)
@@ -56,11 +60,16 @@ def render(solution: Solution, name: str | None = None) -> dict[str, Content]:
 def check_proved(contents: Mapping[str, Content], solution: Solution) -> None:
     """Have trusted code hold the files of a dataset at the level enclosed against what was proved.
 
+    Of tables that are left out its manifest is held against those that it belongs to.
+
     Raises:
         DatasetError: they state something else.
     """
-    if json.loads(contents[MANIFEST])["level"] != "enclosed":
+    said = json.loads(contents[MANIFEST])
+    if said["level"] != "enclosed":
         return
+    if ALWAYS[0] not in contents:
+        contents = {**render(solution, said["id"]), **contents}
     from ..enclosure.printed import check_dataset
 
     proof, files = solution.proof, dict[str, Any](contents)

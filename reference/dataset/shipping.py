@@ -79,8 +79,9 @@ def is_done(job: Job) -> bool:
 def made(job: Job) -> tuple[Row, dict[str, Content]]:
     """Solve a scene; return what became of it, and the files of its dataset as text, none if it could not be made."""
     try:
-        solution = solved(job.scene, making_of(job.scene, job.name, job.folder))
-        texts = render(solution, job.name)
+        making = making_of(job.scene, job.name, job.folder)
+        solution = solved(job.scene, making)
+        texts = render(solution, job.name, tables=making.tables)
         check_proved(texts, solution)  # here, where the proof was made; what is written has these hashes
         return job.row(Status.OK) | summary(solution, job.folder), texts
     except UnreachableError as error:

@@ -50,26 +50,29 @@ def _place(folder: Path) -> Iterator[tuple[Path, Path]]:
         raise InputError("--out", str(folder), "a writable place with room for a dataset", advice) from None
 
 
-def write(solution: Solution, folder: str | Path, name: str | None = None) -> Path:
+def write(solution: Solution, folder: str | Path, name: str | None = None, *, tables: bool = True) -> Path:
     """Write a solution as a golden dataset: beside `folder`, where it is checked, and then put in its place.
 
     Args:
         solution: what to write.
         folder: the dataset's folder; an older dataset there is replaced.
         name: the dataset's id, by default the scene's own with its changes (`place.dataset_id`).
+        tables: whether to write more than the golden function and its manifest.
 
     Raises:
-        InputError: the folder cannot be written, or it ships and the proof is not audited.
+        InputError: the folder cannot be written, it ships and the proof is not audited, or nothing would be written.
         DatasetError: the new dataset does not pass its own checks; the old one, if any, is left as it is.
     """
     if not isinstance(solution, Solution):
         raise InputError("solution", solution, "what reference.solve returns", "Solve the scene first.")
     folder = Path(folder)
+    if not tables and solution.function is None:
+        raise InputError("tables", "none", "a golden function, or tables", "Solve it with function=True.")
     if ships(folder) and solution.proof is not None and not solution.proof.audited:
         raise InputError(
             "audit", "no audit", "an audited proof", "What ships in data/golden is proved by FLINT alone, too."
         )
-    write_texts(render(solution, name), folder, solution)
+    write_texts(render(solution, name, tables=tables), folder, solution)
     return folder
 
 

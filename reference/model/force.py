@@ -11,6 +11,7 @@ and n'' = F - n (v·v + n·F) keeps |n| = 1.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from .algebra import add, cross, dot, minus, plus, product, scale, subtract
@@ -37,6 +38,12 @@ def tension(n: Vector, v: Vector, k: Constants) -> Any:
 def acceleration(n: Vector, v: Vector, k: Constants) -> Vector:
     """Return n'' = F - n (v·v + n·F), in 1/s²."""
     return subtract(force(n, v, k), scale(tension(n, v, k), n))
+
+
+def rates(state: Sequence[Any], k: Constants) -> tuple[Any, ...]:
+    """Return the rates of x, y, z (m/s) and vx, vy, vz (m/s²), given these six in m and m/s."""
+    n, v = (tuple(part / k.length for part in half) for half in (state[:3], state[3:]))
+    return (*state[3:], *(k.length * part for part in acceleration(n, v, k)))
 
 
 def invariant(n: Vector, v: Vector, k: Constants) -> Any:

@@ -8,22 +8,23 @@ finer run. For `computed` there is one run only, and for `enclosed` a proof (`en
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
+from ..engines import AUTO
 from ..engines.background import run_both
 from ..engines.plan import Plan, Report, Run
 from ..engines.registry import checked, fastest, run
 from ..errors import InputError, UnreachableError, in_words
 from ..numbers.columns import GRID
-from ..numbers.precision import LONG_DOUBLE
+from ..numbers.precision import DOUBLE, LONG_DOUBLE
 from ..numbers.table import Table
 from ..scenes.fields import CONFIRMATIONS, Confirmation
 from ..scenes.scene import AnyScene, Scene, as_scene
 from .agreement import Agreement, with_transit_errors
 from .choice import confirming_plan, first_prec, pilot_for, published_plan, rounded_prec
 from .pilot import Pilot
-from .reach import MAX_PREC, MAX_RAISES, check_reach, out_of_reach
+from .reach import MAX_PREC, MAX_RAISES, Pace, check_reach, out_of_reach
 from .solution import CrossCheck, Solution, Source
 
 
@@ -80,6 +81,37 @@ def solve(
     if settings.level == "computed":
         return _computed(scene, times, engine, report)
     return _agreed(scene, times, pilot_for(scene, times, engine), engine, report)
+
+
+def solve_at(scene: Scene, times: Iterable[Fraction], digits: int, report: Report | None = None) -> Solution:
+    """Solve a scene at the level self_consistent and without transits, at times in s that stand for its grid."""
+    scene = scene.with_values([f"run.digits={digits}", "run.level=self_consistent", "run.transits=false"])
+    every = tuple(sorted({Fraction(0), *times} | ({scene.exact.grid_step} if not any(times) else set())))
+    return _agreed(scene, every, pilot_for(scene, every), AUTO, report)
+
+
+def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = None) -> Solution | None:
+    """Solve a scene at times in s by two cheap runs, in long double and in double and another formulation.
+
+    Their distance is the error that is stated; None where they find other transits.
+
+    Raises:
+        UnreachableError: it takes too many steps.
+        IntegrationError: a run stopped.
+    """
+    scene, every = scene.with_values(["run.level=confirmed"]), tuple(sorted({Fraction(0), *times}))
+    fine, coarse = (
+        Plan(scene.exact, formulation, number, every, scene.run.transits)
+        for formulation, number in (("momentum", LONG_DOUBLE), ("spin", DOUBLE))
+    )
+    pace = Pace(scene.exact, every[-1])
+    published, witness = run(fine, report, pace), run(coarse)
+    gap = Agreement.between(published, witness, 1)
+    if published.directions != witness.directions:
+        return None
+    pilot = Pilot(DOUBLE.prec, gap.grid, {}, 0.0, 0.0, witness.steps)
+    check = CrossCheck.of(witness, gap.grid, None)
+    return _assemble(scene, every, published, gap.errors, gap.transits, (check,), pilot)
 
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:

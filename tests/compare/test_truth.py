@@ -10,8 +10,10 @@ import pytest
 from interruption import gone_within, interrupted
 from small_scenes import make_scene
 
-from compare.truth import golden_of, shipped, solves, truth_at
+from compare import judge
+from compare.truth import _why_solved, by_function, floor_of_what_ships, golden_of, shipped, solves, truth_at
 from reference import load, load_scene, solve, write
+from reference.solver.sensitivity import sensitivity
 from reference.system import cache
 
 RUN = {"t_end": "20", "grid_step": "5", "digits": 22}
@@ -180,7 +182,75 @@ def test_the_truth_is_evaluated_once_for_the_same_times(monkeypatch):
     again = truth_at(golden, times)
     for name in ("t", "states", "low"):
         assert np.array_equal(getattr(first, name), getattr(again, name))
-    assert (first.bound_m, first.number) == (again.bound_m, again.number)
+    assert (first.bound_m, first.bound_m_s) == (again.bound_m, again.bound_m_s)
+
+
+def test_the_truth_of_a_scene_that_ships_comes_from_its_function_and_nothing_is_solved(monkeypatch, tmp_path):
+    def refuse(*_, **__):
+        raise AssertionError("solved")
+
+    for place in ("compare.score.judge.golden_of", "reference.solver.solve.run", "reference.solver.sensitivity.run"):
+        monkeypatch.setattr(place, refuse)
+    for name in ("pole", "over_top", "paris"):
+        golden = load(f"{name}.binary64")
+        end = golden.function.times[-1]
+        t = np.append(np.sort(np.random.default_rng(5).uniform(0, end, 300)), end + 1e-9)
+        at = golden.function.at(np.minimum(t, end))
+        score = judge({"t": t, "x": at.x, "y": at.y, "z": at.z}, name, transits=golden.transits["t"])
+        assert score.agrees
+        assert score.transits.matched == golden.manifest.counts.transits
+        assert score.errors.max_m <= 1e-9 * score.errors.speed_m_s * 1.01
+        assert score.golden.path.name == f"{name}.binary64"
+        assert "times the input floor" in str(score) or score.at_bound
+
+
+def test_where_the_bound_of_the_function_could_change_the_verdict_more_digits_decide():
+    golden, t = load("pole.binary64"), np.array([1.5, 30.25, 61.125])
+    fine, own = truth_at(golden_of(golden.scene.with_values(["run.t_end=72"])), t), by_function(golden, t)
+    states, apart = fine.states, np.abs((own.states - fine.states) + (own.low - fine.low)).max(axis=0)
+    assert 0 < apart[:3].max() <= own.bound_m < 2e-15  # z is 67 m, and a double of it is off by 7e-15
+    assert apart[3:].max() <= own.bound_m_s
+    for error, tolerance, alone in ((3e-13, 2e-13, True), (1e-15, 2e-15, False), (2e-15, 1e-15, False)):
+        columns = {"t": t, "x": states[:, 0] + error, "y": states[:, 1]}
+        score = judge(columns, "pole", tolerance=tolerance, explain=False)
+        assert score.golden.manifest.alone is alone
+        assert score.agrees is (error < tolerance)
+        assert alone or score.errors.bound_m < 1e-19
+
+
+def test_a_new_scene_is_solved_no_further_than_the_verdict_needs(own_cache):
+    scene = make_scene("mine", pendulum={"length": "5"}, run=RUN)
+    t = np.array([0.5, 7.25, 19.0])
+    states, said = truth_at(golden_of(scene.with_values(["inputs=binary64"])), t).states, list[str]()
+    shutil.rmtree(own_cache)
+    columns = {"t": t, "x": states[:, 0] + 1e-9, "y": states[:, 1]}
+    score = judge(columns, scene, announce=said.append)
+    assert score.agrees and score.errors.max_m == pytest.approx(1e-9, rel=1e-3)
+    assert said == [] and not own_cache.exists()
+    assert "input floor" not in str(score)
+    for error, tolerance in ((1e-15, 1e-14), (2e-14, 1e-14)):
+        columns["x"] = states[:, 0] + error
+        score = judge(columns, scene, tolerance=tolerance, explain=False, announce=said.append)
+        assert score.agrees is (error < tolerance)
+        assert score.errors.bound_m < 1e-19
+    assert said == ["no golden dataset has the problem of mine: solving it to 22 digits"]
+
+
+def test_of_a_scene_that_ships_it_is_said_why_it_is_solved():
+    said = [_why_solved(load_scene(name, ["inputs=binary64"])) for name in ("creeping", "pole")]
+    assert "takes 27 MB" in said[0] and "does not decide" in said[1]
+    assert "no golden dataset" in _why_solved(load_scene("creeping", ["site.latitude=1"]))
+
+
+@pytest.mark.parametrize("name", ["pole", "near_inverted", "conical", "stability_below", "ten_kilometres", "museum"])
+def test_the_input_floor_of_what_ships_is_that_of_first_order(name):
+    scene = load_scene(name)
+    end = float(scene.exact.t_end)
+    moved = sensitivity(scene, np.linspace(0, end, 577)).rounding()[:, :3]
+    expected = np.sqrt((moved**2).sum(axis=1)).max()
+    assert floor_of_what_ships(scene, end) == pytest.approx(expected, rel=0.1)
+    assert floor_of_what_ships(scene, 0.0) < 0.5 * expected
+    assert floor_of_what_ships(scene.with_values(["site.latitude=12"]), end) is None
 
 
 def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
@@ -188,7 +258,9 @@ def test_an_interrupted_solve_leaves_nothing_half(tmp_path, own_cache):
     own.write_text('id = "long"\n[release]\nx = "0.3"\ny = "0.4"\n[run]\nt_end = "864000"\n')
     rows = tmp_path / "rows.csv"
     rows.write_text("t,x,y\n0,0.3,0.4\n864000,0.3,0.4\n")
-    status, err, group = interrupted(["score", str(own), str(rows)], lambda _, err: b"solving it" in err)
+    status, err, group = interrupted(
+        ["score", str(own), str(rows), "--tolerance", "1e-20"], lambda _, err: b"solving it" in err
+    )
     assert status == 130
     assert b"Traceback" not in err
     assert list(own_cache.glob("golden/*")) == []

@@ -46,8 +46,7 @@ def forge(
     if manifest is not None:
         manifest(document)
     if grid is not None:
-        initial, drift = invariant_drift(files.scene, tables["grid.csv"])
-        document["invariant"] = {"h_m2_s2": initial, "drift_m2_s2": drift}
+        document["invariant"] = invariant_drift(files.scene, tables["grid.csv"]).model_dump()
     texts |= {name: sheet.csv() for name, sheet in tables.items()}
     with contextlib.suppress(ValueError, KeyError):  # a manifest that contradicts itself has no page
         texts |= derived_texts(Manifest.model_validate(document), tables)

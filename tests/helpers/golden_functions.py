@@ -43,9 +43,9 @@ def evaluator(enclosure: Enclosure) -> GoldenFunction:
     return GoldenFunction.of(made.facts, made.bounds, made.data)
 
 
-def errors(scene: Scene, function: GoldenFunction, times: Any) -> dict[str, Any]:
-    """Return how far each component is from a run in limbs, at each of `times`, which increase."""
-    high, low = states(scene.exact, times, TRUTH_BITS)
+def errors(scene: Scene, function: GoldenFunction, times: Any, bits: int = TRUTH_BITS) -> dict[str, Any]:
+    """Return how far each component is from a run in limbs of so many bits, at each of `times`, which increase."""
+    high, low = states(scene.exact, times, bits)
     at = function.at(times)
     return {name: np.abs((getattr(at, name) - high[:, i]) - low[:, i]) for i, name in enumerate(STATE)}
 

@@ -26,22 +26,25 @@ def confirmed() -> list[str]:
     return [f"{file} {sha256(text.encode()).hexdigest()}" for file, text in texts.items()]
 
 
-def made_again(name: str) -> dict[str, str]:
+def made_again(name: str) -> dict[str, str | bytes]:
     """Return the files of a dataset that ships, made as `generate NAME` makes it."""
     from reference.dataset.place import default_folder
     from reference.dataset.render import render
     from reference.dataset.shipping import making_of, solved
     from reference.scenes.scene import load_scene
 
-    scene = load_scene(name)
-    return render(solved(scene, making_of(scene, name, default_folder(scene, name))), name)
+    scene_id, doubles, _ = name.partition(".binary64")
+    scene = load_scene(scene_id, ["inputs=binary64"] if doubles else [])
+    making = making_of(scene, name, default_folder(scene, name))
+    return render(solved(scene, making), name, tables=making.tables)
 
 
-def shipped(name: str) -> dict[str, str]:
+def shipped(name: str) -> dict[str, str | bytes]:
     """Return the files of a dataset that ships."""
     from reference.scenes.shipped import golden_root
 
-    return {path.name: path.read_text("utf-8") for path in (golden_root() / name).iterdir()}
+    files = {path.name: path.read_bytes() for path in (golden_root() / name).iterdir()}
+    return {name: data if name.endswith(".f64") else data.decode() for name, data in files.items()}
 
 
 def differing(names: Iterable[str]) -> str:

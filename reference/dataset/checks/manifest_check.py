@@ -29,7 +29,7 @@ def problems(files: Files) -> Iterator[str]:
     counts, possible, sought = manifest.counts, manifest.possible, scene.run.transits and not vanishes
     made = manifest.model_copy(
         update={
-            **following(scene, run.formulation, run.number, files.tables["grid.csv"]),
+            **following(scene, run.formulation, run.number, files.tables.get("grid.csv")),
             "level": scene.run.level,
             "digits": scene.run.digits,
             "counts": counts.model_copy(update={"transits": counts.transits * sought, "possible": len(possible)}),
@@ -50,6 +50,7 @@ def problems(files: Files) -> Iterator[str]:
     if (
         not options
         or (FUNCTION[0] in manifest.files) != Making.of(options).function
+        or manifest.alone == Making.of(options).tables
         or command(scene, manifest.id, options) != manifest.command
     ):
         yield f"{MANIFEST}: command does not follow from the scene"
@@ -57,7 +58,8 @@ def problems(files: Files) -> Iterator[str]:
     yield from _possible(files)
     yield from _bounds(manifest)
     yield from _evidence(manifest)
-    yield from _derived(files)
+    if not manifest.alone:
+        yield from _derived(files)
 
 
 def _is_its_id(files: Files) -> bool:

@@ -13,6 +13,8 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from fractions import Fraction
 
+import numpy as np
+
 from ...engines.limbs.size import LEAST_PREC, LIMB_BITS, MOST_PREC
 from ...engines.plan import Plan, Run
 from ...engines.registry import engines
@@ -72,7 +74,11 @@ def _first_prec(manifest: Manifest) -> int:
 def _steps(files: Files) -> int:
     """Return about how many steps a run takes: the fastest rate in the scene, over the whole span."""
     start = Start.of(files.scene.exact, GUARD_BITS)
-    speed = max(sum(map(abs, row), Fraction(0)) for row in files.tables["grid.csv"].numbers(VELOCITY))
+    if files.manifest.alone:
+        at = files.function[1].at(function.moments(files))  # type: ignore[index]
+        speed = Fraction(float(sum(np.abs(getattr(at, name)) for name in VELOCITY).max()))
+    else:
+        speed = max(sum(map(abs, row), Fraction(0)) for row in files.tables["grid.csv"].numbers(VELOCITY))
     rate = float(start.ctx.sqrt(start.ctx.norm(start.k.pull)) + abs(start.k.rate) + start.k.drag)
     return int(min(1e15, float(files.scene.exact.t_end) * (rate + float(speed / files.scene.exact.length))))
 
@@ -93,10 +99,12 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
         if coarse.directions != fine.directions:
             return None
         outside, differing = _outside_intervals(files, fine.plan, fine.transits)
-        rows = files.tables["transits.csv"].numbers(("direction",)) if files.manifest.counts.transits else ()
-        listed, found = [direction for (direction,) in rows], [fine.directions[k] for k in outside]
-        if listed != found:
-            differing.append(f"transits.csv: {len(listed)} transits are not the motion's, which are {len(found)}")
+        sheet, count = files.tables.get("transits.csv"), files.manifest.counts.transits
+        found = [fine.directions[k] for k in outside]
+        listed = [direction for (direction,) in sheet.numbers(("direction",))] if sheet else found
+        if listed != found or count != len(found):
+            where = "transits.csv" if sheet else MANIFEST
+            differing.append(f"{where}: {count} transits are not the motion's, which are {len(found)}")
         elif found:
             both = [replace(run, values=[run.values[k] for k in outside]) for run in (coarse.transits, fine.transits)]
             kinds.append(("transits", both[0], both[1]))
@@ -106,7 +114,8 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
         bounds = {name: files.manifest.bound(kind, name) for name in columns.columns}
         if any(apart[name] > bound for name, bound in bounds.items()):
             return None
-        differing += _off(kind, files.tables[f"{kind}.csv"], columns, apart, bounds)
+        if f"{kind}.csv" in files.tables:
+            differing += _off(kind, files.tables[f"{kind}.csv"], columns, apart, bounds)
     times = function.moments(files)
     rough, table = (_at(map(Fraction, times), run) for run in (coarse, fine))
     return differing + function.contradicted(files, times, table, table.distance(rough).largest())

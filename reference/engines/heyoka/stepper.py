@@ -63,8 +63,8 @@ class Stepper:
         self._longest = None if longest is None else self.numbers.of(longest)
         system = System.build(formulation, self.model.k)
         compiled = dict(self.numbers.keywords)
-        if not number.hardware and span is not None and float(span) * start.rate < SHORT_RUN:
-            compiled["opt_level"] = 0  # calls of MPFR give the same numbers
+        if span is not None and float(span) * start.rate < SHORT_RUN:
+            compiled["opt_level"] = 0  # calls of MPFR give the same numbers, and hardware is fast enough
         keywords = dict(compiled)
         if events:
             zeros = self.zeros  # heyoka deep-copies callbacks: a function stays itself, a bound method would not

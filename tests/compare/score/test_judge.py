@@ -512,7 +512,7 @@ def counted(monkeypatch):
 
 
 def test_ten_times_the_rows_of_a_day_take_as_many_steps_and_hardly_more_calls(tmp_path, monkeypatch):
-    """Cold, that is with the truth evaluated at its times; what grows with the rows is numpy's and heyoka's alone."""
+    """Cold, that is with the truth evaluated at its times, by the golden function: nothing is integrated."""
     paris = load_scene("paris", ["inputs=binary64"])
 
     def work(rows):
@@ -524,7 +524,7 @@ def test_ten_times_the_rows_of_a_day_take_as_many_steps_and_hardly_more_calls(tm
 
     work(100)  # imports and compiles
     few, many = work(10_000), work(100_000)
-    assert many["steps"] == few["steps"] > 1440  # in each interval of the grid at least one
+    assert many["steps"] == few["steps"] == 0
     assert many["calls"] < 1.1 * few["calls"]
 
 

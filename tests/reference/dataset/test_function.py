@@ -20,12 +20,14 @@ import reference
 from reference import DatasetError, InputError
 from reference.dataset.checks import function as checks
 from reference.dataset.checks import motion
-from reference.dataset.golden import read_files
+from reference.dataset.golden import read_files, read_manifest
 from reference.dataset.manifest import FUNCTION, MANIFEST
+from reference.dataset.place import dataset_id
 from reference.dataset.shipping import making_of
 from reference.dataset.verify import problems_of, recompute, verify
 from reference.numbers.columns import STATE
 from reference.numbers.function import GoldenFunction
+from reference.scenes.shipped import WITHOUT_FUNCTION, golden_root, scene_ids
 
 
 @pytest.fixture(scope="module")
@@ -221,15 +223,85 @@ def test_generate_makes_it_by_default_and_not_with_no_function(foucault, tmp_pat
     assert (status, "--function" in err) == (2, True)
 
 
-def test_what_ships_has_none_until_it_is_asked_for():
-    """`generate NAME` makes the bytes that ship, and those have no function."""
-    for name in ("laboratory", "paris"):
-        making = making_of(reference.load_scene(name), name, ROOT / "elsewhere")
-        assert (making.function, "--function" in making.options) == (False, False)
-        assert reference.load(name).function is None
-    assert making_of(
-        reference.load_scene("paris", ["site.latitude=1"]), "paris+site.latitude=1", ROOT / "elsewhere"
-    ).function
+def test_what_ships_has_the_function_of_doubles():
+    """`generate NAME` makes the bytes that ship: decimals have no function, doubles have one, mostly alone."""
+    for name, reading, alone in (("paris", "decimal", False), ("paris", "binary64", False), ("pole", "binary64", True)):
+        scene = reference.load_scene(name, [f"inputs={reading}"])
+        making, doubles = making_of(scene, dataset_id(scene), ROOT / "elsewhere"), reading == "binary64"
+        assert (making.function, making.tables) == (doubles, not alone)
+        golden = reference.load(dataset_id(scene))
+        assert (golden.function is not None, golden.manifest.alone) == (doubles, alone)
+
+
+def test_every_scene_ships_its_function_of_doubles_or_says_how_large_it_is(foucault):
+    functions = {path.parent.name: path.parent for path in golden_root().glob(f"*/{FUNCTION[1]}")}
+    assert {*functions} == {f"{name}.binary64" for name in {*scene_ids()} - {*WITHOUT_FUNCTION}}
+    alone = [folder for folder in functions.values() if read_manifest(folder).alone]
+    files = [path for folder in alone for path in folder.iterdir()]
+    files += [folder / name for folder in functions.values() if folder not in alone for name in FUNCTION]
+    assert sum(path.stat().st_size for path in files) <= 12_000_000
+    _, said, _ = foucault("scenes")
+    lines = [line for line in said.splitlines() if "without a golden function" in line]
+    assert [line.split()[0] for line in lines] == sorted(WITHOUT_FUNCTION)
+
+
+@pytest.fixture(scope="module")
+def alone(solution, tmp_path_factory):
+    return reference.write(solution, tmp_path_factory.mktemp("alone") / "paris", tables=False)
+
+
+def test_a_function_alone_is_a_dataset_with_the_same_motion_and_transits(alone, whole, solution, tmp_path):
+    assert {path.name for path in alone.iterdir()} == {MANIFEST, *FUNCTION}
+    files = read_files(alone)
+    assert files.manifest.command.endswith("--confirm none --function --no-tables")
+    assert verify(alone).problems == []
+    assert recompute(alone) == ([], [])
+    golden, printed = reference.load(alone), reference.load(whole)
+    assert golden.function.at(7.5).x == printed.function.at(7.5).x
+    assert golden.t.tolist() == printed.t.tolist()
+    assert golden.directions == printed.directions
+    for ours, theirs, columns in (
+        (golden.grid, printed.grid, STATE),
+        (golden.transits, printed.transits, ("t", "x", "y", "z", "vy")),
+    ):
+        for name in columns:
+            bounds = zip(ours.bound(name), theirs.bound(name), strict=True)
+            numbers = zip(ours.exact(name), theirs.exact(name), strict=True)
+            ulp = Fraction(float(np.spacing(np.abs(ours[name]).max())))
+            assert all(abs(a - b) <= p + q + ulp for (a, b), (p, q) in zip(numbers, bounds, strict=True)), name
+    assert np.abs(golden.transits["ax"] / printed.transits["ax"] - 1).max() < 1e-13
+    with pytest.raises(InputError, match="a golden function, or tables"):
+        reference.write(replace(solution, proof=None), tmp_path / "nothing", tables=False)
+
+
+@pytest.mark.parametrize(
+    ("change", "problem"),
+    [
+        (lambda said: said["counts"].update(transits=35), "xdot has 36 zeros, the manifest counts 35"),
+        (lambda said: said.update(command=said["command"].replace(" --no-tables", "")), "command does not follow"),
+        (lambda said: said["scene"]["site"].update(latitude="48"), "id = paris does not follow"),
+        (lambda said: said["files"].pop(FUNCTION[0]), "a golden function alone"),
+    ],
+)
+def test_a_manifest_that_does_not_fit_a_function_alone_is_refused(change, problem, alone, tmp_path):
+    folder = shutil.copytree(alone, tmp_path / "paris")
+    document = json.loads((folder / MANIFEST).read_text())
+    change(document)
+    seal(folder, document, {})
+    try:
+        found = verify(folder).problems
+        reference.load(folder)
+    except DatasetError as error:
+        found = [*found, *error.problems]
+    assert any(problem in text for text in found), found
+
+
+def test_tables_are_left_out_only_where_there_is_a_function(foucault, tmp_path):
+    words = ("generate", "paris", "--t-end", "20", "--digits", "12", "--no-function", "--no-tables")
+    status, _, err = foucault(*words, "--out", tmp_path / "no")
+    assert (status, "--no-tables" in err) == (2, True)
+    making = making_of(reference.load_scene("paris", ["site.latitude=1"]), "paris+site.latitude=1", ROOT / "elsewhere")
+    assert making.function and making.tables
 
 
 def test_a_span_that_is_no_double_ends_at_the_double_below(tmp_path):

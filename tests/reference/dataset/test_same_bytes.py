@@ -26,7 +26,7 @@ from reference.numbers.table import Table
 from reference.scenes.scene import load_scene
 from reference.scenes.shipped import golden_root, index, seals
 
-SHORT = ("barely_over", "conical", "force_free", "near_inverted", "nearly_conical", "weightless")
+SHORT = ("barely_over", "conical", "force_free.binary64", "near_inverted.binary64", "nearly_conical", "weightless")
 # another kind of processor, as far as software can make one: no FMA in numba's code and in libm, another BLAS kernel
 OTHER_PROCESSOR = {
     "NUMBA_CPU_NAME": "generic",

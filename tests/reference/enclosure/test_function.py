@@ -3,24 +3,28 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
-from golden_functions import TRUTH, errors, evaluator, proved_function, random_times
+from golden_functions import TRUTH, TRUTH_BITS, errors, evaluator, proved_function, random_times
 from numpy.polynomial import chebyshev
+from sampled import one_in
 from small_scenes import make_scene
 
 pytest.importorskip("flint")
 
 from flint import arb, arb_mat, ctx
 
+from reference.dataset.golden import load
 from reference.enclosure import fit
 from reference.enclosure import function as function_module
 from reference.enclosure.function import CUT, Following, basis, check_function, on_sphere, weights
 from reference.numbers.columns import STATE
 from reference.scenes.scene import load_scene
+from reference.scenes.shipped import golden_root
 
 # id, end in s, engine: small and large angles, over the top, without rotation, with drag, far from the usual sizes
 SCENES = [
@@ -38,7 +42,7 @@ SCENES = [
     ("weightless", "60", "limbs"),
 ]
 
-WHOLE = ("paris", "pantheon", "hard", "near_inverted", "two_radians", "over_top", "damped", "conical", "pole", "museum")
+SHIPPED = sorted(path.parent.name for path in golden_root().glob("*/function.f64"))
 
 
 def short(name, end):
@@ -60,37 +64,21 @@ def test_no_time_is_outside_of_the_bound(name, end, engine, size):
     assert function.bound["y"] <= 4e-15 * swing + 1e-300
 
 
-@pytest.mark.long
-def test_a_million_times_over_whole_scenes(capsys):
-    """Prints x over the swing, z over l's last place, vx over its size, bytes, and the cost over the proof's."""
-    lines, total = [], 0
-    for name in WHOLE:
-        scene = load_scene(name)
-        proof = proved_function(scene)
-        function = evaluator(proof)
-        times = random_times(function, 100_000)
-        off, truth = errors(scene, function, times), TRUTH * float(scene.exact.length)
-        outside = sum(int((off[c] > function.bound[c] + truth).sum()) for c in STATE)
-        total += len(times)
-        at = function.at(times)
-        swing, ulp = float(np.hypot(at.x, at.y).max()), float(np.spacing(float(scene.exact.length)))
-        others = sum(seconds for part, seconds in proof.cpu_s.items() if part != "function")
-        bounds = [
-            function.bound["x"] / swing,
-            function.bound["z"] / ulp,
-            function.bound["vx"] / float(np.abs(at.vx).max()),
-        ]
-        row = [
-            name,
-            *(f"{b:.2g}" for b in bounds),
-            str(len(proof.function.data)),
-            f"{proof.cpu_s['function'] / others:.2f}",
-        ]
-        lines.append(" | ".join(row))
-        assert outside == 0, name
-    with capsys.disabled():
-        print(f"\n{total} times", *lines, sep="\n")
-    assert total >= 1_000_000
+@pytest.mark.parametrize("name", one_in(8, SHIPPED))
+def test_no_time_is_outside_of_the_bound_of_a_function_that_ships(name, size, tally):
+    """Random times, a million over all of them at full size; `tally` prints bounds over the swing and sizes."""
+    golden = load(name)
+    function, length = golden.function, float(golden.scene.exact.length)
+    times = random_times(function, size(500, 1_000_000 // len(SHIPPED) + 1))
+    bits = max(TRUTH_BITS, *(int(text) for text in re.findall(r"\((\d+)\)", golden.manifest.run.number)))
+    off = errors(golden.scene, function, times, bits)
+    for component in STATE:
+        assert off[component].max() <= function.bound[component] + TRUTH * length, component
+    at = function.at(times)
+    swing, fastest = float(np.hypot(at.x, at.y).max()) or length, float(np.abs(at.vx).max()) or 1.0
+    x, z, vx = function.bound["x"] / swing, function.bound["z"] / np.spacing(length), function.bound["vx"] / fastest
+    megabytes = function.coefficients.nbytes / 1e6
+    tally(f"{name}: {len(times)} times, x {x:.1e} of the swing, z {z:.2g} ulp, vx {vx:.1e}, {megabytes:.3f} MB")
 
 
 def test_the_tube_and_the_orders_that_are_left_out_count(monkeypatch):

@@ -174,3 +174,10 @@ def test_a_proof_ships_only_when_it_was_audited(solution, tmp_path, monkeypatch)
     (tmp_path / "paris").rename(tmp_path / "older")
     (tmp_path / "elsewhere" / "paris").rename(tmp_path / "paris")
     assert any("audit" in problem for problem in verify.seal_problems(read_files(tmp_path / "paris")))
+
+
+def test_a_source_with_the_words_before_the_inputs_is_no_misprint():
+    """`below_horizontal` could not be made again: its source ends in "degrees)", as the line above the inputs does."""
+    solution = reference.solve(reference.load_scene("below_horizontal"), t_end="1", digits=12, level="enclosed")
+    assert "degrees)" in solution.scene.source
+    check_dataset(render(solution), solution.proof.proved)
