@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .engines.trajectory import integrate, trajectory
     from .numbers.function import GoldenFunction, States
     from .numbers.table import Table
+    from .solver.ranges import Intervals, Ranges
     from .solver.solution import Solution
     from .solver.solve import solve
     from .sweeps.sweep import Swept, load_sweep, sweep
@@ -35,6 +36,8 @@ __all__ = [
     "GoldenFunction",
     "InputError",
     "IntegrationError",
+    "Intervals",
+    "Ranges",
     "Scene",
     "Solution",
     "States",
@@ -58,6 +61,8 @@ __getattr__, __dir__ = lazy(
     {
         "Golden": "dataset.golden",
         "GoldenFunction": "numbers.function",
+        "Intervals": "solver.ranges",
+        "Ranges": "solver.ranges",
         "Solution": "solver.solution",
         "States": "numbers.function",
         "Swept": "sweeps.sweep",

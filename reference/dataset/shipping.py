@@ -111,7 +111,7 @@ def solved(scene: Scene, making: Making, report: Report | None = None) -> Soluti
     """
     proving = scene.run.level == "enclosed"
     asked: dict[str, Any] = {"audit": making.audit, "confirm": making.confirm, "function": making.function}
-    return solve(scene, engine=making.engine, **(asked if proving else {}), report=report)
+    return solve(scene, engine=making.engine, **(asked if proving else {}), report=report, uncertain=None)
 
 
 def isolated(job: Job) -> tuple[Row, dict[str, Content]]:

@@ -19,9 +19,9 @@ def demand(holds: bool, reason: str) -> None:
         raise ArithmeticError(reason)
 
 
-def ball(q: Fraction) -> arb:
-    """Return a ball that contains the fraction."""
-    return arb(fmpq(q.numerator, q.denominator))
+def ball(q: Any) -> arb:
+    """Return a ball that contains the fraction; a ball as it is."""
+    return q if isinstance(q, arb) else arb(fmpq(q.numerator, q.denominator))
 
 
 def upper(x: arb) -> arb:

@@ -8,7 +8,7 @@ from functools import cached_property, lru_cache, reduce
 from typing import Any
 
 import numpy as np
-from flint import arb, ctx, fmpq, fmpz, fmpz_poly
+from flint import arb, ctx, fmpz, fmpz_poly
 
 from ..numbers.taylor_step import DIGIT_BITS, Digits, TaylorStep
 from .balls import SHORT, Vector, add, ball, cross, demand, dot, fixed, interval, size, times, total, upper
@@ -25,8 +25,7 @@ class SceneBalls:
         demand(inputs.drag >= 0 and inputs.length > 0, "not a pendulum: the theorems take a length > 0 and a drag >= 0")
         self.inputs, self.prec, self.flint_only = inputs, prec, flint_only  # the last: without sums of digits
         with ctx.workprec(prec):
-            turn = fmpq(inputs.latitude.numerator, inputs.latitude.denominator) / 180
-            sin, cos, rate = arb.sin_pi_fmpq(turn), arb.cos_pi_fmpq(turn), ball(inputs.rotation_rate)
+            (sin, cos), rate = ball(inputs.latitude / 180).sin_cos_pi(), ball(inputs.rotation_rate)
             f, self.length, self.drag = ball(inputs.flattening), ball(inputs.length), ball(inputs.drag)
             normal = ball(inputs.equatorial_radius) / (1 - f * (2 - f) * sin * sin).sqrt()
             # the centrifugal force at the pivot, which effective gravity contains
@@ -36,17 +35,21 @@ class SceneBalls:
             weight = [arb(0), -sin * push, cos * push - ball(inputs.gravity)]
             self.release = self._release(inputs)
             self.c, self.r, v = (self.turned(a, 1) for a in (times(1 / self.length, weight), *self.release))
-            self.H = cross(self.r, add(v, cross(self.omega, self.r)))
             (x, y, vx), at_rest = (q.is_zero() for q in (*self.release[0][:2], v[0])), all(q.is_zero() for q in v)
             self.slow, self.flat = vx, at_rest and x  # xdot(0) = 0 exactly; and xddot(0) = 0
             # xdot = 0 for ever: in a plane that does not turn, or at rest on the vertical
             self.still = x and ((vx and rate.is_zero()) or (at_rest and y and (sin * cos * rate).is_zero()))
-            c, w = size(self.c), size(self.omega)
-            # any positive number is a valid weight
-            self.w0 = next(pace.mid() for pace in (c.sqrt(), w + size(self.H), arb(1)) if pace > 0)
-            energy = dot(self.H, self.H) / 2 - dot(self.omega, self.H) - dot(self.c, self.r)
-            self.speed = upper(w + upper(w**2 + 2 * (energy + c)).sqrt())  # |H| at any time
-            self.below, self.above = upper(self.w0**2 + w**2 / 2 + energy), upper(c - self.w0**2)  # -+ (c·r - w0²)
+            self.begin(v)
+
+    def begin(self, v: Vector) -> None:
+        """Take the velocity at the release: H there, the weight, and what bounds the motion for all times."""
+        self.H = cross(self.r, add(v, cross(self.omega, self.r)))
+        c, w = size(self.c), size(self.omega)
+        # any positive number is a valid weight
+        self.w0 = next(pace.mid() for pace in (c.sqrt(), w + size(self.H), arb(1)) if pace > 0)
+        energy = dot(self.H, self.H) / 2 - dot(self.omega, self.H) - dot(self.c, self.r)
+        self.speed = upper(w + upper(w**2 + 2 * (energy + c)).sqrt())  # |H| at any time
+        self.below, self.above = upper(self.w0**2 + w**2 / 2 + energy), upper(c - self.w0**2)  # -+ (c·r - w0²)
 
     def turned(self, a: Vector, way: int) -> Vector:
         """Turn east, north, up to the axes x, m, w; with `way` -1 back."""
@@ -58,9 +61,8 @@ class SceneBalls:
             x, y, vx, vy = (ball(q) / self.length for q in inputs.position)
             z = -(1 - x * x - y * y).sqrt()
             return [x, y, z], [vx, vy, -(x * vx + y * vy) / z]
-        turns = [fmpq(q.numerator, q.denominator) / 180 for q in inputs.angles]
-        (s, sa), (c, ca) = map(arb.sin_pi_fmpq, turns[:2]), map(arb.cos_pi_fmpq, turns[:2])
-        da, db = (arb(q) * arb.pi() for q in turns[2:])
+        angle, azimuth, *rates = (ball(q / 180) for q in inputs.angles)
+        (s, c), (sa, ca), (da, db) = angle.sin_cos_pi(), azimuth.sin_cos_pi(), times(arb.pi(), rates)
         return [s * ca, s * sa, -c], [c * ca * da - s * sa * db, c * sa * da + s * ca * db, s * da]
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx
 
-from .balls import SHORT, ball, demand, interval
+from .balls import SHORT, ball, cross, demand, interval
 from .bound import SceneBalls, state
 from .guess import around_zero
 from .shapes import Covered, EnclosedTransit, Interval, Leaf
@@ -39,8 +39,8 @@ class Slope:
 
     def push(self, s: arb) -> int:
         """Return the sign of xdot on `s` after a start at rest with x = 0: that of the Coriolis force; or 0."""
-        k, north = self.piece.k, self.piece.v[1].derivative()(s) / self.piece.unit + self.forms[1][1]
-        return sign(k.omega[2] * north) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
+        k, bend = self.piece.k, [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
+        return sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
 
 
 class Scan:

@@ -159,7 +159,7 @@ class _Run:
             from .fit import Fit, on_doubles  # a proof without a function does not rest on its code
 
             fit, steps = Fit(course), on_doubles(steps)
-        for step in self._until(steps):
+        for step in until(steps, self.end):
             self.clock.lap("candidate")
             course.advance(step, *([columns.propose(step, [_log(z) for z in course.bound.z])] if columns else []))
             self.clock.lap("proof")
@@ -193,16 +193,17 @@ class _Run:
             raise _TooWide(reason, bits + 8 * ceil(missing / 8))
         return [position, velocity]
 
-    def _until(self, steps: Iterator[TaylorStep]) -> Iterator[TaylorStep]:
-        """Yield the steps up to the end of the run, the last one cut there."""
-        for step in steps:
-            if step.centre + step.h * step.high >= self.end:
-                high = (self.end - step.centre) / step.h
-                # a run of no duration ends where it starts, but a step must have a length
-                yield step._replace(high=high if high > step.low else step.low + Fraction(1, 1 << 20))
-                return
-            yield step
-        raise UnreachableError(f"enclosure: the approximant ends before {float(self.end):g} s.")
+
+def until(steps: Iterable[TaylorStep], end: Fraction) -> Iterator[TaylorStep]:
+    """Yield the steps up to the end of the run, the last one cut there."""
+    for step in steps:
+        if step.centre + step.h * step.high >= end:
+            high = (end - step.centre) / step.h
+            # a run of no duration ends where it starts, but a step must have a length
+            yield step._replace(high=high if high > step.low else step.low + Fraction(1, 1 << 20))
+            return
+        yield step
+    raise UnreachableError(f"enclosure: the approximant ends before {float(end):g} s.")
 
 
 def _magnitude(ratio: Fraction) -> int:

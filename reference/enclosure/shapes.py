@@ -62,6 +62,23 @@ class ProvedFunction:
     data: bytes  # function.f64
 
 
+class Box(NamedTuple):
+    """A scene's inputs, and the least and the largest of each of them."""
+
+    inputs: Inputs
+    low: Inputs
+    high: Inputs
+
+
+class ProvedBox(NamedTuple):
+    """What holds for all inputs of a box: states at `times`, and the transits that may come up to the last of them."""
+
+    box: Box
+    times: tuple[Fraction, ...]
+    states: tuple[State, ...]
+    transits: tuple[EnclosedTransit, ...] | None  # None: not requested, or xdot is identically zero
+
+
 class Sizes(NamedTuple):
     """Sup norms on |s| <= 1: the defects, |p|, |K|, ||p|² - 1|, |d1'|."""
 

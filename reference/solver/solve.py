@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
+from typing import TYPE_CHECKING, Any, overload
 
 from ..engines import AUTO
 from ..engines.background import run_both
@@ -27,6 +28,39 @@ from .pilot import Pilot
 from .reach import MAX_PREC, MAX_RAISES, Pace, check_reach, out_of_reach
 from .solution import CrossCheck, Solution, Source
 
+if TYPE_CHECKING:
+    from .ranges import Ranges
+
+
+@overload
+def solve(
+    scene: AnyScene,
+    *,
+    uncertain: Mapping[str, Any],
+    level: str | None = None,
+    t_end: str | float | None = None,
+    transits: bool | None = None,
+    engine: str | None = None,
+    report: Report | None = None,
+) -> Ranges: ...
+
+
+@overload
+def solve(
+    scene: AnyScene,
+    *,
+    digits: int | None = None,
+    level: str | None = None,
+    t_end: str | float | None = None,
+    transits: bool | None = None,
+    engine: str | None = None,
+    audit: bool = False,
+    confirm: Confirmation = "none",
+    function: bool = False,
+    report: Report | None = None,
+    uncertain: None = None,
+) -> Solution: ...
+
 
 def solve(
     scene: AnyScene,
@@ -40,7 +74,8 @@ def solve(
     confirm: Confirmation = "none",
     function: bool = False,
     report: Report | None = None,
-) -> Solution:
+    uncertain: Mapping[str, Any] | None = None,
+) -> Solution | Ranges:
     """Solve a scene to the digits and the level asked for (the scene's own by default).
 
     Args:
@@ -57,14 +92,26 @@ def solve(
             or "none".
         function: at the level enclosed, make the golden function as well: the motion at any time, `Solution.at`.
         report: called with the simulated time reached, in s.
+        uncertain: half of the width of inputs that are not known exactly, by name: {"pendulum.length": "±0.001"}. Then
+            intervals are proved that hold for every value of each of them, at the level enclosed; digits do not matter.
 
     Returns:
-        A `Solution`: binary64 arrays, exact values, and a bound on every number.
+        A `Solution`: binary64 arrays, exact values, and a bound on every number. With `uncertain` a `Ranges`: proven
+        intervals.
 
     Raises:
         InputError: a field of the scene is wrong.
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
+    if uncertain is not None:
+        wanted = {"digits": digits, "audit": audit, "function": function, "confirm": confirm != "none"}
+        for wish in (name for name, asked in wanted.items() if asked):
+            raise InputError(
+                wish, wanted[wish], "nothing together with uncertain", "Intervals have the digits they support."
+            )
+        if level not in (None, "enclosed"):
+            raise InputError("level", level, "enclosed, together with uncertain", "Ranges are proved, or refused.")
+        level = "enclosed"
     requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits}
     scene = as_scene(scene).with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
     settings, times = scene.run, tuple(scene.exact.grid)
@@ -74,6 +121,10 @@ def solve(
     for wish, asked in (("audit", audit), ("confirm", confirm != "none"), ("function", function)):
         if asked and settings.level != "enclosed":
             raise InputError(wish, settings.level, "the level enclosed", "Nothing else has the proof that it takes.")
+    if uncertain is not None:
+        from .ranges import solve_ranges  # nor that of a box
+
+        return solve_ranges(scene, uncertain, engine, report)
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
 

@@ -17,7 +17,8 @@ ARRAYS = {"digits": {"numpy"}, "bound": {"numpy"}}  # integers only
 PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
 AUDITED = tuple(name for name in TRUSTED if name != "digits")  # what FLINT alone has proved does not rest on its sums
 OF_FUNCTIONS = "function"  # what a proof without a golden function does not import
-BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET = 480, 411, 80  # lines of code
+OF_BOXES = "box"  # what a proof of a point does not import
+BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET, BOX_BUDGET = 480, 411, 80, 111  # lines of code
 
 
 def source(name):
@@ -29,9 +30,10 @@ def test_trusted_code_stays_within_its_budget():
     assert sum(counts.values()) <= BUDGET, counts
     assert sum(counts[name] for name in AUDITED) <= AUDITED_BUDGET, counts
     assert code_lines(HOME / f"{OF_FUNCTIONS}.py", imports=True) <= FUNCTION_BUDGET
+    assert code_lines(HOME / f"{OF_BOXES}.py", imports=True) <= BOX_BUDGET
 
 
-@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS])
+@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS, OF_BOXES])
 def test_trusted_code_says_so_and_holds_no_floating_point(name):
     tree = ast.parse(source(name))
     assert ast.get_docstring(tree).startswith("TRUSTED.")
@@ -45,11 +47,11 @@ def test_trusted_code_says_so_and_holds_no_floating_point(name):
         assert not banned & set(modules), node.lineno
 
 
-@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS])
+@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS, OF_BOXES])
 def test_trusted_code_imports_nothing_untrusted(name):
     declarations = {"shapes", "numbers.taylor_step", "scenes.inputs", "system.machine_code"}
     library = {"collections.abc", "fractions", "functools", "itertools", "json", "typing", "weakref", "flint"}
-    library |= {"array"} if name == OF_FUNCTIONS else set()
+    library |= {OF_FUNCTIONS: {"array"}, OF_BOXES: {"copy", "dataclasses"}}.get(name, set())
     allowed = library | declarations | PROPOSALS | ARRAYS.get(name, set()) | {*TRUSTED}
     for node in ast.walk(ast.parse(source(name))):
         if isinstance(node, ast.ImportFrom):
@@ -57,7 +59,7 @@ def test_trusted_code_imports_nothing_untrusted(name):
         assert not isinstance(node, ast.Import) or node.names[0].name == "numpy"
 
 
-def test_a_proof_without_a_function_does_not_import_its_code():
+def test_a_proof_of_a_point_does_not_import_the_code_of_functions_and_boxes():
     """In a process of its own, as others import it here."""
     program = """
 import sys
@@ -70,7 +72,7 @@ for function in (False, True):
     feed = Feed(scene.exact, tuple(scene.exact.grid), "heyoka")
     steps = lambda bits: feed(bits - COEFFICIENT_BITS)
     enclose(scene.exact, scene.exact.grid, radius=Fraction(1, 10**20), approximant=steps, function=function)
-    print("reference.enclosure.function" in sys.modules, "reference.enclosure.fit" in sys.modules)
+    print(*(f"reference.enclosure.{name}" in sys.modules for name in ("function", "fit", "box", "prove_box")))
 """
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True, cwd=ROOT)
-    assert done.stdout.split() == ["False", "False", "True", "True"]
+    assert done.stdout.split() == 4 * ["False"] + 2 * ["True"] + 2 * ["False"]

@@ -1,0 +1,148 @@
+"""TRUSTED. A box of inputs: what holds for every pendulum with inputs in it, by one radius (THEOREM.md, section 11).
+
+The motion of each is turned, so that its c has the direction of the scene's, and its time is scaled, so that c has the
+same size. What is left of the box is in Ω, γ and the release. A proof of a point imports none of this.
+"""
+
+from copy import copy
+from dataclasses import replace
+from fractions import Fraction
+from functools import reduce
+from typing import Any
+
+from flint import arb, ctx
+
+from .balls import SHORT, Vector, add, ball, cross, demand, interval, size, times, total, upper
+from .bound import Piece, Radius, SceneBalls, tube
+from .course import Course
+from .shapes import Box, Covered, EnclosedTransit, ProvedBox, Sizes
+
+PARTS = 16  # of a unit of s, over which a state is bounded at once
+
+
+def hull(low: Any, high: Any) -> Any:
+    """Return a ball that contains an interval, or such balls; what is the same at both ends is left as it is."""
+    if low == high:
+        return low
+    return tuple(map(hull, low, high)) if isinstance(low, tuple) else ball(low).union(ball(high))
+
+
+class BoxBalls(SceneBalls):
+    """The balls of a scene, but for those that hold the box: release, lengths, Ω `turning`, γ `damping`, `pace`."""
+
+    def __init__(self, box: Box, prec: int) -> None:
+        demand(min(box.low.drag, box.high.drag) >= 0, "the theorems take a drag >= 0")
+        own = SceneBalls(box.inputs, prec)
+        with ctx.workprec(prec):
+            wide = {name: hull(low, getattr(box.high, name)) for name, low in vars(box.low).items()}
+        # an interval from 0 on is a ball that reaches a little beyond
+        super().__init__(replace(box.inputs, **wide | {"drag": box.low.drag}), prec)
+        with ctx.workprec(prec):
+            lean, pull = plumb(wide)
+            self.given = [ball(q) for q in wide["position"] or ()]  # in m and m/s, without the length
+            self.inputs, self.c, (m, w) = box, own.c, own.c[1:]
+            self.pace, turn = (pull / self.length / (m * m + w * w).sqrt()).sqrt(), arb.atan2(-w, m) - lean
+            axis = (turn - ball(wide["latitude"]) * arb.pi() / 180).sin_cos()
+            self.tilt, self.omega = turn.sin_cos(), times(self.omega[2] / self.pace, [arb(0), *axis])
+            self.r, v = self.turned(self.release[0], 1), times(1 / self.pace, self.turned(self.release[1], 1))
+            self.begin(v)
+            self.turning, self.damping, self.paces = self.omega, ball(wide["drag"]) / self.pace, interval(self.pace)
+            self.omega, self.drag = own.omega, own.drag
+            self.H = cross(self.r, add(v, cross(self.omega, self.r)))  # with the scene's Ω
+
+
+def plumb(wide: dict[str, Any]) -> tuple[arb, arb]:
+    """Return by what angle the plumb line leans, and the strength of the pull along it."""
+    names = ("gravity", "altitude", "rotation_rate", "equatorial_radius", "flattening")
+    gravity, altitude, rate, radius, f = (ball(wide[name]) for name in names)
+    sin, cos = ball(wide["latitude"] / 90).sin_cos_pi()  # of twice the latitude, so that a ball of it stays narrow
+    push = rate * rate * (radius / (1 - f * (2 - f) * (1 - cos) / 2).sqrt() + altitude)
+    push *= 0 if wide["gravity_is"] == "effective" else 1
+    aside, down = push * sin / 2, gravity - push * (1 + cos) / 2
+    return arb.atan2(aside, down), (aside * aside + down * down).sqrt()
+
+
+class BoxRadius(Radius):
+    """Theorem C for all inputs of a box."""
+
+    balls: BoxBalls
+
+    def advance(self, piece: Piece) -> Covered:
+        """Carry the radius over a piece, with a bound of |e| that what follows from it has to confirm."""
+        whole, balls, jump, h = copy(piece), self.balls, self.join(piece), piece.k.h
+        with ctx.workprec(balls.prec):
+            k = whole.k = copy(piece.k)  # whose integers remain those of the scene
+            k.omega, k.drag_size = times(h, balls.turning), upper(h * balls.damping)
+            k.omega_size, off = size(k.omega), add(k.omega, times(-1, piece.k.omega))
+            turn, slow = size(off), upper(abs(h * balls.damping - piece.k.drag))
+        with ctx.workprec(SHORT):
+            norms = whole.defects()
+            whole.defects = lambda: norms  # type: ignore[method-assign]
+            d: Sizes = Piece.sizes.func(whole)  # type: ignore[attr-defined]
+            v1, gap, span = size(norms[4:7]), size(jump[:3]), ball(piece.step.high - piece.step.low)
+            along = sum((total(f, piece.step.bits) * x.abs_upper() for f, x in zip(piece.p, off, strict=True)), arb(0))
+            more = 2 * along * v1 + turn * norms[7] + d.p**2 * turn * (k.omega_size + piece.k.omega_size)
+            d = d._replace(d2=upper(d.d2 + more + slow * d.p * v1))
+            ck, gw, w = k.c_size + d.k**2, k.drag_size * k.omega_size * d.p, k.w
+            jumped = gap + (size(jump[3:]) + 2 * turn / h * gap * (2 * d.p + gap)) / balls.w0
+            start = upper(self.eta + jumped + span * (ck * d.tau / (2 * w) + d.d2 / w + d.d1))
+            far = upper(2 * start * (span * (k.below.max(k.above + k.speed**2) + gw) / (2 * w)).exp())
+            rate = k.below.max(k.above + (k.speed + (w + d.k) * far) ** 2) + ck * far + gw
+            self.eta = upper(start * (span * rate / (2 * w)).exp())
+            demand(self.eta < far, "a bound has outgrown what it rests on")
+            return Covered(whole, tube(k, d, self.eta, (w + d.k) * self.eta))
+
+
+class Windows:
+    """Runs a course in the scene's time; gives states and transits of all inputs of the box in their own time."""
+
+    def __init__(self, box: Box, prec: int, until: list[Fraction], transits: bool) -> None:
+        self.box, self.balls, self.times = box, BoxBalls(box, prec), tuple(until)
+        self.pace, self.hulls, self.done = self.balls.paces, list[Vector](), 0
+        demand(self.pace.low > 0 == until[0], "a box is followed from its release on")
+        self.course = Course(self.balls, [self.pace.high * until[-1]], False, transits)  # to the latest end
+        self.course.bound = BoxRadius(self.balls)
+        self.course.followers.append(self)
+
+    def advance(self, covered: Covered) -> None:
+        """Take the next tube: at each output time some pendulums of the box may be in it."""
+        demand(not self.course.open, "a tube comes from the course alone, while it takes a step")
+        for n in range(self.done, len(self.times)):
+            low, high = self.pace.low * self.times[n], self.pace.high * self.times[n]
+            if low > covered.piece.end:
+                break
+            parts = between(covered, max(low, covered.piece.begin), min(high, covered.piece.end))
+            self.hulls[n : n + 1] = [[reduce(arb.union, x) for x in zip(*self.hulls[n : n + 1], *parts, strict=True)]]
+            self.done += high <= covered.piece.end
+
+    def finish(self) -> ProvedBox:
+        """Return what is proved, in the time of each pendulum, to which it was `pace` times that of the course."""
+        proved, pace, length, out = self.course.finish(), self.balls.pace, self.balls.length, list[EnclosedTransit]()
+        demand(self.done == len(self.times), "the steps do not end with the run")
+        with ctx.workprec(self.balls.prec):
+            own = [[*times(length, x[:3]), *times(length * pace, x[3:])] for x in self.hulls]
+            own[0] = [x * length for part in self.balls.release for x in part]
+            if self.balls.given:
+                own[0][:2], own[0][3:5] = self.balls.given[:2], self.balls.given[2:]
+            for z in proved.transits or ():
+                t, vy, ax = (
+                    interval(hull(q.low, q.high) * f) for q, f in ((z.t, 1 / pace), (z.vy, pace), (z.ax, pace**2))
+                )
+                out += [replace(z, t=t, vy=vy, ax=ax)] if t.low <= self.times[-1] else []
+            states = tuple(tuple(map(interval, x)) for x in own)
+        return ProvedBox(self.box, self.times, states, None if proved.transits is None else tuple(out))
+
+
+def between(covered: Covered, begin: Fraction, end: Fraction) -> list[Vector]:
+    """Return balls of position and velocity that cover them from one time to another of a step, over the length."""
+    (piece, (eta, u, _)), step, parts = covered, covered.piece.step, list[Vector]()
+    low, high = (begin - step.centre) / step.h, (end - step.centre) / step.h
+    with ctx.workprec(piece.balls.prec):
+        forms = [*zip(piece.p, piece.v, strict=True), *((f, f.derivative()) for f in piece.v)]
+        for k in range(count := 1 + (high - low) * PARTS // 1):
+            s = hull(low + (high - low) * k / count, low + (high - low) * (k + 1) / count)
+            s, middle = ball(s), ball(s).mid()
+            x = [(f(middle) + rate(s) * (s - middle)) / piece.unit for f, rate in forms]
+            r, v = [q + arb(0, eta) for q in x[:3]], [(q + arb(0, u)) / piece.k.h for q in x[3:]]
+            parts.append([*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)])
+    return parts

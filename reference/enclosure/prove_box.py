@@ -1,0 +1,83 @@
+"""Run the proof of a box of inputs: precision from its width, steps of the scene's own motion. Untrusted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from fractions import Fraction
+from time import process_time
+
+from flint import arb
+
+from ..errors import UnreachableError
+from ..numbers.taylor_step import TaylorStep
+from .balls import interval, times
+from .box import BoxBalls, Windows
+from .plan import plan_for
+from .prove import SCENE_GUARD_BITS, until
+from .shapes import Box, Interval, ProvedBox
+
+LOOK_BITS = 192  # in which a box is looked at
+BOX_BITS = 12  # the approximant is off by this part of the box at most
+ADVICE = "Make the inputs less uncertain, or the run shorter (run.t_end)."
+
+
+@dataclass(frozen=True)
+class BoxEnclosure:
+    """A proof of a box as trusted code returned it, and how it was reached.
+
+    `radius` is that of the tube at the end, in m; `pace` the interval of the factors of time; `cpu_s` all of its work.
+    """
+
+    proved: ProvedBox
+    bits: int
+    steps: int
+    radius: Fraction
+    pace: Interval
+    cpu_s: float
+
+
+def enclose_box(
+    box: Box,
+    until_times: list[Fraction],
+    approximant: Callable[[int, Fraction], Iterable[TaylorStep]],
+    transits: bool = True,
+    progress: Callable[[float], None] | None = None,
+) -> BoxEnclosure:
+    """Prove what holds at times from 0 on for all inputs of a box, and every transit up to the last of them.
+
+    Args:
+        box: the scene, and the least and largest inputs.
+        until_times: output times in s, from 0 on, increasing.
+        approximant: function of a precision in bits and an end in s that gives steps of the scene's motion, paired.
+        transits: also enclose all zeros of xdot.
+        progress: called with the part of the time span that is proved.
+
+    Raises:
+        UnreachableError: the box is too wide; says up to which time it holds.
+    """
+    begun, reached, count, end = process_time(), Fraction(0), 0, until_times[-1]
+    try:
+        balls = BoxBalls(box, LOOK_BITS)
+        bits = plan_for(box.inputs, end, box.inputs.length * _width(balls) / (1 << BOX_BITS), "radius").bits
+        windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, transits)
+        course, latest = windows.course, windows.course.times[-1]
+        for step in until(approximant(bits, latest), latest):
+            course.advance(step)
+            reached, count = course.bound.time, count + 1
+            if progress:
+                progress(float(reached / latest))
+        proved = windows.finish()
+    except (ArithmeticError, ValueError):
+        holds = float(reached / windows.pace.high) if reached else 0.0
+        raise UnreachableError(f"The box of inputs is too wide: it holds up to t = {holds:.4g} s.", ADVICE) from None
+    radius = interval(course.bound.eta * balls.length).high
+    return BoxEnclosure(proved, bits, count, radius, windows.pace, process_time() - begun)
+
+
+def _width(balls: BoxBalls) -> Fraction:
+    """Return about how far apart motions of the box are, over the length, after a time of 1/w0."""
+    w = balls.w0
+    slow = [balls.pace, *balls.r, *times(1 / w, [*balls.H, *balls.turning, balls.damping])]
+    widest = interval(max((arb(x.rad()) for x in slow), key=float)).high
+    return max(widest, Fraction(1, 1 << LOOK_BITS // 2))

@@ -1,0 +1,235 @@
+"""Uncertain inputs: a scene solved for every value that they may have, by a proof (THEOREM.md, section 11)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from math import ceil
+from typing import Any
+
+import numpy as np
+
+from ..engines.plan import Report
+from ..errors import InputError, unknown
+from ..numbers.columns import GRID, TRANSITS, Framed, data_frame
+from ..numbers.precision import Array, double_below, fixed_decimal
+from ..scenes.inputs import Inputs
+from ..scenes.scene import Scene, checked_value, full_name
+from .proof_steps import COEFFICIENT_BITS, Feed
+from .reach import check_reach
+from .solution import exact_decimals
+
+RELEASES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
+SITE = ("latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius")
+PLAIN = ["pendulum.length", "pendulum.drag", *(f"site.{name}" for name in SITE)]
+UNCERTAIN = [*PLAIN, "site.inverse_flattening", *(f"release.{name}" for names in RELEASES.values() for name in names)]
+SIGNS = ("±", "+-", "+/-")
+EXAMPLE = "a width with its sign, such as ±0.001 or +-0.001"
+MOST_DECIMALS = 20  # of an end of an interval
+
+
+@dataclass(frozen=True)
+class Intervals(Framed):
+    """A table of proven intervals: `low("x")` and `high("x")` are a column's ends in doubles, rounded outward.
+
+    Attributes:
+        columns: names of the columns.
+        rows: intervals with exact ends, `low` and `high`, in SI units.
+    """
+
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Any, ...], ...] = field(repr=False)
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self.rows)
+
+    def exact(self, name: str) -> list[tuple[Fraction, Fraction]]:
+        """Return the exact ends of a column's intervals."""
+        if name not in self.columns:
+            raise unknown("column", name, f"one of {', '.join(self.columns)}", self.columns, "")
+        i = self.columns.index(name)
+        return [(row[i].low, row[i].high) for row in self.rows]
+
+    def low(self, name: str) -> Array:
+        """Return the lower ends of a column, shape (rows,)."""
+        return np.array([double_below(low) for low, _ in self.exact(name)])
+
+    def high(self, name: str) -> Array:
+        """Return the upper ends of a column, shape (rows,)."""
+        return np.array([-double_below(-high) for _, high in self.exact(name)])
+
+    def to_pandas(self) -> Any:
+        """Return the columns x_low, x_high and so on as a pandas.DataFrame of doubles, rounded outward."""
+        ends = (("low", self.low), ("high", self.high))
+        return data_frame({f"{name}_{word}": of(name) for name in self.columns for word, of in ends})
+
+
+@dataclass(frozen=True)
+class Ranges:
+    """What is proved of a scene whose inputs are uncertain: true for every value that each of them may have.
+
+    Attributes:
+        scene: the scene, at the level enclosed.
+        uncertain: half of the width of each uncertain input as text, by its full name.
+        times: grid times in s, exact.
+        grid: position and velocity at those times, in m and m/s.
+        transits: intervals in each of which every pendulum of the box has one zero of xdot, in order; the last one may
+            come after the end for some. Without rows if not asked for, or if xdot is identically zero.
+        directions: +1 where xdot goes from - to +, per transit.
+        possible: intervals of time that may hold other zeros, each with its parity.
+        proof: the `BoxEnclosure`.
+    """
+
+    scene: Scene
+    uncertain: dict[str, str]
+    times: tuple[Fraction, ...]
+    grid: Intervals
+    transits: Intervals
+    directions: list[int] = field(repr=False)
+    possible: tuple[tuple[Fraction, Fraction, str], ...]
+    proof: Any = field(repr=False)
+
+    @property
+    def t(self) -> Array:
+        """Grid times in s, shape (rows,)."""
+        return np.array([float(t) for t in self.times])
+
+    @property
+    def period(self) -> tuple[Fraction, Fraction] | None:
+        """The mean time in s between transits in the same direction, the first to the last; None where it is open."""
+        times = self.transits.exact("t")
+        swings = (len(times) - 1) // 2
+        if swings < 1 or self.possible:
+            return None
+        (low, high), (last_low, last_high) = times[0], times[2 * swings]
+        return (last_low - high) / swings, (last_high - low) / swings
+
+    def __repr__(self) -> str:
+        """Return scene, uncertain inputs, and the numbers of rows and transits."""
+        box = ", ".join(f"{name} ±{width}" for name, width in self.uncertain.items())
+        return f"Ranges({self.scene.id}: {box}; {len(self.times)} grid times, {len(self.transits)} transits)"
+
+
+def solve_ranges(scene: Scene, uncertain: Mapping[str, Any], engine: str, report: Report | None = None) -> Ranges:
+    """Prove what holds for a scene with uncertain inputs, at its grid times, with the transits if it asks for them.
+
+    Raises:
+        InputError: an input that scenes do not have, or a width that is wrong; or python-flint is not installed.
+        UnreachableError: the box is too wide, and it tells up to which time it holds.
+    """
+    try:
+        from ..enclosure.prove_box import enclose_box
+        from ..enclosure.shapes import Box
+    except ModuleNotFoundError as error:
+        advice = "Install it with pip install 'foucault-reference[enclose]'."
+        raise InputError("--uncertain", "nothing", f"the package {error.name}, which the proof needs", advice) from None
+    widths = widths_of(scene, uncertain)
+    inputs, end, times = scene.exact, scene.exact.t_end, scene.exact.grid
+    box = Box(inputs, *(_with_numbers(inputs, ends) for ends in _ends(scene, widths)))
+    swing = abs(float(inputs.gravity / inputs.length)) ** 0.5
+    steps = ceil(float(end) * max(swing, abs(float(inputs.rotation_rate)), 1 / float(end)))
+    feeds: list[Feed] = []
+
+    def approximant(bits: int, latest: Fraction) -> Any:
+        check_reach(steps, bits, scene.run.digits)
+        feeds.append(Feed(inputs, (latest,), engine, steps))
+        return feeds[-1](bits - COEFFICIENT_BITS)
+
+    try:
+        tell = report and (lambda part: report(part * float(end)))
+        proof = enclose_box(box, times, approximant, scene.run.transits, tell)
+    finally:
+        for feed in feeds:
+            feed.stop()
+    found = proof.proved.transits or ()
+    ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
+    return Ranges(
+        scene,
+        {name: decimal(width) for name, width in widths.items()},
+        tuple(times),
+        Intervals(GRID, proof.proved.states),
+        Intervals(TRANSITS, tuple(tuple(getattr(z, name) for name in TRANSITS) for z in ones)),
+        [z.direction for z in ones],
+        tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others),
+        proof,
+    )
+
+
+def widths_of(scene: Scene, uncertain: Mapping[str, Any]) -> dict[str, Fraction]:
+    """Return half of the width of each uncertain input by its full name, as given by words such as ±0.001.
+
+    Raises:
+        InputError: an unknown input, one that the scene does not have, a wrong width, or one that leaves the range of
+            values that the input may have.
+    """
+    found: dict[str, Fraction] = {}
+    have = _numbers(scene.exact)
+    for word, text in uncertain.items():
+        name, width, field_name = full_name(word), str(text).strip(), f"--uncertain {word}"
+        if name not in UNCERTAIN:
+            raise unknown(field_name, word, "an input on which the motion depends", UNCERTAIN, _NAMES)
+        if name not in have:
+            raise InputError(field_name, text, "an input that this scene has", f"It has {', '.join(have)}.")
+        if name in found:
+            raise InputError(field_name, text, f"{name} once", "Give one width for each input.")
+        sign = next((sign for sign in SIGNS if width.startswith(sign)), None)
+        try:
+            found[name] = Fraction(checked_value("site.altitude", width.removeprefix(sign or "").strip(), "decimal"))
+        except InputError:
+            sign = None
+        if sign is None:
+            raise InputError(field_name, text, EXAMPLE)
+        if found[name] <= 0:
+            raise InputError(field_name, text, "a width above 0", "Leave out an input that is certain.")
+    if not found:
+        raise InputError("--uncertain", "nothing", "an input with its width, length=±0.001", _NAMES)
+    low, high = _ends(scene, found)
+    for name, half in found.items():
+        for end in (low[name], high[name]):
+            try:
+                checked_value(name, decimal(end), "decimal")
+            except InputError as error:
+                reached = f"±{decimal(half)}, up to {decimal(end)}"
+                raise InputError(f"--uncertain {name}", reached, error.expected, "Take a smaller width.") from None
+    if scene.exact.position:
+        far = [max(abs(low[name]), abs(high[name])) for name in ("release.x", "release.y")]
+        if far[0] ** 2 + far[1] ** 2 >= low["pendulum.length"] ** 2:
+            reached = f"x up to {decimal(far[0])}, y up to {decimal(far[1])}"
+            raise InputError("--uncertain", reached, "a release below the suspension", "Take smaller widths.")
+    return found
+
+
+_NAMES = f"Inputs are {', '.join(UNCERTAIN)}."
+
+
+def decimal(value: Fraction) -> str:
+    """Return a number with its decimals, 20 at most."""
+    whole = value * 10**MOST_DECIMALS
+    return fixed_decimal(value, exact_decimals((value,)) if whole.denominator == 1 else MOST_DECIMALS)
+
+
+def _numbers(inputs: Inputs) -> dict[str, Fraction]:
+    """Return the inputs that may be uncertain, by their full names."""
+    plain = {name: getattr(inputs, name.partition(".")[2]) for name in UNCERTAIN[: len(PLAIN)]}
+    if inputs.flattening:  # not a sphere
+        plain["site.inverse_flattening"] = 1 / inputs.flattening
+    kind = "position" if inputs.position else "angles"
+    release = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
+    return plain | {f"release.{name}": value for name, value in release}
+
+
+def _ends(scene: Scene, widths: Mapping[str, Fraction]) -> list[dict[str, Fraction]]:
+    """Return the lower and the upper ends of all inputs."""
+    have = _numbers(scene.exact)
+    return [{name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)]
+
+
+def _with_numbers(inputs: Inputs, numbers: Mapping[str, Fraction]) -> Inputs:
+    """Return inputs with other numbers, by their full names."""
+    changes: dict[str, Any] = {name.partition(".")[2]: x for name, x in numbers.items() if "release" not in name}
+    inverse = changes.pop("inverse_flattening", None)
+    kind = "position" if inputs.position else "angles"
+    changes[kind] = tuple(numbers[f"release.{name}"] for name in RELEASES[kind])
+    return replace(inputs, **changes, flattening=1 / inverse if inverse else Fraction(0))

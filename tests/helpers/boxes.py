@@ -1,0 +1,162 @@
+"""Boxes of inputs, scenes drawn from them, and what limbs finds of these outside of what is proved for the box."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import pairwise
+from random import Random
+from typing import Any
+
+from enclosure_oracle import scene
+
+from reference.enclosure.prove_box import enclose_box
+from reference.enclosure.shapes import Box, ProvedBox
+from reference.engines.plan import Run
+from reference.engines.registry import engines
+from reference.numbers.columns import GRID, TRANSITS
+from reference.scenes.inputs import Inputs
+from reference.solver.proof_steps import COEFFICIENT_BITS, Feed
+
+TRUTH_BITS = 133  # forty digits
+ROUNDING = Fraction(1, 10**30)  # of such a run, in parts of the largest number
+NAMES = {"position": ("x", "y", "vx", "vy"), "angles": ("angle", "azimuth", "angle_rate", "azimuth_rate")}
+PLAIN = ("length", "drag", "latitude", "altitude", "gravity", "rotation_rate", "equatorial_radius", "flattening")
+FAST = {"rotation_rate": "0.7", "equatorial_radius": "5"}
+
+# scene, end in s, halves of widths
+BOXES: dict[str, tuple[dict[str, Any], int, dict[str, str]]] = {
+    "paris": ({}, 300, {"length": "0.001", "gravity": "1e-5", "latitude": "0.001"}),
+    "release": ({}, 200, {"x": "0.001", "y": "0.002", "vx": "0.0001", "vy": "0.0002"}),
+    "damped": ({"length": "10", "drag": "0.01", "x": "0.5", "y": "0.1"}, 100, {"length": "0.001", "drag": "1e-4"}),
+    "only drag": ({"length": "10", "drag": "0.02", "x": "0.3", "y": "0.1"}, 60, {"drag": "0.001"}),
+    "fast": (
+        {"length": "3", "angles": ("70", "30", "20", "10"), **FAST},
+        2,
+        {"length": "1e-5", "gravity": "1e-5", "latitude": "1e-3", "rotation_rate": "1e-5", "angle": "1e-4"}
+        | {"azimuth": "1e-4", "angle_rate": "1e-4", "azimuth_rate": "1e-4", "altitude": "1e-3"}
+        | {"equatorial_radius": "1e-3", "flattening": "1e-5"},
+    ),
+    "fast and damped": (
+        {"length": "3", "angles": ("20", "30", "20", "10"), "drag": "0.3", **FAST},
+        5,
+        {"length": "1e-4", "drag": "1e-5", "latitude": "1e-3", "rotation_rate": "1e-5"},
+    ),
+    "latitude alone": ({"rotation_rate": "0.02", "equatorial_radius": "1000"}, 100, {"latitude": "0.02"}),
+    "rate alone": ({"rotation_rate": "0.02", "equatorial_radius": "1000"}, 100, {"rotation_rate": "1e-5"}),
+    "equator": ({"latitude": "0", "rotation_rate": "0.01", "equatorial_radius": "99"}, 100, {"latitude": "0.05"}),
+    "wide": (
+        {"length": "1", "angles": ("60", "30", "0", "0")},
+        3,
+        {"length": "1e-4", "angle": "1e-3", "gravity": "1e-4"},
+    ),
+    "very wide": ({"length": "1", "angles": ("110", "30", "0", "0")}, 3, {"length": "1e-8", "angle": "1e-7"}),
+    "pole": ({"latitude": "89.9", "x": "0", "y": "1"}, 100, {"length": "0.001", "gravity": "1e-4", "latitude": "0.05"}),
+    "along the meridian": (
+        {"x": "0", "y": "0.5", "rotation_rate": "0.001"},
+        60,
+        {"length": "0.001", "latitude": "0.1"},
+    ),
+    "south": ({"latitude": "-33.3", "vx": "0.05"}, 100, {"length": "0.01", "vx": "1e-4", "latitude": "0.1"}),
+    "effective": ({"gravity_is": "effective", "x": "1", "y": "0"}, 100, {"gravity": "1e-3", "length": "0.01"}),
+    "effective, fast": (
+        {"gravity_is": "effective", "x": "1", "y": "0.3", "rotation_rate": "0.01"},
+        60,
+        {"gravity": "1e-3", "latitude": "0.05"},
+    ),
+    "no turning": ({"rotation_rate": "0"}, 100, {"length": "0.01", "rotation_rate": "1e-5"}),
+    "1 mm": ({"length": "0.001", "x": "0.0001", "y": "0.00002"}, 1, {"length": "1e-8", "x": "1e-9"}),
+    "10 km": ({"length": "10000", "x": "100", "y": "50"}, 1000, {"length": "1", "gravity": "1e-4", "vy": "0.01"}),
+    "tiny box": ({}, 100, {"length": "1e-25", "latitude": "1e-24"}),
+}
+
+
+def box_of(name: str) -> tuple[Box, list[Fraction]]:
+    """Return a box by its name, and output times."""
+    changes, end, widths = BOXES[name]
+    inputs = replace(scene(**changes), t_end=Fraction(end))
+    return widened(inputs, widths), [Fraction(end * k, 12) for k in range(13)]
+
+
+def widened(inputs: Inputs, widths: dict[str, str]) -> Box:
+    """Return the box about some inputs."""
+    kind = "position" if inputs.position else "angles"
+    ends = []
+    for side in (-1, 1):
+        off = {name: side * Fraction(text) for name, text in widths.items()}
+        release = zip(NAMES[kind], getattr(inputs, kind), strict=True)
+        changes: dict[str, Any] = {kind: tuple(value + off.get(name, 0) for name, value in release)}
+        changes |= {name: getattr(inputs, name) + x for name, x in off.items() if name in PLAIN}
+        ends.append(replace(inputs, **changes))
+    return Box(inputs, *ends)
+
+
+def proof_of(box: Box, times: list[Fraction]) -> Any:
+    """Return the `BoxEnclosure`, by limbs."""
+    return enclose_box(box, times, lambda bits, end: Feed(box.inputs, (end,), "limbs", 1)(bits - COEFFICIENT_BITS))
+
+
+def drawn(box: Box, rng: Random, corner: bool) -> Inputs:
+    """Return inputs from a box, at a corner of it or from inside."""
+
+    def pick(low: Fraction, high: Fraction) -> Fraction:
+        return rng.choice((low, high)) if corner else low + (high - low) * Fraction(rng.randrange(1001), 1000)
+
+    kind = "position" if box.inputs.position else "angles"
+    changes: dict[str, Any] = {name: pick(getattr(box.low, name), getattr(box.high, name)) for name in PLAIN}
+    changes[kind] = tuple(map(pick, getattr(box.low, kind), getattr(box.high, kind)))
+    return replace(box.inputs, **changes)
+
+
+def truth(inputs: Inputs, times: Sequence[Fraction]) -> Run:
+    """Return a run by limbs, with 40 digits."""
+    limbs = engines()["limbs"]
+    return limbs.run(limbs.plan(inputs, TRUTH_BITS, tuple(times), True))
+
+
+def outside(proved: ProvedBox, run: Run) -> list[str]:
+    """Return what of a run contradicts what is proved: states, transits that are lost, doubled or elsewhere."""
+    found = []
+    size = max(run.grid.largest().values())
+
+    def check(what: str, value: Fraction, low: Fraction, high: Fraction) -> None:
+        if not low - ROUNDING * size <= value <= high + ROUNDING * size:
+            found.append(f"{what} {float(value)} not in [{float(low)}, {float(high)}]")
+
+    for i, name in enumerate(GRID):
+        for time, value, state in zip(proved.times, run.grid.exact(name), proved.states, strict=True):
+            check(f"{name} at {float(time)}:", value, state[i].low, state[i].high)
+    rows = list(zip(*(run.transits.exact(name) for name in TRANSITS), strict=True))
+    ones = [z for z in proved.transits if z.parity == "one"]
+    if len(ones) < len(proved.transits):  # some are undecided: each zero has to lie in one of all
+        for t, *_ in rows:
+            if not any(z.t.low - ROUNDING <= t <= z.t.high + ROUNDING for z in proved.transits):
+                found.append(f"transit at {float(t)} is lost")
+        return found
+    # the last ones may come after the end
+    late = [z for z in ones if z.t.high >= proved.times[-1]]
+    if not len(ones) - len(late) <= len(rows) <= len(ones):
+        found.append(f"{len(rows)} transits, {len(ones)} proved")
+    for row, direction, z in zip(rows, run.directions, ones, strict=False):
+        for name, value in zip(TRANSITS, row, strict=True):
+            interval = getattr(z, name)
+            check(f"{name} at a transit:", value, interval.low, interval.high)
+        if direction != z.direction:
+            found.append(f"direction at {float(row[0])}")
+    return found
+
+
+def widths_over_hulls(proved: ProvedBox, runs: Sequence[Run]) -> dict[str, float]:
+    """Return the largest width of each column, over the largest hull of it that runs have."""
+    ratios = {}
+    for i, name in enumerate(GRID):
+        columns = list(zip(*(run.grid.exact(name) for run in runs), strict=True))
+        hull = max(max(values) - min(values) for values in columns)
+        ratios[name] = float(max(state[i].high - state[i].low for state in proved.states[1:]) / hull) if hull else 0.0
+    return ratios
+
+
+def ordered(proved: ProvedBox) -> bool:
+    """Return whether transits follow each other."""
+    return all(a.t.low <= b.t.low and a.t.high <= b.t.high for a, b in pairwise(proved.transits or ()))

@@ -1,0 +1,126 @@
+"""A scene with uncertain inputs: intervals that are proved, or a refusal that says why."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+import reference
+from reference.solver.ranges import UNCERTAIN
+
+MEASURED = {"pendulum.length": "±0.001", "site.gravity": "+-1e-5", "latitude": "+/-0.001"}
+
+
+@pytest.fixture(scope="module")
+def paris():
+    return reference.solve("paris", t_end="120", uncertain=MEASURED)
+
+
+def test_the_scene_itself_lies_inside(paris):
+    point = reference.solve("paris", t_end="120", digits=20)
+    assert paris.scene.run.level == "enclosed"
+    assert paris.times == point.times
+    for name in ("x", "y", "z", "vx", "vy", "vz"):
+        assert (paris.grid.low(name) <= point.grid[name]).all()
+        assert (point.grid[name] <= paris.grid.high(name)).all()
+    assert paris.directions == point.directions
+    assert (paris.transits.low("t") < point.transits["t"]).all()
+    assert (point.transits["t"] < paris.transits.high("t")).all()
+    assert paris.possible == ()
+
+
+def test_what_is_given_exactly_stays_so_and_widths_grow_with_the_time(paris):
+    assert paris.grid.exact("vx")[0] == (0, 0)
+    low, high = paris.grid.exact("x")[0]
+    assert low <= Fraction("0.3") <= high
+    assert high - low < Fraction(1, 10**25)
+    widths = paris.transits.high("t") - paris.transits.low("t")
+    # a period is known to half of the relative width of length and gravity
+    relative = (0.001 / 67 + 1e-5 / 9.8) * paris.transits.low("t")
+    assert (widths > relative).all()
+    assert (widths < 1.1 * relative + 2e-4).all()  # and what the length adds to the release
+
+
+def test_doubles_are_rounded_outward(paris):
+    for (low, high), left, right in zip(paris.grid.exact("y"), paris.grid.low("y"), paris.grid.high("y"), strict=True):
+        assert Fraction(left) <= low <= high <= Fraction(right)
+        assert Fraction(np.nextafter(left, np.inf)) > low
+
+
+def test_the_period_is_that_of_transits_in_the_same_direction(paris):
+    low, high = paris.period
+    swing = 2 * np.pi * np.sqrt(67 / 9.7835)
+    assert float(high - low) < 0.001
+    assert abs(float(low) - swing) < 0.02
+    times = paris.transits.exact("t")
+    assert low <= (times[2][0] + times[2][1] - times[0][0] - times[0][1]) / 2 <= high
+
+
+def test_an_input_takes_its_short_name_or_a_long_one(paris):
+    short = reference.solve(
+        "paris", t_end="120", uncertain={"length": "±0.001", "gravity": "±1e-5", "latitude": "±1e-3"}
+    )
+    assert short.grid == paris.grid
+    assert short.uncertain == paris.uncertain == {
+        "pendulum.length": "0.001", "site.gravity": "0.00001", "site.latitude": "0.001",
+    }  # fmt: skip
+    assert repr(paris).startswith("Ranges(paris: pendulum.length ±0.001, ")
+
+
+@pytest.mark.parametrize("name", UNCERTAIN)
+def test_every_input_may_be_uncertain(name):
+    release = name.startswith("release.a")
+    angles = {"release": {"angle": "3", "azimuth": "20", "angle_rate": "0.1", "azimuth_rate": "0.1"}}
+    position = {"release": {"x": "1", "y": "0.5", "vx": "0.01", "vy": "0.02"}}
+    document = {"id": "a", "pendulum": {"length": "20", "drag": "0.01"}, "run": {"t_end": "30", "grid_step": "10"}}
+    scene = reference.parse_scene(document | (angles if release else position))
+    wide, narrow = (reference.solve(scene, uncertain={name: f"±{width}"}) for width in ("1e-4", "1e-5"))
+    for column in ("x", "vy"):
+        assert (wide.grid.low(column)[1:] < narrow.grid.low(column)[1:]).all()
+        assert (narrow.grid.high(column)[1:] < wide.grid.high(column)[1:]).all()
+
+
+@pytest.mark.parametrize(
+    "uncertain, told",
+    [
+        ({"lenght": "±1"}, "expected an input on which the motion depends"),
+        ({"run.t_end": "±1"}, "expected an input on which the motion depends"),
+        ({"length": "0.001"}, "expected a width with its sign, such as ±0.001"),
+        ({"length": "-0.001"}, "expected a width with its sign"),
+        ({"length": "±-0.001"}, "expected a width above 0"),
+        ({"length": "±0"}, "expected a width above 0"),
+        ({"length": "±1 mm"}, "expected a width with its sign"),
+        ({"length": "±nan"}, "expected a width with its sign"),
+        ({"length": "±67"}, "up to 0', expected a number above 0"),
+        ({"drag": "±0.1"}, "up to -0.1', expected a number at least 0"),
+        ({"latitude": "±60"}, "expected a number at least -90 and at most 90"),
+        ({"angle": "±1"}, "expected an input that this scene has"),
+        ({"x0": "±66", "y0": "±20"}, "expected a release below the suspension"),
+        ({"length": "±1", "pendulum.length": "±1"}, "expected pendulum.length once"),
+        ({}, "expected an input with its width"),
+    ],
+)
+def test_a_wrong_width_is_told(uncertain, told):
+    with pytest.raises(reference.InputError) as caught:
+        reference.solve("paris", uncertain=uncertain)
+    assert told in str(caught.value)
+
+
+def test_options_of_a_point_are_refused():
+    for options in ({"digits": 20}, {"audit": True}, {"function": True}, {"confirm": "whole"}, {"level": "confirmed"}):
+        with pytest.raises(reference.InputError, match="together with uncertain"):
+            reference.solve("paris", uncertain=MEASURED, **options)
+
+
+def test_a_box_too_wide_is_refused_with_the_time_up_to_which_it_holds():
+    wide = {"pendulum.length": "±0.001", "release.x": "±2"}
+    with pytest.raises(reference.UnreachableError, match=r"too wide: it holds up to t = (\d+)") as caught:
+        reference.solve("paris", t_end="3600", uncertain=wide)
+    holds = str(caught.value).partition("t = ")[2].partition(" ")[0]
+    assert reference.solve("paris", t_end=holds, uncertain=wide).times[-1] == Fraction(holds)
+
+
+def test_a_box_without_a_pull_is_refused():
+    floating = {"id": "a", "site": {"gravity": "0", "rotation_rate": "0"}, "release": {"x": "1", "y": "0", "vx": "1"}}
+    with pytest.raises(reference.UnreachableError, match="too wide: it holds up to t = 0"):
+        reference.solve(floating, t_end="10", uncertain={"length": "±0.001"})
