@@ -22,6 +22,7 @@ from .terminal import (
     Assignments,
     Cluster,
     EndTime,
+    Uncertain,
     Workers,
     check_workers,
     chosen,
@@ -30,10 +31,12 @@ from .terminal import (
     refuse,
     replacements,
     stoppable,
+    widths_by_name,
 )
 
 if TYPE_CHECKING:
     from ..dataset.shipping import Job, Row
+    from ..scenes.scene import Scene
 
 ENGINES = (AUTO, *engine_names())
 
@@ -113,6 +116,7 @@ def command(
         bool, typer.Option("--no-tables", help="Write the golden function and its manifest alone.")
     ] = False,
     set_: Assignments = None,
+    uncertain: Uncertain = None,
     every: Annotated[
         bool, typer.Option("--all", help="Make every dataset that ships and is missing or not sealed.")
     ] = False,
@@ -122,6 +126,7 @@ def command(
 ) -> None:
     """Solve a scene and write its golden dataset.
 
+    With --uncertain it writes ranges: intervals that are proved for every value of these inputs.
     foucault generate --all --workers 2 makes all that ship, each in a process of its own; what is there is left.
     """
     options = {
@@ -135,19 +140,23 @@ def command(
     proving["--no-tables"] = no_tables
     if every:
         unused: dict[str, object] = {"SCENE": scene_word, "--no-transits": no_transits, **proving}
-        unused |= {"--set": set_, "--engine": engine if engine != AUTO else None}
+        unused |= {"--set": set_, "--uncertain": uncertain, "--engine": engine if engine != AUTO else None}
         refuse(unused, "with --all")
         _generate_all(replacements(None, options), out, workers, cluster, as_json)
         return
     refuse({"--workers": workers, "--cluster": cluster}, "without --all")
     if scene_word is None:
         raise InputError("SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them.")
+    chosen("--engine", engine, ENGINES)
+    if widths := widths_by_name(uncertain):
+        refuse({"--digits": digits, **proving}, "together with --uncertain")
+        _generate_ranges(load_scene(scene_word, replacements(set_, options)), level, widths, engine, out, as_json)
+        return
     from ..dataset.place import dataset_id, default_folder
     from ..dataset.record import Making
     from ..dataset.shipping import making_of, solved, summary
     from ..dataset.write import check_target, write
 
-    chosen("--engine", engine, ENGINES)
     scene = load_scene(scene_word, replacements(set_, options))
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
@@ -188,6 +197,39 @@ def command(
         )
     typer.echo(f"every position within {measured['bound_m']} m; {run.formulation}, {run.number}, {run.steps} steps")
     typer.echo(f"CPU: run {run.cpu_s:.2f} s, check {measured['check_cpu_s']:.2f} s, pilot {solution.pilot_s:.2f} s")
+
+
+def _generate_ranges(
+    scene: Scene, level: str | None, widths: dict[str, str], engine: str, out: Path | None, as_json: bool
+) -> None:
+    """Prove intervals for uncertain inputs and write them.
+
+    Raises:
+        InputError: an input, a width, or the folder.
+        UnreachableError: the box is too wide; nothing is written.
+    """
+    from ..dataset.ranges import check_ranges_target, default_ranges_folder, period_texts, ranges_id, write_ranges
+    from ..solver.solve import solve
+
+    if out is not None:
+        check_ranges_target(out)
+    with stoppable("nothing was written"), progress() as show:
+        report = show(scene.id, float(scene.exact.t_end))
+        ranges = solve(scene, uncertain=widths, level=level, engine=engine, report=report)
+    folder = out or default_ranges_folder(ranges)
+    with stoppable("nothing half was written"):
+        write_ranges(ranges, folder)
+    counts = {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)}
+    period = period_texts(ranges)
+    if as_json:
+        emit({"dataset": ranges_id(ranges), "out": str(folder), "period_s": period, **counts})
+        return
+    box = ", ".join(f"{name} ±{width}" for name, width in ranges.uncertain.items())
+    typer.echo(f"{folder}: {counts['grid']} grid times, {counts['transits']} transits, for every {box}: enclosed")
+    if ranges.possible:
+        typer.echo(f"{counts['possible']} intervals may hold more transits")
+    if period:
+        typer.echo(f"period between {period[0]} and {period[1]} s; CPU {ranges.proof.cpu_s:.2f} s")
 
 
 def _generate_all(

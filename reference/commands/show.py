@@ -11,13 +11,14 @@ from ..errors import FoucaultError, InputError, UnreachableError
 from ..scenes.scene import Scene, load_scene
 from ..scenes.shipped import flag_meanings, scene_ids
 from ..scenes.template import template as as_template
-from .terminal import AsJson, Assignments, completion, emit, refuse
+from .terminal import AsJson, Assignments, Uncertain, completion, emit, refuse, widths_by_name
 
 FORMS = {  # of the forms that an engine publishes: what its letters mean
     "momentum": "n = r/l, H = n × (n' + Ω × n), c = pull/l",
     "inertial": "n = r/l, V = n' + Ω × n, c = pull/l",
 }
 MOST_SWINGS = 10_000  # that are followed for the period and the precession
+FIRST_TRANSITS = 3  # that are told of uncertain inputs
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
@@ -40,6 +41,7 @@ def command(
         bool, typer.Option("--sensitivity", help="Also show how many digits the flow costs between release and end.")
     ] = False,
     set_: Assignments = None,
+    uncertain: Uncertain = None,
     as_json: AsJson = False,
 ) -> None:
     """Show a scene: its inputs, period and precession.
@@ -47,7 +49,8 @@ def command(
     `foucault show --template > mine.toml` begins a scene of your own.
     """
     if template:
-        refuse({"--equations": equations, "--sensitivity": sensitivity, "--json": as_json}, "together with --template")
+        unused = {"--equations": equations, "--sensitivity": sensitivity, "--uncertain": uncertain, "--json": as_json}
+        refuse(unused, "together with --template")
         if scene_word is None:
             refuse({"--set": set_}, "without SCENE")
         typer.echo(as_template(None if scene_word is None else load_scene(scene_word, set_ or ())), nl=False)
@@ -70,6 +73,8 @@ def command(
         from ..solver.sensitivity import digits_lost
 
         document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
+    if widths := widths_by_name(uncertain):
+        document["ranges"] = _ranges(scene, widths)
     if as_json:
         emit(document)
         return
@@ -85,6 +90,8 @@ def command(
         typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
     typer.echo(_motion_line(document["motion"]))
+    if widths:
+        typer.echo(_ranges_line(document["ranges"]))
     if sensitivity:
         lost = document["digits_lost"]
         typer.echo(f"sensitivity: the flow costs {lost:.1f} digits between release and end: for n digits of a result")
@@ -178,6 +185,38 @@ def _motion(scene: Scene) -> dict[str, Any]:
             full = 360 / abs(turn)
             found |= {"full_turn_h": full, "full_turn_error_h": full * error_of_turn / abs(turn)}
     return found if len(found) > 1 else {"reason": row["reason"] or "the bob does not swing to and fro"}
+
+
+def _ranges(scene: Scene, widths: dict[str, str]) -> dict[str, Any]:
+    """Return proven intervals of the period and of the first transits, for every value of uncertain inputs.
+
+    Raises:
+        InputError: an input, or a width.
+        UnreachableError: the box is too wide.
+    """
+    from ..dataset.ranges import ends, period_texts
+    from ..solver.solve import solve
+
+    scene = scene.with_values({"run.grid_step": scene.run.t_end, "run.transits": "true"})
+    ranges = solve(scene, uncertain=widths)
+    first = [list(ends(*interval)) for interval in ranges.transits.exact("t")[:FIRST_TRANSITS]]
+    return {
+        "over_s": scene.run.t_end,
+        "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
+        "period_s": period_texts(ranges),
+        "first_transits_s": first,
+        "possible": len(ranges.possible),
+    }
+
+
+def _ranges_line(ranges: dict[str, Any]) -> str:
+    """Return in a line what holds for all values of uncertain inputs."""
+    box = ", ".join(f"{name} {width}" for name, width in ranges["uncertain"].items())
+    told = ["period_s = {} to {}".format(*ranges["period_s"])] if ranges["period_s"] else []
+    told += [f"transit {k} = {low} to {high} s" for k, (low, high) in enumerate(ranges["first_transits_s"], 1)]
+    return f"[ranges, over {ranges['over_s']} s, proved for every {box}] " + (
+        ", ".join(told) or "no transit is decided"
+    )
 
 
 def _motion_line(motion: dict[str, Any]) -> str:

@@ -33,6 +33,15 @@ Assignments = Annotated[
         autocompletion=completion(lambda: (f"{name}=" for name in field_names())),
     ),
 ]
+Uncertain = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--uncertain",
+        metavar="KEY=±WIDTH",
+        help="Prove intervals for every value of an input within this width: pendulum.length=±0.001, or +-0.001; "
+        "may be repeated.",
+    ),
+]
 EndTime = Annotated[
     str | None, typer.Option("--t-end", metavar="S", help="End each run at this time, in s (default: the scene's).")
 ]
@@ -112,6 +121,23 @@ def replacements(
                 raise InputError(option, given, f"no such option together with --set {values[field]}", "Keep one.")
             values[field] = f"{field}={given}"
     return list(values.values())
+
+
+def widths_by_name(words: Iterable[str] | None) -> dict[str, str] | None:
+    """Return the widths that `--uncertain` gives, by name; None if it was not given.
+
+    Raises:
+        InputError: a word is not KEY=±WIDTH, or one key has two widths.
+    """
+    widths: dict[str, str] = {}
+    for word in words or ():
+        key, sign, width = word.partition("=")
+        if not sign or not key.strip():
+            raise InputError("--uncertain", word, "KEY=±WIDTH, such as pendulum.length=±0.001")
+        if key.strip() in widths:
+            raise InputError("--uncertain", word, f"one width of {key.strip()}")
+        widths[key.strip()] = width
+    return widths or None
 
 
 def refuse(options: Mapping[str, object], why: str) -> None:

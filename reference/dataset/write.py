@@ -29,12 +29,12 @@ def check_target(folder: Path) -> None:
         raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
     if folder.is_dir() and any(folder.iterdir()) and not (folder / MANIFEST).is_file():
         raise InputError("--out", str(folder), "a new or empty folder, or an older dataset", "Nothing was changed.")
-    with _place(folder):
+    with writable_place(folder):
         pass
 
 
 @contextmanager
-def _place(folder: Path) -> Iterator[tuple[Path, Path]]:
+def writable_place(folder: Path) -> Iterator[tuple[Path, Path]]:
     """Provide a new folder beside the target, and the target; a symbolic link is followed.
 
     Raises:
@@ -76,17 +76,30 @@ def write(solution: Solution, folder: str | Path, name: str | None = None, *, ta
     return folder
 
 
+def filled(work: Path, texts: Mapping[str, Content]) -> Path:
+    """Return a new folder in `work` with these files, which are on the disk."""
+    new = work / "new"
+    new.mkdir()
+    for file, text in texts.items():
+        with (new / file).open("wb") as handle:
+            handle.write(text if isinstance(text, bytes) else text.encode())
+            handle.flush()
+            os.fsync(handle.fileno())
+    return new
+
+
+def replace(target: Path, new: Path, work: Path) -> None:
+    """Put a new folder in the place of a target."""
+    if target.exists():
+        target.rename(work / OLD)  # after an end between the two renames, `workspace` puts it back
+    new.rename(target)
+
+
 def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution | None = None) -> None:
     """Write the files of a dataset that was rendered, as `write` does; without its solution, they were checked."""
     check_target(folder)
-    with _place(folder) as (work, target):
-        new = work / "new"
-        new.mkdir()
-        for file, text in texts.items():
-            with (new / file).open("wb") as handle:
-                handle.write(text if isinstance(text, bytes) else text.encode())
-                handle.flush()
-                os.fsync(handle.fileno())
+    with writable_place(folder) as (work, target):
+        new = filled(work, texts)
         problems = problems_of(new)
         if problems:
             raise DatasetError(str(folder), problems)
@@ -94,9 +107,7 @@ def write_texts(texts: Mapping[str, Content], folder: Path, solution: Solution |
             contents = {path.name: path.read_bytes() for path in new.iterdir()}
             kept = {name: data if name == FUNCTION[1] else data.decode() for name, data in contents.items()}
             check_proved(kept, solution)
-        if target.exists():
-            target.rename(work / OLD)  # after an end between the two renames, `workspace` puts it back
-        new.rename(target)
+        replace(target, new, work)
         if ships(target):
             manifest = json.loads(texts[MANIFEST])
             keep_seal(target.name, manifest["seal"], next(OPTIONS.finditer(manifest["command"]))[0])

@@ -67,8 +67,8 @@ class BoxRadius(Radius):
 
     balls: BoxBalls
 
-    def advance(self, piece: Piece) -> Covered:
-        """Carry the radius over a piece, with a bound of |e| that what follows from it has to confirm."""
+    def widened(self, piece: Piece) -> tuple[Piece, Sizes, arb]:
+        """Return a piece with what holds for the box: its constants, its defects, its jump (Lemmas 11.2 and 11.3)."""
         whole, balls, jump, h = copy(piece), self.balls, self.join(piece), piece.k.h
         with ctx.workprec(balls.prec):
             k = whole.k = copy(piece.k)  # whose integers remain those of the scene
@@ -79,13 +79,19 @@ class BoxRadius(Radius):
             norms = whole.defects()
             whole.defects = lambda: norms  # type: ignore[method-assign]
             d: Sizes = Piece.sizes.func(whole)  # type: ignore[attr-defined]
-            v1, gap, span = size(norms[4:7]), size(jump[:3]), ball(piece.step.high - piece.step.low)
+            v1, gap = size(norms[4:7]), size(jump[:3])
             along = sum((total(f, piece.step.bits) * x.abs_upper() for f, x in zip(piece.p, off, strict=True)), arb(0))
             more = 2 * along * v1 + turn * norms[7] + d.p**2 * turn * (k.omega_size + piece.k.omega_size)
-            d = d._replace(d2=upper(d.d2 + more + slow * d.p * v1))
-            ck, gw, w = k.c_size + d.k**2, k.drag_size * k.omega_size * d.p, k.w
-            jumped = gap + (size(jump[3:]) + 2 * turn / h * gap * (2 * d.p + gap)) / balls.w0
-            start = upper(self.eta + jumped + span * (ck * d.tau / (2 * w) + d.d2 / w + d.d1))
+            moved = size(jump[3:]) + 2 * turn / h * gap * (2 * d.p + gap)
+            return whole, d._replace(d2=upper(d.d2 + more + slow * d.p * v1)), upper(gap + moved / balls.w0)
+
+    def advance(self, piece: Piece) -> Covered:
+        """Carry the radius over a piece, with a bound of |e| that what follows has to confirm (Lemma 11.4)."""
+        (whole, d, jump), w = self.widened(piece), piece.k.w
+        with ctx.workprec(SHORT):
+            k, span = whole.k, ball(piece.step.high - piece.step.low)
+            ck, gw = k.c_size + d.k**2, k.drag_size * k.omega_size * d.p
+            start = upper(self.eta + jump + span * (ck * d.tau / (2 * w) + d.d2 / w + d.d1))
             far = upper(2 * start * (span * (k.below.max(k.above + k.speed**2) + gw) / (2 * w)).exp())
             rate = k.below.max(k.above + (k.speed + (w + d.k) * far) ** 2) + ck * far + gw
             self.eta = upper(start * (span * rate / (2 * w)).exp())
