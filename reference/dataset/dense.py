@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ..errors import InputError
 from ..numbers.columns import POSITION, STATE, VELOCITY
-from ..numbers.function import States, check_span
+from ..numbers.function import States, moments_of
 from ..numbers.precision import Array
 
 WITHIN = 2.0**-58  # error allowed, relative to the cord length: enough to judge programs in double
@@ -83,8 +83,7 @@ def states_at(golden: Any, times: npt.ArrayLike) -> States:
     Raises:
         InputError: a time is not finite, or outside of the dataset's span.
     """
-    moments = np.asarray(times, dtype=np.float64)
-    check_span(moments, golden.times[-1])
+    moments = moments_of(times, golden.times[-1])
     if not moments.size:
         return States.of(moments, np.empty((6, 0)), {})
     found = dense(golden, moments)
