@@ -16,6 +16,7 @@ from ..numbers.function import States, moments_of
 from ..numbers.precision import Array
 
 WITHIN = 2.0**-58  # error allowed, relative to the cord length: enough to judge programs in double
+ROUNDED = 2.0**-40  # relative, of the times that a program has added up
 PAIR = Fraction(1, 1 << 104)  # relative resolution of a number held as two doubles
 
 
@@ -97,8 +98,10 @@ def states_at(golden: Any, times: npt.ArrayLike) -> States:
 def _check(times: Array, grid: tuple[Fraction, ...]) -> None:
     if not len(times):
         raise InputError("t", "no times", "at least one time in s")
-    end = 2 * grid[-1] - grid[-2]  # a program that counts in steps ends a little beyond
-    if not np.isfinite(times).all() or times[0] < 0 or Fraction(times[-1]) > end:
+    end = (
+        2 * grid[-1] - grid[-2]
+    )  # where a program that counts steps may end, but for the rounding of its times
+    if not np.isfinite(times).all() or times[0] < 0 or times[-1] > float(end) * (1 + ROUNDED):
         outside = times[~np.isfinite(times)] if not np.isfinite(times).all() else times[[0]] if times[0] < 0 else times
         advice = f"The scene ends at run.t_end = {float(grid[-1]):.17g}: --set run.t_end=… solves a longer one."
         raise InputError("t", f"{outside[-1]:.17g}", f"times from 0 to {float(end):.17g} s", advice)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import numpy as np
@@ -97,6 +98,7 @@ def test_a_step_beyond_the_end_is_measured_and_more_is_refused(decimal_grid):
     assert 0 < evaluated.bound_m < 1e-15
     ahead = dense(decimal_grid, [30.0])
     assert evaluated.states[0, 0] == pytest.approx(ahead.states[0, 0] + 0.05 * ahead.states[0, 3], abs=1e-4)
+    assert dense(decimal_grid, [math.nextafter(30.1, 31)]).bound_m < 1e-15  # the end, as a program may add it up
     with pytest.raises(InputError, match=r"run\.t_end"):
         dense(decimal_grid, [30.11])
 
