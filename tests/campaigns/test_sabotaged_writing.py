@@ -177,13 +177,13 @@ def wrong_page(mp, rng):
 def wrong_manifest(mp, rng):
     honest, kind, by = rendering.manifest_of, rng.randrange(7), abs(tiny(rng))
 
-    def manifest_of(solution, *words):
+    def manifest_of(solution, *words, **named):
         if kind == 0:
-            return honest(replace(solution, possible=()), *words)
+            return honest(replace(solution, possible=()), *words, **named)
         if kind == 1:
             odd = tuple((low, max(low, high - by), "even") for low, high, _ in solution.possible)
-            return honest(replace(solution, possible=odd), *words)
-        made = honest(solution, *words)
+            return honest(replace(solution, possible=odd), *words, **named)
+        made = honest(solution, *words, **named)
         if kind == 2:
             return made.model_copy(update={"transits": rng.choice(("complete", "xdot is identically zero"))})
         if kind == 3:
@@ -205,8 +205,8 @@ def wrong_manifest(mp, rng):
 def late(mp, rng):
     honest, name = writer.render, rng.choice(("grid.csv", "transits.csv", "certified.txt", "manifest.json"))
 
-    def edited(*words):
-        texts = honest(*words)
+    def edited(*words, **named):
+        texts = honest(*words, **named)
         begin = texts[name].index("Certified") if name == "certified.txt" else 0
         end = texts[name].index("How to score") if name == "certified.txt" else len(texts[name])
         end = texts[name].index('"decimals"') if name == "manifest.json" else end
