@@ -123,7 +123,7 @@ PUBLIC = {
     "integrate load load_scene parse_scene scene_ids solve trajectory write",
     "reference.commands.progress": "progress",
     "reference.commands.terminal": "AsJson Assignments Cluster EndTime SceneWord Workers check_workers chosen "
-    "completion emit refuse replacements stoppable",
+    "completion emit option refuse replacements scene_argument stoppable",
     "reference.dataset.render": "MEANING",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",

@@ -8,10 +8,8 @@ from typing import Annotated
 import typer
 
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson, emit, stoppable
+from reference.commands.terminal import AsJson, emit, option, stoppable
 from reference.scenes.shipped import golden_root
-
-from .options import option
 
 OUT = option("--out", "Write the pages into this folder (extra plot).", "DIR")
 DATA = option("--data", "The folder of the datasets (default: those that ship).", "DIR")

@@ -9,12 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from reference import InputError, Scene
-from reference.commands.terminal import emit, refuse
-
-
-def option(word: str, text: str, value: str | None = None, names: Callable[[str], list[str]] | None = None) -> Any:
-    """Return an option: its word, what the help says of it, the word for its value, and what a shell may complete."""
-    return typer.Option(word, help=text, metavar=value, autocompletion=names)
+from reference.commands.terminal import emit, option, refuse
 
 
 def completion_of_lists(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]:

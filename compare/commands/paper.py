@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson, stoppable
+from reference.commands.terminal import AsJson, option, stoppable
 
-from .options import finish, option
+from .options import finish
 
 OUT = option("--out", "Write a page with figures, CSV and JSON into this folder (extra plot).", "DIR")
 

@@ -9,11 +9,11 @@ import typer
 
 from reference import InputError, load_scene, scene_ids
 from reference.commands.progress import progress
-from reference.commands.terminal import Assignments, EndTime, completion, refuse, replacements, stoppable
+from reference.commands.terminal import Assignments, EndTime, completion, option, refuse, replacements, stoppable
 from reference.errors import did_you_mean, in_words
 from reference.scenes.shipped import seals
 
-from .options import announce, completion_of_lists, listed, option
+from .options import announce, completion_of_lists, listed
 
 if TYPE_CHECKING:
     from ..report.motion import Motion

@@ -8,8 +8,18 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reference import InputError, load_scene, scene_ids
-from reference.commands.terminal import AsJson, Assignments, chosen, completion, emit, refuse, replacements
+from reference import InputError, load_scene
+from reference.commands.terminal import (
+    AsJson,
+    Assignments,
+    chosen,
+    completion,
+    emit,
+    option,
+    refuse,
+    replacements,
+    scene_argument,
+)
 
 from .options import announce, listed
 
@@ -22,7 +32,7 @@ UNUSED = {  # fields of a scene that make no difference to a score
     "run.level": "A candidate is held against a confirmed solution, or a dataset that ships.",
     "inputs=decimal": "Write --inputs decimal: without it doubles are held against doubles.",
 }
-INPUTS = ("auto", "decimal", "binary64")  # readings of the scene's numbers; auto: by the candidate's precision
+READINGS = ("auto", "decimal", "binary64")  # readings of the scene's numbers; auto: by the candidate's precision
 
 
 def _approximation_ids() -> list[str]:
@@ -40,156 +50,91 @@ def _how(language: str | None) -> None:
         raise typer.Exit
 
 
+SCENE = scene_argument("A scene's id, or the path of a TOML file; with --suite none.")
+CANDIDATES = typer.Argument(
+    metavar="CANDIDATE", help="Files to score: text with named columns, .npy, .npz; - is stdin."
+)
+SUITE = option("--suite", "Score each file of this folder by the scene that it is named after: paris.csv.", "DIR")
+HOW = option(
+    "--how",
+    "Print how to write such a file in c, fortran, python, julia, javascript … and end.",
+    "LANGUAGE",
+    callback=_how,
+    is_eager=True,
+)
+COLUMNS = option("--columns", "Names of a file's columns in order; - for one that is not read.", "t,x,y,…")
+UNITS = option("--units", "Units of times and lengths, such as ms,cm (default: s,m).", "A,B")
+TRANSITS = option("--transits", "Score transits too, or alone: a file with times of xdot = 0 in a column t.", "FILE")
+RUN = option("--run", "Run this program and score its output.", "'COMMAND'")
+NAME = option("--name", "Name of the program of --run (default: the program).", "WORD")
+SETTING = option("--setting", "Value of {setting} in --run, in s (default: 200 a period).", "S")
+EXPERIMENTS = option(
+    "--experiments",
+    "Where the program of --run is off, run it up to ten times with other numbers, and measure the cause.",
+)
+APPROXIMATION = option(
+    "--approximation",
+    "Score one of the source papers' approximations, which `foucault methods` lists.",
+    "ID",
+    completion(_approximation_ids),
+)
+BASELINE = option(
+    "--baseline",
+    "Say what changed since an earlier version: its file or --json (.json), its command or suite.",
+    "FILE",
+)
+TOLERANCE = option("--tolerance", "Allow position errors up to this, in m (default: 1e-6 of the amplitude).", "M")
+COVERS = option(
+    "--covers", "Demand that the rows reach this share of the scene's span; 1 is all of it (default: any).", "SHARE"
+)
+T_END = option("--t-end", "Compare up to this time, in s, and ignore later rows (default: the scene's).", "S")
+INPUTS = option(
+    "--inputs",
+    "Read the scene's numbers as decimal or binary64; auto: as the candidate's digits suggest.",
+    "READING",
+    completion(lambda: READINGS),
+)
+PLOT = option("--plot", "Draw error against time: .svg, .png or .pdf.", "FILE")
+TIMEOUT = option("--timeout", f"Stop the program of --run after this many seconds (default: {TIMEOUT_S:g}).", "S")
+TIMINGS = option("--repeats", f"Time the program of --run this often after a warm-up (default: {REPEATS}).", "N")
+AS_MODEL = option("--as-model", "Count agreement as a named simplification of the model as agreement.")
+NO_DIAGNOSIS = option("--no-diagnosis", "Do not look for the reasons of an error.")
+OUT = option(
+    "--out",
+    "With --suite: write a page, a badge, CSV and JSON into this folder; with --experiments: the outputs.",
+    "DIR",
+)
+JUNIT = option("--junit", "Write the outcome as JUnit XML, a test for each.", "FILE")
+GITHUB = option("--github", "Print annotations for GitHub Actions too, and write the job's summary.")
+
+
 def command(
-    scene_word: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="SCENE",
-            help="A scene's id, or the path of a TOML file; with --suite none.",
-            autocompletion=completion(scene_ids),
-        ),
-    ] = None,
-    candidates: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="CANDIDATE", help="Files to score: text with named columns, .npy, .npz; - is stdin."),
-    ] = None,
-    suite: Annotated[
-        Path | None,
-        typer.Option(
-            "--suite",
-            metavar="DIR",
-            help="Score each file of this folder by the scene that it is named after: paris.csv.",
-        ),
-    ] = None,
-    how: Annotated[
-        str | None,
-        typer.Option(
-            "--how",
-            metavar="LANGUAGE",
-            help="Print how to write such a file in c, fortran, python, julia, javascript … and end.",
-            callback=_how,
-            is_eager=True,
-        ),
-    ] = None,
-    columns: Annotated[
-        str | None,
-        typer.Option(
-            "--columns", metavar="t,x,y,…", help="Names of a file's columns in order; - for one that is not read."
-        ),
-    ] = None,
-    units: Annotated[
-        str | None,
-        typer.Option("--units", metavar="A,B", help="Units of times and lengths, such as ms,cm (default: s,m)."),
-    ] = None,
-    transits: Annotated[
-        str | None,
-        typer.Option(
-            "--transits",
-            metavar="FILE",
-            help="Score transits too, or alone: a file with times of xdot = 0 in a column t.",
-        ),
-    ] = None,
-    run: Annotated[
-        str | None, typer.Option("--run", metavar="'COMMAND'", help="Run this program and score its output.")
-    ] = None,
-    name: Annotated[
-        str | None, typer.Option("--name", metavar="WORD", help="Name of the program of --run (default: the program).")
-    ] = None,
-    setting: Annotated[
-        float | None,
-        typer.Option("--setting", metavar="S", help="Value of {setting} in --run, in s (default: 200 a period)."),
-    ] = None,
-    experiments: Annotated[
-        bool,
-        typer.Option(
-            "--experiments",
-            help="Where the program of --run is off, run it up to ten times with other numbers, and measure the cause.",
-        ),
-    ] = False,
-    approximation: Annotated[
-        str | None,
-        typer.Option(
-            "--approximation",
-            metavar="ID",
-            help="Score one of the source papers' approximations, which `foucault methods` lists.",
-            autocompletion=completion(_approximation_ids),
-        ),
-    ] = None,
-    baseline: Annotated[
-        str | None,
-        typer.Option(
-            "--baseline",
-            metavar="FILE",
-            help="Say what changed since an earlier version: its file or --json (.json), its command or suite.",
-        ),
-    ] = None,
-    tolerance: Annotated[
-        float | None,
-        typer.Option(
-            "--tolerance", metavar="M", help="Allow position errors up to this, in m (default: 1e-6 of the amplitude)."
-        ),
-    ] = None,
-    covers: Annotated[
-        float | None,
-        typer.Option(
-            "--covers",
-            metavar="SHARE",
-            help="Demand that the rows reach this share of the scene's span; 1 is all of it (default: any).",
-        ),
-    ] = None,
-    t_end: Annotated[
-        str | None,
-        typer.Option(
-            "--t-end", metavar="S", help="Compare up to this time, in s, and ignore later rows (default: the scene's)."
-        ),
-    ] = None,
-    inputs: Annotated[
-        str,
-        typer.Option(
-            "--inputs",
-            metavar="READING",
-            help="Read the scene's numbers as decimal or binary64; auto: as the candidate's digits suggest.",
-            autocompletion=completion(lambda: INPUTS),
-        ),
-    ] = "auto",
-    plot: Annotated[
-        Path | None, typer.Option("--plot", metavar="FILE", help="Draw error against time: .svg, .png or .pdf.")
-    ] = None,
-    timeout: Annotated[
-        float | None,
-        typer.Option(
-            "--timeout",
-            metavar="S",
-            help=f"Stop the program of --run after this many seconds (default: {TIMEOUT_S:g}).",
-        ),
-    ] = None,
-    repeats: Annotated[
-        int | None,
-        typer.Option(
-            "--repeats", metavar="N", help=f"Time the program of --run this often after a warm-up (default: {REPEATS})."
-        ),
-    ] = None,
-    as_model: Annotated[
-        bool, typer.Option("--as-model", help="Count agreement as a named simplification of the model as agreement.")
-    ] = False,
-    no_diagnosis: Annotated[
-        bool, typer.Option("--no-diagnosis", help="Do not look for the reasons of an error.")
-    ] = False,
+    scene_word: Annotated[str | None, SCENE] = None,
+    candidates: Annotated[list[str] | None, CANDIDATES] = None,
+    suite: Annotated[Path | None, SUITE] = None,
+    how: Annotated[str | None, HOW] = None,
+    columns: Annotated[str | None, COLUMNS] = None,
+    units: Annotated[str | None, UNITS] = None,
+    transits: Annotated[str | None, TRANSITS] = None,
+    run: Annotated[str | None, RUN] = None,
+    name: Annotated[str | None, NAME] = None,
+    setting: Annotated[float | None, SETTING] = None,
+    experiments: Annotated[bool, EXPERIMENTS] = False,
+    approximation: Annotated[str | None, APPROXIMATION] = None,
+    baseline: Annotated[str | None, BASELINE] = None,
+    tolerance: Annotated[float | None, TOLERANCE] = None,
+    covers: Annotated[float | None, COVERS] = None,
+    t_end: Annotated[str | None, T_END] = None,
+    inputs: Annotated[str, INPUTS] = "auto",
+    plot: Annotated[Path | None, PLOT] = None,
+    timeout: Annotated[float | None, TIMEOUT] = None,
+    repeats: Annotated[int | None, TIMINGS] = None,
+    as_model: Annotated[bool, AS_MODEL] = False,
+    no_diagnosis: Annotated[bool, NO_DIAGNOSIS] = False,
     set_: Assignments = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            metavar="DIR",
-            help="With --suite: write a page, a badge, CSV and JSON into this folder; with --experiments: the outputs.",
-        ),
-    ] = None,
-    junit: Annotated[
-        Path | None, typer.Option("--junit", metavar="FILE", help="Write the outcome as JUnit XML, a test for each.")
-    ] = None,
-    github: Annotated[
-        bool, typer.Option("--github", help="Print annotations for GitHub Actions too, and write the job's summary.")
-    ] = False,
+    out: Annotated[Path | None, OUT] = None,
+    junit: Annotated[Path | None, JUNIT] = None,
+    github: Annotated[bool, GITHUB] = False,
     as_json: AsJson = False,
 ) -> None:
     """Score a program's output against the truth.
@@ -202,7 +147,7 @@ def command(
     {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
     {azimuth_rate} {t_end} {grid_step} {setting}.
     """
-    reading = None if chosen("--inputs", inputs, INPUTS) == "auto" else inputs
+    reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
     if no_diagnosis:
         refuse({"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis")
     if as_json:

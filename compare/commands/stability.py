@@ -6,7 +6,7 @@ from typing import Annotated
 
 from reference import load_scene, scene_ids
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson, stoppable
+from reference.commands.terminal import AsJson, option, stoppable
 
 from .options import (
     Commands,
@@ -17,7 +17,6 @@ from .options import (
     completion_of_lists,
     finish,
     listed,
-    option,
     programs_of,
     resumes,
 )

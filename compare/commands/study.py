@@ -7,7 +7,7 @@ from typing import Annotated
 
 from reference import Scene, load_scene
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson, Assignments, SceneWord, refuse, replacements, stoppable
+from reference.commands.terminal import AsJson, Assignments, SceneWord, option, refuse, replacements, stoppable
 
 from .options import (
     Commands,
@@ -19,7 +19,6 @@ from .options import (
     finish,
     listed,
     numbers,
-    option,
     programs_of,
     resumes,
 )

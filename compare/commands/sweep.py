@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from reference import InputError, UnreachableError, load_scene, scene_ids
+from reference import InputError, UnreachableError, load_scene
 from reference.commands.progress import progress
 from reference.commands.terminal import (
     AsJson,
@@ -18,14 +18,14 @@ from reference.commands.terminal import (
     check_workers,
     completion,
     emit,
+    option,
     refuse,
     replacements,
+    scene_argument,
     stoppable,
 )
 from reference.scenes.fields import LEVELS
 from reference.status import Status
-
-from .options import option
 
 if TYPE_CHECKING:
     from reference import Swept
@@ -35,7 +35,9 @@ _NO_GRID = dict.fromkeys(
     ("run.grid_step", "run.digits", "run.level", "run.transits"), "Give --t-end, --digits, --level or --want."
 )
 
-
+SCENE = scene_argument(
+    "A scene's id, or the path of a TOML file; without it, go on with the sweep in --out.", "[SCENE]"
+)
 OVER = option(
     "--over", "Vary a field: START:STOP:STEP, or V1,V2,…, or @FILE.csv; several give all combinations.", "KEY=VALUES"
 )
@@ -53,14 +55,7 @@ PLOT = option("--plot", "Draw frequency and precession: .svg, .png or .pdf.", "F
 
 
 def command(
-    scene_word: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="[SCENE]",
-            help="A scene's id, or the path of a TOML file; without it, go on with the sweep in --out.",
-            autocompletion=completion(scene_ids),
-        ),
-    ] = None,
+    scene_word: Annotated[str | None, SCENE] = None,
     over: Annotated[list[str] | None, OVER] = None,
     rows: Annotated[Path | None, ROWS] = None,
     set_: Assignments = None,

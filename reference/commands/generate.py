@@ -28,8 +28,10 @@ from .terminal import (
     chosen,
     completion,
     emit,
+    option,
     refuse,
     replacements,
+    scene_argument,
     stoppable,
     widths_by_name,
 )
@@ -41,85 +43,65 @@ if TYPE_CHECKING:
 ENGINES = (AUTO, *engine_names())
 
 
+SCENE = scene_argument(value="[SCENE]")
+OUT = option(
+    "--out",
+    "Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout); "
+    "with --all the folder of all.",
+    "DIR",
+)
+DIGITS = option("--digits", "Significant digits of the largest number in each column (default: the scene's).", "D")
+LEVEL = option(
+    "--level",
+    f"How far to trust the numbers: {in_words(LEVELS)} (default: the scene's).",
+    "L",
+    completion(lambda: LEVELS),
+)
+ENGINE = option(
+    "--engine",
+    f"Integrate with {in_words(engine_names())}; auto takes the fastest that is installed, "
+    "for a scene that ships the one that its dataset was made with.",
+    "E",
+    completion(lambda: ENGINES),
+)
+NO_TRANSITS = option("--no-transits", "Do not look for transits, xdot = 0.")
+AUDIT = option(
+    "--audit/--no-audit",
+    "At the level enclosed, prove it again by FLINT alone: the same digits (default: --audit).",
+)
+CONFIRM = option(
+    "--confirm",
+    f"At the level enclosed, what heyoka confirms in another formulation: {in_words(CONFIRMATIONS)}; "
+    "sampled is a tenth of the grid's intervals (default: sampled; of what ships, as it was made: the whole).",
+    "C",
+    completion(lambda: CONFIRMATIONS),
+)
+NO_CONFIRM = option("--no-confirm", "The same as --confirm none.", hidden=True)
+FUNCTION = option(
+    "--function/--no-function",
+    "At the level enclosed, make the golden function, the motion at any time (default: it is made, "
+    "but for what ships without it).",
+)
+NO_TABLES = option("--no-tables", "Write the golden function and its manifest alone.")
+ALL = option("--all", "Make every dataset that ships and is missing or not sealed.")
+
+
 def command(
-    scene_word: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="[SCENE]", help="A scene's id, or the path of a TOML file.", autocompletion=completion(scene_ids)
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            metavar="DIR",
-            help="Write the dataset to this folder (default: golden/SCENE, or data/golden/SCENE in a checkout); "
-            "with --all the folder of all.",
-        ),
-    ] = None,
+    scene_word: Annotated[str | None, SCENE] = None,
+    out: Annotated[Path | None, OUT] = None,
     t_end: EndTime = None,
-    digits: Annotated[
-        str | None,
-        typer.Option(
-            "--digits",
-            metavar="D",
-            help="Significant digits of the largest number in each column (default: the scene's).",
-        ),
-    ] = None,
-    level: Annotated[
-        str | None,
-        typer.Option(
-            "--level",
-            metavar="L",
-            help=f"How far to trust the numbers: {in_words(LEVELS)} (default: the scene's).",
-            autocompletion=completion(lambda: LEVELS),
-        ),
-    ] = None,
-    engine: Annotated[
-        str,
-        typer.Option(
-            "--engine",
-            metavar="E",
-            help=f"Integrate with {in_words(engine_names())}; auto takes the fastest that is installed, "
-            "for a scene that ships the one that its dataset was made with.",
-            autocompletion=completion(lambda: ENGINES),
-        ),
-    ] = AUTO,
-    no_transits: Annotated[bool, typer.Option("--no-transits", help="Do not look for transits, xdot = 0.")] = False,
-    audit: Annotated[
-        bool | None,
-        typer.Option(
-            "--audit/--no-audit",
-            help="At the level enclosed, prove it again by FLINT alone: the same digits (default: --audit).",
-        ),
-    ] = None,
-    confirm: Annotated[
-        str | None,
-        typer.Option(
-            "--confirm",
-            metavar="C",
-            help=f"At the level enclosed, what heyoka confirms in another formulation: {in_words(CONFIRMATIONS)}; "
-            "sampled is a tenth of the grid's intervals (default: sampled; of what ships, as it was made: the whole).",
-            autocompletion=completion(lambda: CONFIRMATIONS),
-        ),
-    ] = None,
-    no_confirm: Annotated[bool, typer.Option("--no-confirm", help="The same as --confirm none.", hidden=True)] = False,
-    function: Annotated[
-        bool | None,
-        typer.Option(
-            "--function/--no-function",
-            help="At the level enclosed, make the golden function, the motion at any time (default: it is made, "
-            "but for what ships without it).",
-        ),
-    ] = None,
-    no_tables: Annotated[
-        bool, typer.Option("--no-tables", help="Write the golden function and its manifest alone.")
-    ] = False,
+    digits: Annotated[str | None, DIGITS] = None,
+    level: Annotated[str | None, LEVEL] = None,
+    engine: Annotated[str, ENGINE] = AUTO,
+    no_transits: Annotated[bool, NO_TRANSITS] = False,
+    audit: Annotated[bool | None, AUDIT] = None,
+    confirm: Annotated[str | None, CONFIRM] = None,
+    no_confirm: Annotated[bool, NO_CONFIRM] = False,
+    function: Annotated[bool | None, FUNCTION] = None,
+    no_tables: Annotated[bool, NO_TABLES] = False,
     set_: Assignments = None,
     uncertain: Uncertain = None,
-    every: Annotated[
-        bool, typer.Option("--all", help="Make every dataset that ships and is missing or not sealed.")
-    ] = False,
+    every: Annotated[bool, ALL] = False,
     workers: Workers = None,
     cluster: Cluster = None,
     as_json: AsJson = False,

@@ -9,9 +9,9 @@ import typer
 
 from ..errors import FoucaultError, InputError, UnreachableError
 from ..scenes.scene import Scene, load_scene
-from ..scenes.shipped import flag_meanings, scene_ids
+from ..scenes.shipped import flag_meanings
 from ..scenes.template import template as as_template
-from .terminal import AsJson, Assignments, Uncertain, completion, emit, refuse, widths_by_name
+from .terminal import AsJson, Assignments, Uncertain, emit, option, refuse, scene_argument, widths_by_name
 
 FORMS = {  # of the forms that an engine publishes: what its letters mean
     "momentum": "n = r/l, H = n × (n' + Ω × n), c = pull/l",
@@ -22,24 +22,17 @@ FIRST_TRANSITS = 3  # that are told of uncertain inputs
 DERIVED_PREC = 96  # bits of the derived quantities, of which 15 digits are shown
 
 
+SCENE = scene_argument("A scene's id, or the path of a TOML file; may be left out with --template.")
+TEMPLATE = option("--template", "Print the scene as a TOML file to begin with, each field explained.")
+EQUATIONS = option("--equations", "Also show the compiled equations, and the terms left out.")
+SENSITIVITY = option("--sensitivity", "Also show how many digits the flow costs between release and end.")
+
+
 def command(
-    scene_word: Annotated[
-        str | None,
-        typer.Argument(
-            metavar="SCENE",
-            help="A scene's id, or the path of a TOML file; may be left out with --template.",
-            autocompletion=completion(scene_ids),
-        ),
-    ] = None,
-    template: Annotated[
-        bool, typer.Option("--template", help="Print the scene as a TOML file to begin with, each field explained.")
-    ] = False,
-    equations: Annotated[
-        bool, typer.Option("--equations", help="Also show the compiled equations, and the terms left out.")
-    ] = False,
-    sensitivity: Annotated[
-        bool, typer.Option("--sensitivity", help="Also show how many digits the flow costs between release and end.")
-    ] = False,
+    scene_word: Annotated[str | None, SCENE] = None,
+    template: Annotated[bool, TEMPLATE] = False,
+    equations: Annotated[bool, EQUATIONS] = False,
+    sensitivity: Annotated[bool, SENSITIVITY] = False,
     set_: Assignments = None,
     uncertain: Uncertain = None,
     as_json: AsJson = False,

@@ -18,41 +18,44 @@ def completion(names: Callable[[], Iterable[str]]) -> Callable[[str], list[str]]
     return lambda incomplete: [name for name in names() if name.startswith(incomplete)]
 
 
-SceneWord = Annotated[
-    str,
-    typer.Argument(
-        metavar="SCENE", help="A scene's id, or the path of a TOML file.", autocompletion=completion(scene_ids)
-    ),
-]
+def option(
+    word: str, text: str, value: str | None = None, names: Callable[[str], list[str]] | None = None, **more: Any
+) -> Any:
+    """Return an option: its word, what the help says of it, the word for its value, and what a shell may complete.
+
+    More arguments are those of `typer.Option`.
+    """
+    return typer.Option(word, help=text, metavar=value, autocompletion=names, **more)
+
+
+def scene_argument(text: str = "A scene's id, or the path of a TOML file.", value: str = "SCENE") -> Any:
+    """Return the argument that is a scene: what the help says of it, and the word for it; a shell completes the ids."""
+    return typer.Argument(metavar=value, help=text, autocompletion=completion(scene_ids))
+
+
+SceneWord = Annotated[str, scene_argument()]
 Assignments = Annotated[
     list[str] | None,
-    typer.Option(
+    option(
         "--set",
-        metavar="section.key=value",
-        help="Replace one field of the scene, by this name or as in --run: x0=0.1; may be repeated.",
-        autocompletion=completion(lambda: (f"{name}=" for name in field_names())),
+        "Replace one field of the scene, by this name or as in --run: x0=0.1; may be repeated.",
+        "section.key=value",
+        completion(lambda: (f"{name}=" for name in field_names())),
     ),
 ]
 Uncertain = Annotated[
     list[str] | None,
-    typer.Option(
+    option(
         "--uncertain",
-        metavar="KEY=±WIDTH",
-        help="Prove intervals for every value of an input within this width: pendulum.length=±0.001, or +-0.001; "
+        "Prove intervals for every value of an input within this width: pendulum.length=±0.001, or +-0.001; "
         "may be repeated.",
+        "KEY=±WIDTH",
     ),
 ]
-EndTime = Annotated[
-    str | None, typer.Option("--t-end", metavar="S", help="End each run at this time, in s (default: the scene's).")
-]
-Workers = Annotated[
-    int | None, typer.Option("--workers", metavar="N", help="Number of cores of this machine to use (default: all).")
-]
-Cluster = Annotated[
-    str | None,
-    typer.Option("--cluster", metavar="ADDRESS", help="Use dask.distributed: tcp://HOST:PORT, or local:N."),
-]
-AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON document on stdout and nothing else.")]
+EndTime = Annotated[str | None, option("--t-end", "End each run at this time, in s (default: the scene's).", "S")]
+Workers = Annotated[int | None, option("--workers", "Number of cores of this machine to use (default: all).", "N")]
+Cluster = Annotated[str | None, option("--cluster", "Use dask.distributed: tcp://HOST:PORT, or local:N.", "ADDRESS")]
+AsJson = Annotated[bool, option("--json", "Print one JSON document on stdout and nothing else.")]
 
 
 def emit(document: dict[str, Any]) -> None:

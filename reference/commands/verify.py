@@ -9,21 +9,19 @@ import typer
 from ..errors import InputError
 from ..scenes.shipped import golden_root, seals
 from .progress import progress
-from .terminal import AsJson, completion, emit
+from .terminal import AsJson, completion, emit, option
+
+PATHS = typer.Argument(
+    metavar="PATH",
+    help="Ids or folders of datasets (default: all that come with the project).",
+    autocompletion=completion(seals),
+)
+RECOMPUTE = option("--recompute", "Also solve each scene again and compare every byte.")
 
 
 def command(
-    paths: Annotated[
-        list[str] | None,
-        typer.Argument(
-            metavar="PATH",
-            help="Ids or folders of datasets (default: all that come with the project).",
-            autocompletion=completion(seals),
-        ),
-    ] = None,
-    recompute: Annotated[
-        bool, typer.Option("--recompute", help="Also solve each scene again and compare every byte.")
-    ] = False,
+    paths: Annotated[list[str] | None, PATHS] = None,
+    recompute: Annotated[bool, RECOMPUTE] = False,
     as_json: AsJson = False,
 ) -> None:
     """Check golden datasets, and integrate their motion again."""
