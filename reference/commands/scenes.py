@@ -10,7 +10,7 @@ from .terminal import AsJson, emit
 
 
 def command(as_json: AsJson = False) -> None:
-    """List the scenes that come with the project; of those without a golden function in doubles, why."""
+    """List the scenes that come with the project."""
     scenes = [load_scene(name) for name in scene_ids()]
     if as_json:
         emit({"scenes": [scene.model_dump(exclude_none=True) for scene in scenes]})

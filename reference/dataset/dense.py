@@ -98,9 +98,7 @@ def states_at(golden: Any, times: npt.ArrayLike) -> States:
 def _check(times: Array, grid: tuple[Fraction, ...]) -> None:
     if not len(times):
         raise InputError("t", "no times", "at least one time in s")
-    end = (
-        2 * grid[-1] - grid[-2]
-    )  # where a program that counts steps may end, but for the rounding of its times
+    end = 2 * grid[-1] - grid[-2]  # where a program that counts steps may end, but for the rounding of its times
     if not np.isfinite(times).all() or times[0] < 0 or times[-1] > float(end) * (1 + ROUNDED):
         outside = times[~np.isfinite(times)] if not np.isfinite(times).all() else times[[0]] if times[0] < 0 else times
         advice = f"The scene ends at run.t_end = {float(grid[-1]):.17g}: --set run.t_end=… solves a longer one."
