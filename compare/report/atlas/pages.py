@@ -140,7 +140,10 @@ def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html
         if golden.manifest.counts.transits
         else ""
     )
-    wanted, known = f"a row for {times} … s, or for some of them", "no golden function: the page has golden rows alone"
+    wanted, known = (
+        f"a row for {times} … s, or for some of them",
+        "the golden rows alone: the dataset has no golden function",
+    )
     if made:
         wanted = f"rows at any times up to {golden.t[-1]:.15g} s"
         bounds = ", ".join(f"{name} within {made['record']['bounds'][name]} m" for name in ("x", "y", "z"))

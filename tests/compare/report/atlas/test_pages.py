@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import html
 import json
 import re
@@ -34,7 +35,9 @@ def readings(tmp_path):
 
 
 def test_a_page_for_each_scene_and_one_over_all(atlas):
-    assert sorted(path.name for path in atlas.iterdir()) == ["conical.html", "hard.html", "index.html", "paris.html"]
+    assert sorted(path.name for path in atlas.iterdir()) == [
+        "conical.html", "hard.html", "index.html", "paris.function.js", "paris.html",
+    ]  # fmt: skip
     text = (atlas / "index.html").read_text()
     golden = reference.load("paris")
     assert golden.manifest.title in text and text.count("<svg") == 3 == text.count('class="card"')
@@ -44,6 +47,8 @@ def test_a_page_for_each_scene_and_one_over_all(atlas):
     hard = (atlas / "hard.html").read_text()
     assert "Path from above" in hard and "On the sphere" in hard
     assert "foucault score hard mine.csv --t-end 5 --inputs decimal" in hard
+    assert "judged by the golden rows alone: the dataset has no golden function" in hard and 'id="player"' not in hard
+    assert f"y within {reference.load('paris.binary64').function.bound['y']:.1e} m" in page
     assert all(record.sha256 in page for record in golden.manifest.files.values())
     assert golden.manifest.cross_checks[0].position_m in page and golden.manifest.seal in page
 
@@ -63,13 +68,23 @@ def test_a_thumbnail_shows_the_path_from_its_release_on(atlas):
 
 
 def test_pages_load_nothing_stay_small_and_have_each_id_once(atlas):
-    for path in atlas.iterdir():
+    for path in atlas.glob("*.html"):
         text = path.read_text()
         assert "default-src 'none'" in text
         assert not re.search(r"<(?:link|img|iframe|object)\b|\bsrc=|@import|fetch\(|XMLHttpRequest|import\(", text)
         assert path.stat().st_size < 1_000_000
         names = re.findall(r' id="([^"]+)"', text.partition("<script")[0])
         assert len(names) == len(set(names)), path
+
+
+def test_the_script_beside_a_page_is_the_shipped_function_and_nothing_else(atlas):
+    """A day of Paris takes 4.8 MB: too many for the page, so its bytes stand in a script that only names them."""
+    name, _, value = (atlas / "paris.function.js").read_text().removesuffix(";\n").partition(" = ")
+    made, shipped = json.loads(value), golden_root() / "paris.binary64"
+    assert name == "globalThis.goldenFunction" and made["end"] == 86_400
+    assert made["record"] == json.loads((shipped / "function.json").read_text())
+    assert base64.b64decode(made["coefficients"], validate=True) == (shipped / "function.f64").read_bytes()
+    assert '"function":null' in (atlas / "paris.html").read_text()
 
 
 def test_what_studies_say_of_a_scene(tmp_path):
@@ -158,6 +173,7 @@ TOLD = """
 (async () => {
   const told = [];
   const errors = [];
+  const display = player && getComputedStyle(canvas).display;
   addEventListener("unhandledrejection", (event) => errors.push(String(event.reason)));
   for (const files of %s) {
     shown.innerHTML = "";
@@ -184,7 +200,8 @@ TOLD = """
   }
   const fits = document.documentElement.scrollWidth <= innerWidth;
   document.body.innerHTML = '<pre id="told"></pre>';
-  document.getElementById("told").textContent = JSON.stringify({ told, fits, moved, errors, wide: innerWidth });
+  const all = { told, fits, moved, errors, display, wide: innerWidth };
+  document.getElementById("told").textContent = JSON.stringify(all);
 })();
 </script></body>"""
 FILTERED = """
@@ -219,7 +236,11 @@ def in_browser(page, script, tmp_path, *flags):
 
 
 @browser
-def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, tmp_path):
+@pytest.mark.parametrize("beside", [True, False], ids=["function", "rows"])
+def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, beside, tmp_path):
+    """With the golden function beside the page; without it the rows at golden times are judged all the same."""
+    if beside:
+        shutil.copy(atlas / "paris.function.js", tmp_path)
     golden = reference.load("paris.binary64")
     t, x, y = (golden.grid[name][::10] for name in "txy")
     times = golden.transits["t"]
@@ -242,9 +263,10 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, tmp_path):
     assert told["fits"], "the page is wider than a phone"
     assert told["errors"] == []
     words = [one[0] for one in told["told"]]
-    assert words == ["agrees", "agrees", "disagrees", "disagrees", "refused", "refused"]
+    late = "disagrees" if beside else "refused"  # no row of it is at a golden time
+    assert words == ["agrees", "agrees", "disagrees", "disagrees", late, "refused"]
     texts = [one[1] for one in told["told"]]
-    assert [one[2] for one in told["told"]] == [True, True, True, True, False, False] and all(
+    assert [one[2] for one in told["told"]] == [True, True, True, True, beside, False] and all(
         one[3] for one in told["told"]
     )
     path = tmp_path / "right.csv"
@@ -256,7 +278,8 @@ def test_files_dropped_on_the_page_are_judged_as_by_score(atlas, tmp_path):
     assert "10514 matched, 0 missed, 0 extra" in texts[1]
     assert f"10513 matched, 1 missed ({times[41]:.6f} s)" in texts[2]
     assert "Your file writes north as x and east as y: put right, " in texts[3]
-    assert "All are 7.00 s after one" in texts[4] and "fields, and the first row has 3" in texts[5]
+    assert "144 rows" in texts[4] if beside else "All are 7.00 s after one" in texts[4]
+    assert "fields, and the first row has 3" in texts[5]
 
 
 def odd(golden, wrong=0.0):
@@ -282,7 +305,7 @@ def dropped_on(page, files, tmp_path, *flags):
 def test_a_file_at_any_times_is_judged_and_the_motion_played_beside_it(atlas, circling, flag, tmp_path):
     files = [["right.csv", odd(circling, 1e-9)], ["wrong.csv", odd(circling, 1e-4)]]
     told = dropped_on(atlas / "conical.html", files, tmp_path, *filter(None, [flag]))
-    assert told["fits"] and told["errors"] == []
+    assert told["fits"] and told["errors"] == [] and told["display"] == "block"
     (right, words, *_), (wrong, *_) = told["told"]
     assert (right, wrong) == ("agrees", "disagrees")
     said = re.search(r"the golden function, which is within (\S+) m of the truth at every time", words)
@@ -304,13 +327,15 @@ def test_many_coefficients_stand_beside_the_page(circling, monkeypatch, tmp_path
     out, alone = tmp_path / "out", tmp_path / "alone"
     alone.mkdir()
     sizes = pages.build(circling.path.parent, out, None, "", lambda *_: None)
-    assert {*sizes} == {"conical.function.js", *(f"{name}.html" for name in ("conical", "hard", "index", "paris"))}
+    beside = {"conical.function.js", "paris.function.js"}
+    assert {*sizes} == beside | {f"{name}.html" for name in ("conical", "hard", "index", "paris")}
     page = (out / "conical.html").read_text()
     assert "are in conical.function.js beside this page" in page
     assert json.loads(re.search(r'id="truth">(.*?)</script>', page)[1])["function"] is None
     files = [["right.csv", odd(circling, 1e-9)], ["rows.csv", (circling.path / "grid.csv").read_text()]]
     told = dropped_on(out / "conical.html", files, out)
     assert [one[0] for one in told["told"]] == ["agrees", "agrees"] and told["errors"] == []
+    assert told["display"] == "none", "no gap stands where nothing is drawn before the first play"
     told = dropped_on(out / "conical.html", files, alone)
     assert [one[0] for one in told["told"]] == ["refused", "agrees"] and told["errors"] == []
     assert "conical.function.js is not beside this page" in told["told"][1][1]
