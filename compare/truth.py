@@ -122,8 +122,10 @@ def by_function(golden: Golden, times: Array) -> Dense | None:
 def roughly_solved(scene: Scene, times: Array, transits: bool, report: Report | None) -> tuple[Solution, Dense] | None:
     """Return a scene solved cheaply at a candidate's times and on its grid up to them, and the truth at those times.
 
-    None where two cheap runs contradict each other or fail.
+    None where two cheap runs contradict each other or fail, and where the scene's rows ship.
     """
+    if any(solves(golden, scene) and not golden.manifest.alone for golden in map(_loaded, shipped(scene))):
+        return None
     from reference.solver.solve import roughly
 
     exact = [Fraction(t) for t in times.tolist()]
