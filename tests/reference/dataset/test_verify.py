@@ -66,7 +66,7 @@ def test_a_dataset_that_counts_no_transits_must_have_none(dataset):
         document["bounds"].update(transit_s=None, transits={})
 
     forge(dataset, without=("transits.csv", "transits.binary64.csv"), manifest=none)
-    assert problems(dataset) == "transits.csv: 0 transits are not the motion's, which are 36"
+    assert problems(dataset) == "manifest.json: 0 transits are not the motion's, which are 36"
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"schema_version": 3}', "nonsense", "", "\ufeff{}", '{"a":' * 100_000])

@@ -7,6 +7,7 @@ import json
 import math
 import os
 from contextlib import contextmanager
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from types import SimpleNamespace
@@ -269,7 +270,7 @@ def left_as_it_was(dataset):
 
 def test_a_dataset_that_fails_its_own_checks_is_not_put_in_place(dataset, solution, monkeypatch):
     broken = {**render(solution), "grid.csv": "t,x\n"}
-    monkeypatch.setattr(writer, "render", lambda *_: broken)
+    monkeypatch.setattr(writer, "render", lambda *_, **__: broken)
     with left_as_it_was(dataset), pytest.raises(DatasetError):
         write(solution, dataset)
 
@@ -397,14 +398,14 @@ def test_what_was_solved_is_held_against_what_was_proved_before_it_is_in_place(s
     assert len(seen) == 1
 
 
-def test_no_proof_goes_to_the_golden_folder_unaudited(monkeypatch, tmp_path):
+def test_no_proof_goes_to_the_golden_folder_unaudited(solution, monkeypatch, tmp_path):
     monkeypatch.setattr(writer, "ships", lambda folder: folder.parent == tmp_path)
-    monkeypatch.setattr(writer, "render", lambda *_: {})
+    monkeypatch.setattr(writer, "render", lambda *_, **__: {})
     monkeypatch.setattr(writer, "write_texts", lambda _, folder, __: folder.mkdir())
     for proof in (None, SimpleNamespace(audited=True)):
-        assert write(SimpleNamespace(proof=proof), tmp_path / f"{proof is None}").exists()
+        assert write(replace(solution, proof=proof), tmp_path / f"{proof is None}").exists()
     with pytest.raises(InputError, match="audit"):
-        write(SimpleNamespace(proof=SimpleNamespace(audited=False)), tmp_path / "unaudited")
+        write(replace(solution, proof=SimpleNamespace(audited=False)), tmp_path / "unaudited")
     assert not (tmp_path / "unaudited").exists()
 
 

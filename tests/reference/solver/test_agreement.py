@@ -121,12 +121,9 @@ def test_the_errors_of_transits_follow_from_those_of_the_grid(name):
             assert gap <= bound < 10**6 * max(on_grid.values()), column
 
 
-@pytest.mark.parametrize(
-    ("name", "column", "of_grid"), [("short cord", "ax", "vx"), ("fast Earth", "vy", "vy"), ("conical", "z", "z")]
-)
-def test_the_errors_of_the_grid_as_they_are_do_not_bound_those_of_transits(name, column, of_grid):
-    _, on_grid, gaps = transits_in_double(name)
-    assert gaps.largest()[column] > on_grid[of_grid]
+def test_the_errors_of_the_grid_as_they_are_do_not_bound_those_of_transits():
+    _, on_grid, gaps = transits_in_double("short cord")
+    assert gaps.largest()["ax"] > on_grid["vx"]
 
 
 TURNING = make_scene(
