@@ -9,14 +9,14 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..errors import DatasetError, InputError
+from ..errors import DatasetError
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
 from ..solver.ranges import Intervals, Ranges
 from ..solver.solution import exact_decimals
 from .place import GOLDEN, MAX_ID, dataset_id
 from .sheets import scene_inputs
-from .write import filled, replace, writable_place
+from .write import check_target, filled, replace, writable_place
 
 RANGES, FORMAT = "ranges.json", 1
 GRID_FILE, TRANSITS_FILE = "grid.csv", "transits.csv"
@@ -42,12 +42,7 @@ def check_ranges_target(folder: Path) -> None:
     Raises:
         InputError: one of the two.
     """
-    if folder.exists() and not folder.is_dir():
-        raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / RANGES).is_file():
-        raise InputError("--out", str(folder), "a new or empty folder, or older ranges", "Nothing was changed.")
-    with writable_place(folder):
-        pass
+    check_target(folder, RANGES, "older ranges")
 
 
 def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
@@ -78,7 +73,7 @@ def period_texts(ranges: Ranges) -> list[str] | None:
 
 
 def ends(low: Fraction, high: Fraction, places: int | None = None) -> tuple[str, str]:
-    """Return the ends of an interval, rounded outward to the digits that its width supports, or to so many places."""
+    """Return the ends of an interval as text, rounded outward to `places`, or to the digits that its width supports."""
     if places is None:
         places = places_of(low, high)
     return outward(low, -1, places), outward(high, 1, places)

@@ -19,16 +19,16 @@ from .render import check_proved, render
 from .verify import problems_of
 
 
-def check_target(folder: Path) -> None:
-    """Refuse a target that cannot be written, or that holds something other than a dataset.
+def check_target(folder: Path, mark: str = MANIFEST, older: str = "an older dataset") -> None:
+    """Refuse a target that cannot be written, or that holds something other than what has the file `mark`.
 
     Raises:
         InputError: the target cannot be written, or something else is in its place.
     """
     if folder.exists() and not folder.is_dir():
         raise InputError("--out", str(folder), "a folder", "A file of that name is in the way.")
-    if folder.is_dir() and any(folder.iterdir()) and not (folder / MANIFEST).is_file():
-        raise InputError("--out", str(folder), "a new or empty folder, or an older dataset", "Nothing was changed.")
+    if folder.is_dir() and any(folder.iterdir()) and not (folder / mark).is_file():
+        raise InputError("--out", str(folder), f"a new or empty folder, or {older}", "Nothing was changed.")
     with writable_place(folder):
         pass
 

@@ -71,7 +71,7 @@ class Box(NamedTuple):
 
 
 class ProvedBox(NamedTuple):
-    """What holds for all inputs of a box: states at `times`, and the transits that may come up to the last of them."""
+    """Proved for all inputs of a box: states at `times`, and each transit that may come up to the last of them."""
 
     box: Box
     times: tuple[Fraction, ...]

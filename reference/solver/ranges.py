@@ -68,7 +68,7 @@ class Intervals(Framed):
 
 @dataclass(frozen=True)
 class Ranges:
-    """What is proved of a scene whose inputs are uncertain: true for every value that each of them may have.
+    """Proven intervals of a scene with uncertain inputs: they hold for every value that each input may have.
 
     Attributes:
         scene: the scene, at the level enclosed.

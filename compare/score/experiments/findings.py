@@ -97,7 +97,7 @@ MOST_RUNS = len(EXPERIMENTS)
 
 @dataclass(frozen=True)
 class Finding:
-    """What an experiment showed.
+    """Report one experiment: what was changed, and what followed.
 
     Attributes:
         id: of the experiment.

@@ -65,7 +65,7 @@ class Trial:
 
     @cached_property
     def causes(self) -> dict[tuple[str, str, int], Cause]:
-        """What a program of its scene may do otherwise, by family, word, and place among those of one word."""
+        """The mistakes that a program of its scene may have, by family, id, and number among those of one id."""
         found, seen = {}, Counter[tuple[str, str]]()
         for kind in ("sphere", *MODELS):
             for cause in (*causes_of(self.case, kind), CLOCK):
