@@ -89,10 +89,12 @@ class Motion:
 
 
 def _gauge(golden: Golden | Solution) -> Gauge | None:
+    """Return what measures the swing, or None where the bob does not swing but creeps back to rest."""
     try:
-        return Gauge.of(golden.scene)
+        gauge = Gauge.of(golden.scene)
     except UnreachableError:
         return None
+    return gauge if golden.scene.exact.drag < 2 * gauge.omega else None
 
 
 def _line(golden: Golden | Solution, states: Array, gauge: Gauge | None) -> tuple[Array, int]:

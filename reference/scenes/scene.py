@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from fractions import Fraction
 from functools import cache
+from numbers import Integral, Real
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -271,16 +272,27 @@ AnyScene = Scene | str | Path | Mapping[str, Any]
 def as_scene(scene: AnyScene) -> Scene:
     """Return a scene that is given as one, by its id or the path of a TOML file, or as nested mappings.
 
+    A float in the mappings stands for the decimal that Python prints for it: 0.1 is the decimal 0.1.
+
     Raises:
         InputError: it is none of these, or a field is wrong.
     """
     if isinstance(scene, Mapping):
-        return parse_scene(scene)
+        return parse_scene(_floats_as_text(scene))
     if isinstance(scene, str | Path):
         return load_scene(scene)
     if not isinstance(scene, Scene):
         raise InputError("scene", scene, "a Scene, an id, the path of a TOML file, or nested mappings")
     return scene
+
+
+def _floats_as_text(document: Mapping[str, Any]) -> dict[str, Any]:
+    def text(value: Any) -> Any:
+        if isinstance(value, Mapping):
+            return _floats_as_text(value)
+        return str(value) if isinstance(value, Real) and not isinstance(value, Integral) else value
+
+    return {key: text(value) for key, value in document.items()}
 
 
 def _no_scene(word: str) -> InputError:

@@ -48,22 +48,19 @@ class Course:
     series: Array
 
     @classmethod
-    def of(cls, steps: list[TaylorStep], inputs: Inputs) -> Self:
+    def of(cls, steps: Iterable[TaylorStep], inputs: Inputs) -> Self:
         """Turn steps to these axes exactly: of a swing however small the rate of the height keeps its digits."""
-        bits = steps[0].bits
-        ctx = context(bits + GUARD_BITS)
-        k = constants(inputs, ctx)
-        up = plumb_line(*k.pull[1:], ctx.norm(k.pull), 0)
-        if steps[0].columns == EARTH and k.rate:
-            up = up[0] * k.sin - up[1] * k.cos, up[0] * k.cos + up[1] * k.sin
-        one = 1 << bits
-        a, b = (int(part * one) for part in up)
-        rows = np.array([[step.coefficients[i] for i in range(3)] for step in steps], object)
-        x, m, w = np.moveaxis(rows, 1, 0)
-        series = np.stack([x, (b * m - a * w) // one, (a * m + b * w) // one], axis=1).astype(float) / one
+        rows, places = [], []
+        for step in steps:
+            if not rows:
+                one, (a, b) = 1 << step.bits, _axes(step, inputs)
+            x, m, w = (np.array(step.coefficients[i], object) for i in range(3))
+            # doubles at once: the integers of a day's steps fill gigabytes
+            rows.append((np.array([x, (b * m - a * w) // one, (a * m + b * w) // one]) / one).astype(float))
+            places.append((float(step.centre), float(step.h)))
+        series, (starts, h) = np.array(rows), np.array(places).T
         sizes = np.abs(series).max(axis=0)
         needed = np.flatnonzero((sizes > NEGLIGIBLE * sizes[:, 1:].max(axis=1, keepdims=True)).any(axis=0))[-1] + 1
-        starts, h = (np.array([float(getattr(step, name)) for step in steps]) for name in ("centre", "h"))
         return cls(starts, h, series[:, :, :needed])
 
     def derivatives(self, times: Array) -> list[Array]:
@@ -102,6 +99,16 @@ class Course:
             if (np.abs(t - last) <= np.spacing(t)).all():
                 break
         return Zeros(t, -sign)
+
+
+def _axes(step: TaylorStep, inputs: Inputs) -> tuple[int, int]:
+    """Return the plumb line's two components in the axes of a step, as integers in units of 2^-bits."""
+    ctx = context(step.bits + GUARD_BITS)
+    k = constants(inputs, ctx)
+    up = plumb_line(*k.pull[1:], ctx.norm(k.pull), 0)
+    if step.columns == EARTH and k.rate:
+        up = up[0] * k.sin - up[1] * k.cos, up[0] * k.cos + up[1] * k.sin
+    return int(up[0] * (1 << step.bits)), int(up[1] * (1 << step.bits))
 
 
 def outcomes_of(solution: Solution, rows: Rows, apsides: bool) -> tuple[Outcomes, Errors]:
@@ -145,10 +152,9 @@ def _of_run(rows: Rows, solution: Solution, prec: int) -> tuple[Outcomes, Array]
     """Return the highest points of a run, and what rounding may do to their times, their turn and the largest angle."""
     run, inputs = Outcomes.empty(1), solution.scene.exact
     engine = fastest(prec, steps=solution.run.steps)
-    steps = list(engine.taylor_steps(inputs, solution.times, prec, prec + COEFFICIENT_BITS))
-    course = Course.of(steps, inputs)
+    course = Course.of(engine.taylor_steps(inputs, solution.times, prec, prec + COEFFICIENT_BITS), inputs)
     release = Release.of(rows, PlumbAxes.of(rows), 0, course.at(np.zeros(1))[0])
-    times = np.linspace(0, release.end, SAMPLES * len(steps) + 1)
+    times = np.linspace(0, release.end, SAMPLES * len(course.starts) + 1)
     samples = Samples(times, course.at(times), complete=True)
     for order in range(TOP, 1, -1):
         times = np.sort(np.concatenate([times, course.crossings(order, times).times]))

@@ -8,6 +8,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import jsonschema
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,7 +18,7 @@ from small_scenes import make_scene
 from reference.commands.terminal import replacements
 from reference.errors import InputError
 from reference.scenes.inputs import Inputs
-from reference.scenes.scene import is_scene_id, load_scene, parse_scene
+from reference.scenes.scene import as_scene, is_scene_id, load_scene, parse_scene
 from reference.scenes.shipped import scene_ids
 from reference.scenes.template import template
 
@@ -269,3 +270,11 @@ def test_an_option_may_say_what_set_says() -> None:
     assert replacements(["run.t_end=600"], {"--t-end": ("run.t_end", "600")}) == ["run.t_end=600"]
     with pytest.raises(InputError, match=r"together with --set run\.t_end=600"):
         replacements(["run.t_end=600"], {"--t-end": ("run.t_end", "601")})
+
+
+def test_floats_in_python_stand_for_the_decimals_that_python_prints() -> None:
+    nested = {"id": "a", "pendulum": {"length": 12.3}, "release": {"x": np.float64(0.1), "y": np.float32(0.5)}}
+    scene = as_scene(nested)
+    assert (scene.pendulum.length, scene.release.x, scene.release.y) == ("12.3", "0.1", "0.5")
+    with pytest.raises(InputError, match="NaN and inf"):
+        as_scene({**nested, "release": {"x": float("nan"), "y": 0}})
