@@ -50,7 +50,8 @@ class Course:
     @classmethod
     def of(cls, steps: Iterable[TaylorStep], inputs: Inputs) -> Self:
         """Turn steps to these axes exactly: of a swing however small the rate of the height keeps its digits."""
-        rows, places = [], []
+        rows: list[Array] = []
+        places = []
         for step in steps:
             if not rows:
                 one, (a, b) = 1 << step.bits, _axes(step, inputs)
