@@ -93,7 +93,7 @@ def command(
     if not candidates:
         refuse({"--cpu": cpu}, "without --candidates")
     check_limit(LIMIT_S if limit is None else limit)
-    from ..methods import SETTING
+    from ..candidates.external import SETTING
     from ..report.study_page import REPORT
     from ..studies.study import study as measure
     from ..studies.study_plan import bits_of, plan, precision_items, precision_scene
