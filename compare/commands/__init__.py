@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import typer
 
-from . import atlas, methods, paper, pend, plot, score, stability, study, sweep
+from . import papers, pictures, score, studies, sweep
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, rich_markup_mode=None)
 app.command("score")(score.command)
-app.command("study")(study.command)
-app.command("stability")(stability.command)
+app.command("study")(studies.study)
+app.command("stability")(studies.stability)
 app.command("sweep")(sweep.command)
-app.command("plot")(plot.command)
-app.command("atlas")(atlas.command)
-app.command("methods")(methods.command)
-app.command("pend")(pend.command)
-app.command("paper")(paper.command)
+app.command("plot")(pictures.plot)
+app.command("atlas")(pictures.atlas)
+app.command("methods")(studies.methods)
+app.command("pend")(papers.pend)
+app.command("paper")(papers.paper)

@@ -14,10 +14,9 @@ from reference.model.start import Start
 from reference.numbers.precision import DOUBLE
 
 from ..candidates.candidate import Candidate
-from ..candidates.external import arguments, run_program
+from ..candidates.external import SETTING, arguments, run_program
 from ..candidates.layout import Naming
 from ..candidates.read import read_stream
-from ..methods.external import SETTING
 from ..report.folder import json_text, write_file, writing
 from ..score.experiments.findings import MOST_RUNS, Experiment, possible
 from ..score.verdict import Score

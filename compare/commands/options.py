@@ -75,8 +75,8 @@ def check_limit(limit_s: float) -> None:
 
 def programs_of(run: Sequence[str] | None, names: Sequence[str] | None, scene: Scene) -> dict[str, str]:
     """Return the commands of --run by the names that they have; refuse any that cannot be run with a scene's values."""
-    from ..candidates.external import arguments
-    from ..methods import SETTING, named_programs
+    from ..candidates.external import SETTING, arguments
+    from ..methods import named_programs
 
     if not run:
         refuse({"--name": names}, "without --run")

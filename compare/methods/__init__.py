@@ -22,13 +22,12 @@ from collections.abc import Mapping, Sequence
 from reference import InputError
 from reference.system.imports import Registry
 
-from .external import LONGEST_NAME, SETTING, external, file_name
+from .external import LONGEST_NAME, external, file_name
 from .method import Family, Method, Outcome, Work, available
 from .rhs.problem import FirstOrderSystem, Problem, suited
 
 __all__ = [
     "METHODS",
-    "SETTING",
     "Family",
     "FirstOrderSystem",
     "Method",

@@ -16,10 +16,11 @@ from reference.errors import shortened
 from reference.numbers.precision import Array
 from reference.status import Status
 
+from ..candidates.external import SETTING, arguments, run_program
+from ..candidates.read import read_stream
 from .method import Method, Outcome, Work, failed
 from .rhs.problem import Problem
 
-SETTING = "{setting}"  # stands for the step, tolerance or precision in a command
 LONGEST_NAME = 24  # characters of a program's name in tables and charts
 SCRIPTS = (".py", ".js", ".mjs", ".ts", ".jl", ".rb", ".r", ".m", ".pl", ".lua", ".sh", ".jar")
 SAME_TIME = 1e-9  # relative difference of times that count as equal, for programs that print few decimals
@@ -47,9 +48,6 @@ def external(command: str, *, name: str = "external") -> Method:
 
 
 def _prepare(problem: Problem, value: float, command: str) -> Work:
-    from ..candidates.external import arguments, run_program
-    from ..candidates.read import read_stream
-
     words = arguments(command.replace(SETTING, repr(value)), _scene(problem))
 
     def work() -> Outcome:

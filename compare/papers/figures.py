@@ -10,6 +10,7 @@ import numpy as np
 
 from reference import InputError, load_scene
 from reference.numbers.precision import Array
+from reference.system.documents import texts_of
 
 from ..approximations import APPROXIMATIONS, Motion
 from ..approximations.frequency import anharmonic
@@ -212,64 +213,9 @@ def svg(number: int) -> str:
     return drawn(FIGURES[number].panels())
 
 
-FIGURES = {
-    1: Figure(
-        _rest_by_latitude,
-        "Angular deviation φ of the rest position from the local geodetic vertical for pendulums at geodetic latitudes "
-        "ϕ on Earth. These are three curves for l = 1, 10 and 100 m which are indistinguishable on this scale.",
-        "Rest positions of the reference. The three curves differ by at most 1.6e-6°.",
-    ),
-    2: Figure(
-        _triangle,
-        "Triangle of forces in a cross section through the Earth with the pendulum at geographic latitude ϕ : "
-        "gravitational acceleration g, centrifugal acceleration RΩ² parallel to the equatorial plane, their vector sum "
-        "g', and the direction (blue) of the rod parallel to g'. φ is the mismatch between the local geodetic down "
-        "direction and the kinematically balanced direction of a plumb line.",
-        "North is to the right. RΩ² is drawn 170 times too long: φ is 0.0985°, which one would not see.",
-    ),
-    3: Figure(
-        _three_windows,
-        "Initial 20 seconds of the trajectory in x and y for the Paris pendulum released at x = 0.3 m and y = 0.4 m, "
-        "another interval of 20 seconds after 7000 seconds have passed, and another 20 seconds when 12000 seconds have "
-        "passed.",
-        "The swing plane turns clockwise: the swing along y shrinks and that along x grows.",
-    ),
-    4: Figure(
-        _from_above_and_south,
-        "Three trajectories each of 17 seconds of duration equivalent to snapshots of Figure 3 in a 3D view and in the "
-        "projection on the x-y-plane, demonstrating the slow rotation of the main plane of the pendulum motion around "
-        "the point equivalent to the rest position.",
-        "The cross is the rest position, 11.5 cm south of the point below the pivot. The other projection stands for "
-        "the 3D view.",
-    ),
-    5: Figure(
-        _heights,
-        "Snapshots of the z-coordinate of the Paris pendulum.",
-        "One snapshot every 30 s for 24 h. The text's -66.98 m for the release is a misprint: it is -66.998 m.",
-    ),
-    6: Figure(
-        _azimuths,
-        "Snapshots of the λ-angle of the Paris pendulum.",
-        "One snapshot every 30 s. λ is measured about the point below the suspension, while the swing passes through "
-        "the rest position: so the dots crowd beside the line, which is the direction of the swing plane. That "
-        "direction stays within 0.005° of a uniform rotation for a day.",
-    ),
-    7: Figure(
-        _simplified,
-        "The difference in positions between the full theory and different approximations introduced in Section VI.",
-        "Without rotation the pendulum is half a swing late; item 1 drops Ω², item 2 the off-diagonal elements.",
-    ),
-    8: Figure(
-        _frequency_by_latitude,
-        "The frequency of the pendulum as a function of the geodetic latitude ϕ, measured by time differences between "
-        "transits xdot = 0.",
-        "Points: runs of the reference over 10 min, half swings counted. Line: harmonic in the apparent gravity g', "
-        "with the slow-down 2K/π.",
-    ),
-    9: Figure(
-        _three_orders,
-        "Illustration of the effect of the 3 different Runge-Kutta-Nyström order parameters through the -R option of "
-        "the program on the Paris pendulum positions at a step size of 0.5 seconds after 12000 seconds have passed.",
-        "Above: positions, the reference in grey. Below: distance from the reference.",
-    ),
-}  # as printed, and a remark on the figure drawn here
+DRAWN = (
+    _rest_by_latitude, _triangle, _three_windows, _from_above_and_south, _heights, _azimuths, _simplified,
+    _frequency_by_latitude, _three_orders,
+)  # fmt: skip
+TEXTS = texts_of(__file__)
+FIGURES = {number: Figure(panels, **TEXTS[str(number)]) for number, panels in enumerate(DRAWN, 1)}

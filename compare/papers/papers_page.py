@@ -5,28 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, fields
 
+from reference.system.documents import texts_of
+
 from ..report.folder import PAGE, json_text
 from ..report.page import Html, Table, choices, faint, page, paragraph, plate, section, strong
 from .checks import VERDICTS, JudgedRow
 from .figures import FIGURES
 
-MEANING = {
-    "exact": "both sides agree to 45 digits or more at every random point, or the number is exactly as printed",
-    "reproduced": "the recomputed value, rounded or cut off, is the printed one; or a run confirms the sentence",
-    "approximation": "an approximation; its error is measured, and the power with which it shrinks",
-    "misprint": "does not hold as printed; the correction was put to the same test and holds",
-}
-NOT_JUDGED = (
-    ("Mathar II, after (19)", "the substitution that leads from [6, (22)] to (17)-(19)", "needs the text of [6]"),
-    ("Mathar V, after (50)", "compatible with footnote 5 in [17]", "needs the text of [17]; (47) and (50) are judged"),
-    ("Mathar, Fig. 3, 8 and 9", "what the figures show", "they claim nothing that a number could refute; drawn above"),
-    ("Mathar, Fig. 9", "the main results were obtained with steps of 0.01 s", "what was done, not what is so"),
-    (
-        "Mathar, appendix A",
-        "what the switches mean, their other defaults, the columns of the output",
-        "they define the program; `foucault pend` follows them",
-    ),
-)
+TEXTS = texts_of(__file__)
 
 
 def files_of(rows: Sequence[JudgedRow], figures: dict[int, str]) -> dict[str, str]:
@@ -57,31 +43,18 @@ def page_text(rows: Sequence[JudgedRow], figures: dict[int, str]) -> str:
             section("Not judged", _not_judged()),
             section("Every line", choices({word: f"{word} ({count})" for word, count in counts.items()}), _lines(rows)),
         ],
-        lead=_lead(len(rows)),
-    )
-
-
-def _lead(count: int) -> Html:
-    return paragraph(
-        Html(
-            "R. J. Mathar, <em>The Foucault Pendulum: Trajectories of the Full Lagrangian</em>; G. Gastebois, "
-            "<em>Le pendule de Foucault</em>; and a third text that solves the linear system by three methods. "
-            f"{count} lines of them were put to the test. Truth is the Lagrangian, differentiated; the reference "
-            "solver; or a closed form. None of the verdicts below was written by hand. The recomputed value is the "
-            "true one to 18 digits: of a formula at the first of several random points whose numbers are all of order "
-            "one, of a printed number with the paper's own inputs. In the first paper ϕ is the latitude, φ the angle "
-            "of the cord and λ its azimuth; in the second these are λ, θ and φ."
-        )
+        lead=paragraph(Html(TEXTS["lead"].format(count=len(rows)))),
     )
 
 
 def _counted(counts: dict[str, int]) -> Html:
-    rows = [(strong(word), count, MEANING[word]) for word, count in counts.items()]
+    rows = [(strong(word), count, TEXTS["meaning"][word]) for word, count in counts.items()]
     return Table({"verdict": "", "lines": "number", "meaning": "prose"}, rows, list(counts)).html()
 
 
 def _not_judged() -> Html:
-    return Table({"place": "", "printed": "prose", "why there is no verdict": "prose"}, NOT_JUDGED).html()
+    rows = [tuple(line.values()) for line in TEXTS["not_judged"]]
+    return Table({"place": "", "printed": "prose", "why there is no verdict": "prose"}, rows).html()
 
 
 def _lines(rows: Sequence[JudgedRow]) -> Html:

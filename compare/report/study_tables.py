@@ -14,6 +14,7 @@ from typing import Any
 
 from reference.errors import shortened
 from reference.status import Status
+from reference.system.documents import texts_of
 
 from ..methods import METHODS
 from ..studies.row import Row
@@ -29,27 +30,7 @@ SMALL = 1.5e-3  # settings below this are written with an exponent
 BUSY = 1.0  # processes for each core; with more, runs share cores and caches, and the clock of wide vectors is lower
 SPREAD = 0.2  # difference of repeated costs over their median; with more, ratios of costs are doubtful
 
-_COSTS = (
-    "CPU seconds that a method needs to reach an error over the whole span. Between two settings the cost is "
-    "interpolated in logarithms; it is never extrapolated beyond the settings that were run. If even the loosest "
-    "setting of a method is more accurate, the cost of that setting is given. Bold: the cheapest method. Empty: not "
-    "reached over the whole span. The methods are sorted by their cost at the smallest error that they reach."
-)
-_FRONT = "No other row is both cheaper and more accurate than one of these. Cheapest first."
-_ROWS = (
-    "● and shaded: on the Pareto front. ~: the cost is extrapolated from a part of the span, up to the last t; counts "
-    "and end error are those of that part, and the error over the whole span is not known. Spread: the difference "
-    "between the largest and the smallest CPU time of the repeats, divided by their median. Compile: CPU seconds of "
-    "imports and compilation, which are not part of the cost. <: the error of transits is not resolved, because it is "
-    "measured from the doubles next to their true times; it is below this."
-)
-_FAILED = "Failed rows keep their place in the tables: nothing is left out. A failed row is never on the Pareto front."
-_ORDERS = (
-    "Order: as the method declares it; – where it chooses its order itself. Observed: the power with which its error "
-    "falls as it takes more steps (evaluations where it does not tell steps), fitted to at least three settings, with "
-    "the standard error of the fit; – where that is above 0.25, because too few settings lie between a step that is "
-    "too long and rounding."
-)
+TEXTS = texts_of(__file__)  # above the tables
 
 
 def costs(rows: Sequence[Row], bound_m: float) -> Html:
@@ -63,7 +44,7 @@ def costs(rows: Sequence[Row], bound_m: float) -> Html:
             cells = [_cost_cell(cost, best) for cost, best in zip(reached, least, strict=True)]
             placed.append((order, [curve.label, *cells]))
     columns = {"method": "", **{f"{tidy(error_m)} m": "number" for error_m in TARGETS_M}}
-    return Table(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(_COSTS)
+    return Table(columns, [row for _, row in sorted(placed, key=itemgetter(0))]).html(TEXTS["costs"])
 
 
 def _cost_cell(cost: CostAtError | None, least: float | None) -> str:
@@ -79,7 +60,7 @@ def pareto_front(rows: Sequence[Row], bound_m: float) -> Html:
         (labels[row.key], setting(row), number(row.error_m), cost(row), row.reason) for row in front(rows, bound_m)
     ]
     columns = {"method": "", "setting": "", "error m": "number", "CPU s": "number", "": ""}
-    return Table(columns, cells).html(_FRONT)
+    return Table(columns, cells).html(TEXTS["front"])
 
 
 def every_row(rows: Sequence[Row], bound_m: float) -> Html:
@@ -102,7 +83,7 @@ def every_row(rows: Sequence[Row], bound_m: float) -> Html:
                 cpu(row.compile_s), count(row.rhs_evaluations), count(row.steps),
                 "" if row.reached_t is None else f"{row.reached_t:g}", row.reason,
             ))  # fmt: skip
-    return Table(columns, cells, kinds).html(_ROWS)
+    return Table(columns, cells, kinds).html(TEXTS["rows"])
 
 
 def failures(rows: Sequence[Row]) -> Html | None:
@@ -120,7 +101,7 @@ def failures(rows: Sequence[Row]) -> Html | None:
         settings = ", ".join(setting(row) for row in group)
         cells.append((label, settings, status.words, ", ".join(sorted(reached)), reason))
     columns = {"method": "", "settings": "prose", "status": "", "last t, s": "", "reason": "prose"}
-    return Table(columns, cells, ["failed"] * len(cells)).html(_FAILED)
+    return Table(columns, cells, ["failed"] * len(cells)).html(TEXTS["failed"])
 
 
 def words(statuses: Collection[Status]) -> Html:
@@ -152,7 +133,7 @@ def methods(rows: Sequence[Row], bound_m: float, programs: Mapping[str, str], fi
     yours |= dict.fromkeys(files, ("", "--candidates"))
     rest = [(name, command, "", "", source, "", "") for name, (command, source) in yours.items()]
     columns = {"method": "", "": "prose", "order": "", "observed": "", "source": "prose", "licence": "", "extra": ""}
-    return Table(columns, [*body, *rest]).html(_ORDERS)
+    return Table(columns, [*body, *rest]).html(TEXTS["orders"])
 
 
 def observed(order: Order | None) -> str:

@@ -1,4 +1,4 @@
-"""`foucault show`: a scene, the quantities that follow from it, and the equations compiled for it."""
+"""`foucault scenes` lists the scenes; `show` tells of one what follows from it, and the equations compiled for it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import typer
 
 from ..errors import FoucaultError, InputError, UnreachableError
 from ..scenes.scene import Scene, load_scene
-from ..scenes.shipped import flag_meanings
+from ..scenes.shipped import WITHOUT_FUNCTION, flag_meanings, scene_ids
 from ..scenes.template import template as as_template
 from .terminal import AsJson, Assignments, Uncertain, emit, option, refuse, scene_argument, widths_by_name
 
@@ -26,6 +26,20 @@ SCENE = scene_argument("A scene's id, or the path of a TOML file; may be left ou
 TEMPLATE = option("--template", "Print the scene as a TOML file to begin with, each field explained.")
 EQUATIONS = option("--equations", "Also show the compiled equations, and the terms left out.")
 SENSITIVITY = option("--sensitivity", "Also show how many digits the flow costs between release and end.")
+
+
+def scenes(as_json: AsJson = False) -> None:
+    """List the scenes that come with the project."""
+    every = [load_scene(name) for name in scene_ids()]
+    if as_json:
+        emit({"scenes": [scene.model_dump(exclude_none=True) for scene in every]})
+        return
+    width = max((len(scene.id) for scene in every), default=0)
+    for scene in every:
+        flags = f"  [{', '.join(scene.flags)}]" if scene.flags else ""
+        megabytes = WITHOUT_FUNCTION.get(scene.id)
+        lacking = f"  (without a golden function, which takes {megabytes} MB)" if megabytes else ""
+        typer.echo(f"{scene.id:{width}}  {scene.title}{flags}{lacking}")
 
 
 def command(

@@ -62,6 +62,11 @@ def toml_document(path: Path, field: str) -> dict[str, Any]:
         raise InputError(field, str(path), "a TOML file", _reason(error)) from None
 
 
+def texts_of(module: str) -> dict[str, Any]:
+    """Return the texts of a module, given by its `__file__`: the tables of the TOML file beside it with its name."""
+    return tomllib.loads(Path(module).with_suffix(".toml").read_text(encoding="utf-8"))
+
+
 def json_document(path: Path, field: str) -> dict[str, Any]:
     """Return the dictionary of a JSON file; arguments and errors as of `toml_document`."""
     data = _read(path, field, MAX_JSON_BYTES, "a JSON document")

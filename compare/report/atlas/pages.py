@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
+from string import Template
 from typing import Any
 
 from reference.scenes.fields import LEVELS
@@ -133,7 +134,7 @@ def _choice(name: str, words: Iterable[str]) -> str:
 
 
 def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html:
-    golden, command = entry.judged, text(entry.score_command())
+    golden = entry.judged
     times = ", ".join(f"{t:.15g}" for t in golden.t[:3])
     transits = (
         " A second file with the times of xdot = 0 in a column t has your transits judged as well."
@@ -151,16 +152,8 @@ def _drop(entry: Entry, made: dict[str, Any] | None, beside: str | None) -> Html
     if made and beside:
         size = f"{len(made['coefficients']) / 1e6:.1f} MB"
         known += f"; its {size} are in {beside} beside this page, read with the first file or at the first play"
-    return Html(
-        '<div id="drop">\n<p><label>Drop the output of your program here, or choose it: '
-        '<input type="file" id="files" multiple></label></p>\n'
-        '<p><label>Tolerance in m <input id="tolerance" size="9" inputmode="decimal"></label></p>\n</div>\n'
-        '<div id="verdict" aria-live="polite"><noscript>Without JavaScript: use the command below.</noscript></div>\n'
-        f"<p>Wanted is text with a header <code>t,x,y</code>, and any of <code>z,vx,vy,vz</code>, and {wanted}. Axes x "
-        "east, y north, z up from the suspension, in SI units; other units and names are understood."
-        f"{text(transits)} It is judged by {known}. The file stays on this computer. On the command line, with the "
-        f"likely mistake: <code>{command}</code></p>"
-    )
+    words = {"wanted": wanted, "transits": transits, "known": known, "command": entry.score_command()}
+    return Html(Template(source("drop.html").rstrip()).substitute({name: text(of) for name, of in words.items()}))
 
 
 def _data(document: dict[str, Any]) -> Html:

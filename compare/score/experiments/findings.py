@@ -13,8 +13,7 @@ from reference import FoucaultError, InputError, Scene
 from reference.model.start import Start
 from reference.numbers.precision import DOUBLE
 
-from ...candidates.external import placeholders
-from ...methods.external import SETTING
+from ...candidates.external import SETTING, placeholders
 
 PUSH = 0.2  # of the rate of the swing: by this the release is pushed, round the vertical
 SWING = ("x", "y", "vx", "vy", "angle", "angle_rate", "azimuth_rate")

@@ -12,7 +12,7 @@ from reference import FoucaultError, Scene
 from reference.numbers.precision import Array
 
 from ...candidates.candidate import Candidate, Deviation
-from ...methods.external import SETTING
+from ...candidates.external import SETTING
 from ..explanation.explain import RENAMED, Problem, explanation_of_case
 from ..explanation.findings import UNCORRECTED, Explanation
 from ..explanation.gate import loose

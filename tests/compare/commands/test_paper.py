@@ -10,7 +10,7 @@ import typer
 from typer.testing import CliRunner
 
 from compare import papers as paper
-from compare.commands.paper import command
+from compare.commands.papers import paper as command
 from compare.papers.checks import JudgedRow
 
 ROWS = [

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from compare.approximations import APPROXIMATIONS, Motion
 from compare.candidates.read import read_stream
-from compare.commands.pend import command
+from compare.commands.papers import pend as command
 from compare.papers.digits import degrees, norm
 from compare.papers.first_principles import place
 from compare.papers.foucpend import Options, lines

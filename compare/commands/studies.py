@@ -1,13 +1,15 @@
-"""`foucault study`: measure error against run time, of methods or of approximations."""
+"""`foucault study`, `stability` and `methods`: error against run time, difficult scenes, and what can be compared."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Annotated
 
-from reference import Scene, load_scene
+import typer
+
+from reference import Scene, load_scene, scene_ids
 from reference.commands.progress import progress
-from reference.commands.terminal import AsJson, Assignments, SceneWord, option, refuse, replacements, stoppable
+from reference.commands.terminal import AsJson, Assignments, SceneWord, emit, option, refuse, replacements, stoppable
 
 from .options import (
     Commands,
@@ -16,6 +18,7 @@ from .options import (
     Names,
     announce,
     check_limit,
+    completion_of_lists,
     finish,
     listed,
     numbers,
@@ -24,6 +27,8 @@ from .options import (
 )
 
 LIMIT_S, STEPS_S = 8.0, "0.1,0.01"  # defaults of --limit and --settings
+STABILITY_LIMIT_S = 3.0  # default of --limit in `stability`
+PARIS = "paris"  # the scene with whose values a command is tried for its placeholders
 # fields of a scene that make no difference to a study of these, and why
 OF_METHODS = {
     "run.level": "Methods are held against a confirmed solution, or a dataset that ships.",
@@ -35,7 +40,6 @@ OF_APPROXIMATIONS = dict.fromkeys(
     "Approximations are held against one run, at set times.",
 )
 
-
 PRECISIONS = option("--precisions", "Bits: measure run time against digits at these precisions.", "53,113,…")
 APPROXIMATIONS = option(
     "--approximations", "Study the source papers' approximations instead: where each stops being good."
@@ -46,9 +50,14 @@ SETTINGS = option("--settings", f"Values of {{setting}} in --run (default: {STEP
 T_END = option("--t-end", "End of the run in s (default: the scene's; at most 14400 with --precisions).", "S")
 LIMIT = option("--limit", f"Allow one run this many CPU seconds (default: {LIMIT_S:g}).", "S")
 NO_FORMULATIONS = option("--no-formulations", "Leave out the comparison of formulations.")
+SCENES = option(
+    "--scenes", "Ids of scenes (default: paris and all that have flags).", "A,B,…", completion_of_lists(scene_ids)
+)
+STABILITY_LIMIT = option("--limit", "Allow one run this many CPU seconds.", "S")
+LONG = option("--long", "Also measure how errors grow over 30 days (takes minutes more).")
 
 
-def command(
+def study(
     scene_word: SceneWord,
     methods: Methods = None,
     precisions: Annotated[str | None, PRECISIONS] = None,
@@ -93,9 +102,9 @@ def command(
     if not candidates:
         refuse({"--cpu": cpu}, "without --candidates")
     check_limit(LIMIT_S if limit is None else limit)
-    from ..methods import SETTING
+    from ..candidates.external import SETTING
     from ..report.study_page import REPORT
-    from ..studies.study import study as measure
+    from ..studies.study import study as measured
     from ..studies.study_plan import bits_of, plan, precision_items, precision_scene
     from ..studies.users_program import files_of
 
@@ -116,7 +125,7 @@ def command(
     for program, words in programs.items():
         items += [(program, "momentum", step) for step in (steps if SETTING in words else steps[:1])]
     with stoppable(resumes(out)), progress() as show:
-        study = measure(
+        done = measured(
             problem,
             items=items,
             programs=programs,
@@ -128,7 +137,7 @@ def command(
             report=show(scene.id, unit="runs"),
             announce=announce,
         )
-    document = study.document()
+    document = done.document()
     finish(document, REPORT.text, REPORT.write(document, out), as_json)
 
 
@@ -140,3 +149,73 @@ def _study_approximations(scene: Scene, out: Path | None, as_json: bool) -> None
     with stoppable("nothing was kept"), progress() as show:
         document = document_of(scene, show(scene.id, unit="tables"))
     finish(document, report.text, report.write(document, out), as_json)
+
+
+def stability(
+    scenes: Annotated[str | None, SCENES] = None,
+    methods: Methods = None,
+    run: Commands = None,
+    name: Names = None,
+    limit: Annotated[float, STABILITY_LIMIT] = STABILITY_LIMIT_S,
+    long: Annotated[bool, LONG] = False,
+    out: Folder = None,
+    as_json: AsJson = False,
+) -> None:
+    """Run methods, and your program, on the difficult scenes.
+
+    For each: digits kept, or the way it failed; with the same --out a study resumes.
+    """
+    from ..report.stability_page import REPORT, document_of
+    from ..studies.long_runs import long_runs
+    from ..studies.stability import stability as measured
+    from ..studies.study_plan import declared
+
+    check_limit(limit)
+    REPORT.check(out)
+    chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
+    programs = programs_of(run, name, load_scene(PARIS))
+    items = declared(requested, "long_runs") if long else []
+    with stoppable(resumes(out)), progress() as show:
+        cells = measured(
+            chosen,
+            requested,
+            programs=programs,
+            limit_s=limit,
+            journal_path=out and out / "cells.jsonl",
+            solving=show("the truth", unit="scenes"),
+            report=show("stability", unit="runs"),
+        )
+        runs = []
+        if items:
+            solving, report = show("the truth over 30 days", unit="days"), show("30 days", unit="runs")
+            runs = long_runs(items, journal_path=out and out / "long.jsonl", solving=solving, report=report)
+    document = document_of(cells, runs, programs)
+    finish(document, REPORT.text, REPORT.write(document, out), as_json)
+
+
+def methods(as_json: AsJson = False) -> None:
+    """List the integrators and approximations that are compared."""
+    from ..approximations import APPROXIMATIONS
+    from ..methods import METHODS, available
+
+    if as_json:
+        emit(
+            {
+                "methods": [
+                    {"id": method.id, "title": method.title, "setting": method.setting, "missing": available(method)}
+                    for method in METHODS.values()
+                ],
+                "approximations": [
+                    {"id": approximation.id, "title": approximation.title} for approximation in APPROXIMATIONS.values()
+                ],
+            }
+        )
+        return
+    width = max(map(len, (*METHODS, *APPROXIMATIONS)))
+    typer.echo("Methods (study, stability):")
+    for method in METHODS.values():
+        missing = available(method)
+        typer.echo(f"  {method.id:{width}}  {method.title}{f'  [{missing}]' if missing else ''}")
+    typer.echo("Approximations (score --approximation, study --approximations):")
+    for approximation in APPROXIMATIONS.values():
+        typer.echo(f"  {approximation.id:{width}}  {approximation.title}")

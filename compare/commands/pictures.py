@@ -1,4 +1,4 @@
-"""`foucault plot`: the pictures of a motion, from a scene, a dataset or a program's output."""
+"""`foucault plot` and `foucault atlas`: pictures of a motion, and pages over all golden datasets."""
 
 from __future__ import annotations
 
@@ -9,9 +9,19 @@ import typer
 
 from reference import InputError, load_scene, scene_ids
 from reference.commands.progress import progress
-from reference.commands.terminal import Assignments, EndTime, completion, option, refuse, replacements, stoppable
+from reference.commands.terminal import (
+    AsJson,
+    Assignments,
+    EndTime,
+    completion,
+    emit,
+    option,
+    refuse,
+    replacements,
+    stoppable,
+)
 from reference.errors import did_you_mean, in_words
-from reference.scenes.shipped import seals
+from reference.scenes.shipped import golden_root, seals
 
 from .options import announce, completion_of_lists, listed
 
@@ -19,8 +29,6 @@ if TYPE_CHECKING:
     from ..report.motion import Motion
 
 PICTURES = ("path", "sphere", "plane", "transits")
-
-
 OUT = option("--out", "The picture: .svg, .png or .pdf (default: the name, and .svg).", "FILE")
 WHAT = option(
     "--what",
@@ -28,9 +36,15 @@ WHAT = option(
     "A,B,…",
     names=completion_of_lists(lambda: PICTURES),
 )
+PAGES = option("--out", "Write the pages into this folder (extra plot).", "DIR")
+DATA = option("--data", "The folder of the datasets (default: those that ship).", "DIR")
+STUDIES = option(
+    "--studies", "Results of `foucault study` and `stability`, as JSON (default: docs/studies in a checkout).", "DIR"
+)
+FILES = option("--files", "Link files to URL/DATASET/FILE (default: name them alone).", "URL")
 
 
-def command(
+def plot(
     source: Annotated[
         str,
         typer.Argument(
@@ -86,3 +100,28 @@ def _motion(source: str, t_end: str | None, assignments: list[str] | None) -> Mo
     scene = load_scene(source, replacements(assignments, {"--t-end": ("run.t_end", t_end)}))
     with stoppable("nothing was written"), progress() as show:
         return motion_of(scene, announce, show(f"the motion of {scene.id}", float(scene.exact.t_end)))
+
+
+def atlas(
+    out: Annotated[Path, PAGES] = Path("atlas"),
+    data: Annotated[Path | None, DATA] = None,
+    studies: Annotated[Path | None, STUDIES] = None,
+    files: Annotated[str, FILES] = "",
+    as_json: AsJson = False,
+) -> None:
+    """Make a page over all golden datasets.
+
+    The page of a scene plays its motion, has pictures, bounds and files, and judges a program's output dropped on it.
+    """
+    from ..report.atlas.entry import studies_folder
+    from ..report.atlas.pages import build, scenes_of
+    from ..report.folder import PAGE
+
+    with stoppable("nothing half was written"), progress() as show:
+        drawing = show("atlas", unit="scenes")
+        sizes = build(data or golden_root(), out, studies or studies_folder(), files, drawing)
+    if as_json:
+        emit({"out": str(out), "pages": [{"page": name, "bytes": size} for name, size in sizes.items()]})
+        return
+    scenes = scenes_of(sum(name.endswith(".html") for name in sizes) - 1)
+    typer.echo(f"{out / PAGE}: {scenes}, {sum(sizes.values()) / 1e6:.1f} MB in {len(sizes)} files")
