@@ -157,7 +157,7 @@ def test_bounds_that_are_too_small_are_refused(folder):
 
 
 def test_forged_coefficients_are_found_where_the_motion_leaves_the_bound(whole, folder, size):
-    """One coefficient is off by 1, 30 or 1,000 units in its last place: the seal finds each; `verify` these without it."""
+    """One coefficient is off by 1, 30 or 1,000 units in its last place: the seal finds each, `verify` these too."""
     files, rng = read_files(whole), np.random.default_rng(9)
     record, function = files.function
     prec = motion._first_prec(files.manifest)
