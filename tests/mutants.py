@@ -33,14 +33,14 @@ SPARE_S, LONGER = 30, 5  # what the tests of a mutant may take: some CPU seconds
 DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/test_", "tests/reference/solver/test_"
 LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
 NUMBERS, FUNCTION = "tests/reference/numbers/test_", f"{DATASET}function.py"
-VERIFY = f"{DATASET}verify.py"
+VERIFY, INDEX = f"{DATASET}verify.py", f"{DATASET}index.py"
 TIGHT, NAMING = f"{DATASET}tight_checks.py", "tests/compare/candidates/test_naming.py"
 TESTS = {  # files by folder, and what tests them, the quick ones first
     "reference/dataset/checks: physics": f"{TIGHT} {VERIFY}",
     "reference/dataset/checks: tables": f"{LIMITS} {TIGHT} {VERIFY}",
     "reference/dataset/checks: manifest_check": f"{LIMITS} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
     "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION}",
-    "reference/dataset: verify golden place vectors manifest": f"{LIMITS} {FILES} {DATASET}index.py {VERIFY} {FUNCTION}",
+    "reference/dataset: verify golden place vectors manifest": f"{LIMITS} {FILES} {INDEX} {VERIFY} {FUNCTION}",
     "reference/dataset: sheets write": f"{FILES} {VERIFY}",
     "compare/score: transit_matching": f"{SCORE}transit_errors.py",
     "compare/score: errors": f"{SCORE}errors.py",
