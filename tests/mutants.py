@@ -32,18 +32,19 @@ EQUIVALENTS = Path(__file__).parent / "equivalent_mutants.toml"
 SPARE_S, LONGER = 30, 5  # what the tests of a mutant may take: some CPU seconds, and times what they take without it
 DATASET, SCORE, SOLVER = "tests/reference/dataset/test_", "tests/compare/score/test_", "tests/reference/solver/test_"
 LIMITS, FILES, BITS = f"{DATASET}limits.py", f"{DATASET}write_and_read.py", "tests/test_architecture.py"
-NUMBERS = "tests/reference/numbers/test_"
-TIGHT = f"{DATASET}tight_checks.py"
+NUMBERS, FUNCTION = "tests/reference/numbers/test_", f"{DATASET}function.py"
+VERIFY, INDEX = f"{DATASET}verify.py", f"{DATASET}index.py"
+TIGHT, NAMING = f"{DATASET}tight_checks.py", "tests/compare/candidates/test_naming.py"
 TESTS = {  # files by folder, and what tests them, the quick ones first
-    "reference/dataset/checks: physics": f"{TIGHT} {DATASET}verify.py",
-    "reference/dataset/checks: tables": f"{LIMITS} {TIGHT} {DATASET}verify.py",
-    "reference/dataset/checks: manifest_check": f"{LIMITS} {BITS} {DATASET}verify.py {SOLVER}confirming.py",
-    "reference/dataset/checks: motion": f"{BITS} {TIGHT} {DATASET}verify.py",
-    "reference/dataset: verify golden place vectors manifest": f"{LIMITS} {FILES} {DATASET}index.py {DATASET}verify.py",
-    "reference/dataset: sheets write": f"{FILES} {DATASET}verify.py",
+    "reference/dataset/checks: physics": f"{TIGHT} {VERIFY}",
+    "reference/dataset/checks: tables": f"{LIMITS} {TIGHT} {VERIFY}",
+    "reference/dataset/checks: manifest_check": f"{LIMITS} {BITS} {VERIFY} {SOLVER}confirming.py {FUNCTION}",
+    "reference/dataset/checks: motion": f"{BITS} {TIGHT} {VERIFY} {FUNCTION}",
+    "reference/dataset: verify golden place vectors manifest": f"{LIMITS} {FILES} {INDEX} {VERIFY} {FUNCTION}",
+    "reference/dataset: sheets write": f"{FILES} {VERIFY}",
     "compare/score: transit_matching": f"{SCORE}transit_errors.py",
     "compare/score: errors": f"{SCORE}errors.py",
-    "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py tests/compare/candidates/test_naming.py",
+    "compare/score: verdict judge scored": f"{SCORE}verdict.py {SCORE}judge.py {SCORE}input_floor.py {NAMING}",
     "reference/numbers: precision": f"{NUMBERS}precision.py {NUMBERS}table.py {BITS}",
     "reference/solver: solution": f"{SOLVER}solution.py {FILES} {SOLVER}solve.py",
     "reference/solver: agreement": f"{SOLVER}agreement.py {SOLVER}solve.py",

@@ -17,7 +17,7 @@ from reference.dataset.golden import read_files
 from reference.dataset.manifest import MANIFEST
 
 GOLDEN = ROOT / "data/golden"
-QUICK = ("conical", "damped", "inverted_rest", "nanometre", "over_top", "separatrix", "weightless")
+QUICK = ("conical", "damped", "inverted_rest", "nanometre", "over_top", "separatrix", "two_radians.binary64")
 FORGED = ("barely_over", "damped", "nanometre_paris", "vertical_picometre", "weightless")
 GENERIC = ("barely_over", "damped", "nanometre_paris")  # their motion depends on every input
 MOST_LINES = 1000  # without blanks, comments and includes

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import causes_page
 import commands_page
+import functions_page
 import numpy as np
 import pytest
 import typer
@@ -87,6 +88,14 @@ def test_the_program_of_the_page_on_the_oracle_is_judged_as_it_says(tmp_path):
     got = output(command, tmp_path)
     assert shows(shown, got), got
     assert float(re.findall(r"With all this put right, (\S+) m are left", got)[0]) < 1e-12
+
+
+def test_the_table_of_golden_functions_is_that_of_the_files():
+    page = functions_page.page()
+    assert page == functions_page.PAGE.read_text("utf-8"), "run: python tests/helpers/functions_page.py"
+    table = page.partition(functions_page.BEFORE)[2].partition(functions_page.AFTER)[0].split("|---|\n")[1]
+    farthest = [line.split(" | ")[4] for line in table.splitlines()]
+    assert all(float(cell) <= 4e-15 for cell in farthest if cell != "at rest")
 
 
 def test_the_table_of_causes_is_that_of_the_code():

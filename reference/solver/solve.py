@@ -8,7 +8,7 @@ finer run. For `computed` there is one run only, and for `enclosed` a proof (`en
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Any, overload
 
@@ -134,7 +134,7 @@ def solve(
     return _agreed(scene, times, pilot_for(scene, times, engine), engine, report)
 
 
-def solve_at(scene: Scene, times: Iterable[Fraction], digits: int, report: Report | None = None) -> Solution:
+def solve_at(scene: Scene, times: Collection[Fraction], digits: int, report: Report | None = None) -> Solution:
     """Solve a scene at the level self_consistent and without transits, at times in s that stand for its grid."""
     scene = scene.with_values([f"run.digits={digits}", "run.level=self_consistent", "run.transits=false"])
     every = tuple(sorted({Fraction(0), *times} | ({scene.exact.grid_step} if not any(times) else set())))
@@ -157,12 +157,11 @@ def roughly(scene: Scene, times: Iterable[Fraction], report: Report | None = Non
     )
     pace = Pace(scene.exact, every[-1])
     published, witness = run(fine, report, pace), run(coarse)
-    gap = Agreement.between(published, witness, 1)
+    gap = Agreement.between(published, witness, scene.run.digits)
     if published.directions != witness.directions:
         return None
-    pilot = Pilot(DOUBLE.prec, gap.grid, {}, 0.0, 0.0, witness.steps)
     check = CrossCheck.of(witness, gap.grid, None)
-    return _assemble(scene, every, published, gap.errors, gap.transits, (check,), pilot)
+    return _assemble(scene, every, published, gap.errors, gap.transits, (check,), 0.0)
 
 
 def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Report | None) -> Solution:
@@ -171,7 +170,7 @@ def _computed(scene: Scene, times: tuple[Fraction, ...], engine: str, report: Re
     prec = first_prec(scene, pilot, engine)
     check_reach(pilot.steps, prec, scene.run.digits)
     published = run(published_plan(scene, times, pilot, prec, engine), report)
-    return _assemble(scene, times, published, pilot.estimates(published.plan.number.prec), None, (), pilot)
+    return _assemble(scene, times, published, pilot.estimates(published.plan.number.prec), None, (), pilot.cpu_s)
 
 
 def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str, report: Report | None) -> Solution:
@@ -191,7 +190,7 @@ def _agreed(scene: Scene, times: tuple[Fraction, ...], pilot: Pilot, engine: str
         if not gap.missing_bits:
             transit_s = None if gap.transits is None else gap.transits.largest()["t"]
             check = CrossCheck.of(witness, gap.grid, transit_s)
-            return _assemble(scene, times, published, gap.errors, gap.transits, (check,), pilot)
+            return _assemble(scene, times, published, gap.errors, gap.transits, (check,), pilot.cpu_s)
         largest = max(gap.grid.values())
         if last_gap is not None and largest >= last_gap > 0:
             last_resort = fastest(MAX_PREC).name  # limbs hold no more bits of a swing much smaller than the cord
@@ -223,9 +222,9 @@ def _assemble(
     errors: Mapping[str, Fraction],
     apart: Table | None,
     checks: tuple[CrossCheck, ...],
-    pilot: Pilot,
+    pilot_s: float,
 ) -> Solution:
     """Return a run with its bounds as a `Solution`; `apart` are the differences of its transits from a second run's."""
     grid = published.grid.only(GRID).with_errors(errors)
     transits = None if published.transits is None else with_transit_errors(published, errors, apart)
-    return Solution(scene, times, grid, transits, published.directions, Source.of(published), checks, pilot.cpu_s)
+    return Solution(scene, times, grid, transits, published.directions, Source.of(published), checks, pilot_s)

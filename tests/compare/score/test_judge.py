@@ -15,8 +15,18 @@ import pytest
 
 from compare.candidates.read import read
 from compare.score.explanation.findings import Explanation, Model
-from compare.score.judge import _flung_off, _reading, _transits, judge
-from reference import InputError, load, load_scene, solve, trajectory
+from compare.score.judge import (
+    _amplitude,
+    _beyond_the_cord,
+    _check_times,
+    _flung_off,
+    _reading,
+    _rest,
+    _transits,
+    judge,
+    unjudged_transits,
+)
+from reference import InputError, Solution, load, load_scene, solve, trajectory
 from reference.engines.heyoka.model import Numbers
 from reference.engines.trajectory import Variants
 from reference.errors import plain
@@ -282,7 +292,7 @@ def test_rows_and_transits_after_the_end_asked_for_are_ignored(good, golden):
 @pytest.mark.parametrize(
     ("option", "values", "words"),
     [
-        ("tolerance", [0.0, -1.0, float("inf"), float("nan")], "a positive number of metres"),
+        ("tolerance", [0.0, -1.0, float("inf"), float("nan"), "1"], "a positive number of metres"),
         ("covers", [-0.01, 1.01], "from 0 to 1"),
     ],
 )
@@ -604,3 +614,90 @@ def test_a_named_model_passes_where_that_is_asked_for(tmp_path, golden, states, 
     modelled = replace(wrong, explanation=Explanation(model=Model("still", "still air", 1e-9, 1e-3)))
     assert modelled.passes is as_model
     assert modelled.grade == "agrees as the model: still air"
+
+
+def test_columns_in_the_place_of_the_scene_are_refused():
+    with pytest.raises(InputError, match="The rows stand before the scene"):
+        judge("paris", {"t": [0.0], "x": [0.3], "y": [0.4]})
+
+
+def test_a_verdict_is_in_doubt_up_to_three_bounds_from_the_tolerance(good):
+    score = judge(good, "paris", explain=False)
+    errors = replace(score.errors, position=np.array([1.0]), bound_m=0.25)
+    for tolerance, doubt in ((0.25, True), (0.24, False), (1.75, True), (1.76, False)):
+        assert replace(score, errors=errors, tolerance_m=tolerance).in_doubt is doubt
+    late = SimpleNamespace(max_conditioned_m=3.0)
+    assert replace(score, errors=errors, tolerance_m=2.5, transits=late).in_doubt
+
+
+@pytest.mark.parametrize(("part", "amplitude"), [(0.0, 7.0), (0.05, 0.35), (0.1, 7.0), (1.0, 7.0)])
+def test_a_candidate_that_swings_less_than_a_tenth_has_a_tolerance_of_its_own_size(part, amplitude):
+    errors = SimpleNamespace(amplitude_m=7.0, truth=SimpleNamespace(states=np.array([[3.0, 4, 0, 9, 9, 9], [0] * 6])))
+    candidate = SimpleNamespace(positions=True, columns={"x": np.array([3 * part, 0]), "y": np.array([4 * part, 0])})
+    assert _amplitude(candidate, errors) == pytest.approx(amplitude)
+    assert _amplitude(SimpleNamespace(positions=False), errors) == 7.0
+
+
+def test_beyond_the_cord_begins_a_hundredth_beyond_it_and_a_unit_fits_to_a_thousandth():
+    paris = load_scene("paris")
+
+    def said(*points, t=0.0):
+        x, y = np.array(points).T
+        found = _beyond_the_cord(SimpleNamespace(t=np.array([t, 1.0]), columns={"x": x, "y": y}), paris)
+        return found and found.text
+
+    assert said((0.3, 0.4), (1.01 * 67, 0)) is None
+    assert "are 1 pixels, or of another unit" in said((0.3, 0.4), (np.nextafter(1.01 * 67, 99), 0))
+    for scale, words in (
+        (1000.9, "they are millimetres"), (1001.1, "are 1001.1 pixels"), (1000 * (1 + 0.9e-3j), "they are millimetres"),
+        (1000 * (1 + 1.1e-3j), "Metres are wanted"), (-1000, "Metres are wanted"), (0, "Metres are wanted"),
+    ):  # fmt: skip
+        first = scale * (0.3 + 0.4j)
+        assert words in said((first.real, first.imag), (300, 400)), scale
+    assert "Metres are wanted" in said((300, 400), (0, 0), t=0.5)
+    at_rest = load_scene("paris", ["release.x=0", "release.y=0"])
+    far = SimpleNamespace(t=np.zeros(1), columns={"x": np.array([99.0]), "y": np.zeros(1)})
+    assert _beyond_the_cord(far, at_rest).id == "beyond_the_cord"
+
+
+def test_times_may_end_a_grid_step_late_and_ten_spans_look_like_another_unit():
+    scene = load_scene("paris", ["run.t_end=60", "run.grid_step=5"])
+    _check_times(SimpleNamespace(t=np.array([65.0]), name="mine"), scene)
+    for last, words in (
+        (np.nextafter(65, 66), "leaves out later rows"), (600.0, "leaves out later rows"), (600.1, "like milliseconds"),
+        (60050.0, "like milliseconds: --units ms reads them so, and they end at 60.05 s"),
+        (60070.0, "like microseconds"),
+    ):  # fmt: skip
+        with pytest.raises(InputError, match=words):
+            _check_times(SimpleNamespace(t=np.array([last]), name="mine"), scene)
+
+
+def test_without_gravity_the_rest_position_is_below_the_suspension():
+    assert _rest(load_scene("weightless")) == (0.0, 0.0)
+    x, y = _rest(load_scene("paris"))
+    assert abs(x) < 1e-9 < 0.1 < -y < 0.12
+
+
+@pytest.mark.parametrize(
+    ("zeros", "asked", "said"),
+    [([8.2], True, None), ([], True, "xdot is identically zero"), (None, False, "the scene asks for no transits")],
+)
+def test_why_transits_of_a_scene_that_was_solved_are_not_judged(zeros, asked, said):
+    solved = SimpleNamespace(zeros=zeros, scene=SimpleNamespace(run=SimpleNamespace(transits=asked)))
+    reason = unjudged_transits(solved)
+    assert reason is said is None or reason.startswith(said)
+
+
+def test_a_new_scene_is_solved_cheaply_and_again_where_that_leaves_the_verdict_in_doubt(tmp_path):
+    path = own_scene(tmp_path)
+    scene = load_scene(path, ["inputs=binary64"])
+    times = np.linspace(0, 60, 77)
+    rows = write_csv(tmp_path / "run.csv", times, trajectory(scene, times))
+    true = solve(scene, level="confirmed", digits=12).transits["t"]
+    score = judge(rows, path, transits=np.sort([*true, 10.0]))
+    assert isinstance(score.golden, Solution) and score.golden.run.number == "long_double"
+    assert (score.transits.matched, score.transits.extra) == (len(true), [10.0])
+    assert "input floor" not in str(score)
+    closer = judge(rows, path, tolerance=score.errors.max_m, explain=False)
+    assert closer.errors.bound_m < score.errors.bound_m / 3
+    assert not closer.in_doubt

@@ -10,6 +10,7 @@ import pytest
 
 from compare.candidates.candidate import Deviation
 from compare.score.explanation.findings import Explanation, Model
+from compare.score.scored import Since
 from compare.score.transit_matching import TransitErrors
 from compare.score.verdict import lines, percent
 
@@ -113,3 +114,20 @@ def test_a_model_is_said_with_how_exact_it_is_and_what_it_costs():
 )
 def test_a_share_is_rounded_down_to_three_digits_but_for_rounding_errors(share, said):
     assert percent(share) == said
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, "Since v1: nothing changed, 1 → 2 m"),
+        ({"changes": ("g came", "h went")}, "Since v1: g came; h went: 1 → 2 m; that explains not all of it"),
+        ({"changes": ("g came",), "better": True, "left_m": 0.25},
+         "Better since v1: g came: 1 → 2 m; that explains all but 0.25 m"),
+        ({"changes": ("g came",), "complete": True, "left_m": 0.0}, "Since v1: g came: 1 → 2 m; nothing else"),
+        ({"apart_m": 0.5, "worse": ("x grew", "y too")},
+         "Worse since v1: 1 → 2 m; what lies between them, 0.5 m, is no known mistake; x grew; y too"),
+    ],
+)  # fmt: skip
+def test_what_changed_since_a_baseline_is_said_in_a_line(changes, said):
+    assert Since(**{"name": "v1", "before_m": 1.0, "after_m": 2.0, "apart_m": 0.0} | changes).text == said
+    assert list(lines(score(since=Made(text=said))))[1] == f"{said}."

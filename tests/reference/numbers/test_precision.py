@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import mpmath
@@ -18,6 +19,8 @@ from reference.numbers.precision import (
     cheapest_type,
     context,
     decimals_for,
+    digits_that_hold,
+    double_below,
     fixed_decimal,
     magnitude,
     outward,
@@ -99,6 +102,22 @@ def test_a_bound_of_nothing_is_zero():
 def test_bounds_at_the_powers_of_ten(value, text):
     assert rounded_up(Fraction(value)) == text
     assert rounded_up(Fraction("0.1231"), 3) == "1.24e-01"
+
+
+@given(fractions)
+def test_the_double_below_a_fraction_is_the_largest_that_is_not_above_it(value):
+    below = double_below(value)
+    assert Fraction(below) <= value < Fraction(math.nextafter(below, math.inf))
+    assert double_below(Fraction(below)) == below
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "text"),
+    [(12.3456, 0.01, "12.35"), (12.3456, 0.02, "12.3"), (-0.0123456, 1e-5, "-0.01235"), (99.9, 1.0, "1e+02"),
+     (0.7, 0.6, "0.7"), (0.5, 0.5, "± 5.0e-01"), (-0.5, 0.5, "± 5.0e-01"), (-0.1, 0.25, "± 2.5e-01")],
+)  # fmt: skip
+def test_a_number_is_shown_with_the_digits_that_its_error_leaves(value, error, text):
+    assert digits_that_hold(value, error) == text
 
 
 @given(st.integers(1, 2000))

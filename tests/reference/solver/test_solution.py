@@ -6,12 +6,18 @@ import subprocess
 import sys
 from dataclasses import replace
 from fractions import Fraction
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 import reference
-from reference.numbers.columns import GRID, TRANSITS
+from reference import InputError
+from reference.numbers.columns import GRID, STATE, TRANSITS
 from reference.solver.solution import (
+    SAMPLED,
+    CrossCheck,
+    Proof,
     UndecidedRounding,
     check_decided,
     exact_decimals,
@@ -64,6 +70,27 @@ def test_the_widest_of_the_numbers_with_an_open_digit_is_named(solution, of_grid
 @pytest.mark.parametrize(("values", "digits"), [(("60", "0"), 0), (("0.05",), 2), (("1.5", "0.125", "7"), 3)])
 def test_terminating_decimals_are_printed_exactly(values, digits):
     assert exact_decimals(tuple(map(Fraction, values))) == digits
+
+
+def test_the_motion_at_any_time_takes_a_golden_function(solution):
+    proof = Proof("variational", 1, 1, 1, SURE, SURE, None, 1, {})
+    facts = {"times": [(0.0).hex(), (2.0).hex()], "components": ["x", "y", "z"], "degree": 1, "length_squared": None}
+    made = SimpleNamespace(facts=facts, bounds=dict.fromkeys(STATE, "1e-15"), data=np.arange(6.0).tobytes())
+    for without in (solution, replace(solution, proof=proof)):
+        assert without.function is None
+        with pytest.raises(InputError, match="function=True"):
+            without.at(1.0)
+    at = replace(solution, proof=replace(proof, function=made)).at([0.0, 1.5])
+    assert (at.x.tolist(), at.vz.tolist()) == ([-1.0, 0.5], [5.0, 5.0])
+
+
+def test_a_check_tells_the_largest_gap_of_positions_and_of_velocities(solution):
+    plan = SimpleNamespace(formulation="spin", number="double")
+    gaps = {name: Fraction(i, 7) for i, name in enumerate(GRID)}
+    check = CrossCheck.of(SimpleNamespace(plan=plan, order=20, steps=9, cpu_s=0.5), gaps, None)
+    assert (check.position_m, check.velocity_m_s, check.transit_s) == (Fraction(2, 7), Fraction(5, 7), None)
+    assert SAMPLED == 10  # "a tenth" in help, pages and what is written
+    assert len(replace(solution, zeros=None).transits) == 0 < len(solution.transits)
 
 
 def test_columns_have_a_type_and_a_type_checker_finds_what_is_no_attribute(tmp_path):

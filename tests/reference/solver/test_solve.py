@@ -198,6 +198,60 @@ def test_precision_is_raised_when_the_first_guess_is_too_low(monkeypatch, paris)
     assert max(solution.grid.bound("x")) < Fraction(1, 10**30)
 
 
+def test_two_cheap_runs_give_the_states_at_any_times_and_their_distance_as_the_error(monkeypatch, paris):
+    ends, pace = [], solver.Pace
+    monkeypatch.setattr(solver, "Pace", lambda inputs, end: ends.append(end) or pace(inputs, end))
+    solution = solver.roughly(paris, [Fraction(90), Fraction(1, 4), Fraction(37)])
+    assert solution.times == (0, Fraction(1, 4), 37, 90)
+    assert ends == [90]
+    assert (solution.level, solution.pilot_s) == ("confirmed", 0)
+    assert (solution.run.number, solution.checks[0].number) == ("long_double", "double")
+    truth = run(Plan(paris.exact, "spin", real(160), solution.times, transits=True))
+    for table, finer in ((solution.grid, truth.grid), (solution.transits, truth.transits)):
+        gaps = table.distance(finer)
+        for name in table.columns:
+            both = zip(gaps.exact(name), table.bound(name), strict=True)
+            assert all(gap <= bound < Fraction(1, 10**9) for gap, bound in both), name
+    found = solver.run
+
+    def turned(plan, *rest):
+        done = found(plan, *rest)
+        return replace(done, directions=[-one for one in done.directions]) if plan.number == DOUBLE else done
+
+    monkeypatch.setattr(solver, "run", turned)
+    assert solver.roughly(paris, [Fraction(60)]) is None
+
+
+@pytest.mark.parametrize(("asked", "times"), [([], [0, 60]), ([0], [0, 60]), ([17], [0, 17]), ([90, 17], [0, 17, 90])])
+def test_a_scene_is_solved_at_the_times_asked_for_and_at_one_other_at_least(paris, asked, times):
+    solution = solver.solve_at(paris, [*map(Fraction, asked)], 12)
+    assert list(solution.times) == times
+    assert (solution.level, solution.scene.run.digits, solution.zeros) == ("self_consistent", 12, None)
+
+
+def test_what_a_proof_and_ranges_are_asked_for_is_handed_on_and_else_refused(monkeypatch, paris):
+    monkeypatch.setattr("reference.solver.enclosed.solve_enclosed", lambda *words: words)
+    monkeypatch.setattr("reference.solver.ranges.solve_ranges", lambda *words: words)
+    wishes, wide = {"audit": True, "confirm": "sampled", "function": True}, {"length": "±0.001"}
+    scene, times, *others = reference.solve(paris, level="enclosed", engine="limbs", **wishes)
+    assert (scene.run.level, times, others) == (
+        "enclosed",
+        tuple(scene.exact.grid),
+        ["limbs", None, True, "sampled", True],
+    )
+    for level in (None, "enclosed"):
+        scene, *others = reference.solve(paris, level=level, engine="limbs", uncertain=wide)
+        assert (scene.run.level, others) == ("enclosed", [wide, "limbs", None])
+    for wish in (*wishes.items(), ("digits", 12), ("level", "confirmed")):
+        with pytest.raises(InputError, match="together with uncertain"):
+            reference.solve(paris, uncertain=wide, **dict([wish]))
+    for wish in wishes.items():
+        with pytest.raises(InputError, match="the level enclosed"):
+            reference.solve(paris, **dict([wish]))
+    with pytest.raises(InputError, match="confirm"):
+        reference.solve(paris, level="enclosed", confirm="all")
+
+
 def test_two_runs_that_never_agree_are_refused_and_give_no_numbers(monkeypatch, paris):
     honest = solver.run_both
 
