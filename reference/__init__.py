@@ -20,6 +20,7 @@ from .system.imports import lazy
 
 if TYPE_CHECKING:
     from .dataset.golden import Golden, load
+    from .dataset.ranges import load_ranges
     from .dataset.write import write
     from .engines.trajectory import integrate, trajectory
     from .numbers.function import GoldenFunction, States
@@ -46,6 +47,7 @@ __all__ = [
     "UnreachableError",
     "integrate",
     "load",
+    "load_ranges",
     "load_scene",
     "load_sweep",
     "parse_scene",
@@ -69,6 +71,7 @@ __getattr__, __dir__ = lazy(
         "Table": "numbers.table",
         "integrate": "engines.trajectory",
         "load": "dataset.golden",
+        "load_ranges": "dataset.ranges",
         "load_sweep": "sweeps.sweep",
         "solve": "solver.solve",
         "sweep": "sweeps.sweep",

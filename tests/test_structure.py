@@ -119,15 +119,15 @@ def test_a_library_has_one_door():
 
 # the names of reference that compare uses: what changes here, changes for others too
 PUBLIC = {
-    "reference": "DatasetError FoucaultError Golden InputError IntegrationError Scene Solution Swept UnreachableError "
-    "integrate load load_scene parse_scene scene_ids solve trajectory write",
+    "reference": "DatasetError FoucaultError Golden InputError IntegrationError Ranges Scene Solution Swept "
+    "UnreachableError integrate load load_ranges load_scene parse_scene scene_ids solve trajectory write",
     "reference.commands.progress": "progress",
-    "reference.commands.terminal": "AsJson Assignments Cluster EndTime SceneWord Workers check_workers chosen "
-    "completion emit option refuse replacements scene_argument stoppable",
+    "reference.commands.terminal": "AsJson Assignments Cluster EndTime SceneWord Uncertain Workers check_workers "
+    "chosen completion emit option refuse replacements scene_argument stoppable widths_by_name",
     "reference.dataset.render": "MEANING",
     "reference.dataset.dense": "Dense WITHIN dense",
     "reference.dataset.manifest": "FUNCTION MANIFEST",
-    "reference.dataset.place": "changes golden_folder",
+    "reference.dataset.place": "RANGES changes golden_folder",
     "reference.engines.heyoka.model": "Numbers RoundedModel compiled",
     "reference.engines.registry": "batches engines",
     "reference.engines.trajectory": "Variants",
@@ -147,6 +147,7 @@ PUBLIC = {
     "reference.scenes.scene": "AnyScene MAX_ROWS as_scene unit_of",
     "reference.scenes.shipped": "DATA_VERSION WITHOUT_FUNCTION data_root golden_root in_checkout seals",
     "reference.scenes.fields": "LEVELS RunTable",
+    "reference.solver.ranges": "Intervals exact_texts solve_ranges widths_of",
     "reference.solver.sensitivity": "digits_lost sensitivity",
     "reference.solver.solve": "roughly",
     "reference.status": "Status",

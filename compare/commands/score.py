@@ -12,6 +12,7 @@ from reference import InputError, load_scene
 from reference.commands.terminal import (
     AsJson,
     Assignments,
+    Uncertain,
     chosen,
     completion,
     emit,
@@ -19,6 +20,7 @@ from reference.commands.terminal import (
     refuse,
     replacements,
     scene_argument,
+    widths_by_name,
 )
 
 from .options import announce, listed
@@ -132,6 +134,7 @@ def command(
     as_model: Annotated[bool, AS_MODEL] = False,
     no_diagnosis: Annotated[bool, NO_DIAGNOSIS] = False,
     set_: Assignments = None,
+    uncertain: Uncertain = None,
     out: Annotated[Path | None, OUT] = None,
     junit: Annotated[Path | None, JUNIT] = None,
     github: Annotated[bool, GITHUB] = False,
@@ -143,11 +146,20 @@ def command(
     several candidates, the largest. With --baseline 1 means worse than that by more than the tolerance, 0 no worse,
     whatever the verdict.
 
+    With --uncertain, or ranges in place of the scene, files are held against intervals that are proved: 0: cannot be
+    told apart, 1: disagrees.
+
     --run fills in these placeholders: {x0} {y0} {z0} {vx0} {vy0} {vz0} {length} {drag} {latitude} {altitude} {gravity}
     {gravity_is} {rotation_rate} {equatorial_radius} {inverse_flattening} {angle} {azimuth} {angle_rate}
     {azimuth_rate} {t_end} {grid_step} {setting}.
     """
+    from ..candidates.layout import Naming
+    from .measuring import hold, ranges_named, ranges_to_prove
+
+    naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
     reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
+    if tolerance is not None and not 0 < tolerance < float("inf"):
+        raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
     if no_diagnosis:
         refuse({"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis")
     if as_json:
@@ -162,12 +174,28 @@ def command(
         options = {"--t-end": ("run.t_end", t_end), "--inputs": ("inputs", reading)}
         if scene_word is None:
             raise InputError("SCENE", "nothing", "a scene's id, or --suite DIR", "`foucault scenes` lists them.")
-        scene = load_scene(scene_word, replacements(set_, options, UNUSED, announce))
+        if (ranges := ranges_named(scene_word)) is not None:
+            refuse({"--uncertain": uncertain, "--set": set_, "--t-end": t_end, "--inputs": reading}, "with ranges")
+        scene = ranges.scene if ranges else load_scene(scene_word, replacements(set_, options, UNUSED, announce))
+        if widths := widths_by_name(uncertain):
+            ranges = ranges_to_prove(scene, widths)
+        if ranges is not None:
+            unused: dict[str, object] = {
+                "--run": run,
+                "--approximation": approximation,
+                "--baseline": baseline,
+                "--covers": covers,
+            }
+            unused |= {"--plot": plot, "--junit": junit, "--github": github, "--as-model": as_model}
+            refuse({**unused, "--no-diagnosis": no_diagnosis}, "where inputs are uncertain")
+            hold(list(candidates or ()), transits, ranges, naming, tolerance, as_json)
+            return
     else:
         others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
-        refuse({**others, "--set": set_ or None, "--t-end": t_end, "--columns": columns}, "together with --suite")
-    if tolerance is not None and not 0 < tolerance < float("inf"):
-        raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
+        refuse(
+            {**others, "--uncertain": uncertain, "--set": set_ or None, "--t-end": t_end, "--columns": columns},
+            "together with --suite",
+        )
     if covers is not None and not 0 < covers <= 1:
         raise InputError("--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1")
     if [*(candidates or ()), transits].count("-") > 1:
@@ -183,11 +211,9 @@ def command(
         from ..report.charts.drawing import check_target
 
         check_target(plot)
-    from ..candidates.layout import Naming
     from .experimenting import Program
     from .judging import Judging
 
-    naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
     end = None if t_end is None else float(scene.exact.t_end)
     limits: dict[str, Any] = {"tolerance": tolerance, "covers": covers or 0.0, "t_end": end}
     judging = Judging(naming, limits | {"inputs": inputs, "as_model": as_model, "explain": not no_diagnosis}, baseline)

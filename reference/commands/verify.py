@@ -24,8 +24,9 @@ def command(
     recompute: Annotated[bool, RECOMPUTE] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Check golden datasets, and integrate their motion again."""
-    from ..dataset.place import golden_folder
+    """Check golden datasets, and integrate their motion again; of ranges, prove them again."""
+    from ..dataset.place import RANGES, golden_folder
+    from ..dataset.ranges import verify_ranges
     from ..dataset.verify import recompute as recomputed
     from ..dataset.verify import verify
 
@@ -35,11 +36,14 @@ def command(
     rows = []
     for folder in folders:
         with progress() as show:
-            outcome = verify(folder, show(folder.name))
-            problems, undecided, notes = outcome.problems, outcome.undecided, outcome.foreign
-            if recompute and not problems:
-                problems, measured = recomputed(folder, show(folder.name))
-                undecided, notes = [], [*notes, *measured]
+            if (folder / RANGES).is_file():
+                problems, undecided, notes = verify_ranges(folder, show(folder.name), recompute), [], []
+            else:
+                outcome = verify(folder, show(folder.name))
+                problems, undecided, notes = outcome.problems, outcome.undecided, outcome.foreign
+                if recompute and not problems:
+                    problems, measured = recomputed(folder, show(folder.name))
+                    undecided, notes = [], [*notes, *measured]
         rows.append({"path": str(folder), "ok": not problems, "problems": problems, "notes": [*undecided, *notes]})
         if not as_json:
             typer.echo(f"{folder}: {'WRONG' if problems else '; '.join(['ok', *undecided])}")

@@ -25,7 +25,7 @@ from ..scenes.scene import Scene, parse_scene
 from ..scenes.shipped import seals
 from .function import FunctionRecord, evaluated, read_function
 from .manifest import FORMAT, FUNCTION, MANIFEST, Manifest
-from .place import golden_folder
+from .place import RANGES, golden_folder
 from .sheets import GRID_HEADER, NUMBERS, TRANSITS_HEADER, Sheet
 
 MAX_MANIFEST = 1 << 20  # bytes
@@ -150,6 +150,10 @@ def read_manifest(folder: Path) -> Manifest:
 
 
 def _no_dataset(folder: Path) -> InputError:
+    if (folder / RANGES).is_file():
+        return InputError(
+            "PATH", str(folder), "a golden dataset", "These are ranges: reference.load_ranges reads them."
+        )
     advice = did_you_mean(folder.name, () if folder.exists() else seals(), "Make it with `foucault generate`.")
     return InputError("PATH", str(folder), f"a golden dataset (a folder with {MANIFEST})", advice)
 

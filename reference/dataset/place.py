@@ -10,6 +10,7 @@ from ..scenes.shipped import golden_root, in_checkout, scene_ids
 from .sheets import by_field, scene_inputs
 
 GOLDEN = "golden"
+RANGES = "ranges.json"  # what a folder of ranges has, and a dataset has not
 MAX_ID = 160  # characters; more changes than fit are named by their hash
 
 

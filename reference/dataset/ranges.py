@@ -1,4 +1,4 @@
-"""A dataset of ranges: proven intervals for uncertain inputs, as tables whose ends are rounded outward."""
+"""A dataset of ranges: proven intervals for uncertain inputs, in tables whose ends are rounded outward."""
 
 from __future__ import annotations
 
@@ -9,16 +9,20 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from ..errors import DatasetError
+from ..engines.plan import Report
+from ..errors import DatasetError, FoucaultError, InputError
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import fixed_decimal, magnitude, outward, rounded_up
-from ..solver.ranges import Intervals, Ranges
+from ..scenes.scene import parse_scene
+from ..solver.ranges import Ends, Intervals, Ranges
 from ..solver.solution import exact_decimals
-from .place import GOLDEN, MAX_ID, dataset_id
+from ..solver.solve import solve
+from ..system.documents import json_document
+from .place import GOLDEN, MAX_ID, RANGES, dataset_id, golden_folder
 from .sheets import scene_inputs
 from .write import check_target, filled, replace, writable_place
 
-RANGES, FORMAT = "ranges.json", 1
+FORMAT = 1
 GRID_FILE, TRANSITS_FILE = "grid.csv", "transits.csv"
 DIGITS = 2  # that a width has in the tables: the ends widen it by a tenth at most
 
@@ -58,13 +62,107 @@ def write_ranges(ranges: Ranges, folder: str | Path) -> Path:
     """
     folder = Path(folder)
     check_ranges_target(folder)
-    tables = {GRID_FILE: _grid(ranges), TRANSITS_FILE: _transits(ranges)}
-    if not _holds(tables[GRID_FILE], ranges.grid) or not _holds(tables[TRANSITS_FILE], ranges.transits):
-        raise DatasetError(str(folder), ["a printed interval does not hold the proven one"])
-    texts = {**tables, RANGES: json.dumps(_manifest(ranges, tables), indent=1, ensure_ascii=False) + "\n"}
+    texts = _texts(ranges)
+    if problems := _misprints(texts, ranges):
+        raise DatasetError(str(folder), problems)
     with writable_place(folder) as (work, target):
         replace(target, filled(work, texts), work)
     return folder
+
+
+def load_ranges(name: str | Path) -> Ranges:
+    """Read ranges by id or path, after checking their seal and hashes: the intervals as printed, `proof` None.
+
+    Raises:
+        InputError: there are none.
+        DatasetError: a file is missing, changed or malformed.
+    """
+    return _read(golden_folder(name))[0]
+
+
+def verify_ranges(folder: Path, report: Report | None = None, recompute: bool = False) -> list[str]:
+    """Prove ranges again, and have trusted code hold their files against that.
+
+    Args:
+        folder: where they stand.
+        report: called with the simulated time reached, in s.
+        recompute: also compare every byte.
+
+    Returns:
+        A sentence for each problem; none if every printed interval holds what is proved.
+
+    Raises:
+        InputError: there are none at `folder`, or the engine that they were made with is not installed.
+        UnreachableError: the proof fails here.
+    """
+    try:
+        said, texts = _read(folder)
+    except DatasetError as error:
+        return error.problems
+    again = solve(said.scene, uncertain=_signed(said), engine=said.engine, report=report)
+    problems = _misprints(texts, again)
+    if recompute and not problems:
+        files = _texts(again)
+        problems = [f"{name}: recomputing gives another text" for name in files if files[name] != texts[name]]
+    return problems
+
+
+def _read(folder: Path) -> tuple[Ranges, dict[str, str]]:
+    """Return ranges and the texts of their files."""
+    try:
+        said = json_document(folder / RANGES, "PATH")
+    except FileNotFoundError:
+        advice = "`foucault generate SCENE --uncertain …` makes them."
+        raise InputError("PATH", str(folder), f"ranges (a folder with {RANGES})", advice) from None
+    try:
+        texts = {RANGES: (folder / RANGES).read_text(encoding="utf-8")}
+        texts |= {name: (folder / name).read_text(encoding="utf-8") for name in (GRID_FILE, TRANSITS_FILE)}
+        if _text({**said, "seal": _seal(said)}) != texts[RANGES]:
+            raise DatasetError(str(folder), [f"{RANGES} does not fit its seal: a byte was changed"])
+        for name, digest in said["sha256"].items():
+            if _hash(texts[name]) != digest:
+                raise DatasetError(str(folder), [f"{name}: a byte was changed (sha256 differs)"])
+        name = said["id"].partition("+")[0].removesuffix(f".{said['inputs']}")
+        scene = parse_scene({"id": name, "inputs": said["inputs"], **said["scene"]})
+        tables = {
+            name: [line.split(",") for line in texts[name].splitlines()[1:]] for name in (GRID_FILE, TRANSITS_FILE)
+        }
+        possible = tuple((Fraction(z["from_s"]), Fraction(z["to_s"]), z["parity"]) for z in said["possible"])
+        ranges = Ranges(
+            scene,
+            {name: width.removeprefix("±") for name, width in said["uncertain"].items()},
+            tuple(Fraction(row[0]) for row in tables[GRID_FILE]),
+            Intervals(GRID, tuple(_intervals(row[1:]) for row in tables[GRID_FILE])),
+            Intervals(TRANSITS, tuple(_intervals(row[2:]) for row in tables[TRANSITS_FILE])),
+            [int(row[1]) for row in tables[TRANSITS_FILE]],
+            possible,
+            said["proof"]["engine"],
+        )
+    except (OSError, LookupError, ValueError, TypeError, AttributeError, FoucaultError) as error:
+        if isinstance(error, DatasetError):
+            raise
+        raise DatasetError(str(folder), [f"cannot be read: {type(error).__name__} {error}"]) from None
+    return ranges, texts
+
+
+def _intervals(cells: Sequence[str]) -> tuple[Ends, ...]:
+    ends = [Fraction(text) for text in cells]
+    return tuple(Ends(*pair) for pair in zip(ends[::2], ends[1::2], strict=True))
+
+
+def _signed(ranges: Ranges) -> dict[str, str]:
+    return {name: f"±{width}" for name, width in ranges.uncertain.items()}
+
+
+def _misprints(texts: dict[str, str], ranges: Ranges) -> list[str]:
+    """Return in a sentence what does not hold what was proved, found by trusted code."""
+    from ..enclosure.printed_box import check_ranges
+
+    try:
+        check_ranges(texts, ranges.proof.proved)
+    except (ArithmeticError, LookupError, ValueError) as error:
+        return [f"what is printed does not hold what is proved: {error}"]
+    return []
 
 
 def period_texts(ranges: Ranges) -> list[str] | None:
@@ -119,15 +217,24 @@ def _csv(lines: Sequence[Sequence[str]]) -> str:
     return "".join(",".join(line) + "\n" for line in lines)
 
 
-def _holds(text: str, table: Intervals) -> bool:
-    """Return whether each printed interval contains the proven one, read back from the text."""
-    header, *lines = (line.split(",") for line in text.splitlines())
-    for name in table.columns:
-        low, high = header.index(f"{name}_low"), header.index(f"{name}_high")
-        for line, (least, most) in zip(lines, table.exact(name), strict=True):
-            if not Fraction(line[low]) <= least <= most <= Fraction(line[high]):
-                return False
-    return True
+def _texts(ranges: Ranges) -> dict[str, str]:
+    """Return the files of ranges, sealed."""
+    tables = {GRID_FILE: _grid(ranges), TRANSITS_FILE: _transits(ranges)}
+    said = _manifest(ranges, tables)
+    return {RANGES: _text(said | {"seal": _seal(said)}), **tables}
+
+
+def _text(said: dict[str, Any]) -> str:
+    return json.dumps(said, indent=1, ensure_ascii=False) + "\n"
+
+
+def _seal(said: dict[str, Any]) -> str:
+    """Return the sha256 of the text with an empty seal: it finds accidents."""
+    return _hash(_text({**said, "seal": ""}))
+
+
+def _hash(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
@@ -136,17 +243,23 @@ def _manifest(ranges: Ranges, tables: dict[str, str]) -> dict[str, Any]:
     sections["run"] = {name: text for name, text in sections["run"].items() if name != "digits"}  # as widths support
     return {
         "format": FORMAT,
+        "seal": "",
         "id": ranges_id(ranges),
         "level": scene.run.level,
         "inputs": scene.inputs,
         "scene": sections,
-        "uncertain": {name: f"±{width}" for name, width in ranges.uncertain.items()},
+        "uncertain": _signed(ranges),
         "period_s": period_texts(ranges),
         "possible": [
             {"from_s": outward(low, -1), "to_s": outward(high, 1), "parity": parity}
             for low, high, parity in ranges.possible
         ],
         "counts": {"grid": len(ranges.times), "transits": len(ranges.transits), "possible": len(ranges.possible)},
-        "proof": {"bits": proof.bits, "steps": proof.steps, "radius_m": rounded_up(proof.radius)},
-        "sha256": {name: hashlib.sha256(text.encode()).hexdigest() for name, text in tables.items()},
+        "proof": {
+            "engine": ranges.engine,
+            "bits": proof.bits,
+            "steps": proof.steps,
+            "radius_m": rounded_up(proof.radius),
+        },
+        "sha256": {name: _hash(text) for name, text in tables.items()},
     }

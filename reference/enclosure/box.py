@@ -14,7 +14,7 @@ from flint import arb, ctx
 
 from .balls import SHORT, Vector, add, ball, cross, demand, interval, size, times, total, upper
 from .bound import Piece, Radius, SceneBalls, tube
-from .course import Course
+from .course import FINISHED, Course
 from .shapes import Box, Covered, EnclosedTransit, ProvedBox, Sizes
 
 PARTS = 16  # of a unit of s, over which a state is bounded at once
@@ -136,7 +136,9 @@ class Windows:
                 )
                 out += [replace(z, t=t, vy=vy, ax=ax)] if t.low <= self.times[-1] else []
             states = tuple(tuple(map(interval, x)) for x in own)
-        return ProvedBox(self.box, self.times, states, None if proved.transits is None else tuple(out))
+        transits = None if proved.transits is None else tuple(out)
+        FINISHED.add(result := ProvedBox(self.box, self.times, states, transits))
+        return result
 
 
 def between(covered: Covered, begin: Fraction, end: Fraction) -> list[Vector]:

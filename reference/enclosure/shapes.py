@@ -70,7 +70,8 @@ class Box(NamedTuple):
     high: Inputs
 
 
-class ProvedBox(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class ProvedBox:
     """Proved for all inputs of a box: states at `times`, and each transit that may come up to the last of them."""
 
     box: Box

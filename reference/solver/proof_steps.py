@@ -46,7 +46,7 @@ class Feed:
             steps: about how many steps it takes in double.
         """
         self._inputs, self._times, self._wanted, self._count = inputs, times, engine, steps
-        self._begun = ""
+        self.begun = ""
         self._worker: Worker | None = None
         self._steps: Iterator[TaylorStep] = iter(())
         self._run: Run | None = None
@@ -60,9 +60,9 @@ class Feed:
         """
         self.stop()
         engine = fastest(prec, self._wanted, self._count)
-        if self._begun not in ("", engine.name):
+        if self.begun not in ("", engine.name):
             raise EngineChanged(engine.name)
-        self._begun, self._run = engine.name, None
+        self.begun, self._run = engine.name, None
         run = engine.name, self._inputs, self._times, prec
         if engine.own_process and engine.expected_s(self._count, prec) >= WORTH_A_PROCESS:
             self._worker = Worker(_send, *run)

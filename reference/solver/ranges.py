@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from fractions import Fraction
 from math import ceil
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..engines import AUTO
 from ..engines.plan import Report
 from ..errors import InputError, unknown
 from ..numbers.columns import GRID, TRANSITS, Framed, data_frame
@@ -27,6 +28,13 @@ UNCERTAIN = [*PLAIN, "site.inverse_flattening", *(f"release.{name}" for names in
 SIGNS = ("±", "+-", "+/-")
 EXAMPLE = "a width with its sign, such as ±0.001 or +-0.001"
 MOST_DECIMALS = 20  # of an end of an interval
+
+
+class Ends(NamedTuple):
+    """The exact ends of an interval."""
+
+    low: Fraction
+    high: Fraction
 
 
 @dataclass(frozen=True)
@@ -79,7 +87,8 @@ class Ranges:
             come after the end for some. Without rows if not asked for, or if xdot is identically zero.
         directions: +1 where xdot goes from - to +, per transit.
         possible: intervals of time that may hold other zeros, each with its parity.
-        proof: the `BoxEnclosure`.
+        engine: whose steps were proved.
+        proof: the `BoxEnclosure`; None for ranges that were read from a file.
     """
 
     scene: Scene
@@ -89,7 +98,8 @@ class Ranges:
     transits: Intervals
     directions: list[int] = field(repr=False)
     possible: tuple[tuple[Fraction, Fraction, str], ...]
-    proof: Any = field(repr=False)
+    engine: str
+    proof: Any = field(default=None, repr=False)
 
     @property
     def t(self) -> Array:
@@ -112,22 +122,33 @@ class Ranges:
         return f"Ranges({self.scene.id}: {box}; {len(self.times)} grid times, {len(self.transits)} transits)"
 
 
-def solve_ranges(scene: Scene, uncertain: Mapping[str, Any], engine: str, report: Report | None = None) -> Ranges:
+def solve_ranges(
+    scene: Scene,
+    uncertain: Mapping[str, Any],
+    engine: str = AUTO,
+    report: Report | None = None,
+    times: Sequence[Fraction] | None = None,
+) -> Ranges:
     """Prove what holds for a scene with uncertain inputs, at its grid times, with the transits if it asks for them.
+
+    Other `times` take the place of the grid's, from 0 on, increasing.
 
     Raises:
         InputError: an input that scenes do not have, or a width that is wrong; or python-flint is not installed.
         UnreachableError: the box is too wide, and it tells up to which time it holds.
     """
     try:
+        from ..enclosure.printed_box import end_of
         from ..enclosure.prove_box import enclose_box
         from ..enclosure.shapes import Box
     except ModuleNotFoundError as error:
         advice = "Install it with pip install 'foucault-reference[enclose]'."
         raise InputError("--uncertain", "nothing", f"the package {error.name}, which the proof needs", advice) from None
     widths = widths_of(scene, uncertain)
-    inputs, end, times = scene.exact, scene.exact.t_end, scene.exact.grid
-    box = Box(inputs, *(_with_numbers(inputs, ends) for ends in _ends(scene, widths)))
+    inputs, times = scene.exact, times or scene.exact.grid
+    end = times[-1]
+    texts = exact_texts(widths)
+    box = Box(inputs, *(end_of(inputs, texts, side) for side in (-1, 1)))
     swing = abs(float(inputs.gravity / inputs.length)) ** 0.5
     steps = ceil(float(end) * max(swing, abs(float(inputs.rotation_rate)), 1 / float(end)))
     feeds: list[Feed] = []
@@ -139,7 +160,7 @@ def solve_ranges(scene: Scene, uncertain: Mapping[str, Any], engine: str, report
 
     try:
         tell = report and (lambda part: report(part * float(end)))
-        proof = enclose_box(box, times, approximant, scene.run.transits, tell)
+        proof = enclose_box(box, list(times), approximant, scene.run.transits, tell)
     finally:
         for feed in feeds:
             feed.stop()
@@ -147,12 +168,13 @@ def solve_ranges(scene: Scene, uncertain: Mapping[str, Any], engine: str, report
     ones, others = ([z for z in found if (z.kind == "one") is single] for single in (True, False))
     return Ranges(
         scene,
-        {name: decimal(width) for name, width in widths.items()},
+        texts,
         tuple(times),
         Intervals(GRID, proof.proved.states),
         Intervals(TRANSITS, tuple(tuple(getattr(z, name) for name in TRANSITS) for z in ones)),
         [z.direction for z in ones],
         tuple((max(z.t.low, Fraction(0)), min(z.t.high, end), z.parity) for z in others),
+        feeds[-1].begun,
         proof,
     )
 
@@ -210,6 +232,11 @@ def decimal(value: Fraction) -> str:
     return fixed_decimal(value, exact_decimals((value,)) if whole.denominator == 1 else MOST_DECIMALS)
 
 
+def exact_texts(widths: Mapping[str, Fraction]) -> dict[str, str]:
+    """Return widths as decimals, with all of their digits."""
+    return {name: fixed_decimal(width, exact_decimals((width,))) for name, width in widths.items()}
+
+
 def _numbers(inputs: Inputs) -> dict[str, Fraction]:
     """Return the inputs that may be uncertain, by their full names."""
     plain = {name: getattr(inputs, name.partition(".")[2]) for name in UNCERTAIN[: len(PLAIN)]}
@@ -224,12 +251,3 @@ def _ends(scene: Scene, widths: Mapping[str, Fraction]) -> list[dict[str, Fracti
     """Return the lower and the upper ends of all inputs."""
     have = _numbers(scene.exact)
     return [{name: value + side * widths.get(name, Fraction(0)) for name, value in have.items()} for side in (-1, 1)]
-
-
-def _with_numbers(inputs: Inputs, numbers: Mapping[str, Fraction]) -> Inputs:
-    """Return inputs with other numbers, by their full names."""
-    changes: dict[str, Any] = {name.partition(".")[2]: x for name, x in numbers.items() if "release" not in name}
-    inverse = changes.pop("inverse_flattening", None)
-    kind = "position" if inputs.position else "angles"
-    changes[kind] = tuple(numbers[f"release.{name}"] for name in RELEASES[kind])
-    return replace(inputs, **changes, flattening=1 / inverse if inverse else Fraction(0))

@@ -6,10 +6,12 @@ import json
 from fractions import Fraction
 
 import pytest
+from typer.testing import CliRunner
 
 import reference
+from reference.commands import app
 from reference.dataset import ranges as written
-from reference.dataset.ranges import ends, ranges_id, write_ranges
+from reference.dataset.ranges import _seal, _text, ends, ranges_id, verify_ranges, write_ranges
 
 BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
 
@@ -78,7 +80,78 @@ def test_ranges_replace_ranges_and_nothing_else(ranges, tmp_path, monkeypatch):
     with pytest.raises(reference.InputError, match="or an older dataset"):
         reference.write(point, folder)
     monkeypatch.setattr(written, "outward", lambda value, side, places: written.fixed_decimal(value, places))
-    with pytest.raises(reference.DatasetError, match="does not hold the proven one"):
+    with pytest.raises(reference.DatasetError, match="does not hold what is proved"):
         write_ranges(ranges, folder)
     assert before == {path.name: path.read_bytes() for path in folder.iterdir()}
     assert sorted(path.name for path in tmp_path.iterdir()) == ["other", "out"]
+
+
+def test_ranges_are_read_back_as_printed(ranges, tmp_path):
+    folder = write_ranges(ranges, tmp_path / "out")
+    read = reference.load_ranges(folder)
+    assert read.scene.with_values(["run.digits=30"]).exact == ranges.scene.exact
+    assert (read.uncertain, read.times, read.directions) == (ranges.uncertain, ranges.times, ranges.directions)
+    assert (read.possible, read.engine, read.proof) == ((), ranges.engine, None)
+    for name in ranges.grid.columns:
+        assert (read.grid.low(name) <= ranges.grid.low(name)).all()
+        assert (ranges.grid.high(name) <= read.grid.high(name)).all()
+    assert read.period[0] <= ranges.period[0] <= ranges.period[1] <= read.period[1]
+    with pytest.raises(reference.InputError, match="load_ranges reads them"):
+        reference.load(folder)
+    with pytest.raises(reference.InputError, match=r"a folder with ranges\.json"):
+        reference.load_ranges("paris")
+
+
+def narrower(text):
+    """A number raised by one in its last digit that allows it."""
+    step, digits = (-1, "123456789") if text.startswith("-") else (1, "012345678")
+    k = max(i for i, digit in enumerate(text) if digit in digits)
+    return f"{text[:k]}{int(text[k]) + step}{text[k + 1 :]}"
+
+
+CHANGES = {
+    "a low end": ("grid.csv", lambda row: row.update(x_low=narrower(row["x_low"])) or row),
+    "a time": ("grid.csv", lambda row: row.update(t=narrower(row["t"])) or row),
+    "a transit": ("transits.csv", lambda row: row.update(t_low=narrower(row["t_low"])) or row),
+    "a direction": ("transits.csv", lambda row: row.update(direction=str(-int(row["direction"]))) or row),
+    "a length": ("ranges.json", lambda said: said["scene"]["pendulum"].update(length="67.1") or said),
+    "a width": ("ranges.json", lambda said: said["uncertain"].update({"pendulum.length": "±0.0011"}) or said),
+    "a period": ("ranges.json", lambda said: said.update(period_s=[narrower(said["period_s"][0]), "16.44"]) or said),
+    "a count": ("ranges.json", lambda said: said["counts"].update(transits=1) or said),
+}
+
+
+@pytest.mark.parametrize("sealed", [False, True])
+@pytest.mark.parametrize("what", CHANGES)
+def test_verify_finds_what_is_not_proved_even_if_it_is_sealed_anew(ranges, tmp_path, what, sealed):
+    folder = write_ranges(ranges, tmp_path / "out")
+    if not sealed and what == "a low end":
+        assert verify_ranges(folder, recompute=True) == []
+    file, change = CHANGES[what]
+    if file == "ranges.json":
+        said = change(json.loads((folder / file).read_text(encoding="utf-8")))
+    else:
+        said, lines = json.loads((folder / "ranges.json").read_text(encoding="utf-8")), rows(folder / file)
+        change(lines[2])
+        text = "".join(",".join(line) + "\n" for line in [list(lines[0]), *(list(row.values()) for row in lines)])
+        (folder / file).write_text(text, encoding="utf-8")
+        if sealed:
+            said["sha256"][file] = hashlib.sha256(text.encode()).hexdigest()
+    if sealed:
+        said["seal"] = _seal(said)
+    (folder / "ranges.json").write_text(_text(said), encoding="utf-8")
+    problems = verify_ranges(folder)
+    assert problems and ("does not hold what is proved" in problems[0]) is sealed
+    if not sealed:
+        with pytest.raises(reference.DatasetError, match=r"seal|sha256"):
+            reference.load_ranges(folder)
+
+
+def test_verify_takes_ranges_beside_datasets(ranges, tmp_path):
+    folder = write_ranges(ranges, tmp_path / "out")
+    done = CliRunner().invoke(app, ["verify", str(folder)])
+    assert (done.exit_code, done.output) == (0, f"{folder}: ok\n")
+    (folder / "grid.csv").write_text("t\n", encoding="utf-8")
+    done = CliRunner().invoke(app, ["verify", str(folder), "--json"])
+    assert done.exit_code == 1
+    assert "a byte was changed" in json.loads(done.stdout)["rows"][0]["problems"][0]

@@ -17,8 +17,8 @@ ARRAYS = {"digits": {"numpy"}, "bound": {"numpy"}}  # integers only
 PROPOSALS = {"guess"}  # untrusted: what it returns is only where an interval Newton step begins
 AUDITED = tuple(name for name in TRUSTED if name != "digits")  # what FLINT alone has proved does not rest on its sums
 OF_FUNCTIONS = "function"  # what a proof without a golden function does not import
-OF_BOXES = "box"  # what a proof of a point does not import
-BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET, BOX_BUDGET = 480, 411, 80, 115  # lines of code
+OF_BOXES = ("box", "printed_box")  # what a proof of a point does not import
+BUDGET, AUDITED_BUDGET, FUNCTION_BUDGET, BOX_BUDGET = 480, 411, 80, 175  # lines of code
 
 
 def source(name):
@@ -30,10 +30,10 @@ def test_trusted_code_stays_within_its_budget():
     assert sum(counts.values()) <= BUDGET, counts
     assert sum(counts[name] for name in AUDITED) <= AUDITED_BUDGET, counts
     assert code_lines(HOME / f"{OF_FUNCTIONS}.py", imports=True) <= FUNCTION_BUDGET
-    assert code_lines(HOME / f"{OF_BOXES}.py", imports=True) <= BOX_BUDGET
+    assert sum(code_lines(HOME / f"{name}.py", imports=True) for name in OF_BOXES) <= BOX_BUDGET
 
 
-@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS, OF_BOXES])
+@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS, *OF_BOXES])
 def test_trusted_code_says_so_and_holds_no_floating_point(name):
     tree = ast.parse(source(name))
     assert ast.get_docstring(tree).startswith("TRUSTED.")
@@ -47,11 +47,11 @@ def test_trusted_code_says_so_and_holds_no_floating_point(name):
         assert not banned & set(modules), node.lineno
 
 
-@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS, OF_BOXES])
+@pytest.mark.parametrize("name", [*TRUSTED, OF_FUNCTIONS, *OF_BOXES])
 def test_trusted_code_imports_nothing_untrusted(name):
     declarations = {"shapes", "numbers.taylor_step", "scenes.inputs", "system.machine_code"}
     library = {"collections.abc", "fractions", "functools", "itertools", "json", "typing", "weakref", "flint"}
-    library |= {OF_FUNCTIONS: {"array"}, OF_BOXES: {"copy", "dataclasses"}}.get(name, set())
+    library |= {OF_FUNCTIONS: {"array"}}.get(name, {"copy", "dataclasses"} if name in OF_BOXES else set())
     allowed = library | declarations | PROPOSALS | ARRAYS.get(name, set()) | {*TRUSTED}
     for node in ast.walk(ast.parse(source(name))):
         if isinstance(node, ast.ImportFrom):

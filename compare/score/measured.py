@@ -1,0 +1,183 @@
+"""Hold rows, measured or computed, against what is proved for every value of uncertain inputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from reference import InputError, Ranges
+from reference.numbers.columns import STATE
+from reference.numbers.precision import Array
+from reference.solver.ranges import solve_ranges
+
+from ..candidates.candidate import Candidate
+
+TOLD = 5  # of the numbers outside, those that are listed: the farthest of each column first
+ROUNDING = Fraction(1, 1 << 48)  # of a column's largest number: what doubles cannot hold says nothing
+SWING = 7.0  # times sqrt(l/g): a period, and some
+APART, INSIDE = "disagrees", "cannot be told apart"
+
+
+class Outside(NamedTuple):
+    """A number outside of what is proved: where, what it is, the interval, by how much it misses this; m, s."""
+
+    column: str
+    t: float
+    got: float
+    low: float
+    high: float
+    by: float
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What rows and transits say of a pendulum whose inputs are uncertain.
+
+    Attributes:
+        name: of the candidate.
+        ranges: what was proved, at the times of its rows.
+        rows: the number of rows up to the end of the scene.
+        transits: the number of its transits, None if it has none.
+        outside: every number that contradicts the proof, the farthest of a column first.
+        notes: remarks that a reader ought to know.
+    """
+
+    name: str
+    ranges: Ranges
+    rows: int
+    transits: int | None
+    outside: tuple[Outside, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def verdict(self) -> str:
+        """'cannot be told apart', or 'disagrees'."""
+        return APART if self.outside else INSIDE
+
+    def lines(self) -> Iterator[str]:
+        """Yield the lines for people, the verdict first."""
+        box = ", ".join(f"{name} ±{width}" for name, width in self.ranges.uncertain.items())
+        counted = [f"{self.rows} rows"] if self.rows else []
+        counted += [] if self.transits is None else [f"{self.transits} transits"]
+        scene, what = self.ranges.scene.id, " and ".join(counted)
+        if not self.outside:
+            yield f"{self.name} cannot be told apart from {scene} with {box}: {what}, all inside what is proved"
+        else:
+            numbers = "1 number is" if len(self.outside) == 1 else f"{len(self.outside)} numbers are"
+            yield f"{self.name} disagrees with {scene}, whatever {box}: of {what}, {numbers} outside what is proved"
+        for column, t, got, low, high, by in self.outside[:TOLD]:
+            at, unit = ("", "s") if column == "transit" else (f" at t = {t:.10g} s", "m/s" if column[0] == "v" else "m")
+            yield f"  {column}{at}: {got:.10g}, proved {low:.10g} to {high:.10g} {unit} ({by:.2g} outside)"
+        for note in self.notes:
+            yield f"Note: {note}."
+
+    def document(self) -> dict[str, Any]:
+        """Return it as a JSON document."""
+        return {
+            "scene": self.ranges.scene.id,
+            "candidate": self.name,
+            "verdict": self.verdict,
+            "uncertain": {name: f"±{width}" for name, width in self.ranges.uncertain.items()},
+            "rows": self.rows,
+            "transits": self.transits,
+            "outside": [number._asdict() for number in self.outside],
+            "notes": list(self.notes),
+        }
+
+
+def measured(
+    candidate: Candidate | None,
+    transits: Array | None,
+    ranges: Ranges,
+    tolerance: float = 0.0,
+    name: str = "",
+    report: Any = None,
+) -> Measured:
+    """Hold a candidate, or transits alone, against ranges; rows at other times than theirs take another proof.
+
+    Args:
+        candidate: rows of positions and, if there, velocities.
+        transits: times of xdot = 0 in s.
+        ranges: read from files, or made for these rows where they have no times.
+        tolerance: how far outside a number of a row may lie, in m or m/s, at least the rounding of doubles; transits
+            are taken as they are.
+        name: of transits alone.
+        report: called with the simulated time reached, in s.
+
+    Raises:
+        InputError: no row or transit lies within the scene's span.
+        UnreachableError: the box is too wide.
+    """
+    end = ranges.scene.exact.t_end
+    times = [] if candidate is None else [_exact(candidate, "t", k) for k in range(len(candidate.t))]
+    zeros = [] if transits is None else sorted(_decimal(t) for t in transits if t > 0)
+    kept, seen = [t for t in times if t <= end], [t for t in zeros if t <= end]
+    late = len(times) - len(kept) + len(zeros) - len(seen)
+    name = name if candidate is None else candidate.name
+    if not kept and not seen:
+        raise InputError(name, "no row", f"one up to {float(end):g} s", "The scene ends there: run.t_end.")
+    if not ({*kept} <= {*ranges.times} and (ranges.transits or ranges.possible or not seen)):
+        inputs, last = ranges.scene.exact, max([*kept, *seen])
+        # a swing beyond the last one, so that a transit is not cut off
+        later = (
+            last + Fraction(SWING * float(inputs.length / abs(inputs.gravity)) ** 0.5) if inputs.gravity else 2 * last
+        )
+        wanted = sorted({Fraction(0), *kept, *([min(later, end)] if seen or not last else [])})
+        scene = ranges.scene.with_values([f"run.transits={'true' if seen else 'false'}"])
+        box = {name: f"±{width}" for name, width in ranges.uncertain.items()}
+        ranges = solve_ranges(scene, box, report=report, times=wanted)
+    if seen and not (ranges.transits or ranges.possible):
+        raise InputError(name, "transits", "none: xdot has no single zeros in this scene", "Give positions instead.")
+    off = [*_rows(candidate, kept, ranges, tolerance)] if candidate else []
+    off += _transits(seen, ranges)
+    first = {column: max(z.by for z in off if z.column == column) for column in {z.column for z in off}}
+    off.sort(key=lambda z: (z.by < first[z.column], z.column not in STATE, -z.by))
+    notes = (
+        *(candidate.notes if candidate else ()),
+        *([f"{late} rows after {float(end):g} s are left out"] if late else []),
+    )
+    return Measured(name, ranges, len(kept), len(seen) if transits is not None else None, tuple(off), notes)
+
+
+def _rows(candidate: Candidate, times: Sequence[Fraction], ranges: Ranges, tolerance: float) -> Iterator[Outside]:
+    """Yield the numbers of rows that lie outside."""
+    place = {t: k for k, t in enumerate(ranges.times)}
+    for name in (name for name in STATE if name in candidate.columns):
+        intervals = ranges.grid.exact(name)
+        allowed = max(Fraction(tolerance), ROUNDING * max(max(-low, high) for low, high in intervals))
+        for k, t in enumerate(times):
+            (low, high), got = intervals[place[t]], _exact(candidate, name, k)
+            by = max(low - got, got - high)
+            if by > allowed:
+                yield Outside(name, *map(float, (t, got, low, high, by)))
+
+
+def _transits(times: Sequence[Fraction], ranges: Ranges) -> Iterator[Outside]:
+    """Yield transits in no proven interval, or in one whose only transit is another."""
+    free = [(ends, True) for ends in ranges.transits.exact("t")]
+    free += [((low, high), False) for low, high, _ in ranges.possible]
+    every = [ends for ends, _ in free]
+
+    def gap(t: Fraction, ends: tuple[Fraction, Fraction]) -> Fraction:
+        return max(ends[0] - t, t - ends[1], Fraction(0))
+
+    for t in times:
+        nearest = min(free, key=lambda interval: gap(t, interval[0]), default=None)
+        if nearest is None or gap(t, nearest[0]):
+            ends = nearest[0] if nearest else min(every, key=lambda ends: gap(t, ends))
+            yield Outside("transit", *map(float, (t, t, *ends, gap(t, ends))))
+        elif nearest[1]:
+            free.remove(nearest)
+
+
+def _exact(candidate: Candidate, name: str, k: int) -> Fraction:
+    """Return a number of a row exactly: the shortest decimal of a double, and what the file has beyond it."""
+    column = candidate.t if name == "t" else candidate.columns[name]
+    low = candidate.low.get(name)
+    return _decimal(column[k]) if low is None or not low[k] else Fraction(float(column[k])) + Fraction(float(low[k]))
+
+
+def _decimal(x: float) -> Fraction:
+    return Fraction(repr(float(x)))

@@ -1,0 +1,72 @@
+"""TRUSTED. The files of ranges, read back as texts and held against what was proved for a box of inputs."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from fractions import Fraction
+from json import loads
+from typing import Any
+
+from ..scenes.inputs import Inputs
+from .balls import demand
+from .course import FINISHED
+from .printed import DECIMAL, PLAIN, RELEASES, asked
+from .shapes import Interval, ProvedBox
+
+GRID, TRANSITS = ("x", "y", "z", "vx", "vy", "vz"), ("t", "x", "y", "z", "vy", "ax")
+
+
+def check_ranges(texts: Mapping[str, str], proved: ProvedBox) -> None:
+    """Demand that ranges.json and both tables state what was proved, or less, and of just this box."""
+    said, found = loads(texts["ranges.json"]), proved.transits or ()
+    inputs, times = asked(said)
+    ends = (end_of(inputs, said["uncertain"], side) for side in (-1, 1))
+    demand(
+        proved in FINISHED and (inputs, *ends) == proved.box and times == proved.times, "the proof is of other inputs"
+    )
+    ones, others = ([z for z in found if (z.parity == "one") is single] for single in (True, False))
+    check_rows(texts["grid.csv"], ["t"], GRID, ([t, *x] for t, x in zip(times, proved.states, strict=True)))
+    zeros = ([k, z.direction, *(getattr(z, name) for name in TRANSITS)] for k, z in enumerate(ones, 1))
+    check_rows(texts["transits.csv"], ["k", "direction"], TRANSITS, zeros)
+    for z, text in zip(others, said["possible"], strict=True):
+        until = Interval(max(z.t.low, Fraction(0)), min(z.t.high, times[-1]))
+        demand(
+            holds(text["from_s"], text["to_s"], until) and text["parity"] == z.parity, "misprint: a possible transit"
+        )
+    if said["period_s"] is not None:
+        swings = (len(ones) - 1) // 2
+        demand(swings > 0 and not others, "misprint: a period where transits are undecided")
+        first, last = ones[0].t, ones[2 * swings].t
+        mean = Interval((last.low - first.high) / swings, (last.high - first.low) / swings)
+        low, high = said["period_s"]
+        demand(holds(low, high, mean), "misprint: the period")
+    counts = {"grid": len(times), "transits": len(ones), "possible": len(others)}
+    demand(said["counts"] == counts, "misprint: the counts")
+
+
+def end_of(inputs: Inputs, uncertain: Mapping[str, str], side: int) -> Inputs:
+    """Return inputs with half of a width added to each that is uncertain, or taken from it with `side` -1."""
+    off = {name.partition(".")[2]: side * Fraction(width.removeprefix("±")) for name, width in uncertain.items()}
+    kind = "position" if inputs.position else "angles"
+    release = zip(RELEASES[kind], getattr(inputs, kind), strict=True)
+    changes: dict[str, Any] = {kind: tuple(value + off.pop(name, 0) for name, value in release)}
+    if "inverse_flattening" in off:
+        changes["flattening"] = 1 / (1 / inputs.flattening + off.pop("inverse_flattening"))
+    demand(off.keys() <= {*PLAIN.split()[:-2]}, "misprint: unknown inputs")
+    return replace(inputs, **changes, **{name: getattr(inputs, name) + half for name, half in off.items()})
+
+
+def check_rows(text: str, plain: list[str], names: tuple[str, ...], rows: Iterable[list[Any]]) -> None:
+    """Demand that a table has these rows: exact numbers, then intervals within those that are printed."""
+    header, *lines = (line.split(",") for line in text.splitlines())
+    demand(header == [*plain, *(f"{name}_{end}" for name in names for end in ("low", "high"))], "misprint: the header")
+    for cells, row in zip(lines, rows, strict=True):
+        exact, ends = cells[: len(plain)], cells[len(plain) :]
+        demand([*map(Fraction, exact)] == row[: len(plain)], f"misprint: {exact}")
+        for low, high, x in zip(ends[::2], ends[1::2], row[len(plain) :], strict=True):
+            demand(holds(low, high, x), f"misprint: {low} to {high}")
+
+
+def holds(low: str, high: str, x: Interval) -> bool:
+    """Return whether two decimals enclose an interval."""
+    demand(DECIMAL.issuperset(low + high), f"misprint: {low} to {high}")
+    return Fraction(low) <= x.low <= x.high <= Fraction(high)

@@ -1,0 +1,115 @@
+"""`score` where inputs are uncertain: rows and transits inside what is proved, or outside."""
+
+import json
+
+import numpy as np
+import pytest
+
+import reference
+from reference.dataset.ranges import write_ranges
+
+BOX = {"pendulum.length": "±0.001", "site.gravity": "±1e-5"}
+WORDS = [word for name, width in BOX.items() for word in ("--uncertain", f"{name}={width}")]
+TIMES = [0.0, 10.0, 16.4, 30.0]
+
+
+@pytest.fixture
+def score(foucault):
+    """Run `score`; return its exit status, and what it prints."""
+
+    def run(*words):
+        status, out, err = foucault("score", *words)
+        return status, out + err
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def golden():
+    return reference.load("paris.binary64")
+
+
+@pytest.fixture
+def file(golden, tmp_path):
+    """A program's rows, right but for what is added to x and to the transits."""
+
+    def written(x=0.0, y=0.0, t=0.0, length="67"):
+        made = reference.trajectory(reference.load_scene("paris", [f"pendulum.length={length}"]), TIMES)
+        table = np.column_stack([TIMES, made[:, 0] + x, made[:, 1] + y])
+        np.savetxt(tmp_path / "rows.csv", table, delimiter=",", header="t,x,y", comments="", fmt="%.17g")
+        zeros = golden.transits["t"][:5] + t
+        np.savetxt(tmp_path / "zeros.csv", zeros, header="t", comments="", fmt="%.17g")
+        return tmp_path / "rows.csv", tmp_path / "zeros.csv"
+
+    return written
+
+
+def test_what_lies_inside_cannot_be_told_apart(score, file):
+    rows, zeros = file()
+    status, told = score("paris", rows, "--transits", zeros, *WORDS)
+    assert status == 0, told
+    assert "cannot be told apart from paris with pendulum.length ±0.001, site.gravity ±0.00001" in told
+    assert "4 rows and 5 transits, all inside" in told
+    status, told = score("paris", rows, "--transits", zeros, *WORDS, "--json")
+    document = json.loads(told)
+    assert (status, document["verdict"], document["outside"]) == (0, "cannot be told apart", [])
+    assert (document["rows"], document["transits"], document["uncertain"]) == (4, 5, {
+        "pendulum.length": "±0.001", "site.gravity": "±0.00001"})  # fmt: skip
+
+
+def test_a_pendulum_of_the_box_is_inside_and_one_beyond_it_is_not(score, file):
+    rows, _ = file(length="67.0009")
+    assert score("paris", rows, *WORDS)[0] == 0
+    rows, _ = file(length="67.003")
+    status, told = score("paris", rows, *WORDS)
+    assert status == 1
+    assert "disagrees with paris, whatever pendulum.length ±0.001, site.gravity ±0.00001: of 4 rows, " in told
+    assert "outside)" in told
+    assert score("paris", rows, *WORDS, "--tolerance", "0.001")[0] == 0
+
+
+@pytest.mark.parametrize("t", [0.001, -0.001])
+def test_transits_are_held_against_their_intervals_alone_or_beside_rows(score, file, t):
+    rows, zeros = file(t=t)
+    status, told = score("paris", "--transits", zeros, *WORDS)
+    assert status == 1
+    assert "of 5 transits, 5 numbers are outside" in told
+    assert score("paris", rows, "--transits", zeros, *WORDS)[0] == 1
+    assert score("paris", rows, *WORDS)[0] == 0
+
+
+def test_a_transit_that_comes_twice_is_told(score, tmp_path):
+    (tmp_path / "twice.csv").write_text("t\n8.2177\n8.21775\n", encoding="utf-8")
+    status, told = score("paris", "--transits", tmp_path / "twice.csv", *WORDS)
+    assert status == 1
+    assert "1 number is outside" in told
+
+
+def test_ranges_on_disk_take_the_place_of_the_scene(score, file, tmp_path):
+    ranges = reference.solve("paris", t_end="60", uncertain=BOX)
+    folder = write_ranges(ranges, tmp_path / "ranges")
+    rows, zeros = file()
+    assert score(folder, rows, "--transits", zeros)[0] == 0
+    (tmp_path / "end.csv").write_text("t,x,y\n60,0.3,0.4\n70,1,1\n", encoding="utf-8")
+    status, told = score(folder, tmp_path / "end.csv")
+    assert status == 1
+    assert "of 1 rows, 2 numbers are outside" in told
+    assert "Note: 1 rows after 60 s are left out." in told
+
+
+@pytest.mark.parametrize(
+    "words, told",
+    [
+        ((), "a file, - for stdin, or --transits"),
+        (("rows", "--plot", "a.svg"), "no such option where inputs are uncertain"),
+        (("rows", "--run", "program"), "no such option where inputs are uncertain"),
+        (("rows", "--uncertain", "length=±70"), "expected a number above 0"),
+        (("late",), "expected one up to"),
+    ],
+)
+def test_what_cannot_be_held_is_told(score, file, tmp_path, words, told):
+    (tmp_path / "late.csv").write_text("t,x,y\n1e6,0,0\n", encoding="utf-8")
+    places = {"rows": file()[0], "late": tmp_path / "late.csv"}
+    box = [] if "length=±70" in words else WORDS
+    status, said = score("paris", *(places.get(word, word) for word in words), *box)
+    assert status != 0 and told in said
