@@ -177,7 +177,7 @@ def command(
         if (ranges := ranges_named(scene_word)) is not None:
             refuse({"--uncertain": uncertain, "--set": set_, "--t-end": t_end, "--inputs": reading}, "with ranges")
         scene = ranges.scene if ranges else load_scene(scene_word, replacements(set_, options, UNUSED, announce))
-        if widths := widths_by_name(uncertain):
+        if ranges is None and (widths := widths_by_name(uncertain, scene)):
             ranges = ranges_to_prove(scene, widths)
         if ranges is not None:
             unused: dict[str, object] = {

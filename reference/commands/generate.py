@@ -108,7 +108,8 @@ def command(
 ) -> None:
     """Solve a scene and write its golden dataset.
 
-    With --uncertain it writes ranges: intervals that are proved for every value of these inputs.
+    Where inputs are uncertain, by --uncertain or the scene's [uncertain], it writes ranges: intervals that are proved
+    for every value of these inputs.
     foucault generate --all --workers 2 makes all that ship, each in a process of its own; what is there is left.
     """
     options = {
@@ -130,16 +131,16 @@ def command(
     if scene_word is None:
         raise InputError("SCENE", "nothing", "a scene, or --all", "`foucault scenes` lists them.")
     chosen("--engine", engine, ENGINES)
-    if widths := widths_by_name(uncertain):
-        refuse({"--digits": digits, **proving}, "together with --uncertain")
-        _generate_ranges(load_scene(scene_word, replacements(set_, options)), level, widths, engine, out, as_json)
+    scene = load_scene(scene_word, replacements(set_, options))
+    if widths := widths_by_name(uncertain, scene):
+        refuse({"--digits": digits, **proving}, "where inputs are uncertain")
+        _generate_ranges(scene, level, widths, engine, out, as_json)
         return
     from ..dataset.place import dataset_id, default_folder
     from ..dataset.record import Making
     from ..dataset.shipping import making_of, solved, summary
     from ..dataset.write import check_target, write
 
-    scene = load_scene(scene_word, replacements(set_, options))
     name = dataset_id(scene, load_scene(scene_word) if scene_word not in scene_ids() else None)
     folder = out or default_folder(scene, name)
     check_target(folder)

@@ -80,7 +80,7 @@ def command(
         from ..solver.sensitivity import digits_lost
 
         document["digits_lost"] = round(digits_lost(scene.exact, tuple(scene.exact.grid)), 1)
-    if widths := widths_by_name(uncertain):
+    if widths := widths_by_name(uncertain, scene):
         document["ranges"] = _ranges(scene, widths)
     if as_json:
         emit(document)
@@ -95,6 +95,8 @@ def command(
     typer.echo(f"inputs are read as: {scene.inputs}")
     for section, table in scene_inputs(scene).items():
         typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
+    if scene.uncertain:
+        typer.echo("[uncertain] " + ", ".join(f"{key} = ±{width}" for key, width in scene.uncertain.items()))
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
     typer.echo(_motion_line(document["motion"]))
     if widths:

@@ -48,7 +48,7 @@ Uncertain = Annotated[
     option(
         "--uncertain",
         "Prove intervals for every value of an input within this width: pendulum.length=±0.001, or +-0.001; "
-        "may be repeated.",
+        "may be repeated; `none` takes the inputs as exact (default: as the scene's [uncertain] says).",
         "KEY=±WIDTH",
     ),
 ]
@@ -126,12 +126,14 @@ def replacements(
     return list(values.values())
 
 
-def widths_by_name(words: Iterable[str] | None) -> dict[str, str] | None:
-    """Return the widths that `--uncertain` gives, by name; None if it was not given.
+def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] | None:
+    """Return the widths that `--uncertain` gives, by name, and those of the scene; None if all inputs are exact.
 
     Raises:
         InputError: a word is not KEY=±WIDTH, or one key has two widths.
     """
+    if list(words or ()) == ["none"]:
+        return None
     widths: dict[str, str] = {}
     for word in words or ():
         key, sign, width = word.partition("=")
@@ -140,7 +142,8 @@ def widths_by_name(words: Iterable[str] | None) -> dict[str, str] | None:
         if key.strip() in widths:
             raise InputError("--uncertain", word, f"one width of {key.strip()}")
         widths[key.strip()] = width
-    return widths or None
+    given = {full_name(key) for key in widths}
+    return {name: f"±{width}" for name, width in scene.uncertain.items() if name not in given} | widths or None
 
 
 def refuse(options: Mapping[str, object], why: str) -> None:

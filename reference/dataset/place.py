@@ -55,7 +55,9 @@ def changes_in(name: str) -> list[str]:
 def is_of_shipped_scene(scene: Scene, name: str) -> bool:
     """Return whether a dataset is that of a scene that comes with the project, unchanged but for its reading."""
     shipped = shipped_scene(scene)
-    same = shipped is not scene and scene == shipped.model_copy(update={"inputs": scene.inputs})
+    same = shipped is not scene and scene == shipped.model_copy(
+        update={"inputs": scene.inputs, "uncertain": scene.uncertain}
+    )
     return same and name == dataset_id(scene)
 
 

@@ -162,6 +162,7 @@ def command(scene: Scene, name: str, options: str) -> str:
     shipped = shipped_scene(scene)
     changed = changes_in(name) if shipped is scene else changes(scene, shipped)
     changed = [change for change in changed if not change.startswith(own_option)]
+    parts += ["--uncertain", "none"] if shipped is not scene and shipped.uncertain else []
     changed += [f"inputs={scene.inputs}"] if f".{scene.inputs}" in name else []
     return " ".join([*parts, *(word for change in changed for word in ("--set", change))])
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -157,6 +157,25 @@ Positive = Annotated[Number, within("0", open_low=True)]
 NotNegative = Annotated[Number, within("0")]
 
 
+def _unsigned(value: object) -> object:
+    return value.strip().removeprefix("±") if isinstance(value, str) else value
+
+
+def _by_full_name(widths: object) -> object:
+    """Return widths by names such as pendulum.length, which TOML takes for a table in a table where it has no quotes."""
+    if not isinstance(widths, Mapping):
+        return widths
+    nested = (
+        {f"{top}.{key}": width for key, width in inner.items()} if isinstance(inner, Mapping) else {top: inner}
+        for top, inner in widths.items()
+    )
+    return {name: width for table in nested for name, width in table.items()}
+
+
+Width = Annotated[Positive, BeforeValidator(_unsigned)]
+Widths = Annotated[dict[str, Width], BeforeValidator(_by_full_name)]
+
+
 _TEXTS = ("id", "title", "source", "flags")
 
 
@@ -191,5 +210,6 @@ def _explained(details: ErrorDetails, known: Iterable[str]) -> InputError:
         "string": "text in quotes" if field.partition(".")[0] in _TEXTS else "a number in quotes",
         "tuple": "a list of words",
         "model": f"a table, written [{field}]",
+        "dict": f"a table, written [{field}]",
     }.get(kind.partition("_")[0], details["msg"])
     return InputError(field, got, expected)

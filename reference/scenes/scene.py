@@ -19,7 +19,7 @@ from pydantic import AfterValidator, TypeAdapter, ValidationError
 from ..errors import InputError, all_of, unknown
 from ..system.documents import toml_document
 from .fields import Pendulum, Release, RunTable, SceneTable, Site, field
-from .inputs import Inputs, Line, Refused, as_read, explained
+from .inputs import Inputs, Line, Refused, Widths, as_read, explained
 from .shipped import data_root, scene_ids
 
 MAX_ROWS = 2_000_000
@@ -56,6 +56,7 @@ class Scene(SceneTable):
     site: Site = Site()
     release: Release
     run: RunTable = RunTable()
+    uncertain: Widths = field({}, "", "half of the width of each input that is not known exactly")
 
     @property
     def exact(self) -> Inputs:
@@ -130,6 +131,8 @@ def field_names() -> list[str]:
     """Return the names of a scene's fields, as `--set` takes them: inputs, site.latitude and so on."""
     names = []
     for top, info in Scene.model_fields.items():
+        if top == "uncertain":  # `--uncertain` says these
+            continue
         kind = info.annotation
         inside = kind.model_fields if isinstance(kind, type) and issubclass(kind, SceneTable) else ()
         names += [f"{top}.{key}" for key in inside] or [top]

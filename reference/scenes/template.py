@@ -24,6 +24,10 @@ def template(scene: Scene | None) -> str:
     for name in Scene.model_fields:
         if isinstance(table := getattr(given, name), SceneTable):
             parts += ["", f"[{name}]  # {type(table).__doc__}", *_lines(table)]
+    if given.uncertain:
+        meaning = Scene.model_fields["uncertain"].description
+        widths = (f"{_toml(name)} = {_toml(width)}" for name, width in given.uncertain.items())
+        parts += ["", f"[uncertain]  # {meaning}", *widths]
     return "\n".join(parts) + "\n"
 
 
@@ -31,7 +35,7 @@ def _lines(table: SceneTable) -> Iterator[str]:
     """Yield a line for each field of a table, commented out where it has no value."""
     for name, info in type(table).model_fields.items():
         value = getattr(table, name)
-        if isinstance(value, SceneTable):
+        if isinstance(value, SceneTable | dict):
             continue
         written = f"{'# ' if value is None else ''}{name} = {_toml(value)}"
         extra: Any = info.json_schema_extra or {}
