@@ -14,7 +14,7 @@ from places import ROOT
 
 from compare.candidates.external import REPEATS, TIMEOUT_S
 from compare.commands import app as comparing
-from compare.commands import stability, study
+from compare.commands import studies
 from compare.score.judge import TOLERANCE
 from compare.studies.stability import LIMIT_S as STABILITY_LIMIT_S
 from compare.studies.study import LIMIT_S as STUDY_LIMIT_S
@@ -75,7 +75,7 @@ def test_the_version_is_that_of_the_package(foucault):
         ("study", "--methods", "all"),
         ("study", "--t-end", f"the scene's; at most {SPAN_S} with --precisions"),
         ("study", "--limit", f"{STUDY_LIMIT_S:g}"),
-        ("study", "--settings", study.STEPS_S),
+        ("study", "--settings", studies.STEPS_S),
         ("stability", "--methods", "all"),
         ("stability", "--scenes", "paris and all that have flags"),
     ],
@@ -87,8 +87,8 @@ def test_the_help_states_the_default_that_the_code_has(foucault, command, option
 
 
 def test_limits_of_the_command_line_are_those_of_python():
-    assert (study.LIMIT_S, stability.LIMIT_S) == (STUDY_LIMIT_S, STABILITY_LIMIT_S)
-    assert inspect.signature(stability.command).parameters["limit"].default == STABILITY_LIMIT_S
+    assert (studies.LIMIT_S, studies.STABILITY_LIMIT_S) == (STUDY_LIMIT_S, STABILITY_LIMIT_S)
+    assert inspect.signature(studies.stability).parameters["limit"].default == STABILITY_LIMIT_S
 
 
 def completed(*words: str) -> list[str]:
