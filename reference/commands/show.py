@@ -96,7 +96,7 @@ def command(
     for section, table in scene_inputs(scene).items():
         typer.echo(f"[{section}] " + ", ".join(f"{key} = {value}" for key, value in table.items()))
     if scene.uncertain:
-        typer.echo("[uncertain] " + ", ".join(f"{key} = ±{width}" for key, width in scene.uncertain.items()))
+        typer.echo("[uncertain] " + ", ".join(f"{key} = {width}" for key, width in scene.uncertain.items()))
     typer.echo("[derived] " + ", ".join(f"{key} = {value}" for key, value in document["derived"].items()))
     typer.echo(_motion_line(document["motion"]))
     if widths:

@@ -143,7 +143,7 @@ def widths_by_name(words: Iterable[str] | None, scene: Scene) -> dict[str, str] 
             raise InputError("--uncertain", word, f"one width of {key.strip()}")
         widths[key.strip()] = width
     given = {full_name(key) for key in widths}
-    return {name: f"±{width}" for name, width in scene.uncertain.items() if name not in given} | widths or None
+    return {name: width for name, width in scene.uncertain.items() if name not in given} | widths or None
 
 
 def refuse(options: Mapping[str, object], why: str) -> None:

@@ -172,7 +172,12 @@ def _by_full_name(widths: object) -> object:
     return {name: width for table in nested for name, width in table.items()}
 
 
-Width = Annotated[Positive, BeforeValidator(_unsigned)]
+Width = Annotated[
+    Positive,
+    BeforeValidator(_unsigned),
+    AfterValidator(lambda width: f"±{width}"),
+    WithJsonSchema({**_SCHEMA, "pattern": f"^±?{_DECIMAL.pattern}$"}),
+]
 Widths = Annotated[dict[str, Width], BeforeValidator(_by_full_name)]
 
 
