@@ -278,3 +278,20 @@ def test_floats_in_python_stand_for_the_decimals_that_python_prints() -> None:
     assert (scene.pendulum.length, scene.release.x, scene.release.y) == ("12.3", "0.1", "0.5")
     with pytest.raises(InputError, match="NaN and inf"):
         as_scene({**nested, "release": {"x": float("nan"), "y": 0}})
+
+
+def test_widths_of_inputs_have_their_names_in_quotes_or_not_and_their_sign_or_not(tmp_path: Path) -> None:
+    path = tmp_path / "hall.toml"
+    path.write_text(
+        '[release]\nx = "1"\ny = "0"\n[uncertain]\n"pendulum.length" = "0.001"\nsite.gravity = "±1e-4"\nsite.latitude = "0.01"\n'
+    )
+    widths = {"pendulum.length": "±0.001", "site.gravity": "±1e-4", "site.latitude": "±0.01"}
+    scene = load_scene(path, ["site.latitude=50"])
+    assert scene.uncertain == widths and not load_scene("paris").uncertain
+    assert parse_scene(scene.model_dump(exclude_none=True)) == scene
+    path.write_text(template(scene), encoding="utf-8")
+    assert load_scene(path) == scene
+    jsonschema.validate(tomllib.loads(path.read_text(encoding="utf-8")), schema_of("scene.json"))
+    path.write_text('[release]\nx = "1"\ny = "0"\n[uncertain]\n"pendulum.length" = "0"\n')
+    with pytest.raises(InputError, match=r"uncertain\.pendulum\.length: got '0', expected a number above 0"):
+        load_scene(path)
