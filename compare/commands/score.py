@@ -21,7 +21,7 @@ from reference.commands.terminal import (
     scene_argument,
 )
 
-from .options import announce, listed
+from .options import announce, check_positive, listed
 
 if TYPE_CHECKING:
     from ..score.outcome import Outcome
@@ -166,17 +166,14 @@ def command(
     else:
         others = {"SCENE": scene_word, "--run": run, "--transits": transits, "--approximation": approximation}
         refuse({**others, "--set": set_ or None, "--t-end": t_end, "--columns": columns}, "together with --suite")
-    if tolerance is not None and not 0 < tolerance < float("inf"):
-        raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
+    check_positive("--tolerance", tolerance, "metres")
     if covers is not None and not 0 < covers <= 1:
         raise InputError("--covers", f"{covers:g}", "a share of the scene's span, above 0 and up to 1")
     if [*(candidates or ()), transits].count("-") > 1:
         raise InputError("CANDIDATE", "- more than once", "standard input once", "It can be read only once.")
     timeout, repeats = TIMEOUT_S if timeout is None else timeout, REPEATS if repeats is None else repeats
-    if not 0 < timeout < float("inf"):
-        raise InputError("--timeout", f"{timeout:g}", "a positive number of seconds")
-    if setting is not None and not 0 < setting < float("inf"):
-        raise InputError("--setting", f"{setting:g}", "a positive number of seconds")
+    check_positive("--timeout", timeout)
+    check_positive("--setting", setting)
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:
