@@ -67,10 +67,10 @@ def numbers(text: str, field: str) -> list[float]:
     return values
 
 
-def check_limit(limit_s: float) -> None:
-    """Refuse a limit that is no positive number of seconds."""
-    if not 0 < limit_s < float("inf"):
-        raise InputError("--limit", f"{limit_s:g}", "a positive number of seconds")
+def check_positive(option: str, value: float | None, unit: str = "seconds") -> None:
+    """Refuse a value of an option that is no positive number of some unit; None is none."""
+    if value is not None and not 0 < value < float("inf"):
+        raise InputError(option, f"{value:g}", f"a positive number of {unit}")
 
 
 def programs_of(run: Sequence[str] | None, names: Sequence[str] | None, scene: Scene) -> dict[str, str]:

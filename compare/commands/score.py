@@ -23,7 +23,7 @@ from reference.commands.terminal import (
     widths_by_name,
 )
 
-from .options import announce, listed
+from .options import announce, check_positive, listed
 
 if TYPE_CHECKING:
     from ..score.outcome import Outcome
@@ -160,6 +160,7 @@ def command(
     reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
     if tolerance is not None and not 0 < tolerance < float("inf"):
         raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
+    check_positive("--tolerance", tolerance, "metres")
     if no_diagnosis:
         refuse({"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis")
     if as_json:
@@ -201,10 +202,8 @@ def command(
     if [*(candidates or ()), transits].count("-") > 1:
         raise InputError("CANDIDATE", "- more than once", "standard input once", "It can be read only once.")
     timeout, repeats = TIMEOUT_S if timeout is None else timeout, REPEATS if repeats is None else repeats
-    if not 0 < timeout < float("inf"):
-        raise InputError("--timeout", f"{timeout:g}", "a positive number of seconds")
-    if setting is not None and not 0 < setting < float("inf"):
-        raise InputError("--setting", f"{setting:g}", "a positive number of seconds")
+    check_positive("--timeout", timeout)
+    check_positive("--setting", setting)
     if not 0 <= repeats <= MAX_REPEATS:
         raise InputError("--repeats", repeats, f"a whole number from 0 to {MAX_REPEATS}")
     if plot is not None:

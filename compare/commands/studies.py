@@ -17,7 +17,7 @@ from .options import (
     Methods,
     Names,
     announce,
-    check_limit,
+    check_positive,
     completion_of_lists,
     finish,
     listed,
@@ -81,27 +81,16 @@ def study(
     unused = OF_APPROXIMATIONS if approximations else OF_PRECISIONS if precisions is not None else OF_METHODS
     scene = load_scene(scene_word, replacements(set_, {"--t-end": ("run.t_end", t_end)}, unused))
     if approximations:
-        refuse(
-            {
-                "--methods": methods,
-                "--precisions": precisions,
-                "--run": run,
-                "--name": name,
-                "--candidates": candidates,
-                "--cpu": cpu,
-                "--settings": settings,
-                "--limit": limit,
-                "--no-formulations": no_formulations,
-            },
-            "together with --approximations",
-        )
+        others: dict[str, object] = {"--methods": methods, "--precisions": precisions, "--run": run, "--name": name}
+        others |= {"--candidates": candidates, "--cpu": cpu, "--settings": settings, "--limit": limit}
+        refuse({**others, "--no-formulations": no_formulations}, "together with --approximations")
         _study_approximations(scene, out, as_json)
         return
     if not run:
         refuse({"--settings": settings}, "without --run")
     if not candidates:
         refuse({"--cpu": cpu}, "without --candidates")
-    check_limit(LIMIT_S if limit is None else limit)
+    check_positive("--limit", limit)
     from ..candidates.external import SETTING
     from ..report.study_page import REPORT
     from ..studies.study import study as measured
@@ -170,7 +159,7 @@ def stability(
     from ..studies.stability import stability as measured
     from ..studies.study_plan import declared
 
-    check_limit(limit)
+    check_positive("--limit", limit)
     REPORT.check(out)
     chosen, requested = listed(scenes, "--scenes"), listed(methods, "--methods")
     programs = programs_of(run, name, load_scene(PARIS))

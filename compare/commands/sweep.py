@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from reference import Swept
     from reference.sweeps.request import Request
 
+ON_SCENE = ("--set", "--t-end")  # options that change the scene, and not what is asked of a sweep of it
 _NO_GRID = dict.fromkeys(
     ("run.grid_step", "run.digits", "run.level", "run.transits"), "Give --t-end, --digits, --level or --want."
 )
@@ -133,19 +134,10 @@ def _request(scene_word: str | None, out: Path | None, options: dict[str, Any]) 
     scene = load_scene(
         scene_word, replacements(options["--set"], {"--t-end": ("run.t_end", options["--t-end"])}, _NO_GRID)
     )
-    want = options["--want"]
-    return asked_for(
-        scene,
-        options["--over"] or (),
-        options["--rows"],
-        out,
-        want=tuple(word.strip() for word in want.split(",")) if want is not None else ("all",),
-        level=options["--level"] or "computed",
-        digits=options["--digits"],
-        tolerance=options["--tolerance"],
-        engine=options["--engine"] or "auto",
-        audit=options["--audit"],
-    )
+    chosen = {word.strip("-"): value for word, value in options.items() if value is not None and word not in ON_SCENE}
+    if "want" in chosen:
+        chosen["want"] = [word.strip() for word in chosen["want"].split(",")]
+    return asked_for(scene, out=out, **chosen)
 
 
 def _judge(swept: Swept) -> None:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
-from reference.model.algebra import dot
+import numpy as np
+
 from reference.numbers.precision import bits_of, context
 
 DIGITS = 60  # decimal digits in which every comparison is made
@@ -16,9 +17,10 @@ AGREE_DIGITS = 45  # two formulas that agree to this many digits at every point 
 MP = context(bits_of(DIGITS + GUARD_DIGITS))
 ZERO_BELOW = MP.mpf(10) ** -AGREE_DIGITS
 
-Vector = tuple[Any, ...]
-Value = Any  # an mpf, an mpc, or a tuple of them
+Vector = Any  # an array of numbers, with NumPy's +, -, * and /
+Value = Any  # a number, a vector, or a tuple of numbers
 
+cross, dot = np.cross, np.dot
 sin, cos, tan, sqrt, asin, acos, atan2 = MP.sin, MP.cos, MP.tan, MP.sqrt, MP.asin, MP.acos, MP.atan2
 pi, j = MP.pi, MP.mpc(0, 1)
 
@@ -40,9 +42,9 @@ def radians(angle: Any) -> Any:
     return mpf(angle) * pi / 180
 
 
-def parts(value: Value) -> Vector:
+def parts(value: Value) -> tuple[Any, ...]:
     """Return a value as the tuple of its components."""
-    return tuple(value) if isinstance(value, tuple) else (value,)
+    return tuple(value) if isinstance(value, tuple | np.ndarray) else (value,)
 
 
 def distance(value: Value, other: Value) -> Any:
@@ -71,13 +73,13 @@ def _shown(part: Any, digits: int) -> str:
 
 
 def derivative(function: Callable[[Any], Any], at: Any = 0, order: int = 1) -> Any:
-    """Return a function's derivative of some order, to all digits: mpmath raises the precision of its differences."""
+    """Return a function's or vector's derivative, to all digits: mpmath raises the precision of its differences."""
     return MP.diff(function, MP.mpf(at), order)
 
 
-def vector_derivative(function: Callable[[Any], Vector], at: Any = 0, order: int = 1) -> Vector:
-    """Return the derivative of a vector, whose components are computed together."""
-    return tuple(derivative(lambda s: MP.matrix(function(s)), at, order))
+def vector(*components: Any) -> Vector:
+    """Return a vector."""
+    return np.array(components, dtype=object)
 
 
 def norm(a: Vector) -> Any:
@@ -85,16 +87,6 @@ def norm(a: Vector) -> Any:
     return sqrt(dot(a, a))
 
 
-def scale(k: Any, a: Sequence[Any]) -> Vector:
-    """Return the vector k a."""
-    return tuple(k * part for part in a)
-
-
-def add(*vectors: Sequence[Any]) -> Vector:
-    """Return the sum of vectors."""
-    return tuple(sum(column) for column in zip(*vectors, strict=True))
-
-
 def unit(a: Vector) -> Vector:
     """Return the vector's direction."""
-    return scale(1 / norm(a), a)
+    return a / norm(a)

@@ -12,24 +12,25 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from reference.model.algebra import cross, dot
+import numpy as np
+
 from reference.model.constants import Constants
 from reference.model.force import acceleration, tension
 
-from .digits import MP, Vector, add, cos, derivative, j, mpf, scale, sin, sqrt, tan, vector_derivative
+from .digits import MP, Vector, cos, cross, derivative, dot, j, mpf, sin, sqrt, tan, vector
 from .points import Point
 
 Coordinates = Callable[[Point, Any, Any], Vector]
 Path = Callable[[Any], Vector]
 
-AXIS = (MP.zero, MP.zero, MP.one)  # the Earth's axis
-MIDDLE = (MP.zero, MP.one, MP.zero)  # east at the meridian of longitude 0
+AXIS = vector(0, 0, MP.one)  # the Earth's axis
+MIDDLE = vector(0, MP.one, 0)  # east at the meridian of longitude 0
 
 
-def rotated(vector: Vector, axis: Vector, angle: Any) -> Vector:
+def rotated(a: Vector, axis: Vector, angle: Any) -> Vector:
     """Return a vector turned about a unit axis, right-handed (Rodrigues' formula)."""
-    along = scale(dot(axis, vector) * (1 - cos(angle)), axis)
-    return add(scale(cos(angle), vector), scale(sin(angle), cross(axis, vector)), along)
+    along = dot(axis, a) * (1 - cos(angle)) * axis
+    return cos(angle) * a + sin(angle) * cross(axis, a) + along
 
 
 def suspension(p: Point, longitude: Any, altitude: Any = None, phi: Any = None) -> Vector:
@@ -38,36 +39,36 @@ def suspension(p: Point, longitude: Any, altitude: Any = None, phi: Any = None) 
     latitude = p.phi if phi is None else phi
     polar = p.radius * (1 - p.flattening)
     reduced = MP.atan((1 - p.flattening) * tan(latitude))
-    foot = (p.radius * cos(reduced), MP.zero, polar * sin(reduced))
-    return rotated(add(foot, scale(height, (cos(latitude), MP.zero, sin(latitude)))), AXIS, longitude)
+    foot = vector(p.radius * cos(reduced), 0, polar * sin(reduced))
+    return rotated(foot + height * vector(cos(latitude), 0, sin(latitude)), AXIS, longitude)
 
 
 def turned_to_site(p: Point, local: Vector, longitude: Any) -> Vector:
     """Return a vector given on east, north, up, in axes that do not turn."""
     east, north, up = local
-    return rotated(rotated((up, east, north), MIDDLE, -p.phi), AXIS, longitude)
+    return rotated(rotated(vector(up, east, north), MIDDLE, -p.phi), AXIS, longitude)
 
 
 def place(p: Point, local: Vector, t: Any, rate: Any = None) -> Vector:
     """Return the bob's place in axes that do not turn."""
     longitude = (p.rate if rate is None else rate) * t
-    return add(suspension(p, longitude), turned_to_site(p, local, longitude))
+    return suspension(p, longitude) + turned_to_site(p, local, longitude)
 
 
 def by_angles(p: Point, cord: Any, azimuth: Any) -> Vector:
     """Return the bob in local axes: straight down, tilted by the cord's angle towards the azimuth (east to north)."""
-    axis = (sin(azimuth), -cos(azimuth), MP.zero)
-    return rotated((MP.zero, MP.zero, -p.length), axis, cord)
+    axis = vector(sin(azimuth), -cos(azimuth), 0)
+    return rotated(vector(0, 0, -p.length), axis, cord)
 
 
 def by_plane(p: Point, x: Any, y: Any) -> Vector:
     """Return the bob in local axes, on the sphere below the suspension."""
-    return (x, y, -sqrt(p.length**2 - x**2 - y**2))
+    return vector(x, y, -sqrt(p.length**2 - x**2 - y**2))
 
 
 def velocity(p: Point, coordinates: Coordinates, q: Vector, v: Vector, rate: Any = None, t: Any = 0) -> Vector:
     """Return the velocity in axes that do not turn, of coordinates q that change at the rates v."""
-    return vector_derivative(lambda s: place(p, coordinates(p, q[0] + v[0] * s, q[1] + v[1] * s), t + s, rate))
+    return derivative(lambda s: place(p, coordinates(p, *(q + s * v)), t + s, rate))
 
 
 def square_speed(p: Point, coordinates: Coordinates, q: Vector, v: Vector, rate: Any = None, t: Any = 0) -> Any:
@@ -86,11 +87,11 @@ def euler_lagrange(
 ) -> Any:
     """Return d/dt ∂L/∂v_i - ∂L/∂q_i along a path with coordinates q, rates v and accelerations a."""
 
-    def shifted(vector: Vector, by: Any) -> Vector:
-        return tuple(part + (by if k == i else 0) for k, part in enumerate(vector))
+    def shifted(a: Vector, by: Any) -> Vector:
+        return a + by * np.eye(len(a), dtype=int)[i]
 
     def momentum(s: Any) -> Any:
-        position, rates = add(q, scale(s, v), scale(s * s / 2, a)), add(v, scale(s, a))
+        position, rates = q + s * v + s * s / 2 * a, v + s * a
         ahead, behind = (lagrangian(p, coordinates, position, shifted(rates, by), rate, s) for by in (1, -1))
         return (ahead - behind) / 2  # exact: L is quadratic in the velocities
 
@@ -105,7 +106,7 @@ def in_rate(function: Callable[[Any], Any], power: int) -> Any:
 
 def _acceleration(p: Point, k: Constants) -> Vector:
     """Return x'', y'', z'' of the reference's model with some constants."""
-    return scale(p.length, acceleration(p.case.n, p.case.v, k))
+    return p.length * vector(*acceleration(p.case.n, p.case.v, k))
 
 
 def horizontal_acceleration(p: Point) -> Vector:
@@ -130,7 +131,7 @@ def pull(p: Point) -> Any:
 
 def rest(p: Point) -> Vector:
     """Return the rest position by the reference, in m."""
-    return scale(p.length, p.case.rest)
+    return p.length * vector(*p.case.rest)
 
 
 def moving(p: Point, s: Any) -> Vector:
@@ -140,33 +141,33 @@ def moving(p: Point, s: Any) -> Vector:
 
 def moving_velocity(p: Point) -> Vector:
     """Return the velocity of the same in local axes."""
-    return vector_derivative(lambda s: moving(p, s))
+    return derivative(lambda s: moving(p, s))
 
 
 def angle_state(p: Point) -> tuple[Vector, Vector, Vector]:
     """Return the angles, their rates and their accelerations."""
-    return (p.cord, p.azimuth), (p.cord_rate, p.azimuth_rate), (p.cord_second, p.azimuth_second)
+    return vector(p.cord, p.azimuth), vector(p.cord_rate, p.azimuth_rate), vector(p.cord_second, p.azimuth_second)
 
 
 def plane_state(p: Point) -> tuple[Vector, Vector, Vector]:
     """Return x and y, their rates and their accelerations."""
-    return (p.x, p.y), (p.vx, p.vy), (p.ax, p.ay)
+    return vector(p.x, p.y), vector(p.vx, p.vy), vector(p.ax, p.ay)
 
 
 def turning(p: Point) -> Vector:
     """Return Ω on east, north, up at the latitude λ."""
-    return (MP.zero, p.rate * cos(p.phi), rate_up(p))
+    return vector(0, p.rate * cos(p.phi), rate_up(p))
 
 
 def forces(p: Point) -> Vector:
     """Return m g + T + 2 m v × Ω, with gravity alone and the tension of the reference's model."""
-    weight, cord = (MP.zero, MP.zero, -p.mass * p.gravity), scale(-p.mass * pull(p), p.case.n)
-    return add(weight, cord, scale(2 * p.mass, cross(p.velocity, turning(p))))
+    weight, cord = vector(0, 0, -p.gravity), -pull(p) * vector(*p.case.n)
+    return p.mass * (weight + cord + 2 * cross(p.velocity, turning(p)))
 
 
 def linearised(p: Point) -> Vector:
     """Return x'', y'' of the reference's model without centrifugal force, linear about straight down."""
-    return vector_derivative(lambda s: uniform_acceleration(p.swinging(s)))
+    return derivative(lambda s: uniform_acceleration(p.swinging(s)))
 
 
 def rate_up(p: Point) -> Any:
@@ -177,7 +178,7 @@ def rate_up(p: Point) -> Any:
 def coupled(p: Point, place: Vector, speed: Vector) -> Vector:
     """Return x'', y'' of the pair that all three print, Mathar as (51)-(52): -g/l x + 2Ω_z vy, -g/l y - 2Ω_z vx."""
     pull, up = p.gravity / p.length, rate_up(p)
-    return -pull * place[0] + 2 * up * speed[1], -pull * place[1] - 2 * up * speed[0]
+    return vector(-pull * place[0] + 2 * up * speed[1], -pull * place[1] - 2 * up * speed[0])
 
 
 def coupled_at(p: Point) -> Vector:
@@ -202,7 +203,7 @@ def matrix(p: Point) -> Any:
 
 def motion(p: Point, start: Vector, t: Any) -> Vector:
     """Return x, y, vx, vy of the linear system after a time."""
-    return tuple(MP.expm(matrix(p) * t, method="taylor") * MP.matrix(start))
+    return vector(*MP.expm(matrix(p) * t, method="taylor") * MP.matrix(start))
 
 
 def turning_rates(p: Point) -> list[Any]:

@@ -16,7 +16,7 @@ from reference.numbers.precision import to_fraction
 from reference.scenes.inputs import Inputs
 
 from ..approximations.case import Case
-from .digits import MP, Vector, cos, mpf, radians, sin, sqrt
+from .digits import MP, Vector, cos, mpf, radians, sin, sqrt, vector
 
 COUNT = 5  # random points
 SEED = 20231117  # of the random numbers: the points are the same in every run
@@ -89,12 +89,12 @@ class Point:
     @cached_property
     def position(self) -> Vector:
         """Position x, y, z."""
-        return (self.x, self.y, self.z)
+        return vector(self.x, self.y, self.z)
 
     @cached_property
     def velocity(self) -> Vector:
         """Velocity vx, vy, vz."""
-        return (self.vx, self.vy, self.vz)
+        return vector(self.vx, self.vy, self.vz)
 
     @cached_property
     def k(self) -> Constants:
@@ -109,7 +109,7 @@ class Point:
     @cached_property
     def case(self) -> Case:
         """The same numbers as the approximations take them."""
-        return Case(MP, self.k, self.position, self.velocity)
+        return Case(MP, self.k, tuple(self.position), tuple(self.velocity))
 
     @cached_property
     def angle_functions(self) -> tuple[Any, Any, Any, Any]:

@@ -5,25 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.algebra import cross, dot
-
 from .checks import Approximate, Check, Finding, Identity, Statement, section
 from .digits import (
     MP,
     Vector,
-    add,
     cos,
+    cross,
     derivative,
+    dot,
     j,
     mpf,
     norm,
-    scale,
     shown,
     sin,
     sqrt,
     unit,
     vanishes,
-    vector_derivative,
+    vector,
 )
 from .first_principles import (
     acceleration_of,
@@ -32,7 +30,9 @@ from .first_principles import (
     forces,
     linearised,
     motion,
+    plane_state,
     rate_up,
+    swing_rate,
     turning,
     uniform_acceleration,
 )
@@ -46,48 +46,39 @@ def axes_rate(p: Point) -> Any:
     return -rate_up(p)
 
 
+def _axes_turn(p: Point) -> Vector:
+    return vector(0, 0, axes_rate(p))
+
+
 def primed(path: Path, rate: Any) -> Path:
     """Return x' = x cosω_p t - y sinω_p t, y' = x sinω_p t + y cosω_p t along a path."""
 
     def turned(t: Any) -> Vector:
         x, y = path(t)
         c, s = cos(rate * t), sin(rate * t)
-        return x * c - y * s, x * s + y * c
+        return vector(x * c - y * s, x * s + y * c)
 
     return turned
 
 
 def generic_path(p: Point) -> Path:
     """Return a path x, y with the point's velocities and accelerations at its time."""
-    return lambda t: (
-        p.x + p.vx * (t - p.t) + p.ax * (t - p.t) ** 2 / 2,
-        p.y + p.vy * (t - p.t) + p.ay * (t - p.t) ** 2 / 2,
-    )
+    place, speed, second = plane_state(p)
+    return lambda t: place + speed * (t - p.t) + second * (t - p.t) ** 2 / 2
 
 
 def _excess(p: Point, rate: Any) -> Vector:
     """Return what x', y' along the point's path leave over in the equations of motion."""
     turned = primed(generic_path(p), rate)
-    place, speed, second = turned(p.t), vector_derivative(turned, p.t), vector_derivative(turned, p.t, 2)
-    return add(second, scale(-1, coupled(p, place, speed)))
+    place, speed, second = turned(p.t), derivative(turned, p.t), derivative(turned, p.t, 2)
+    return second - coupled(p, place, speed)
 
 
 def unprimed_equation(p: Point, rate: Any) -> Vector:
     """Return the x'', y'' for which x', y' obey the two equations, solved from their second derivatives."""
     zero, *units = (_excess(p.but(ax=MP.mpf(ax), ay=MP.mpf(ay)), rate) for ax, ay in ((0, 0), (1, 0), (0, 1)))
-    columns = [add(excess, scale(-1, zero)) for excess in units]
-    solution = MP.lu_solve(MP.matrix([list(row) for row in zip(*columns, strict=True)]), MP.matrix([-z for z in zero]))
-    return solution[0], solution[1]
-
-
-def stiffness(p: Point) -> Any:
-    """Return g/L + ω_p²."""
-    return p.gravity / p.length + axes_rate(p) ** 2
-
-
-def printed_rate(p: Point) -> Any:
-    """Return ω̃ = sqrt(g/L + ω_p²)."""
-    return sqrt(stiffness(p))
+    columns = MP.matrix([(excess - zero).tolist() for excess in units])
+    return vector(*MP.lu_solve(columns.T, MP.matrix((-zero).tolist())))
 
 
 def measured_rate(p: Point) -> Any:
@@ -97,10 +88,10 @@ def measured_rate(p: Point) -> Any:
 
 def _away_from_axis() -> Finding:
     p = points()[0]
-    axis, far = turning(p), (MP.zero, MP.zero, p.radius)
-    pushed = scale(-1, cross(axis, cross(axis, far)))
-    across = add(far, scale(-dot(far, unit(axis)), unit(axis)))
-    gap = norm(add(unit(pushed), scale(-1, unit(across))))
+    axis, far = turning(p), vector(0, 0, p.radius)
+    pushed = -cross(axis, cross(axis, far))
+    across = far - dot(far, unit(axis)) * unit(axis)
+    gap = norm(unit(pushed) - unit(across))
     return Finding(vanishes(gap), f"-ω × (ω × r) points away from the axis to within {shown(gap)}")
 
 
@@ -109,8 +100,9 @@ def _rising(s: Any) -> Point:
     return points()[0].swinging(s)
 
 
-def _horizontal(s: Any) -> Point:
-    return _rising(s).but(rate=MP.zero)
+def _hooke(s: Any) -> tuple[Vector, Vector]:
+    p = _rising(s).but(rate=MP.zero)
+    return -p.gravity / p.length * p.position[:2], uniform_acceleration(p)
 
 
 def _any_rate(p: Point) -> Any:
@@ -138,36 +130,32 @@ def _second(p: Point) -> Vector:
 def _second_long(p: Point) -> Vector:
     """Return x', y' double dot as printed, first form."""
     w, c, s = _any_rate(p), cos(_any_rate(p) * p.t), sin(_any_rate(p) * p.t)
-    return (
+    return vector(
         (p.ax - p.vy * w) * c - (p.vx - p.y * w) * w * s - (p.vx * w + p.ay) * s - (p.x * w + p.vy) * w * c,
         (p.ax - p.vy * w) * s + (p.vx - p.y * w) * w * c + (p.vx * w + p.ay) * c - (p.x * w + p.vy) * w * s,
     )
 
 
 def _derived(order: int) -> Callable[[Point], Vector]:
-    return lambda p: vector_derivative(primed(generic_path(p), _any_rate(p)), p.t, order)
+    return lambda p: derivative(primed(generic_path(p), _any_rate(p)), p.t, order)
 
 
 def _printed_unprimed(p: Point, rate: Any) -> Vector:
     """Return x'', y'' from the pair printed before "which decouples"."""
     up = rate_up(p)
     k = p.gravity / p.length - 2 * up * rate - rate**2
-    return -k * p.x + 2 * (up + rate) * p.vy, -k * p.y - 2 * (up + rate) * p.vx
+    return vector(-k * p.x + 2 * (up + rate) * p.vy, -k * p.y - 2 * (up + rate) * p.vx)
 
 
 def _substituted_pair(p: Point) -> Vector:
     """Return the two lines before the pair, with all terms on one side."""
-    return _turned(p, add((p.ax, p.ay), scale(-1, _printed_unprimed(p, _any_rate(p)))))
-
-
-def _widest(s: Any) -> Any:
-    return points()[0].cord * s
+    return _turned(p, vector(p.ax, p.ay) - _printed_unprimed(p, _any_rate(p)))
 
 
 def _two_ways(p: Point) -> Vector:
     pull, rate = p.gravity / p.length, axes_rate(p)
     first = sqrt(pull - 2 * p.rate * rate * sin(p.phi) - rate**2)
-    return first, sqrt(pull + 2 * rate / sin(p.phi) * rate * sin(p.phi) - rate**2)
+    return vector(first, sqrt(pull + 2 * rate / sin(p.phi) * rate * sin(p.phi) - rate**2))
 
 
 def _far_below_gravity() -> Finding:
@@ -182,28 +170,27 @@ def _spinning(s: Any) -> Point:
 
 def _centrifugal(p: Point) -> Vector:
     """Return -m ω_p × (ω_p × x')."""
-    axis = (MP.zero, MP.zero, axes_rate(p))
-    return scale(-p.mass, cross(axis, cross(axis, (p.x, p.y, MP.zero))))[:2]
+    return -p.mass * cross(_axes_turn(p), cross(_axes_turn(p), (p.x, p.y, 0)))[:2]
 
 
 def _turned_drive(p: Point) -> Vector:
     """Return F_eff/m of the lines before, with the velocity in axes at rest, x' + ω_p × x'."""
-    speed = add((p.vx, p.vy), scale(axes_rate(p), (-p.y, p.x)))
-    return coupled(p, (p.x, p.y), speed)
+    speed = p.velocity[:2] + axes_rate(p) * vector(-p.y, p.x)
+    return coupled(p, p.position, speed)
 
 
 def _moved_acceleration(p: Point) -> Vector:
     """Return the acceleration of the linear motion, seen from axes that turn at ω_p and coincide at t = 0."""
     rate = axes_rate(p)
     start = (p.x, p.y, p.vx - rate * p.y, p.vy + rate * p.x)
-    return vector_derivative(primed(lambda t: motion(p, start, t)[:2], -rate), MP.zero, 2)
+    return derivative(primed(lambda t: motion(p, start, t)[:2], -rate), 0, 2)
 
 
 def _simple_in_frame() -> Finding:
     def excess(p: Point) -> Any:
-        bent = scale(2 * axes_rate(p), (p.vy, -p.vx))  # as seen from the turning axes
-        pushed = scale(axes_rate(p) ** 2 + stiffness(p), (p.x, p.y))
-        return norm(add(_turned_drive(p), bent, pushed))
+        bent = 2 * axes_rate(p) * vector(p.vy, -p.vx)  # as seen from the turning axes
+        pushed = (axes_rate(p) ** 2 + swing_rate(p) ** 2) * p.position[:2]
+        return norm(_turned_drive(p) + bent + pushed)
 
     gap = max(map(excess, points()))
     return Finding(vanishes(gap), f"x'' + (g/L + ω_P²) x = {shown(gap)} in axes that turn at -ω sinα")
@@ -234,21 +221,20 @@ def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return section("methods_", "Three methods",
         Identity("newton", "", "T - mgk - 2m ω × v = m a",
-            forces, lambda p: scale(p.mass, acceleration_of(p)),
+            forces, lambda p: p.mass * acceleration_of(p),
             remark="truth: reference.model.force with gravity alone; T along the cord"),
         Identity("centrifugal", "", "|ω × (ω × r)| = ω² r cosα", lambda p: p.rate**2 * p.radius * cos(p.phi),
-            lambda p: norm(cross(turning(p), cross(turning(p), (MP.zero, MP.zero, p.radius))))),
+            lambda p: norm(cross(turning(p), cross(turning(p), (0, 0, p.radius))))),
         Statement("away", "", "with direction away from the axis of rotation", _away_from_axis),
         Approximate("sine", "", "mg sinθ ≈ mgθ",
             lambda s: (points()[0].cord * s, sin(points()[0].cord * s)), 2, "θ", remark="at a random θ of 0.9 rad"),
         Approximate("hooke", "", "T - mgk ≈ -(mg/L) ρ (i cosφ + j sinφ)",
-            lambda s: (scale(-_horizontal(s).gravity / _horizontal(s).length, (_horizontal(s).x, _horizontal(s).y)),
-                uniform_acceleration(_horizontal(s))), 2, "amplitude", remark="horizontal part, at a random point"),
+            _hooke, 2, "amplitude", remark="horizontal part, at a random point"),
         Identity("omega", "", "ω = ω (j cosα + k sinα)",
-            lambda p: (MP.zero, p.rate * cos(p.phi), p.rate * sin(p.phi)), lambda p: p.k.turn),
+            lambda p: (0, p.rate * cos(p.phi), p.rate * sin(p.phi)), lambda p: p.k.turn),
         Identity("cross", "", "-2ω × v = 2ω xdot k cosα - 2ω xdot j sinα + 2ω ydot i sinα",
-            lambda p: (2 * p.rate * p.vy * sin(p.phi), -2 * p.rate * p.vx * sin(p.phi), 2 * p.rate * p.vx *
-                cos(p.phi)), lambda p: scale(-2, cross(p.k.turn, (p.vx, p.vy, MP.zero)))),
+            lambda p: 2 * p.rate * vector(p.vy * sin(p.phi), -p.vx * sin(p.phi), p.vx * cos(p.phi)),
+            lambda p: -2 * cross(p.k.turn, (p.vx, p.vy, 0))),
         Approximate("z", "", "2ω xdot cosα = zddot (and ignored)",
             lambda s: (2 * _rising(s).rate * _rising(s).vx * cos(_rising(s).phi), acceleration_of(_rising(s))[2]), 1,
             "amplitude", "m/s²", remark="at a random point; the cord's vertical pull differs from mg by as much"),
@@ -267,46 +253,46 @@ def checks() -> list[Check]:
         Identity("1_pair", ", method 1", "xddot + (g/L - 2ω sinα ω_p - ω_p²) x - 2(ω sinα + ω_p) ydot = 0, yddot + …",
             lambda p: _printed_unprimed(p, _any_rate(p)), lambda p: unprimed_equation(p, _any_rate(p))),
         Identity("1_rate", ", method 1", "decouples for ω_p = -ω sinα",
-            lambda p: unprimed_equation(p.but(x=MP.zero, y=MP.zero), axes_rate(p)), lambda p: (MP.zero, MP.zero),
+            lambda p: unprimed_equation(p.but(x=MP.zero, y=MP.zero), axes_rate(p)), lambda p: (0, 0),
             remark="x'', y'' that velocities alone give"),
         Identity("1_simple", ", method 1", "xddot + ω̃² x = 0, yddot + ω̃² y = 0",
-            lambda p: scale(-stiffness(p), (p.x, p.y)), lambda p: unprimed_equation(p, axes_rate(p))),
+            lambda p: -swing_rate(p) ** 2 * p.position[:2], lambda p: unprimed_equation(p, axes_rate(p))),
         Identity("1_omega", ", method 1",
             "ω̃ = sqrt(g/L - 2ωω_p sinα - ω_p²) = sqrt(g/L + 2(ω_P/sinα) ω_p sinα - ω_p²)",
             _two_ways, lambda p: (measured_rate(p), measured_rate(p)),
             remark="truth: eigenvalues of the decoupled pair"),
-        Identity("1_omega2", ", method 1", "ω̃ = sqrt(g/L + ω_p²)", printed_rate, measured_rate),
+        Identity("1_omega2", ", method 1", "ω̃ = sqrt(g/L + ω_p²)", swing_rate, measured_rate),
         Approximate("1_omega3", ", method 1", "ω̃ ≈ sqrt(g/L)",
-            lambda s: (sqrt(_spinning(s).gravity / _spinning(s).length), printed_rate(_spinning(s))), 2, "ω",
+            lambda s: (sqrt(_spinning(s).gravity / _spinning(s).length), swing_rate(_spinning(s))), 2, "ω",
             remark="in Paris"),
         Approximate("1_amplitude", ", method 1", "A ω̃ = L θ_max ω̃",
-            lambda s: (_widest(s), sin(_widest(s))), 2, "θ_max", remark="A over L, at a random θ"),
+            lambda s: (points()[0].cord * s, sin(points()[0].cord * s)), 2, "θ_max", remark="A over L, at a random θ"),
         Statement("1_small", ", method 1", "ω xdot << g", _far_below_gravity),
         Identity("2_vector", ", method 2", "m xddot = -(mg/L) x - 2m (ω sinα k) × xdot",
-            lambda p: add(scale(-p.gravity / p.length, (p.x, p.y)), scale(-2, cross((MP.zero, MP.zero, rate_up(p)),
-                (p.vx, p.vy, MP.zero)))[:2]), linearised),
+            lambda p: -p.gravity / p.length * p.position[:2] - 2 * cross((0, 0, rate_up(p)), (p.vx, p.vy, 0))[:2],
+            linearised),
         Identity("2_coriolis", ", method 2", "m xddot' = F_eff - 2m ω_p × xdot' - m ω_p × (ω_p × x')",
-            lambda p: add(_turned_drive(p), scale(-2, cross((MP.zero, MP.zero, axes_rate(p)), (p.vx, p.vy,
-                MP.zero)))[:2], scale(1 / p.mass, _centrifugal(p))), _moved_acceleration,
+            lambda p: _turned_drive(p) - 2 * cross(_axes_turn(p), (p.vx, p.vy, 0))[:2] + _centrifugal(p) / p.mass,
+            _moved_acceleration,
             remark="F_eff with the velocity in axes at rest; truth: the linear motion, seen from the turning axes"),
         Identity("2_centrifugal", ", method 2", "-m ω_p × (ω_p × x') = -m ω_p² x'",
-            lambda p: scale(-p.mass * axes_rate(p) ** 2, (p.x, p.y)), _centrifugal, "+m ω_p² x'",
-            lambda p: scale(p.mass * axes_rate(p) ** 2, (p.x, p.y))),
+            lambda p: -p.mass * axes_rate(p) ** 2 * p.position[:2], _centrifugal, "+m ω_p² x'",
+            lambda p: p.mass * axes_rate(p) ** 2 * p.position[:2]),
         Identity("2_force", ", method 2", "F_eff = -(mg/L) x' - 2m (ω sinα k) × xdot'",
-            lambda p: coupled(p, (p.x, p.y), (p.vx, p.vy)), _turned_drive,
+            coupled_at, _turned_drive,
             "xdot = xdot' + ω_p × x' belongs in it; the two errors cancel",
             lambda p: coupled(p, (p.x, p.y), (p.vx - axes_rate(p) * p.y, p.vy + axes_rate(p) * p.x))),
         Identity("2_end", ", method 2", "xddot' = -(g/L) x' - ω_p² x'",
-            lambda p: scale(-stiffness(p), (p.x, p.y)), _moved_acceleration),
-        Identity("2_omega", ", method 2", "ω = sqrt(g/L + ω_p²)", printed_rate, measured_rate),
+            lambda p: -swing_rate(p) ** 2 * p.position[:2], _moved_acceleration),
+        Identity("2_omega", ", method 2", "ω = sqrt(g/L + ω_p²)", swing_rate, measured_rate),
         Identity("3_z", ", method 3", "zddot + 2iω_P zdot + (g/L) z = 0, ω_P = ω sinα",
             _equation, lambda p: MP.mpc(*linearised(p)),
             remark="ω_P with the other sign than in method 1 and in the conclusion, where it is the axes' -ω sinα"),
         Identity("3_w", ", method 3", "(wddot - 2iω_p wdot - ω_P² w) + 2iω_P (wdot - iω_P w) + (g/L) w = 0",
-            _substituted, lambda p: MP.zero),
+            _substituted, lambda p: 0),
         Identity("3_simple", ", method 3", "wddot + (g/L + ω_P²) w = 0",
-            lambda p: -stiffness(p) * _spun(p)[0], lambda p: _spun(p)[2]),
-        Identity("3_omega", ", method 3", "ω = sqrt(g/L + ω_P²)", printed_rate, measured_rate),
+            lambda p: -swing_rate(p) ** 2 * _spun(p)[0], lambda p: _spun(p)[2]),
+        Identity("3_omega", ", method 3", "ω = sqrt(g/L + ω_P²)", swing_rate, measured_rate),
         Statement("end_frame", ", conclusion",
             "in axes that turn at -ω sinα: simple harmonic, frequency sqrt(g/L + ω_P²)", _simple_in_frame),
     )  # fmt: skip

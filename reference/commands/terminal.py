@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import InputError, Stopped, did_you_mean, in_words, plain_json
-from ..scenes.scene import field_names, full_name
+from ..scenes.scene import Scene, field_names, full_name
 from ..scenes.shipped import scene_ids
 
 

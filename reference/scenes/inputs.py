@@ -162,7 +162,7 @@ def _unsigned(value: object) -> object:
 
 
 def _by_full_name(widths: object) -> object:
-    """Return widths by names such as pendulum.length, which TOML takes for a table in a table where it has no quotes."""
+    """Return widths by names such as pendulum.length, which without quotes is a table in a table for TOML."""
     if not isinstance(widths, Mapping):
         return widths
     nested = (

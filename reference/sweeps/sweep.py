@@ -192,12 +192,16 @@ def sweep(
     if t_end is not None:
         scene = scene.with_values({"run.t_end": t_end})
     return run(
-        asked_for(scene, words_of(over), file, folder, audit=audit_rows, **options), folder, workers, cluster, report
+        asked_for(scene, words_of(over), file, out=folder, audit=audit_rows, **options),
+        folder,
+        workers,
+        cluster,
+        report,
     )
 
 
 def asked_for(
-    scene: Scene, over: Iterable[str], rows: Path | None, out: Path | None, *, audit: int | None, **options: Any
+    scene: Scene, over: Iterable[str] = (), rows: Path | None = None, *, out: Path | None, **options: Any
 ) -> Request:
     """Return a sweep, checked, its parts cut and its audit chosen for a folder or for memory; see `request.request`.
 
@@ -206,13 +210,13 @@ def asked_for(
     """
     if out is not None and options.get("engine", AUTO) == AUTO and (out / PLAN).exists():
         options["engine"] = Store.opened(out).request.engine  # a sweep goes on as it began
-    asked = request(scene, over, rows, audit=audit, **options)
+    asked = request(scene, over, rows, **options)
     count = asked.table.count
     if out is None:
         if count > MOST_IN_MEMORY:
             raise InputError("--out", "nothing", f"a folder, for more than {MOST_IN_MEMORY:,} rows", "Give --out DIR.")
         return replace(asked, rows_per_part=min(asked.rows_per_part, max(LEAST_PIECE, -(-count // PIECES))))
-    if audit is None:
+    if options.get("audit") is None:
         return replace(asked, audit=min(max(LEAST_AUDIT, count // AUDITED), MOST_AUDIT, count))
     return asked
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.algebra import cross, dot
-
 from ..checks import Approximate, Check, Identity, component, section
-from ..digits import MP, Vector, add, cos, derivative, scale, sin, vector_derivative
+from ..digits import MP, Vector, cos, cross, derivative, dot, sin, vector
 from ..first_principles import (
     acceleration_of,
     angle_state,
@@ -28,7 +26,7 @@ from ..points import Point, points
 
 def speeds(p: Point) -> Vector:
     """Return v_θ = L0 θ', v_φ = L0 sinθ φ'."""
-    return p.length * p.cord_rate, p.length * sin(p.cord) * p.azimuth_rate
+    return vector(p.length * p.cord_rate, p.length * sin(p.cord) * p.azimuth_rate)
 
 
 def kinetic(p: Point, square: Any) -> Any:
@@ -43,7 +41,7 @@ def _lagrangian(p: Point, q: Vector, v: Vector) -> Any:
 
 def coriolis(p: Point) -> Vector:
     """Return f_c = 2 m v × Ω from the motion of the angles."""
-    return scale(2 * p.mass, cross(moving_velocity(p), turning(p)))
+    return 2 * p.mass * cross(moving_velocity(p), turning(p))
 
 
 def along(i: int) -> Callable[[Point], Vector]:
@@ -52,24 +50,24 @@ def along(i: int) -> Callable[[Point], Vector]:
     def moved(p: Point, s: Any) -> Vector:
         return by_angles(p, p.cord + s, p.azimuth) if i == 0 else by_angles(p, p.cord, p.azimuth + s)
 
-    return lambda p: vector_derivative(lambda s: moved(p, s))
+    return lambda p: derivative(lambda s: moved(p, s))
 
 
 def _by_theta(p: Point) -> Vector:
     sp, cp, sl, cl = p.angle_functions
-    return cp * cl, cp * sl, sp
+    return vector(cp * cl, cp * sl, sp)
 
 
 def _by_phi(p: Point) -> Vector:
     sp, _, sl, cl = p.angle_functions
-    return -sp * sl, sp * cl, MP.zero
+    return vector(-sp * sl, sp * cl, 0)
 
 
 def _velocity(p: Point) -> Vector:
     """Return v_x, v_y, v_z as printed."""
     along, across = speeds(p)
     sp, cp, sl, cl = p.angle_functions
-    return along * cp * cl - across * sl, along * cp * sl + across * cl, along * sp
+    return vector(along * cp * cl - across * sl, along * cp * sl + across * cl, along * sp)
 
 
 def _hung(p: Point) -> Point:
@@ -80,7 +78,7 @@ def _hung(p: Point) -> Point:
 
 def _balance(p: Point, by: Any) -> Vector:
     """Return (m g_a + T + f_c) / `by` minus the acceleration."""
-    return add(scale(1 / by, forces(_hung(p))), scale(-1, acceleration_of(_hung(p))))
+    return forces(_hung(p)) / by - acceleration_of(_hung(p))
 
 
 def _half(p: Point) -> Any:
@@ -89,7 +87,7 @@ def _half(p: Point) -> Any:
 
 def left_side(p: Point, i: int) -> Any:
     """Return d(∂L/∂q')/dt - ∂L/∂q of the Lagrangian, along a path with the point's accelerations."""
-    return p.mass * euler_lagrange(p, by_angles, *angle_state(p), i, MP.zero)
+    return p.mass * euler_lagrange(p, by_angles, *angle_state(p), i, 0)
 
 
 def _without_prime(p: Point, i: int) -> Any:
@@ -97,7 +95,7 @@ def _without_prime(p: Point, i: int) -> Any:
     q, v, a = angle_state(p)
 
     def slope(s: Any) -> Any:
-        place, rates = add(q, scale(s, v), scale(s * s / 2, a)), add(v, scale(s, a))
+        place, rates = q + s * v + s * s / 2 * a, v + s * a
         return derivative(lambda u: _lagrangian(p, tuple(x + (u if k == i else 0) for k, x in enumerate(place)), rates))
 
     return derivative(slope) - slope(MP.zero)
@@ -106,10 +104,10 @@ def _without_prime(p: Point, i: int) -> Any:
 def angle_accelerations(p: Point) -> Vector:
     """Return θ'', φ'' of the reference's model with gravity alone, from its cartesian acceleration."""
     sp, cp, sl, cl = p.angle_functions
-    ax, ay, az = scale(1 / p.length, acceleration_of(_hung(p)))
+    ax, ay, az = acceleration_of(_hung(p)) / p.length
     second = (az - cp * p.cord_rate**2) / sp
     turned = sp * (cl * ay - sl * ax)
-    return second, (turned - 2 * sp * cp * p.cord_rate * p.azimuth_rate) / sp**2
+    return vector(second, (turned - 2 * sp * cp * p.cord_rate * p.azimuth_rate) / sp**2)
 
 
 def printed_accelerations(p: Point) -> Vector:
@@ -117,7 +115,7 @@ def printed_accelerations(p: Point) -> Vector:
     sp, cp, sl, _ = p.angle_functions
     along = cp * sin(p.phi) - sp * sl * cos(p.phi)
     theta = -p.gravity / p.length * sp + sp * cp * p.azimuth_rate**2 + 2 * sp * along * p.rate * p.azimuth_rate
-    return theta, (-2 * cp * p.cord_rate * p.azimuth_rate - 2 * along * p.rate * p.cord_rate) / sp
+    return vector(theta, (-2 * cp * p.cord_rate * p.azimuth_rate - 2 * along * p.rate * p.cord_rate) / sp)
 
 
 def _accelerated(p: Point, accelerations: Vector) -> Point:
@@ -157,7 +155,7 @@ def small_accelerations(p: Point) -> Vector:
     """Return θ'', φ'' for small angles by 7.3."""
     theta, up = p.cord, rate_up(p)
     second = -p.gravity / p.length * theta + theta * p.azimuth_rate**2 + 2 * theta * up * p.azimuth_rate
-    return second, (-2 * p.cord_rate * p.azimuth_rate - 2 * up * p.cord_rate) / theta
+    return vector(second, (-2 * p.cord_rate * p.azimuth_rate - 2 * up * p.cord_rate) / theta)
 
 
 def _narrow(s: Any) -> Point:
@@ -168,8 +166,8 @@ def _narrow(s: Any) -> Point:
 def _flat(p: Point, s: Any = 0) -> Vector:
     """Return x = L0 θ cosφ, y = L0 θ sinφ of small angles, along the point's path."""
     q, v, a = angle_state(p)
-    theta, phi = add(q, scale(s, v), scale(s * s / 2, a))
-    return p.length * theta * cos(phi), p.length * theta * sin(phi)
+    theta, phi = q + s * v + s * s / 2 * a
+    return vector(p.length * theta * cos(phi), p.length * theta * sin(phi))
 
 
 def _flat_printed(p: Point) -> Vector:
@@ -178,7 +176,7 @@ def _flat_printed(p: Point) -> Vector:
     length, theta, turn = p.length, p.cord, p.azimuth_rate
     x = length * p.cord_second * cl - 2 * length * p.cord_rate * sl * turn
     y = length * p.cord_second * sl + 2 * length * p.cord_rate * cl * turn
-    return (
+    return vector(
         x - length * theta * cl * turn**2 - length * theta * sl * p.azimuth_second,
         y - length * theta * sl * turn**2 + length * theta * cl * p.azimuth_second,
     )
@@ -186,7 +184,7 @@ def _flat_printed(p: Point) -> Vector:
 
 def _flat_solved(p: Point) -> Vector:
     """Return x'' and y'' with the small-angle accelerations put in, from the definition of x and y."""
-    return vector_derivative(lambda s: _flat(_accelerated(p, small_accelerations(p)), s), 0, 2)
+    return derivative(lambda s: _flat(_accelerated(p, small_accelerations(p)), s), 0, 2)
 
 
 def _flat_middle(p: Point, sign: int) -> Vector:
@@ -201,7 +199,7 @@ def _flat_end(p: Point) -> Vector:
     length, theta, up = p.length, p.cord, rate_up(p)
     along = length * p.cord_rate * cl - length * theta * sl * p.azimuth_rate
     across = length * p.cord_rate * sl + length * theta * cl * p.azimuth_rate
-    return -p.gravity * cl * theta + 2 * up * across, -p.gravity * sl * theta - 2 * up * along
+    return vector(-p.gravity * cl * theta + 2 * up * across, -p.gravity * sl * theta - 2 * up * along)
 
 
 def checks() -> list[Check]:
@@ -213,16 +211,16 @@ def checks() -> list[Check]:
     )
     return section("gastebois_", "Gastebois",
         Identity("7_1_newton", "7.1", "a = m g_a + T + f_c",
-            lambda p: _balance(p, MP.one), lambda p: (MP.zero,) * 3, "m a = m g_a + T + f_c",
+            lambda p: _balance(p, MP.one), lambda p: (0,) * 3, "m a = m g_a + T + f_c",
             lambda p: _balance(p, p.mass), remark="as m g_a + T + f_c minus the left side"),
         Identity("7_1_l", "7.1", "L = m v_θ²/2 + m v_φ²/2 + m g_a L0 cosθ",
             lambda p: kinetic(p, dot(speeds(p), speeds(p))), lambda p: _lagrangian(p, *angle_state(p)[:2])),
         Identity("7_1_v", "7.1", "v_x = v_θ cosθ cosφ - v_φ sinφ, v_y = v_θ cosθ sinφ + v_φ cosφ, v_z = v_θ sinθ",
             _velocity, moving_velocity),
         Identity("7_1_theta", "7.1", "dr/dθ = L0 (cosθ cosφ, cosθ sinφ, sinθ)",
-            lambda p: scale(p.length, _by_theta(p)), along(0)),
+            lambda p: p.length * _by_theta(p), along(0)),
         Identity("7_1_phi", "7.1", "dr/dφ = L0 (-sinθ sinφ, sinθ cosφ, 0)",
-            lambda p: scale(p.length, _by_phi(p)), along(1)),
+            lambda p: p.length * _by_phi(p), along(1)),
         Identity("7_1_l2", "7.1", "L = m L0² θ'²/2 + m L0² sin²θ φ'²/2 + m g_a L0 cosθ", lambda p: kinetic(p, _half(p)),
             lambda p: _lagrangian(p, *angle_state(p)[:2])),
         Identity("7_2_general", "7.2", "d(dL/dq)/dt - dL/dq = …",
@@ -252,7 +250,7 @@ def checks() -> list[Check]:
             lambda s: (small_accelerations(_narrow(s))[1], angle_accelerations(_narrow(s))[1]), 1, "θ",
             remark="at a random point"),
         Identity("7_3_first", "7.3", "x'' = L0 θ'' cosφ - …, y'' = L0 θ'' sinφ + … (of x = L0 θ cosφ, y = L0 θ sinφ)",
-            _flat_printed, lambda p: vector_derivative(lambda s: _flat(p, s), 0, 2)),
+            _flat_printed, lambda p: derivative(lambda s: _flat(p, s), 0, 2)),
         Identity("7_3_x", "7.3", "x'' = L0 cosφ (…) - … - L0 sinφ (-2θ'φ' - 2Ωθ' sinλ_a)",
             lambda p: _flat_middle(p, 1)[0], lambda p: _flat_solved(p)[0]),
         Identity("7_3_y", "7.3", "y'' = L0 sinφ (…) + … - L0 cosφ (-2θ'φ' - 2Ωθ' sinλ_a)",
@@ -261,7 +259,7 @@ def checks() -> list[Check]:
         Identity("7_3_end", "7.3", "x'' = -g_a cosφ θ + 2Ω sinλ_a (…), y'' = -g_a sinφ θ - 2Ω sinλ_a (…)",
             _flat_end, _flat_solved),
         Identity("7_3_5", "7.3", "the equations of section 5 again",
-            lambda p: coupled(p, _flat(p), vector_derivative(lambda s: _flat(p, s))), _flat_solved),
+            lambda p: coupled(p, _flat(p), derivative(lambda s: _flat(p, s))), _flat_solved),
         Identity("7_3_5b", "7.3", "x'' = -g_a x/L0 + 2y'Ω sinλ_a, y'' = -g_a y/L0 - 2x'Ω sinλ_a",
             coupled_at, linearised),
     )  # fmt: skip

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 from reference import load_scene
-from reference.model.algebra import cross, dot
 from reference.model.constants import axis_distance
 
 from ...approximations.case import Case
@@ -13,19 +13,20 @@ from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, State
 from ..digits import (
     MP,
     Vector,
-    add,
     atan2,
     cos,
+    cross,
     degrees,
+    derivative,
+    dot,
     mpf,
     norm,
     pi,
     radians,
-    scale,
     shown,
     sin,
     sqrt,
-    vector_derivative,
+    vector,
 )
 from ..first_principles import AXIS, linearised, moving_velocity, rate_up, rotated, turning, turning_rates
 from ..points import Point, paris, points
@@ -86,25 +87,31 @@ def precession_ratio(angle: Any) -> Any:
     return RATE * period / turn
 
 
-def turning_acceleration(p: Point) -> Vector:
-    """Return the acceleration of a point with x'', y'' in axes that turn about z, from its place in axes at rest."""
-
-    def at_rest(s: Any) -> Vector:
-        place = (p.x + p.vx * s + p.ax * s * s / 2, p.y + p.vy * s + p.ay * s * s / 2, p.t + p.cord * s)
-        return rotated(place, AXIS, p.rate * s)
-
-    return vector_derivative(at_rest, 0, 2)
+def _relative(p: Point) -> tuple[Vector, Vector, Vector]:
+    """Return place, velocity and acceleration of a point in axes that turn about z."""
+    return vector(p.x, p.y, p.t), vector(p.vx, p.vy, 0), vector(p.ax, p.ay, 0)
 
 
-def turning_velocity(p: Point) -> Vector:
-    """Return the velocity of the same point."""
-    return vector_derivative(lambda s: rotated((p.x + p.vx * s, p.y + p.vy * s, p.t), AXIS, p.rate * s))
+def _seen_at_rest(order: int) -> Callable[[Point], Vector]:
+    """Return a function that gives the velocity (1) or the acceleration (2) of that point in axes at rest."""
+
+    def seen(p: Point) -> Vector:
+        place, speed, second = _relative(p)
+        return derivative(lambda s: rotated(place + s * speed + s * s / 2 * second, AXIS, p.rate * s), 0, order)
+
+    return seen
+
+
+def _forces_of_rotation(p: Point) -> Vector:
+    """Return Ω² R + 2 v_r × Ω."""
+    (x, y, _), speed, _ = _relative(p)
+    return p.rate**2 * vector(x, y, 0) + 2 * p.rate * cross(speed, AXIS)
 
 
 def _tilted_frame(p: Point) -> Vector:
     """Return the acceleration of a point that moves uniformly in axes turning about an inclined axis."""
-    axis = scale(1 / p.rate, turning(p))
-    return vector_derivative(lambda s: rotated(add(p.position, scale(s, p.velocity)), axis, p.rate * s), 0, 2)
+    axis = turning(p) / p.rate
+    return derivative(lambda s: rotated(p.position + s * p.velocity, axis, p.rate * s), 0, 2)
 
 
 def _bending(p: Point) -> Any:
@@ -157,7 +164,7 @@ def _on_sphere(p: Point) -> Case:
 
 def apparent(p: Point) -> Vector:
     """Return g_a = g + a_e of the reference's model, on east, north, up."""
-    return scale(p.length, _on_sphere(p).k.pull)
+    return p.length * vector(*_on_sphere(p).k.pull)
 
 
 def outward(p: Point) -> Any:
@@ -174,7 +181,7 @@ def tilt(p: Point) -> Any:
 def _tangents(p: Point) -> Vector:
     """Return tanα by a_e, and with a_e written out."""
     out, whole, s, c = outward(p), p.rate**2 * p.radius, sin(p.phi), cos(p.phi)
-    return out * s / (p.gravity - out * c), whole * c * s / (p.gravity - whole * c**2)
+    return vector(out * s / (p.gravity - out * c), whole * c * s / (p.gravity - whole * c**2))
 
 
 def _vertical_rate(p: Point) -> Any:
@@ -192,26 +199,23 @@ def checks() -> list[Check]:
     """Return the rows, in the order of print."""
     return section("gastebois_", "Gastebois",
         Identity("3_1_v", "3.1", "dOM/dt = x' i + x Ω j + y' j - y Ω i + z' k",
-            lambda p: (p.vx - p.y * p.rate, p.x * p.rate + p.vy, MP.zero), turning_velocity),
+            lambda p: (p.vx - p.y * p.rate, p.x * p.rate + p.vy, 0), _seen_at_rest(1)),
         Identity("3_1_a", "3.1", "d²OM/dt² = x'' i + x'Ω j + x'Ω j - xΩ² i + y'' j - y'Ω i - y'Ω i - yΩ² j + z'' k",
-            lambda p: (p.ax - p.x * p.rate**2 - 2 * p.vy * p.rate, p.vx * p.rate + p.vx * p.rate + p.ay - p.y *
-                p.rate**2, MP.zero), turning_acceleration),
+            lambda p: (p.ax - p.x * p.rate**2 - 2 * p.vy * p.rate, 2 * p.vx * p.rate + p.ay - p.y * p.rate**2, 0),
+            _seen_at_rest(2)),
         Identity("3_1_vector", "3.1", "a = a_r - Ω² R - 2 v_r × Ω",
-            lambda p: add((p.ax, p.ay, MP.zero), scale(-(p.rate**2), (p.x, p.y, MP.zero)), scale(-2, cross((p.vx,
-                p.vy, p.cord), (MP.zero, MP.zero, p.rate)))), turning_acceleration),
+            lambda p: _relative(p)[2] - _forces_of_rotation(p), _seen_at_rest(2)),
         Identity("3_1_any", "3.1", "true for any orientation of Ω",
-            lambda p: add(scale(-1, cross(turning(p), cross(p.position, turning(p)))), scale(-2, cross(p.velocity,
-                turning(p)))), _tilted_frame),
+            lambda p: -cross(turning(p), cross(p.position, turning(p))) - 2 * cross(p.velocity, turning(p)),
+            _tilted_frame),
         Identity("3_2", "3.2", "m a_r = ΣF + m Ω² R + 2 m v_r × Ω",
-            lambda p: add(scale(p.mass, turning_acceleration(p)), scale(p.mass * p.rate**2, (p.x, p.y, MP.zero)),
-                scale(2 * p.mass, cross((p.vx, p.vy, p.cord), (MP.zero, MP.zero, p.rate)))),
-            lambda p: scale(p.mass, (p.ax, p.ay, MP.zero))),
+            lambda p: p.mass * (_seen_at_rest(2)(p) + _forces_of_rotation(p)), lambda p: p.mass * _relative(p)[2]),
         Identity("annex_i", ", annex", "i' = (-sinθ, cosθ) dθ/dt = Ω j",
-            lambda p: scale(p.rate, (-sin(p.rate * p.t), cos(p.rate * p.t))),
-            lambda p: vector_derivative(lambda t: (cos(p.rate * t), sin(p.rate * t)), p.t)),
+            lambda p: p.rate * vector(-sin(p.rate * p.t), cos(p.rate * p.t)),
+            lambda p: derivative(lambda t: vector(cos(p.rate * t), sin(p.rate * t)), p.t)),
         Identity("annex_j", ", annex", "j' = (-cosθ, -sinθ) dθ/dt = -Ω i",
-            lambda p: scale(-p.rate, (cos(p.rate * p.t), sin(p.rate * p.t))),
-            lambda p: vector_derivative(lambda t: (-sin(p.rate * t), cos(p.rate * t)), p.t)),
+            lambda p: -p.rate * vector(cos(p.rate * p.t), sin(p.rate * p.t)),
+            lambda p: derivative(lambda t: vector(-sin(p.rate * t), cos(p.rate * t)), p.t)),
         PrintedNumber("1", "1", "in one hour the pendulum had turned by 11,3°",
             "11.3", lambda: 360 / SIDEREAL_DAY * sin(radians("48.846111"))),
         PrintedNumber("2_radius", "2", "R_p = 6370 km",
@@ -234,14 +238,14 @@ def checks() -> list[Check]:
         Identity("4_1_omega", "4.1", "Ω = Ω cosλ j + Ω sinλ k",
             turning, lambda p: p.k.turn, remark="truth: reference.model.constants"),
         Identity("4_1_cross", "4.1", "v_r × Ω = v_y Ω sinλ i for v_r = v_y j",
-            lambda p: (p.vy * p.rate * sin(p.phi), MP.zero, MP.zero),
-            lambda p: cross((MP.zero, p.vy, MP.zero), turning(p))),
+            lambda p: (p.vy * p.rate * sin(p.phi), 0, 0),
+            lambda p: cross((0, p.vy, 0), turning(p))),
         Identity("4_1_curve", "4.1", "v_r²/r = 2 v_r Ω sinλ, so v_r/r = 2 Ω sinλ", lambda p: 2 * rate_up(p), _bending,
             remark="truth: how fast the velocity turns clockwise without gravity"),
         Identity("4_1_half", "4.1", "r dφ = dx/2, so v_r/r = 2 dφ/dt", lambda p: -sum(turning_rates(p)), _bending,
             remark="the plane turns at half the difference of the two eigenvalues' sizes"),
         Identity("4_1_tf", "4.1", "T_f = 2π/ω_f = T_p / sinλ",
-            lambda p: 2 * pi / p.rate / sin(p.phi), lambda p: 2 * pi / dot(turning(p), (MP.zero, MP.zero, MP.one))),
+            lambda p: 2 * pi / p.rate / sin(p.phi), lambda p: 2 * pi / dot(turning(p), (0, 0, MP.one))),
         Approximate("4_1_small", "4.1", "ω_f = Ω sinλ for small angles",
             narrow_swing, 2, "r0/L0", remark="T_f/T_p at the pole, r0 = 6.5 m; truth: elliptic integrals"),
         Statement("4_1_pole", "4.1", "at the poles T_f = T_p", _pole, by_run=True),
@@ -256,8 +260,7 @@ def checks() -> list[Check]:
         Identity("4_2_ga", "4.2", "g_a² = g² + Ω² R_p cosλ - 2 g Ω² R_p cos²λ",
             lambda p: p.gravity**2 + outward(p) - 2 * p.gravity * p.rate**2 * p.radius * cos(p.phi) ** 2,
             lambda p: dot(apparent(p), apparent(p)), "g_a² = g² + Ω⁴ R_p² cos²λ - 2 g Ω² R_p cos²λ",
-            lambda p: (p.gravity**2 + p.rate**4 * p.radius**2 * cos(p.phi) ** 2 - 2 * p.gravity * p.rate**2 *
-                p.radius * cos(p.phi) ** 2)),
+            lambda p: p.gravity**2 + (p.rate**4 * p.radius - 2 * p.gravity * p.rate**2) * p.radius * cos(p.phi) ** 2),
         Identity("4_2_alpha", "4.2", "tanα = a_e sinλ / (g - a_e cosλ) = Ω² R_p cosλ sinλ / (g - Ω² R_p cos²λ)",
             _tangents, lambda p: (MP.tan(tilt(p)), MP.tan(tilt(p)))),
         Identity("4_2_lambda", "4.2", "λ_a = λ + α", lambda p: sin(p.phi + tilt(p)), _vertical_rate,
@@ -265,5 +268,5 @@ def checks() -> list[Check]:
         Identity("4_2_tf", "4.2", "T_f = T_p / sinλ_a",
             lambda p: 2 * pi / p.rate / sin(p.phi + tilt(p)), lambda p: 2 * pi / (p.rate * _vertical_rate(p))),
         PrintedNumber("6_3_lambda", "6.3", "λ_a = 48,97°",
-            "48.97", lambda: PANTHEON_LATITUDE + degrees(tilt(pantheon_on_sphere(MP.one)))),
+            "48.97", lambda: PANTHEON_LATITUDE + degrees(tilt(pantheon_on_sphere(1)))),
     )  # fmt: skip

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from reference.model.algebra import dot
-
 from ...approximations.gastebois import constants_of
 from ..checks import Approximate, Check, Finding, Identity, Statement, component, section
-from ..digits import MP, Vector, cos, j, mpf, scale, shown, sin
+from ..digits import MP, Vector, cos, dot, j, mpf, shown, sin, vector
 from ..first_principles import (
     acceleration_of,
     coupled_at,
@@ -35,7 +33,7 @@ def _flat(s: Any) -> tuple[Vector, Vector]:
     """Return -l, 0 and z, z' at s times the point's amplitude."""
     p = points()[0]
     low = p.swinging(s)
-    return (-p.length, MP.zero), (low.z, low.vz)
+    return (-p.length, 0), (low.z, low.vz)
 
 
 def _swung(s: Any) -> tuple[Any, Any]:
@@ -54,7 +52,7 @@ def _tension(s: Any) -> tuple[Any, Any]:
 def _with_tension(p: Point) -> Vector:
     """Return -T/m x/L0 + 2y'Ω sinλ_a - 2z'Ω cosλ_a, and the line for y''."""
     up, north, stiff = rate_up(p), p.rate * cos(p.phi), pull(p) / p.length
-    return -stiff * p.x + 2 * p.vy * up - 2 * p.vz * north, -stiff * p.y - 2 * p.vx * up
+    return vector(-stiff * p.x + 2 * p.vy * up - 2 * p.vz * north, -stiff * p.y - 2 * p.vx * up)
 
 
 def _constants(p: Point) -> Vector:
@@ -64,18 +62,18 @@ def _constants(p: Point) -> Vector:
 
 def _rates(p: Point) -> Vector:
     """Return ω + Ω_z and ω - Ω_z."""
-    return swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p)
+    return vector(swing_rate(p) + rate_up(p), swing_rate(p) - rate_up(p))
 
 
 def _phases(p: Point) -> Vector:
-    fast, slow = scale(p.t, _rates(p))
-    return cos(fast), sin(fast), cos(slow), sin(slow)
+    fast, slow = p.t * _rates(p)
+    return vector(cos(fast), sin(fast), cos(slow), sin(slow))
 
 
 def _printed_xy(p: Point) -> Vector:
     """Return x and y of 6.1."""
     (a, b, c, d), (cf, sf, cs, ss) = _constants(p), _phases(p)
-    return a * cf + b * sf + c * cs - d * ss, b * cf - a * sf + d * cs + c * ss
+    return vector(a * cf + b * sf + c * cs - d * ss, b * cf - a * sf + d * cs + c * ss)
 
 
 def _velocity(p: Point, last: int) -> Vector:
@@ -83,7 +81,7 @@ def _velocity(p: Point, last: int) -> Vector:
     (a, b, c, d), phases, (fast, slow) = _constants(p), _phases(p), _rates(p)
     cf, sf, cs, ss = phases
     vx = -a * fast * sf + b * fast * cf - c * slow * ss - d * slow * phases[last]
-    return vx, -b * fast * sf - a * fast * cf - d * slow * ss + c * slow * cs
+    return vector(vx, -b * fast * sf - a * fast * cf - d * slow * ss + c * slow * cs)
 
 
 def _complex(p: Point) -> Any:
@@ -111,13 +109,13 @@ def fitted_constants(p: Point) -> Vector:
     fast, slow = _rates(p)
     place, speed = MP.mpc(p.x, p.y), MP.mpc(p.vx, p.vy) / j
     first, second = MP.lu_solve(MP.matrix([[1, 1], [-fast, slow]]), MP.matrix([place, speed]))
-    return first.real, first.imag, second.real, second.imag
+    return vector(first.real, first.imag, second.real, second.imag)
 
 
 def _roots(p: Point) -> Vector:
     """Return -Ω_z ± ω."""
     fast, slow = _rates(p)
-    return slow, -fast
+    return vector(slow, -fast)
 
 
 def checks() -> list[Check]:
@@ -125,7 +123,7 @@ def checks() -> list[Check]:
     return section("gastebois_", "Gastebois",
         Identity("5_newton", "5", "a = m g_a + T + 2 m v × Ω",
             acceleration_of, forces, "m a = m g_a + T + 2 m v × Ω",
-            lambda p: scale(p.mass, acceleration_of(p))),
+            lambda p: p.mass * acceleration_of(p)),
         Identity("5_energy", "5", "v²/L0 = 2 g_a (cosθ - cosθm): conservation of energy",
             lambda p: dot(p.velocity, acceleration_of(p)), lambda p: -p.gravity * p.vz,
             remark="as rates: v · a = -g_a z'"),

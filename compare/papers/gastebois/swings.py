@@ -6,7 +6,7 @@ from typing import Any
 
 from ...approximations import gastebois
 from ..checks import Approximate, Check, Finding, Identity, PrintedNumber, Statement, section
-from ..digits import MP, Vector, cos, mpf, pi, radians, scale, shown, sin, sqrt, vector_derivative
+from ..digits import MP, Vector, cos, derivative, mpf, pi, radians, shown, sin, sqrt, vector
 from ..first_principles import motion, rate_up, swing_rate
 from ..points import Point, points
 from .rotation import (
@@ -26,22 +26,22 @@ APPARENT_LATITUDE = mpf("48.97")  # λ_a, as he rounds it
 
 def simple(p: Point, t: Any) -> Vector:
     """Return x, y, v_x, v_y by 6.2; r0 is the point's x."""
-    return scale(p.x, gastebois.in_turning_axes(MP.zero, swing_rate(p), rate_up(p), t, MP))
+    return p.x * vector(*gastebois.in_turning_axes(0, swing_rate(p), rate_up(p), t, MP))
 
 
 def in_turning_axes(p: Point, xy: Vector, t: Any) -> Vector:
     """Return X = x cosΩ_z t - y sinΩ_z t, Y = y cosΩ_z t + x sinΩ_z t."""
     cu, su = cos(rate_up(p) * t), sin(rate_up(p) * t)
-    return xy[0] * cu - xy[1] * su, xy[1] * cu + xy[0] * su
+    return vector(xy[0] * cu - xy[1] * su, xy[1] * cu + xy[0] * su)
 
 
 def _start_simple(p: Point) -> Vector:
-    return (p.x, MP.zero, MP.zero, -p.x * rate_up(p))
+    return vector(p.x, 0, 0, -p.x * rate_up(p))
 
 
 def motion_at_rest(p: Point, t: Any) -> Vector:
     """Return x, y of the linear system let go at rest at x, in the east."""
-    return motion(p, (p.x, MP.zero, MP.zero, MP.zero), t)[:2]
+    return motion(p, (p.x, 0, 0, 0), t)[:2]
 
 
 def pantheon(s: Any = 1) -> Point:
@@ -55,10 +55,10 @@ def _axes_turn(p: Point) -> Any:
     """Return the angular velocity of the axis OX, clockwise: X is the part of (x, y) along (cos, -sin) Ω_z t."""
 
     def along(t: Any) -> Vector:
-        return cos(rate_up(p) * t), -sin(rate_up(p) * t)
+        return vector(cos(rate_up(p) * t), -sin(rate_up(p) * t))
 
     x, y = along(p.t)
-    vx, vy = vector_derivative(along, p.t)
+    vx, vy = derivative(along, p.t)
     return y * vx - x * vy
 
 
@@ -77,12 +77,12 @@ def _expanded_period(p: Point) -> Any:
 def at_rest(p: Point, t: Any) -> Vector:
     """Return x, y of a release at rest by 6.3."""
     w, up = swing_rate(p), rate_up(p)
-    return scale(p.x, gastebois.in_turning_axes(up / w, w, up, t, MP)[:2])
+    return p.x * vector(*gastebois.in_turning_axes(up / w, w, up, t, MP)[:2])
 
 
 def _sense(p: Point) -> Any:
     """Return twice the area that the ellipse sweeps per time: positive counter-clockwise from above."""
-    (x, y), (vx, vy) = _ellipse(p, p.t), vector_derivative(lambda t: _ellipse(p, t), p.t)
+    (x, y), (vx, vy) = _ellipse(p, p.t), derivative(lambda t: _ellipse(p, t), p.t)
     return x * vy - y * vx
 
 
@@ -118,12 +118,12 @@ def checks() -> list[Check]:
             lambda p: simple(p, p.t)[:2], lambda p: motion(p, _start_simple(p), p.t)[:2]),
         Identity("6_2_v", "6.2", "v_x = -r0 ω cosΩ_z t sinωt - …, v_y = r0 ω sinΩ_z t sinωt - …",
             lambda p: simple(p, p.t)[2:], lambda p: motion(p, _start_simple(p), p.t)[2:]),
-        Identity("6_2_axes", "6.2", "X = r0 cosωt, Y = 0", lambda p: (p.x * cos(swing_rate(p) * p.t), MP.zero),
+        Identity("6_2_axes", "6.2", "X = r0 cosωt, Y = 0", lambda p: (p.x * cos(swing_rate(p) * p.t), 0),
             lambda p: in_turning_axes(p, motion(p, _start_simple(p), p.t)[:2], p.t)),
         Identity("6_2_turn", "6.2", "the axes OXYZ turn about Oz with the angular velocity Ω_z", rate_up, _axes_turn,
             remark="clockwise from above counted positive, as his 4.1 counts ω_f; so do the formulas for X and Y"),
         Identity("6_2_start", "6.2", "x0 = r0, y0 = 0, v_x0 = 0, v_y0 = -r0 Ω_z", _start_simple,
-            lambda p: (*simple(p, MP.zero)[:2], *vector_derivative(lambda t: simple(p, t)[:2], MP.zero))),
+            lambda p: (*simple(p, MP.zero)[:2], *derivative(lambda t: simple(p, t)[:2], MP.zero))),
         Approximate("6_2_omega", "6.2", "ω = ω0 (1 + Ω_z² / 2ω0²)",
             lambda s: (_expanded(pantheon(s)), swing_rate(pantheon(s))), 4, "Ω"),
         Approximate("6_2_period", "6.2", "T = T0 (1 - Ω_z² / 2ω0²)",
@@ -140,7 +140,7 @@ def checks() -> list[Check]:
             _clockwise, "counter-clockwise, in the axes that turn with the plane",
             lambda: all(_sense(p) > 0 for p in points())),
         Identity("6_3_speed", "6.3, remark", "as thrown with a transverse velocity of -r0 Ω_z",
-            lambda p: -p.x * rate_up(p), lambda p: vector_derivative(lambda t: _ellipse(p, t), MP.zero)[1],
+            lambda p: -p.x * rate_up(p), lambda p: derivative(lambda t: _ellipse(p, t), 0)[1],
             "+r0 Ω_z", lambda p: p.x * rate_up(p)),
         PrintedNumber("6_3_350", "6.3, remark", "at 5° the precession takes about 350 times as long as the rotation",
             "350", lambda: precession_ratio(radians(5)), about=lambda: mpf(350),

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from reference.model.algebra import cross, dot
+import numpy as np
+
 from reference.model.constants import axis_distance
 
 from ..checks import Check, Finding, Identity, Statement, section
-from ..digits import MP, Vector, add, cos, norm, scale, shown, sin, sqrt, unit, vanishes, vector_derivative
+from ..digits import MP, Vector, cos, cross, derivative, dot, norm, shown, sin, sqrt, unit, vanishes, vector
 from ..first_principles import (
     angle_state,
     by_angles,
@@ -23,34 +24,34 @@ from ..first_principles import (
 )
 from ..points import Point, points
 
-AXES = ((MP.one, MP.zero, MP.zero), (MP.zero, MP.one, MP.zero), (MP.zero, MP.zero, MP.one))  # east, north, up
+AXES = MP.one * np.eye(3, dtype=int)  # east, north, up
 Axis = Callable[[Point, Any], Vector]
 
 
 def printed_suspension(p: Point, t: Any) -> Vector:
     """Return the place of the suspension by (1)."""
     turn, flat = p.rate * t, (p.N + p.altitude) * cos(p.phi)
-    return (flat * cos(turn), flat * sin(turn), (p.N * (1 - p.e2) + p.altitude) * sin(p.phi))
+    return vector(flat * cos(turn), flat * sin(turn), (p.N * (1 - p.e2) + p.altitude) * sin(p.phi))
 
 
 def east(p: Point, t: Any) -> Vector:
     """Return the unit vector e_E by (4)."""
-    return (-sin(p.rate * t), cos(p.rate * t), MP.zero)
+    return vector(-sin(p.rate * t), cos(p.rate * t), 0)
 
 
 def up(p: Point, t: Any) -> Vector:
     """Return the unit vector e_U by (5)."""
-    return (cos(p.phi) * cos(p.rate * t), cos(p.phi) * sin(p.rate * t), sin(p.phi))
+    return vector(cos(p.phi) * cos(p.rate * t), cos(p.phi) * sin(p.rate * t), sin(p.phi))
 
 
 def north(p: Point, t: Any) -> Vector:
     """Return the unit vector e_N by (6)."""
-    return (-sin(p.phi) * cos(p.rate * t), -sin(p.phi) * sin(p.rate * t), cos(p.phi))
+    return vector(-sin(p.phi) * cos(p.rate * t), -sin(p.phi) * sin(p.rate * t), cos(p.phi))
 
 
 def _along_meridian(p: Point) -> Vector:
     """Return dX_s/dϕ from the ellipsoid's geometry."""
-    return vector_derivative(lambda phi: suspension(p, p.rate * p.t, phi=phi), p.phi)
+    return derivative(lambda phi: suspension(p, p.rate * p.t, phi=phi), p.phi)
 
 
 def _meridian_radius(p: Point) -> Any:
@@ -64,9 +65,7 @@ def _not_the_north_direction() -> Finding:
 
 
 def _is_the_north_direction() -> bool:
-    return all(
-        vanishes(add(_along_meridian(p), scale(-(_meridian_radius(p) + p.altitude), north(p, p.t)))) for p in points()
-    )
+    return all(vanishes(_along_meridian(p) - (_meridian_radius(p) + p.altitude) * north(p, p.t)) for p in points())
 
 
 def _distance_of_suspension(p: Point) -> Any:
@@ -82,7 +81,7 @@ def _east_from_latitude() -> Finding:
 
 def _east_from_longitude() -> bool:
     def along(p: Point) -> Vector:
-        return vector_derivative(lambda turn: suspension(p, turn), p.rate * p.t)
+        return derivative(lambda turn: suspension(p, turn), p.rate * p.t)
 
     return all(vanishes(cross(along(p), east(p, p.t))) for p in points())
 
@@ -97,18 +96,18 @@ def _at_its_time(axis: Axis) -> Callable[[Point], Vector]:
 
 
 def _rates_of(axis: Axis) -> Callable[[Point], Vector]:
-    return lambda p: vector_derivative(lambda t: axis(p, t), p.t)
+    return lambda p: derivative(lambda t: axis(p, t), p.t)
 
 
 def printed_position(p: Point, cord: Any, azimuth: Any) -> Vector:
     """Return x, y, z by (7)."""
-    return scale(p.length, (sin(cord) * cos(azimuth), sin(cord) * sin(azimuth), -cos(cord)))
+    return p.length * vector(sin(cord) * cos(azimuth), sin(cord) * sin(azimuth), -cos(cord))
 
 
 def printed_velocity(p: Point) -> Vector:
     """Return the velocity by (10)."""
     sp, cp, sl, cl = p.angle_functions
-    return (
+    return vector(
         p.length * (p.cord_rate * cl * cp - p.azimuth_rate * sp * sl),
         p.length * (p.cord_rate * sl * cp + p.azimuth_rate * sp * cl),
         p.length * p.cord_rate * sp,
@@ -122,23 +121,23 @@ def _up_cross_east(p: Point) -> Vector:
 def _in_matrix(p: Point) -> Vector:
     st, ct, s, c = sin(p.rate * p.t), cos(p.rate * p.t), sin(p.phi), cos(p.phi)
     x, y, z = p.position
-    turned = (-st * x - s * ct * y + c * ct * z, ct * x - s * st * y + c * st * z, c * y + s * z)
-    return add(printed_suspension(p, p.t), turned)
+    turned = vector(-st * x - s * ct * y + c * ct * z, ct * x - s * st * y + c * st * z, c * y + s * z)
+    return printed_suspension(p, p.t) + turned
 
 
 def _in_vectors(p: Point) -> Vector:
-    return add(printed_suspension(p, p.t), scale(p.x, east(p, p.t)), scale(p.y, north(p, p.t)), scale(p.z, up(p, p.t)))
+    return printed_suspension(p, p.t) + p.x * east(p, p.t) + p.y * north(p, p.t) + p.z * up(p, p.t)
 
 
 def _by_chain_rule(p: Point) -> Vector:
-    terms = [vector_derivative(lambda t: printed_suspension(p, t), p.t)]
+    terms = [derivative(lambda t: printed_suspension(p, t), p.t)]
     for axis, length, speed in zip((east, north, up), p.position, p.velocity, strict=True):
-        terms += [scale(length, _rates_of(axis)(p)), scale(speed, axis(p, p.t))]
-    return add(*terms)
+        terms += [length * _rates_of(axis)(p), speed * axis(p, p.t)]
+    return sum(terms)
 
 
 def _velocity_of_place(p: Point) -> Vector:
-    return vector_derivative(lambda s: place(p, add(p.position, scale(s, p.velocity)), p.t + s))
+    return derivative(lambda s: place(p, p.position + s * p.velocity, p.t + s))
 
 
 def _alpha(power: int) -> Callable[[Point], Any]:
@@ -182,7 +181,7 @@ def checks() -> list[Check]:
         Identity("4", "(4)", "e_E = (-sinΩt, cosΩt, 0), e_E² = 1", _at_its_time(east), _at_its_time(_site_axis(0))),
         Identity("5", "(5)", "e_U = (cosϕ cosΩt, cosϕ sinΩt, sinϕ)", _at_its_time(up), _at_its_time(_site_axis(2))),
         Identity("5_h", ", before (5)", "e_U by differentiating (1) with respect to h", _at_its_time(up),
-            lambda p: vector_derivative(lambda h: suspension(p, p.rate * p.t, h), p.altitude)),
+            lambda p: derivative(lambda h: suspension(p, p.rate * p.t, h), p.altitude)),
         Identity("6", "(6)", "e_N = e_U × e_E", _up_cross_east, _at_its_time(_site_axis(1))),
         Identity("6_b", "(6)", "e_N = (-sinϕ cosΩt, -sinϕ sinΩt, cosϕ)",
             _at_its_time(north), lambda p: unit(_up_cross_east(p))),
@@ -202,20 +201,20 @@ def checks() -> list[Check]:
             lambda p: p.length**2 * (p.azimuth_rate**2 * sin(p.cord) ** 2 + p.cord_rate**2),
             lambda p: dot(moving_velocity(p), moving_velocity(p))),
         Identity("12", "(12)", "x · xdot = 0",
-            lambda p: MP.zero, lambda p: dot(moving(p, 0), moving_velocity(p))),
+            lambda p: 0, lambda p: dot(moving(p, 0), moving_velocity(p))),
         Identity("13", "(13)", "Xdot_s = (N+h) Ω (-cosϕ sinΩt, cosϕ cosΩt, 0)",
-            lambda p: scale((p.N + p.altitude) * p.rate, (-cos(p.phi) * sin(p.rate * p.t), cos(p.phi) * cos(p.rate *
-                p.t), MP.zero)), lambda p: vector_derivative(lambda t: suspension(p, p.rate * t), p.t)),
+            lambda p: (p.N + p.altitude) * p.rate * cos(p.phi) * vector(-sin(p.rate * p.t), cos(p.rate * p.t), 0),
+            lambda p: derivative(lambda t: suspension(p, p.rate * t), p.t)),
         Identity("14", "(14)", "Xdot = Xdot_s + e_E' x + e_E x' + e_N' y + e_N y' + e_U' z + e_U z'",
             _by_chain_rule, _velocity_of_place),
         Identity("15_e", "(15)", "e_E' = Ω (-cosΩt, -sinΩt, 0)",
-            lambda p: scale(p.rate, (-cos(p.rate * p.t), -sin(p.rate * p.t), MP.zero)),
+            lambda p: p.rate * vector(-cos(p.rate * p.t), -sin(p.rate * p.t), 0),
             _rates_of(_site_axis(0))),
         Identity("15_n", "(15)", "e_N' = Ω (sinϕ sinΩt, -sinϕ cosΩt, 0)",
-            lambda p: scale(p.rate * sin(p.phi), (sin(p.rate * p.t), -cos(p.rate * p.t), MP.zero)),
+            lambda p: p.rate * sin(p.phi) * vector(sin(p.rate * p.t), -cos(p.rate * p.t), 0),
             _rates_of(_site_axis(1))),
         Identity("15_u", "(15)", "e_U' = Ω (-cosϕ sinΩt, cosϕ cosΩt, 0)",
-            lambda p: scale(p.rate * cos(p.phi), (-sin(p.rate * p.t), cos(p.rate * p.t), MP.zero)),
+            lambda p: p.rate * cos(p.phi) * vector(-sin(p.rate * p.t), cos(p.rate * p.t), 0),
             _rates_of(_site_axis(2))),
         Identity("16", "(16)", "Xdot² + Ydot² + Zdot² = α0 + α1 Ω + α2 Ω²",
             lambda p: alpha_0(p) + alpha_1(p) * p.rate + alpha_2(p) * p.rate**2,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..checks import Check, Finding, Identity, Statement, section
-from ..digits import MP, Vector, add, cos, derivative, scale, shown, sin, sqrt, vanishes
+from ..digits import MP, Vector, cos, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import (
     angle_state,
     by_angles,
@@ -100,8 +100,8 @@ def _energy_in_the_inertial_frame_changes() -> Finding:
     (place, speed, _), second = plane_state(p), horizontal_acceleration(p)
 
     def energy(s: Any) -> Any:
-        q = add(place, scale(s, speed), scale(s * s / 2, second))
-        return square_speed(p, by_plane, q, add(speed, scale(s, second))) / 2 + p.gravity * by_plane(p, *q)[2]
+        q = place + s * speed + s * s / 2 * second
+        return square_speed(p, by_plane, q, speed + s * second) / 2 + p.gravity * by_plane(p, *q)[2]
 
     change = derivative(energy)
     return Finding(abs(change) > MP.mpf("1e-3"), f"dE/dt = {shown(change)} at a random point, along the motion")
@@ -118,7 +118,7 @@ def _spherical(p: Point) -> Vector:
     """Return the equations of the spherical pendulum, from the Lagrangian without rotation."""
     q, v, a = angle_state(p)
     first, second = (euler_lagrange(p, by_angles, q, v, a, i, MP.zero) / p.length**2 for i in (0, 1))
-    return first, second / sin(p.cord)
+    return vector(first, second / sin(p.cord))
 
 
 def _angle_equation(i: int) -> Any:
@@ -142,7 +142,7 @@ def beta_x(p: Point) -> Vector:
     """Return β_x0, β_x1, β_x2 by (33)-(35)."""
     s, c, deep = sin(p.phi), cos(p.phi), abs(p.z) ** 3
     bent, pull = _shared(p)
-    return (
+    return vector(
         p.x * bent + p.x * pull,
         -2 * p.z**4 * s * p.vy + 2 * p.y * p.vy * c * deep,
         -p.x * p.z**4 * s**2 + p.x * c * (p.y * s - p.R) * deep,
@@ -153,7 +153,7 @@ def beta_y(p: Point) -> Vector:
     """Return β_y0, β_y1, β_y2 by (39)-(41)."""
     s, c, deep = sin(p.phi), cos(p.phi), abs(p.z) ** 3
     bent, pull = _shared(p)
-    return (
+    return vector(
         p.y * bent + p.y * pull,
         2 * p.z**4 * s * p.vx - 2 * p.y * p.vx * c * deep,
         p.z**4 * (-p.y + p.R * s + 2 * p.y * c**2) - deep * c * (p.R * p.y + (p.z**2 - p.y**2) * s),
@@ -168,17 +168,14 @@ def in_powers(p: Point, beta: Vector) -> Any:
 def matrix_times(p: Point, a: Vector) -> Vector:
     """Return the left side of (42)."""
     x, y, z = p.position
-    return (
-        z**2 * (x**2 + z**2) * a[0] + z**2 * y * x * a[1],
-        z**2 * y * x * a[0] + z**2 * (y**2 + z**2) * a[1],
-    )
+    return vector(z**2 * (x**2 + z**2) * a[0] + z**2 * y * x * a[1], z**2 * y * x * a[0] + z**2 * (y**2 + z**2) * a[1])
 
 
 def inverse_times(p: Point, b: Vector) -> Vector:
     """Return the right side of (43)."""
     x, y, z = p.position
-    top = ((y**2 + z**2) * b[0] - y * x * b[1], -y * x * b[0] + (x**2 + z**2) * b[1])
-    return tuple(part / (z**4 * p.length**2) for part in top)
+    top = vector((y**2 + z**2) * b[0] - y * x * b[1], -y * x * b[0] + (x**2 + z**2) * b[1])
+    return top / (z**4 * p.length**2)
 
 
 def solved(p: Point) -> Vector:
@@ -193,7 +190,7 @@ def _plane_equation(i: int, power: int = 4) -> Callable[[Point], Any]:
 
 def _coefficient(i: int, power: int) -> Callable[[Point], Any]:
     """Return z⁴ times the terms of Euler-Lagrange without accelerations, at one power of Ω."""
-    still = (MP.zero, MP.zero)
+    still = vector(0, 0)
     return lambda p: (
         p.z**4 * in_rate(lambda rate: euler_lagrange(p, by_plane, *plane_state(p)[:2], still, i, rate), power)
     )

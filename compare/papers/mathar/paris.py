@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 
 from reference import load_scene
-from reference.model.algebra import dot
 
 from ...approximations import APPROXIMATIONS, Motion
 from ...approximations.frequency import anharmonic, harmonic, planar, turntable
 from ...approximations.mathar import slow_down
 from ..checks import Check, Finding, PrintedNumber, Statement, section
-from ..digits import MP, Vector, acos, add, asin, cos, degrees, mpf, norm, pi, shown, sin, sqrt
+from ..digits import MP, Vector, acos, asin, cos, degrees, dot, mpf, norm, pi, shown, sin, sqrt, vector
 from ..first_principles import rest
 from ..points import paris
 from ..runs import (
@@ -57,9 +56,9 @@ def _work_of_the_centrifugal_force() -> Finding:
 
 
 def _middle_of_the_first_swing() -> Finding:
-    middle = tuple((transits(name)[0] + start) / 2 for name, start in zip("xy", paris().position, strict=False))
+    middle = (vector(*(transits(name)[0] for name in "xy")) + paris().position[:2]) / 2
     x, y, _ = rest(paris())
-    gap = norm(add(middle, (-x, -y)))
+    gap = norm(middle - vector(x, y))
     return Finding(gap < MP.mpf("1e-3"), f"middle {shown(middle)} m, rest position y = {shown(y)} m")
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from ...approximations.rest_angle import line_of_46, series, triangle
 from ..checks import Approximate, Check, Finding, Identity, Statement, section
-from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, scale, shown, sin, sqrt, vanishes
+from ..digits import MP, ZERO_BELOW, Vector, cos, degrees, derivative, shown, sin, sqrt, vanishes, vector
 from ..first_principles import horizontal_acceleration, rest
 from ..points import Point, paris, points
 from .lagrangian import beta_x, beta_y
@@ -111,7 +111,7 @@ def _derived_series(p: Point) -> Vector:
     def angle(rate: Any) -> Any:
         return p.but(rate=rate).case.rest_angle
 
-    return tuple(derivative(angle, order=power) / MP.factorial(power) for power in (2, 4, 6))
+    return vector(*(derivative(angle, order=power) / MP.factorial(power) for power in (2, 4, 6)))
 
 
 def series_term(i: int) -> tuple[Callable[[Point], Any], Callable[[Point], Any]]:
@@ -140,7 +140,7 @@ def _one_term(p: Point) -> Any:
 
 def _vector_sum(p: Point) -> Vector:
     out = p.case.outward
-    return MP.zero, -out * sin(p.phi), out * cos(p.phi) - p.gravity
+    return vector(0, -out * sin(p.phi), out * cos(p.phi) - p.gravity)
 
 
 def checks() -> list[Check]:
@@ -148,7 +148,7 @@ def checks() -> list[Check]:
     return section("mathar_", "Mathar V",
         Statement("44_x", ", before (44)", "at rest x = 0: on the meridian", _on_the_meridian),
         Identity("44_text", ", before (44)", "β_x0 and β_x1 are both proportional to x (vanish at x = 0)",
-            lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[1]), lambda p: (MP.zero, MP.zero),
+            lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[1]), lambda p: (0, 0),
             "β_x0 and β_x2 are", lambda p: (beta_x(p.but(x=MP.zero))[0], beta_x(p.but(x=MP.zero))[2]),
             remark="β_x1 vanishes at rest for any x; what must vanish with x is β_x2; at x = 0 with a moving bob"),
         Identity("44", "(44)", "y'' = z² (-β_y0 - β_y2 Ω²) / (z⁴ l²) at x = 0, at rest",
@@ -167,7 +167,7 @@ def checks() -> list[Check]:
             lambda p: tuple(line_of_46(p.case, p.cord, sign) for sign in (1, -1)),
             lambda p: tuple(_restoring(p, sign) for sign in (1, -1))),
         Identity("46_root", "(46)", "its root is the rest position",
-            lambda p: line_of_46(p.case, p.case.rest_angle), lambda p: MP.zero,
+            lambda p: line_of_46(p.case, p.case.rest_angle), lambda p: 0,
             remark="root: reference.model.force.rest_position"),
         *(Identity(f"47_{power}", f"(47), Ω{mark}", f"Ω{mark}: sin(2ϕ) (N+h-l) {printed}", *series_term(i),
             remark="truth: Taylor series of the rest position") for i, (power, mark, printed) in enumerate(SERIES)),
@@ -179,7 +179,7 @@ def checks() -> list[Check]:
             lambda p: p.case.outward / sin(p.case.tilt), lambda p: p.case.apparent_gravity / sin(p.phi),
             remark="the sine rule of the triangle of (48), its angle by atan2"),
         Identity("fig2", ", Fig. 2", "g' is the vector sum of g and RΩ², which is parallel to the equatorial plane",
-            _vector_sum, lambda p: scale(p.length, p.k.pull),
+            _vector_sum, lambda p: p.length * vector(*p.k.pull),
             remark="on east, north, up; truth: reference.model.constants"),
         Approximate("50", "(50)", "sinφ = RΩ² sinϕ / sqrt(g² + (RΩ²)² - 2gRΩ² cosϕ)",
             lambda s: (triangle(_shorter(s).case), _shorter(s).case.rest_angle), 1, "l", "rad"),

@@ -7,7 +7,7 @@ from typing import Any
 
 from ...approximations.mathar import derivatives, truncated
 from ..checks import Approximate, Check, Identity, PrintedNumber, section
-from ..digits import MP, Vector, cos, scale, shown, sin, sqrt
+from ..digits import MP, Vector, cos, shown, sin, sqrt, vector
 from ..first_principles import coupled_at, in_rate, linearised, uniform_acceleration
 from ..points import Point, paris
 from .lagrangian import solved
@@ -27,14 +27,14 @@ def without(item: int) -> Callable[[Point], Vector]:
 
     def accelerations(p: Point) -> Vector:
         (x, y, _), (vx, vy, _) = p.case.n, p.case.v
-        return scale(p.length, derivatives((x, y, vx, vy), truncated(p.k, items), MP, items)[2:])
+        return p.length * vector(*derivatives((x, y, vx, vy), truncated(p.k, items), MP, items)[2:])
 
     return accelerations
 
 
 def _depth_is_length(p: Point) -> Vector:
     """Return x'', y'' of item 5, in the term with g: z replaced by l."""
-    return scale(-p.gravity / p.length, (p.x, p.y))
+    return -p.gravity / p.length * p.position[:2]
 
 
 def _dropped(item: int) -> Callable[[Any], tuple[Vector, Vector]]:
@@ -75,7 +75,7 @@ def _whole(s: Any) -> tuple[Vector, Vector]:
 
 def _pulled(p: Point) -> Vector:
     """Return x'', y'' from which item 5 starts: the diagonal of (43), with g alone."""
-    return scale(-p.gravity * abs(p.z) / p.length**2, (p.x, p.y))
+    return -p.gravity * abs(p.z) / p.length**2 * p.position[:2]
 
 
 def checks() -> list[Check]:

@@ -283,7 +283,8 @@ def test_floats_in_python_stand_for_the_decimals_that_python_prints() -> None:
 def test_widths_of_inputs_have_their_names_in_quotes_or_not_and_their_sign_or_not(tmp_path: Path) -> None:
     path = tmp_path / "hall.toml"
     path.write_text(
-        '[release]\nx = "1"\ny = "0"\n[uncertain]\n"pendulum.length" = "0.001"\nsite.gravity = "±1e-4"\nsite.latitude = "0.01"\n'
+        '[release]\nx = "1"\ny = "0"\n'
+        '[uncertain]\n"pendulum.length" = "0.001"\nsite.gravity = "±1e-4"\nsite.latitude = "0.01"\n'
     )
     widths = {"pendulum.length": "±0.001", "site.gravity": "±1e-4", "site.latitude": "±0.01"}
     scene = load_scene(path, ["site.latitude=50"])
