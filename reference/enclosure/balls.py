@@ -3,7 +3,7 @@
 from fractions import Fraction
 from typing import Any
 
-from flint import arb, fmpq, fmpz
+from flint import arb, arb_series, fmpq, fmpz
 
 from .shapes import Interval
 
@@ -19,9 +19,9 @@ def demand(holds: bool, reason: str) -> None:
         raise ArithmeticError(reason)
 
 
-def ball(q: Any) -> arb:
-    """Return a ball that contains the fraction; a ball as it is."""
-    return q if isinstance(q, arb) else arb(fmpq(q.numerator, q.denominator))
+def ball(q: Any) -> Any:
+    """Return a ball that contains the fraction; a ball, or a series of balls, as it is."""
+    return q if isinstance(q, arb | arb_series) else arb(fmpq(q.numerator, q.denominator))
 
 
 def upper(x: arb) -> arb:

@@ -10,11 +10,12 @@ from fractions import Fraction
 from functools import reduce
 from typing import Any
 
-from flint import arb, ctx
+from flint import arb, arb_series, ctx
 
 from .balls import SHORT, Vector, add, ball, cross, demand, interval, size, times, total, upper
 from .bound import Piece, Radius, SceneBalls, tube
 from .course import FINISHED, Course
+from .printed import RELEASES
 from .shapes import Box, Covered, EnclosedTransit, ProvedBox, Sizes
 
 PARTS = 16  # of a unit of s, over which a state is bounded at once
@@ -38,20 +39,44 @@ class BoxBalls(SceneBalls):
         # an interval from 0 on is a ball that reaches a little beyond
         super().__init__(replace(box.inputs, **wide | {"drag": box.low.drag}), prec)
         with ctx.workprec(prec):
-            lean, pull = plumb(wide)
             self.given = [ball(q) for q in wide["position"] or ()]  # in m and m/s, without the length
-            self.inputs, self.c, (m, w) = box, own.c, own.c[1:]
-            self.pace, turn = (pull / self.length / (m * m + w * w).sqrt()).sqrt(), arb.atan2(-w, m) - lean
-            axis = (turn - ball(wide["latitude"]) * arb.pi() / 180).sin_cos()
-            self.tilt, self.omega = turn.sin_cos(), times(self.omega[2] / self.pace, [arb(0), *axis])
-            self.r, v = self.turned(self.release[0], 1), times(1 / self.pace, self.turned(self.release[1], 1))
-            self.begin(v)
-            self.turning, self.damping, self.paces = self.omega, ball(wide["drag"]) / self.pace, interval(self.pace)
+            self.inputs, self.wide, self.own, self.c = box, wide, own, own.c
+            self.measure(wide)
+            self.omega, self.paces = self.turning, interval(self.pace)
+            self.begin(self.v)
             self.omega, self.drag = own.omega, own.drag
-            self.H = cross(self.r, add(v, cross(self.omega, self.r)))  # with the scene's Ω
+            self.H = cross(self.r, add(self.v, cross(self.omega, self.r)))  # with the scene's Ω
+
+    def measure(self, wide: dict[str, Any]) -> None:
+        """Take what follows from inputs, balls or series of balls: length, pace, axes, Ω, γ and the release (11.1)."""
+        (m, w), (lean, pull), self.length = self.c[1:], plumb(wide), ball(wide["length"])
+        self.pace, turn = (pull / self.length / (m * m + w * w).sqrt()).sqrt(), arb.atan2(-w, m) - lean
+        axis, self.tilt = (turn - ball(wide["latitude"]) * arb.pi() / 180).sin_cos(), turn.sin_cos()
+        self.turning = times(ball(wide["rotation_rate"]) / self.pace, [arb(0), *axis])
+        self.damping, self.release = ball(wide["drag"]) / self.pace, self._release(replace(self.inputs.inputs, **wide))
+        self.r, self.v = self.turned(self.release[0], 1), times(1 / self.pace, self.turned(self.release[1], 1))
+
+    def varied(self, name: str, scale: arb) -> Any:
+        """Return what `measure` takes of series: their first coefficients are derivatives to an input, scaled."""
+        twin, wide, kind = copy(self), dict(self.wide), "position" if self.given else "angles"
+
+        def series(x: Any) -> Any:
+            return arb_series([ball(x), scale], 2)
+
+        with ctx.workprec(self.prec):
+            if name in RELEASES[kind]:
+                wide[kind] = tuple(
+                    series(x) if n == name else x for n, x in zip(RELEASES[kind], wide[kind], strict=True)
+                )
+            elif name == "inverse_flattening":
+                wide["flattening"] = 1 / series(1 / ball(wide["flattening"]))
+            else:
+                wide[name] = series(wide[name])
+            twin.measure(wide)
+        return twin
 
 
-def plumb(wide: dict[str, Any]) -> tuple[arb, arb]:
+def plumb(wide: dict[str, Any]) -> tuple[Any, Any]:
     """Return by what angle the plumb line leans, and the strength of the pull along it."""
     names = ("gravity", "altitude", "rotation_rate", "equatorial_radius", "flattening")
     gravity, altitude, rate, radius, f = (ball(wide[name]) for name in names)
@@ -59,7 +84,9 @@ def plumb(wide: dict[str, Any]) -> tuple[arb, arb]:
     push = rate * rate * (radius / (1 - f * (2 - f) * (1 - cos) / 2).sqrt() + altitude)
     push *= 0 if wide["gravity_is"] == "effective" else 1
     aside, down = push * sin / 2, gravity - push * (1 + cos) / 2
-    return arb.atan2(aside, down), (aside * aside + down * down).sqrt()
+    strength, series = (aside * aside + down * down).sqrt(), isinstance(aside / down, arb_series)
+    angle = arb.atan2(*((x[0] if isinstance(x, arb_series) else x) for x in (aside, down)))
+    return arb_series([angle, (aside / down).atan()[1]], 2) if series else angle, strength
 
 
 class BoxRadius(Radius):
@@ -143,14 +170,23 @@ class Windows:
 
 def between(covered: Covered, begin: Fraction, end: Fraction) -> list[Vector]:
     """Return balls of position and velocity that cover them from one time to another of a step, over the length."""
-    (piece, (eta, u, _)), step, parts = covered, covered.piece.step, list[Vector]()
-    low, high = (begin - step.centre) / step.h, (end - step.centre) / step.h
+    (piece, (eta, u, _)), parts = covered, list[Vector]()
     with ctx.workprec(piece.balls.prec):
-        forms = [*zip(piece.p, piece.v, strict=True), *((f, f.derivative()) for f in piece.v)]
-        for k in range(count := 1 + (high - low) * PARTS // 1):
-            s = hull(low + (high - low) * k / count, low + (high - low) * (k + 1) / count)
-            s, middle = ball(s), ball(s).mid()
-            x = [(f(middle) + rate(s) * (s - middle)) / piece.unit for f, rate in forms]
+        for s in spread(piece, begin, end):
+            x = [near(f, s) / piece.unit for f in (*piece.p, *piece.v)]
             r, v = [q + arb(0, eta) for q in x[:3]], [(q + arb(0, u)) / piece.k.h for q in x[3:]]
             parts.append([*piece.balls.turned(r, -1), *piece.balls.turned(v, -1)])
     return parts
+
+
+def spread(piece: Piece, begin: Fraction, end: Fraction) -> list[arb]:
+    """Return balls of s that cover a time of a step."""
+    low, high = ((time - piece.step.centre) / piece.step.h for time in (begin, end))
+    count = 1 + (high - low) * PARTS // 1
+    return [ball(hull(low + (high - low) * k / count, low + (high - low) * (k + 1) / count)) for k in range(count)]
+
+
+def near(f: Any, s: arb) -> arb:
+    """Return a ball that contains a polynomial on `s`, about the middle of this."""
+    x: arb = f(s.mid()) + f.derivative()(s) * (s - s.mid())
+    return x

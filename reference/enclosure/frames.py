@@ -33,6 +33,23 @@ class ColumnSource:
     def propose(self, step: TaylorStep, widths: Iterable[float]) -> list[list[list[int]]]:
         """Return integer polynomials over 2^FINE, column by column; `widths` are the logarithms of the z_j."""
         h, M = float(step.h), ORDER
+        field, _, _ = self.linearised(step)
+        back = np.zeros((M + 1, 6, 6))  # coefficient k stands at M - k
+        back[M] = np.eye(6)
+        for k in range(M):
+            back[M - k - 1] = product(field[:, : k + 1].reshape(6, -1), back[M - k :].reshape(-1, 6)) / (k + 1)
+        flow = back[::-1].reshape(M + 1, 36)
+        unit = np.array([1.0] * 3 + [h * self.w0] * 3)
+        start, end = (product(_powers(float(s), M)[None], flow).reshape(6, 6) for s in (step.low, step.high))
+        combine = product(_inverse(start), unit[:, None] * self._frame(widths))
+        columns = product(flow.reshape(-1, 6), combine).reshape(M + 1, 6, 6)
+        self.end = product(end, combine) / unit[:, None]
+        integers = np.rint(np.ldexp(columns, FINE))
+        return [[[int(x) for x in integers[:, i, j]] for i in range(6)] for j in range(6)]
+
+    def linearised(self, step: TaylorStep) -> tuple[Any, Any, Any]:
+        """Return coefficients of the matrix of the linearised equations on a step, of p, and of K - Ω."""
+        h, M = float(step.h), ORDER
         w, c, g = self.w * h, self.c * h * h, self.g * h
         one = 1 << step.bits
         rows = [[int(x) / one for x in fmpz_poly(row).truncate(M + 2).coeffs()] for row in step.coefficients]
@@ -50,18 +67,7 @@ class ColumnSource:
             along = product(n, w[:, None])[:, 0]
             field[3:, :, :3] -= g * (n.T[:, :, None] * w + np.eye(3)[:, None, :] * along[:, None])
             field[3:, 0, 3:] -= g * np.eye(3)
-        back = np.zeros((M + 1, 6, 6))  # coefficient k stands at M - k
-        back[M] = np.eye(6)
-        for k in range(M):
-            back[M - k - 1] = product(field[:, : k + 1].reshape(6, -1), back[M - k :].reshape(-1, 6)) / (k + 1)
-        flow = back[::-1].reshape(M + 1, 36)
-        unit = np.array([1.0] * 3 + [h * self.w0] * 3)
-        start, end = (product(_powers(float(s), M)[None], flow).reshape(6, 6) for s in (step.low, step.high))
-        combine = product(_inverse(start), unit[:, None] * self._frame(widths))
-        columns = product(flow.reshape(-1, 6), combine).reshape(M + 1, 6, 6)
-        self.end = product(end, combine) / unit[:, None]
-        integers = np.rint(np.ldexp(columns, FINE))
-        return [[[int(x) for x in integers[:, i, j]] for i in range(6)] for j in range(6)]
+        return field, n, turn
 
     def _frame(self, widths: Iterable[float]) -> Any:
         lengths = np.sqrt((self.end * self.end).sum(axis=0))

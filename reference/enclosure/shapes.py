@@ -80,6 +80,25 @@ class ProvedBox:
     transits: tuple[EnclosedTransit, ...] | None  # None: not requested, or xdot is identically zero
 
 
+@dataclass(frozen=True, eq=False)
+class ProvedDerivatives:
+    """Derivatives to `names`, for all inputs of a box: of the states at its times, of the times of transits."""
+
+    proved: ProvedBox
+    names: tuple[str, ...]
+    states: tuple[tuple[State, ...], ...]  # per time, per name
+    transits: tuple[tuple[Interval, ...], ...]  # per transit, per name; none of possible ones
+
+
+class Tangent(NamedTuple):
+    """Polynomials near the derivative of the position on a step, over `unit`; what they and their rates miss."""
+
+    rows: list[Any]
+    unit: Any
+    error: arb
+    rate: arb
+
+
 class Sizes(NamedTuple):
     """Sup norms on |s| <= 1: the defects, |p|, |K|, ||p|² - 1|, |d1'|."""
 

@@ -1,0 +1,240 @@
+"""TRUSTED. Derivatives to inputs, for every pendulum of a box, and what follows from them (THEOREM.md, section 12).
+
+A derivative is scaled by a power of two, its `scale`, so that proposals are of the size of 1.
+"""
+
+from dataclasses import replace
+from fractions import Fraction
+from functools import reduce
+from typing import Any
+
+from flint import arb, arb_poly, arb_series, ctx, fmpz, fmpz_poly
+
+from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, interval, size, times, upper
+from .bound import Piece, Radius, output, tube
+from .box import BoxBalls, BoxRadius, Windows, near, spread
+from .course import FINISHED
+from .enclosed_transits import Scan
+from .printed_box import end_of
+from .shapes import Covered, EnclosedTransit, Interval, ProvedDerivatives, State, Tangent
+from .six_columns import cut
+
+TINY = arb(2) ** -4096  # more than nothing
+
+
+class Way:
+    """The derivative to one input: at the release, of Ω and of γ; then where proposals have led it, with its radius."""
+
+    def __init__(self, balls: BoxBalls, name: str, half: Fraction, scale: int) -> None:
+        self.scale, self.error = arb((fmpz(1), fmpz(scale))), arb(0)
+        self.half, self.twin = ball(half) / self.scale, balls.varied(name.partition(".")[2], self.scale)
+        with ctx.workprec(balls.prec):
+            momentum = cross(self.twin.r, add(self.twin.v, cross(self.twin.turning, self.twin.r)))
+            self.last = [first(x) for x in (*self.twin.r, *momentum)]
+            self.turn, self.slow = [first(x) for x in self.twin.turning], first(self.twin.damping)
+
+
+def first(x: Any) -> arb:
+    """Return the first coefficient of a series; 0 of a ball, which does not depend on the input."""
+    return x[1] if isinstance(x, arb_series) else arb(0)
+
+
+class Tangents(BoxRadius):
+    """Theorem V for all inputs of a box, and Theorem C for the scene's own: together they bound all motions."""
+
+    def __init__(self, balls: BoxBalls, halves: dict[str, Fraction], scales: dict[str, int]) -> None:
+        super().__init__(balls)
+        texts = {name: str(half) for name, half in halves.items()}
+        ends = [end_of(balls.inputs.inputs, texts, side) for side in (-1, 1)]
+        demand(ends == [*balls.inputs[1:]], "a width is missing, or another one")
+        self.ways = [Way(balls, name, half, scales[name]) for name, half in halves.items()]
+        self.point, self.scene = Radius(balls.own), list[Covered]()
+
+    def advance(self, piece: Piece, proposal: list[Any]) -> Covered:  # type: ignore[override]
+        """Carry all over a step: `proposal` has six polynomials of integers, and the bits of their unit, per input."""
+        (whole, d, _), own = self.widened(piece), Piece(self.balls.own, piece.step)
+        self.scene, sizes, polynomials = [self.point.advance(own)], list[list[arb]](), list[Any]()
+        with ctx.workprec(2 * SHORT):
+            omega = times(piece.k.h, self.balls.omega)
+            p, v = ([cut(arb_poly(f) * (1 / arb(piece.unit))) for f in part] for part in (piece.p, piece.v))
+            K = [cut(f) for f in cross(p, add(v, cross(omega, p)))]
+            for way, (rows, bits) in zip(self.ways, proposal, strict=True):
+                f, unit, inverse = [fmpz_poly(row) for row in rows], fmpz(1) << bits, 1 / piece.k.h
+                start, end = ([g(ball(s)) / unit for g in f] for s in (piece.step.low, piece.step.high))
+                start, end = ([*x[:3], *times(inverse, x[3:])] for x in (start, end))
+                jump = [(a - b).abs_upper() for a, b in zip(start, way.last, strict=True)]
+                way.error, way.last = way.error + size(jump[:3]) + size(jump[3:]) / self.balls.w0, end
+                sizes.append(residuals(whole, omega, p, K, way, [arb_poly(g) * (1 / arb(unit)) for g in f]))
+                polynomials.append((f[:3], unit))
+        with ctx.workprec(SHORT):
+            k, near_by = whole.k, self.scene[0].tube.eta
+            off, around = size(add(k.omega, times(-1, omega))), (own.k.w + d.k) * near_by
+
+            def bounds(e: arb, g: arb) -> tuple[arb, arb, list[list[arb]]]:
+                found = [
+                    carried(self.balls, whole, way, part, e, g) for way, part in zip(self.ways, sizes, strict=True)
+                ]
+                parts = list(zip(self.ways, sizes, found, strict=True))
+                far = sum((way.half * (x[0] + y[0]) for way, x, y in parts), near_by)
+                fast = sum((way.half * (x[1] + y[1]) for way, x, y in parts), around)
+                return upper(far), upper(fast), found
+
+            e, g, _ = bounds(arb(0), arb(0))
+            e, g = upper(2 * e + TINY), upper(2 * g + TINY)
+            self.eta, gamma, found = bounds(e, g)
+            demand(self.eta < e and gamma < g, "a bound has outgrown what it rests on")
+            for way, part in zip(self.ways, found, strict=True):
+                way.error = part[0]
+            self.tangents = [Tangent(f, unit, x[0], x[2]) for (f, unit), x in zip(polynomials, found, strict=True)]
+            return Covered(whole, tube(k, d, self.eta, gamma + d.p**2 * off))
+
+
+def residuals(piece: Any, omega: Vector, p: Vector, K: Vector, way: Way, W: Vector) -> list[arb]:
+    """Return |P|, |Q|, |R1|, |R2|, |p·P|, |K·P + p·Q| of polynomials (P, Q) for ρ and χ, with the scene's Ω and γ."""
+    k, P, Q, rates = piece.k, W[:3], W[3:], [f.derivative() for f in W]
+    turn, slow, lean = times(k.h, way.turn), k.h * way.slow, add(K, times(-1, omega))
+    r1 = add(rates[:3], cross(p, Q), cross(P, lean), cross(turn, p))
+    r2 = add(rates[3:], cross(k.c, P), cross(omega, Q), cross(turn, K))
+    along = times(dot(turn, p) + dot(omega, P), p)
+    r2 = add(r2, times(k.drag, add(Q, times(-1, turn), along, times(dot(omega, p), P))))
+    r2 = add(r2, times(slow, add(lean, times(dot(omega, p), p))))
+    vectors = [P, Q, r1, r2, [dot(p, P)], [dot(K, P) + dot(p, Q)]]
+    return [size([f(UNIT) for f in part]) for part in vectors]
+
+
+def carried(balls: BoxBalls, piece: Piece, way: Way, sizes: list[arb], e: arb, g: arb) -> list[arb]:
+    """Return bounds of |ρ - P|, |χ - Q|, |ρ' - P'| on a step, where |r - p| <= e and |H - K| <= g (Lemma 12.2)."""
+    k, d, (P, Q, r1, r2, along, across) = piece.k, piece.sizes, sizes
+    w, span, turn, slow = (
+        k.w,
+        ball(piece.step.high - piece.step.low),
+        size(times(k.h, way.turn)),
+        upper(abs(k.h * way.slow)),
+    )
+    omega, W = times(k.h, balls.omega), k.omega_size
+    off, gap = size(add(k.omega, times(-1, omega))), upper(abs(k.h * balls.damping - k.drag))
+    W = W.max(size(omega))
+    s1 = (Q + turn) * e + (g + off) * P
+    s2 = Q * off + g * turn + gap * (Q + turn * (1 + d.p**2) + 2 * W * d.p * P)
+    s2 += k.drag_size * (turn * e * (1 + d.p) + 2 * P * (off + W * e)) + slow * (g + 2 * off + W * e * (1 + d.p))
+    aside, tilt = along + e * P, across + g * P + e * Q
+    source = s1 + r1 + (s2 + r2 + aside * k.c_size + tilt * k.speed) / w
+    rate = k.below.max(k.above + k.speed**2) + k.drag_size * k.omega_size
+    error = upper((way.error + span * source) * (span * rate / (2 * w)).exp())
+    momentum = upper((w + k.speed) * error + tilt)
+    return [error, momentum, upper(momentum + (k.speed + k.omega_size) * error + s1 + r1)]
+
+
+class Derivatives:
+    """Follows a box's windows: derivatives of the states at their times, and of the times of transits."""
+
+    def __init__(self, windows: Windows, halves: dict[str, Fraction], scales: dict[str, int]) -> None:
+        self.windows, self.balls, self.course, self.names = windows, windows.balls, windows.course, tuple(halves)
+        self.bound = self.course.bound = Tangents(self.balls, halves, scales)
+        self.scan = Scan(self.balls.own) if self.course.scan else None
+        self.done, self.hulls, self.zeros, self.states = 0, list[list[Vector]](), list[list[arb]](), list[State]()
+        self.kept = list[tuple[Covered, list[Tangent]]]()
+        self.course.followers.append(self)
+
+    def advance(self, covered: Covered) -> None:
+        """Take the next step: what it may hold of output times, and the transits that are closed with it."""
+        demand(not self.course.open, "a tube comes from the course alone, while it takes a step")
+        (scene,), windows, tangents = self.bound.scene, self.windows, self.bound.tangents
+        for n in range(self.done, len(windows.times)):
+            time = windows.times[n]
+            low, high = windows.pace.low * time, windows.pace.high * time
+            if low > covered.piece.end:
+                break
+            parts = spread(covered.piece, max(low, covered.piece.begin), min(high, covered.piece.end))
+            rows = [
+                [values(covered, tangent, way, s, ball(time)) for s in parts]
+                for tangent, way in zip(tangents, self.bound.ways, strict=True)
+            ]
+            before = self.hulls[n] if n < len(self.hulls) else [[] for _ in rows]
+            together = [[x, *row] if x else row for x, row in zip(before, rows, strict=True)]
+            self.hulls[n : n + 1] = [[[reduce(arb.union, x) for x in zip(*row, strict=True)] for row in together]]
+            self.done += high <= covered.piece.end
+        while len(self.states) < len(windows.times) and windows.times[len(self.states)] <= scene.piece.end:
+            self.states.append(output(scene, windows.times[len(self.states)]))
+        self.kept.append((covered, tangents))
+        self.close()
+        if self.scan and self.course.scan:
+            self.scan.advance(scene)
+            self.kept = self.kept if self.course.scan.cluster else []
+
+    def close(self) -> None:
+        """Take the derivatives of the transits that were found since."""
+        for z in self.course.scan.found[len(self.zeros) :] if self.course.scan else ():
+            self.zeros.append([self.of_transit(z, j) for j in range(len(self.names))] if z.parity == "one" else [])
+
+    def of_transit(self, z: EnclosedTransit, j: int) -> arb:
+        """Return the derivative of a transit's time: that of xdot over xddot, and that of the pace (Lemma 12.3)."""
+        begun, ended = self.kept[0][0].piece.begin, self.kept[-1][0].piece.end
+        # it lies in leaves of steps that are kept, whatever rounding adds to its interval
+        demand(z.t.low < ended and begun < z.t.high, "a transit is not covered")
+        found, way = list[arb](), self.bound.ways[j]
+        for covered, tangents in self.kept:
+            piece, tangent = covered.piece, tangents[j]
+            begin, end = max(z.t.low, piece.begin), min(z.t.high, piece.end)
+            with ctx.workprec(self.balls.prec):
+                for s in spread(piece, begin, end) if begin <= end else ():
+                    bend = (near(piece.v[0].derivative(), s) / piece.unit + arb(0, covered.tube.a)) / piece.k.h
+                    rate = near(tangent.rows[0].derivative(), s) / tangent.unit + arb(0, tangent.rate)
+                    time = ball(piece.step.centre) + s * piece.k.h
+                    found.append(first(arb_series([time, -rate / bend], 2) / way.twin.pace) / way.scale)
+        return reduce(arb.union, found)
+
+    def finish(self) -> ProvedDerivatives:
+        """Return what is proved, with states and transits that are as narrow as the derivatives make them."""
+        proved = self.windows.finish()
+        self.close()
+        demand(self.done == len(self.states) == len(self.windows.times), "the steps do not end with the run")
+        ways, found = self.bound.ways, proved.transits or ()
+        with ctx.workprec(self.balls.prec):
+            states = tuple(
+                tuple(
+                    within(x, y, ways, [row[i] for row in rows]) for i, (x, y) in enumerate(zip(wide, own, strict=True))
+                )
+                for wide, own, rows in zip(proved.states, self.states, self.hulls, strict=True)
+            )
+            own = self.scan.finish() if self.scan else []
+            transits = []
+            for z, row in zip(found, self.zeros, strict=False):
+                # of the scene's own transits, that in the interval in which each pendulum has one
+                ones = [y.t for y in own if row and y.parity == "one" and self.holds(z, y.t)]
+                transits.append(replace(z, t=within(z.t, ones[0], ways, row)) if ones else z)
+        derivatives = tuple(tuple(tuple(map(interval, row)) for row in rows) for rows in self.hulls)
+        of_times = tuple(tuple(map(interval, row)) if all(x.is_finite() for x in row) else () for row in self.zeros)
+        narrow = replace(proved, states=states, transits=None if proved.transits is None else tuple(transits))
+        FINISHED.add(narrow)
+        FINISHED.add(result := ProvedDerivatives(narrow, self.names, derivatives, of_times[: len(found)]))
+        return result
+
+    def holds(self, z: EnclosedTransit, own: Interval) -> bool:
+        """Return whether a transit's interval contains one of the scene's own, whose time is that of the course."""
+        return z.t.low <= own.low and own.high <= z.t.high
+
+
+def within(wide: Interval, own: Interval, ways: list[Way], derivatives: Vector) -> Interval:
+    """Return where a number is for all inputs: near the scene's own, as far as its derivatives reach; and in `wide`."""
+    far = sum((way.half * way.scale * x.abs_upper() for way, x in zip(ways, derivatives, strict=True)), arb(0))
+    if not far.is_finite():
+        return wide
+    reach = interval(far).high
+    return Interval(max(wide.low, own.low - reach), min(wide.high, own.high + reach))
+
+
+def values(covered: Covered, tangent: Tangent, way: Way, s: arb, time: arb) -> Vector:
+    """Return balls of the derivatives of position and velocity, in m and m/s, at the pendulum's own time (12.3)."""
+    (piece, tube), h = covered, covered.piece.k.h
+    with ctx.workprec(piece.balls.prec):
+        forms = [(f, piece.unit) for part in (piece.p, piece.v, [g.derivative() for g in piece.v]) for f in part]
+        forms += [(f, tangent.unit) for part in (tangent.rows, [g.derivative() for g in tangent.rows]) for f in part]
+        x, later = [near(f, s) / unit for f, unit in forms], first(way.twin.pace) * time
+        radii, powers = (tube.eta, tube.u, tube.a, tangent.error, tangent.rate), (1, h, h**2, 1, h)
+        r, v, a, rho, rate = ([(q + arb(0, radii[i])) / powers[i] for q in x[3 * i : 3 * i + 3]] for i in range(5))
+        R = [arb_series([y, z * later + u], 2) for y, z, u in zip(r, v, rho, strict=True)]
+        V = [arb_series([y, z * later + u], 2) for y, z, u in zip(v, a, rate, strict=True)]
+        twin = way.twin
+        moving = [*times(twin.length, twin.turned(R, -1)), *times(twin.length * twin.pace, twin.turned(V, -1))]
+        return [first(q) / way.scale for q in moving]
