@@ -80,7 +80,7 @@ def _pushed(scene: Scene) -> dict[str, str]:
 
 EXPERIMENTS = (
     Experiment("half_step", "half the step", lambda _: {}, finer=2),
-    Experiment("four_g", "four times g", _times("4", "site.gravity")),
+    Experiment("quarter_g", "a quarter of g", _times("0.25", "site.gravity")),
     Experiment("no_rotation", "no rotation", lambda _: {"site.rotation_rate": "0"}, "in what the rotation does"),
     Experiment(
         "small_swing", "a swing a hundredth as wide", _times("0.01", *(f"release.{name}" for name in SWING)),

@@ -54,8 +54,8 @@ class Laboratory:
             for experiment in possible:
                 if self._make(experiment) and len(self._runs) > LEAST_RUNS:
                     told = self._explanations()
-                if len(told) == 1:
-                    break
+                    if len(told) < 2:  # what does not make these files makes no more of them
+                        break
             if 1 < len(self._runs) <= LEAST_RUNS:  # the program is fit for no more
                 told = self._explanations()
             known = bool(told)
@@ -139,17 +139,16 @@ class Laboratory:
 
 
 def _told(case: JointCase, *step: Deviation) -> list[Explanation]:
-    """Return the explanations of a case, beside a step, the likeliest first; of those of one motion one."""
+    """Return the explanations of a case, beside a step, the likeliest first; of those of the same things one."""
     told: list[Explanation] = []
-    motions: list[Array] = []
+    things: list[set[str]] = []
     for reading in case.readings():
-        one, motion = case.told(reading, *step), case.positions(reading.program)
+        one, groups = case.told(reading, *step), {cause.group for cause in reading.causes}
         ids = {cause.id for cause in one.causes}
-        same = any({cause.id for cause in other.causes} <= ids for other in told)
-        same = same or any(largest(motion - other) <= case.enough for other in motions)
+        same = groups in things or any({cause.id for cause in other.causes} <= ids for other in told)
         if ids and not same and one.score <= (told or [one])[0].score + EQUAL:
             told.append(one)
-            motions.append(motion)
+            things.append(groups)
     return told
 
 

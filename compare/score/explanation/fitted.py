@@ -21,6 +21,7 @@ from .readings import Reader, Reading
 from .unexplained import Case, largest, rms
 
 TRIED = 6  # readings of a family that are run
+CLOSE = 0.5  # decades by which a family's readings may be dearer than the best of another, before they are polished
 POLISHED = 3  # steps by which fitted numbers are moved
 BETTER = 0.9  # of what was left, for a step that is taken
 EXTRA = {"sphere": 0.0, "linear": 0.3, "angle": 0.6}  # decades by which a simpler family has to be better
@@ -86,9 +87,11 @@ def ranked(
         causes_of: the causes that a family may have.
         tried: number of readings of a family that are run.
     """
-    run = []
-    for reader in readers:
-        likely = reader.readings(causes_of(reader.right.kind))[:tried]
+    run: list[Reading] = []
+    for reader in sorted(readers, key=lambda reader: reader.fit.rest):
+        least = min((reading.score + EXTRA[reading.reader.right.kind] for reading in run), default=math.inf)
+        most = least - EXTRA[reader.right.kind] + CLOSE
+        likely = reader.readings(causes_of(reader.right.kind), most)[:tried]
         likely += [reader.without(reading, [cause]) for reading in likely[:2] for cause in reading.causes]
         for reading in likely:  # the distance from the fit is linear in theta: what counts is the program itself
             leaves = rms(case.left(reading.program))

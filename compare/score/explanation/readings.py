@@ -74,17 +74,18 @@ class Reader:
     floor: float
     least: float
 
-    def readings(self, causes: Sequence[Cause]) -> list[Reading]:
-        """Return the best combinations, the best first."""
+    def readings(self, causes: Sequence[Cause], most: float = math.inf) -> list[Reading]:
+        """Return the best combinations, the best first; none is looked for whose score is above `most` for certain."""
         nothing = self._judged((), self.right)
         best, beam = [nothing], [nothing]
         seen: set[frozenset[int]] = set()
-        least, tried = nothing.score, 0
+        least, tried = min(nothing.score, most), 0
+        bound = self.scored((), self.right, self.fit.rest).score  # no combination leaves less than the fit
         for _ in range(MOST):
             longer: list[Reading] = []
             for reading in beam:
                 groups = {cause.group for cause in reading.causes}
-                cost = sum(cause.cost for cause in reading.causes)
+                cost = bound + sum(cause.cost for cause in reading.causes)
                 for cause in causes:
                     key = frozenset((*map(id, reading.causes), id(cause)))
                     if cost + cause.cost > least or cause.group in groups or key in seen:
