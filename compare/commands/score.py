@@ -158,8 +158,6 @@ def command(
 
     naming = Naming(tuple(listed(columns, "--columns") or ()), tuple(listed(units, "--units") or ()))
     reading = None if chosen("--inputs", inputs, READINGS) == "auto" else inputs
-    if tolerance is not None and not 0 < tolerance < float("inf"):
-        raise InputError("--tolerance", f"{tolerance:g}", "a positive number of metres")
     check_positive("--tolerance", tolerance, "metres")
     if no_diagnosis:
         refuse({"--as-model": as_model, "--experiments": experiments}, "together with --no-diagnosis")

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from reference import FoucaultError, Scene
-from reference.numbers.precision import Array
 
 from ...candidates.candidate import Candidate, Deviation
 from ...candidates.external import SETTING
