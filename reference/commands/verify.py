@@ -24,7 +24,10 @@ def command(
     recompute: Annotated[bool, RECOMPUTE] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Check golden datasets, and integrate their motion again; of ranges, prove them again."""
+    """Check golden datasets and ranges.
+
+    The motion of a dataset is integrated again; ranges are proved again.
+    """
     from ..dataset.place import RANGES, golden_folder
     from ..dataset.ranges import verify_ranges
     from ..dataset.verify import recompute as recomputed

@@ -1,67 +1,54 @@
-"""A scene whose inputs are uncertain: show, generate and score take its widths, unless `--uncertain` says otherwise."""
-
-from __future__ import annotations
+"""`--uncertain` in generate and show."""
 
 import json
-from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
-from foucault import commands
-from reference.dataset.ranges import load_ranges
+from reference.commands import app
 
-HALL = """
-[pendulum]
-length = "12.3"
-[site]
-gravity_is = "effective"
-[release]
-x = "0.5"
-y = "0.3"
-[run]
-t_end = "20"
-grid_step = "10"
-[uncertain]
-"pendulum.length" = "0.001"
-"""
+BOX = ["--uncertain", "pendulum.length=±0.001", "--uncertain", "latitude=+-0.001"]
 
 
-def invoke(*words: str):
-    return CliRunner().invoke(commands(), words, catch_exceptions=False)
+def run(*words):
+    return CliRunner().invoke(app, [str(word) for word in words])
 
 
-@pytest.fixture
-def hall(tmp_path: Path) -> Path:
-    path = tmp_path / "hall.toml"
-    path.write_text(HALL)
-    return path
+def test_generate_writes_ranges(tmp_path):
+    done = run("generate", "paris", "--t-end", "120", *BOX, "--out", tmp_path / "out")
+    assert done.exit_code == 0, done.output
+    assert "3 grid times, 14 transits, for every pendulum.length ±0.001, site.latitude ±0.001: enclosed" in done.output
+    assert "period between 16.43" in done.output
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["grid.csv", "ranges.json", "transits.csv"]
+    done = run("generate", "paris", "--t-end", "120", *BOX, "--out", tmp_path / "out", "--json")
+    assert json.loads(done.stdout)["transits"] == 14
+
+
+def test_show_tells_period_and_first_transits():
+    done = run("show", "paris", "--set", "run.t_end=120", *BOX)
+    assert "proved for every pendulum.length ±0.001, site.latitude ±0.001] period_s = 16.43" in done.output
+    assert "transit 1 = 8.2176" in done.output
+    ranges = json.loads(run("show", "paris", "--set", "run.t_end=120", *BOX, "--json").stdout)["ranges"]
+    assert [float(end) for end in ranges["first_transits_s"][0]] == pytest.approx([8.2178, 8.2178], abs=3e-4)
 
 
 @pytest.mark.parametrize(
-    ("options", "widths"),
+    "words, status, told",
     [
-        ([], {"pendulum.length": "0.001"}),
-        (["--uncertain", "length=±0.002"], {"pendulum.length": "0.002"}),
-        (["--uncertain", "gravity=±0.01"], {"pendulum.length": "0.001", "site.gravity": "0.01"}),
+        (["--uncertain", "length"], 2, "expected KEY=±WIDTH"),
+        (["--uncertain", "length=0.001"], 2, "expected a width with its sign"),
+        (["--uncertain", "lenght=±0.001"], 2, "an input on which the motion depends"),
+        (["--uncertain", "length=±1", "--uncertain", "length=±2"], 2, "expected one width of length"),
+        ([*BOX, "--level", "confirmed"], 2, "enclosed, together with uncertain"),
+        ([*BOX, "--digits", "20"], 2, "no such option where inputs are uncertain"),
+        ([*BOX, "--function"], 2, "no such option where inputs are uncertain"),
+        ([*BOX, "--all"], 2, "with --all"),
+        (["--uncertain", "x0=±3"], 3, "too wide: it holds up to t ="),
     ],
 )
-def test_generate_writes_ranges_for_the_widths_of_the_scene_and_of_the_option(hall, tmp_path, options, widths):
-    result = invoke("generate", str(hall), "--out", str(tmp_path / "out"), *options)
-    assert result.exit_code == 0, result.stderr
-    assert load_ranges(tmp_path / "out").uncertain == widths
-
-
-def test_without_its_widths_the_scene_has_a_dataset(hall, tmp_path):
-    out = tmp_path / "out"
-    result = invoke("generate", str(hall), "--uncertain", "none", "--level", "computed", "--out", str(out))
-    assert result.exit_code == 0 and (out / "manifest.json").is_file()
-
-
-def test_show_and_score_take_the_widths_of_the_scene(hall, tmp_path):
-    shown = json.loads(invoke("show", str(hall), "--json").stdout)
-    assert shown["ranges"]["uncertain"] == {"pendulum.length": "±0.001"}
-    assert "ranges" not in json.loads(invoke("show", str(hall), "--uncertain", "none", "--json").stdout)
-    rows = tmp_path / "rows.csv"
-    rows.write_text("t,x,y\n0,0.5,0.3\n")
-    assert "cannot be told apart" in invoke("score", str(hall), str(rows)).stdout
+def test_what_is_wrong_is_told_and_nothing_is_written(tmp_path, words, status, told):
+    scene = [] if "--all" in words else ["paris", "--t-end", "3600"]
+    done = run("generate", *scene, *words, "--out", tmp_path / "out")
+    assert done.exit_code == status or getattr(done.exception, "exit_status", None) == status
+    assert told in done.output or told in str(done.exception)
+    assert list(tmp_path.iterdir()) == []
