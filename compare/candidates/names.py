@@ -15,52 +15,28 @@ import numpy as np
 
 from reference import InputError
 from reference.numbers.precision import Array
+from reference.system.documents import texts_of
 
-DIRECTIONS = {
-    "east": ("x", 1), "eastward": ("x", 1), "eastwards": ("x", 1), "easting": ("x", 1), "west": ("x", -1),
-    "westward": ("x", -1), "westwards": ("x", -1), "north": ("y", 1), "northward": ("y", 1), "northwards": ("y", 1),
-    "northing": ("y", 1), "south": ("y", -1), "southward": ("y", -1), "southwards": ("y", -1), "up": ("z", 1),
-    "upward": ("z", 1), "upwards": ("z", 1), "vertical": ("z", 1), "down": ("z", -1), "downward": ("z", -1),
-    "downwards": ("z", -1), "ost": ("x", 1), "est": ("x", 1), "ouest": ("x", -1), "nord": ("y", 1), "sud": ("y", -1),
-}  # fmt: skip
+vocabulary = texts_of(__file__)
+DIRECTIONS: dict[str, tuple[str, int]] = {word: (axis, sign) for word, (axis, sign) in vocabulary["directions"].items()}
 AXES = {"x": ("x", 1), "y": ("y", 1), "z": ("z", 1)} | DIRECTIONS
 _AXIS = "|".join(sorted(AXES, key=len, reverse=True))
 _PLACE = "position|pos|coordinate|coord|displacement|disp|location|loc"
 _SPEED = "velocity|vel|speed"
 POSITION = re.compile(rf"(?:{_PLACE}|bob|r)?([xyz])?({_AXIS})(?:{_PLACE}|axis)?")
 VELOCITY = re.compile(rf"(?:{_SPEED}|v)([xyz])?({_AXIS})|([xyz])?({_AXIS})(?:{_SPEED}|dot|prime)|d()({_AXIS})dt")
-TIME_WORDS = {
-    "t", "time", "times", "zeit", "temps", "tiempo", "tempo", "elapsed", "elapsedtime", "timeelapsed", "simtime",
-    "simulationtime", "timestamp", "tsim",
-}  # fmt: skip
+TIME_WORDS: set[str] = set(vocabulary["time_words"])
 TIME_UNITS = re.compile(r"sec|secs|seconds?|ms|msec|milliseconds?|minutes?|hours?|days?")  # a column that is called so
 LONGEST = 100  # characters of a word; the patterns' time grows with the square, and a line may have 64 KiB
 BRACKETS = re.compile(r"(.*?)\s*[(\[{<]\s*(.*?)\s*[)\]}>]")
 AFTER = re.compile(r"(.*?)(?:\s*/\s*|\s+in\s+|[\s_.]+)([^\s_/.]+(?:(?:/|_per_|_)[^\s_/]+)?)")
-TIMES = {
-    "s": Fraction(1), "ms": Fraction(1, 10**3), "us": Fraction(1, 10**6), "ns": Fraction(1, 10**9),
-    "min": Fraction(60), "h": Fraction(3600), "d": Fraction(86400),
-}  # fmt: skip
-LENGTHS = {
-    "m": Fraction(1), "dm": Fraction(1, 10), "cm": Fraction(1, 100), "mm": Fraction(1, 1000), "um": Fraction(1, 10**6),
-    "km": Fraction(1000), "in": Fraction("0.0254"), "ft": Fraction("0.3048"),
-}  # fmt: skip
-LONG_NAMES = {
-    "ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds", "min": "minutes", "h": "hours", "d": "days",
-    "cm": "centimetres", "mm": "millimetres", "dm": "decimetres", "um": "micrometres", "km": "kilometres",
-    "ft": "feet", "in": "inches",
-}  # fmt: skip
-OTHER_WORDS = {
-    "sec": "s", "secs": "s", "second": "s", "seconds": "s", "msec": "ms", "msecs": "ms", "millisecond": "ms",
-    "milliseconds": "ms", "usec": "us", "microsecond": "us", "microseconds": "us", "nanoseconds": "ns", "mins": "min",
-    "minute": "min", "minutes": "min", "hr": "h", "hrs": "h", "hour": "h", "hours": "h", "day": "d", "days": "d",
-    "meter": "m", "meters": "m", "metre": "m", "metres": "m", "centimeter": "cm", "centimeters": "cm",
-    "centimetre": "cm", "centimetres": "cm", "millimeter": "mm", "millimeters": "mm", "millimetre": "mm",
-    "millimetres": "mm", "kilometer": "km", "kilometers": "km", "kilometre": "km", "kilometres": "km", "inch": "in",
-    "inches": "in", "foot": "ft", "feet": "ft",
-}  # fmt: skip
+TIMES, LENGTHS = (
+    {unit: Fraction(size) for unit, size in vocabulary[kind].items()} for kind in ("times", "lengths")
+)  # in s and m
+LONG_NAMES: dict[str, str] = vocabulary["long_names"]
+OTHER_WORDS: dict[str, str] = vocabulary["other_words"]
 PER = re.compile(r"(\w+?)\s*(?:/|_per_|\s+per\s+|_)\s*(\w+)|(\w+)\s*[·*⋅ ]?\s*(\w+?)\s*(?:\^?\s*[-−]1|⁻¹)")
-SHORT_SPEEDS = {"mps": "m/s", "cmps": "cm/s", "mmps": "mm/s", "kmh": "km/h", "kph": "km/h"}
+SHORT_SPEEDS: dict[str, str] = vocabulary["short_speeds"]
 
 
 @dataclass(frozen=True)

@@ -187,24 +187,19 @@ def methods(as_json: AsJson = False) -> None:
     from ..approximations import APPROXIMATIONS
     from ..methods import METHODS, available
 
+    integrators = [
+        {"id": method.id, "title": method.title, "setting": method.setting, "missing": available(method)}
+        for method in METHODS.values()
+    ]
+    analytic = [{"id": each.id, "title": each.title} for each in APPROXIMATIONS.values()]
     if as_json:
-        emit(
-            {
-                "methods": [
-                    {"id": method.id, "title": method.title, "setting": method.setting, "missing": available(method)}
-                    for method in METHODS.values()
-                ],
-                "approximations": [
-                    {"id": approximation.id, "title": approximation.title} for approximation in APPROXIMATIONS.values()
-                ],
-            }
-        )
+        emit({"methods": integrators, "approximations": analytic})
         return
     width = max(map(len, (*METHODS, *APPROXIMATIONS)))
-    typer.echo("Methods (study, stability):")
-    for method in METHODS.values():
-        missing = available(method)
-        typer.echo(f"  {method.id:{width}}  {method.title}{f'  [{missing}]' if missing else ''}")
-    typer.echo("Approximations (score --approximation, study --approximations):")
-    for approximation in APPROXIMATIONS.values():
-        typer.echo(f"  {approximation.id:{width}}  {approximation.title}")
+    used_by = {"Methods (study, stability)": integrators}
+    used_by |= {"Approximations (score --approximation, study --approximations)": analytic}
+    for heading, listed_there in used_by.items():
+        typer.echo(f"{heading}:")
+        for each in listed_there:
+            missing = f"  [{each['missing']}]" if each.get("missing") else ""
+            typer.echo(f"  {each['id']:{width}}  {each['title']}{missing}")

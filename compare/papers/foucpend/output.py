@@ -151,7 +151,7 @@ class Transits:
 
     def __init__(self) -> None:
         self._sign = 0.0  # of the last value that was not zero
-        self._before: tuple[float, float] | None = None  # the row before the block
+        self._before: tuple[Array, Array] = (np.empty(0), np.empty(0))  # time and value of the row before the block
 
     def of(self, times: Array, v: Array) -> list[float]:
         """Return the times of the zeros after the block's first row, up to its last.
@@ -160,34 +160,33 @@ class Transits:
             times: shape (rows,), the first row being the last one of the block before.
             v: xdot there.
         """
+        first = len(self._before[0])
+        times, v = np.append(self._before[0], times), np.append(self._before[1], v)
         signs = np.sign(v)
         zeros = []
         if self._sign == 0:
-            self._sign = float(signs[0])
+            self._sign = float(signs[first])
         # rows worth a look: the sign differs from that of the row before, or xdot is exactly zero
         changes = np.nonzero((signs[1:] != signs[:-1]) | (signs[1:] == 0))[0] + 1
-        for i in changes:
+        for i in changes[changes > first]:
             sign = float(signs[i])
             if sign == 0 or sign == self._sign:
                 continue
             if self._sign != 0:
-                zeros.append(self._zero(times, v, int(i)))
+                zeros.append(_zero(times, v, int(i)))
             self._sign = sign
-        self._before = (float(times[-2]), float(v[-2]))
+        self._before = times[-2:-1], v[-2:-1]
         return zeros
 
-    def _zero(self, times: Array, v: Array, i: int) -> float:
-        """Return the zero between rows i - 1 and i; v at i is the first value of the new sign."""
-        if v[i - 1] == 0:
-            return float(times[i - 1])
-        if i >= 2:
-            return parabola_zero(times[i - 2 : i + 1], v[i - 2 : i + 1])
-        if self._before is not None:
-            t, value = self._before
-            return parabola_zero(np.array([t, *times[:2]]), np.array([value, *v[:2]]))
-        if len(v) > 2:
-            return parabola_zero(times[:3], v[:3])
+
+def _zero(times: Array, v: Array, i: int) -> float:
+    """Return the zero between rows i - 1 and i; v at i is the first value of the new sign."""
+    if v[i - 1] == 0:
+        return float(times[i - 1])
+    if len(v) == 2:
         return float(times[0] + (times[1] - times[0]) * v[0] / (v[0] - v[1]))
+    three = slice(max(0, i - 2), max(0, i - 2) + 3)
+    return parabola_zero(times[three], v[three])
 
 
 def blocks(options: Options) -> Iterator[tuple[Array, Array]]:
