@@ -19,9 +19,9 @@ def demand(holds: bool, reason: str) -> None:
         raise ArithmeticError(reason)
 
 
-def ball(q: Any) -> Any:
+def ball(q: Any) -> arb:
     """Return a ball that contains the fraction; a ball, or a series of balls, as it is."""
-    return q if isinstance(q, arb | arb_series) else arb(fmpq(q.numerator, q.denominator))
+    return q if isinstance(q, arb | arb_series) else arb(fmpq(q.numerator, q.denominator))  # type: ignore[return-value]
 
 
 def upper(x: arb) -> arb:

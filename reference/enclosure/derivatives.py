@@ -95,9 +95,11 @@ def residuals(piece: Any, omega: Vector, p: Vector, K: Vector, way: Way, W: Vect
     turn, slow, lean = times(k.h, way.turn), k.h * way.slow, add(K, times(-1, omega))
     r1 = add(rates[:3], cross(p, Q), cross(P, lean), cross(turn, p))
     r2 = add(rates[3:], cross(k.c, P), cross(omega, Q), cross(turn, K))
-    along = times(dot(turn, p) + dot(omega, P), p)
-    r2 = add(r2, times(k.drag, add(Q, times(-1, turn), along, times(dot(omega, p), P))))
-    r2 = add(r2, times(slow, add(lean, times(dot(omega, p), p))))
+    if not k.drag.is_zero():
+        along = times(dot(turn, p) + dot(omega, P), p)
+        r2 = add(r2, times(k.drag, add(Q, times(-1, turn), along, times(dot(omega, p), P))))
+    if not slow.is_zero():
+        r2 = add(r2, times(slow, add(lean, times(dot(omega, p), p))))
     vectors = [P, Q, r1, r2, [dot(p, P)], [dot(K, P) + dot(p, Q)]]
     return [size([f(UNIT) for f in part]) for part in vectors]
 

@@ -15,10 +15,11 @@ from .balls import interval, times
 from .box import BoxBalls, Windows
 from .plan import plan_for
 from .prove import SCENE_GUARD_BITS, until
-from .shapes import Box, Interval, ProvedBox
+from .shapes import Box, Interval, ProvedBox, ProvedDerivatives
 
 LOOK_BITS = 192  # in which a box is looked at
 BOX_BITS = 12  # the approximant is off by this part of the box at most
+GROWTH = 1.0  # logarithm of what one radius grows by: beyond it the motion is followed by its derivatives
 ADVICE = "Make the inputs less uncertain, or the run shorter (run.t_end)."
 
 
@@ -35,6 +36,7 @@ class BoxEnclosure:
     radius: Fraction
     pace: Interval
     cpu_s: float
+    derivatives: ProvedDerivatives | None = None
 
 
 def enclose_box(
@@ -43,6 +45,8 @@ def enclose_box(
     approximant: Callable[[int, Fraction], Iterable[TaylorStep]],
     transits: bool = True,
     progress: Callable[[float], None] | None = None,
+    halves: dict[str, Fraction] | None = None,
+    derivatives: bool = False,
 ) -> BoxEnclosure:
     """Prove what holds at times from 0 on for all inputs of a box, and every transit up to the last of them.
 
@@ -52,6 +56,8 @@ def enclose_box(
         approximant: function of a precision in bits and an end in s that gives steps of the scene's motion, paired.
         transits: also enclose all zeros of xdot.
         progress: called with the part of the time span that is proved.
+        halves: half of the width of each uncertain input by its full name; with them derivatives may be used.
+        derivatives: whether they are wanted; else they are used where one radius grows too much.
 
     Raises:
         UnreachableError: the box is too wide; says up to which time it holds.
@@ -62,17 +68,30 @@ def enclose_box(
         bits = plan_for(box.inputs, end, box.inputs.length * _width(balls) / (1 << BOX_BITS), "radius").bits
         windows = Windows(box, bits + SCENE_GUARD_BITS, until_times, transits)
         course, latest = windows.course, windows.course.times[-1]
+        follower = source = None
+        if halves and (derivatives or _growth(balls) * float(latest) > GROWTH):
+            from .derivatives import Derivatives
+            from .tangents import TangentSource, scales_of
+
+            follower = Derivatives(windows, halves, scales_of(windows.balls, list(halves)))
+            source = TangentSource(windows.balls, follower.bound.ways)
         for step in until(approximant(bits, latest), latest):
-            course.advance(step)
+            course.advance(step, *([source.propose(step)] if source else []))
             reached, count = course.bound.time, count + 1
             if progress:
                 progress(float(reached / latest))
-        proved = windows.finish()
+        found = follower.finish() if follower else None
+        proved = found.proved if found else windows.finish()
     except (ArithmeticError, ValueError):
         holds = float(reached / windows.pace.high) if reached else 0.0
         raise UnreachableError(f"The box of inputs is too wide: it holds up to t = {holds:.4g} s.", ADVICE) from None
     radius = interval(course.bound.eta * balls.length).high
-    return BoxEnclosure(proved, bits, count, radius, windows.pace, process_time() - begun)
+    return BoxEnclosure(proved, bits, count, radius, windows.pace, process_time() - begun, found)
+
+
+def _growth(balls: BoxBalls) -> float:
+    """Return the rate at which Theorem C's radius grows, in 1/s."""
+    return float(max(balls.below, balls.above + balls.speed**2, key=float)) / (2 * float(balls.w0))
 
 
 def _width(balls: BoxBalls) -> Fraction:

@@ -11,7 +11,7 @@ import numpy as np
 from ..numbers.taylor_step import TaylorStep
 from .box import BoxBalls
 from .derivatives import Way
-from .frames import ORDER, ColumnSource
+from .frames import ORDER, ColumnSource, hats
 
 FINE = 50  # bits of a coefficient beyond the largest
 
@@ -45,9 +45,13 @@ class TangentSource:
         forces = np.zeros((M + 1, 6, 6 + count))
         for j in range(count):
             turn, slow = self.turns[j] * h, self.slows[j] * h
-            forces[:, :3, 6 + j] = -np.cross(turn, n)
-            forces[:, 3:, 6 + j] = np.cross(K, turn) - h * self.drag * _along(turn, n) - slow * (lean + _along(w, n))
-            forces[0, 3:, 6 + j] += h * self.drag * turn
+            forces[:, :3, 6 + j] = -_cross(turn, n)
+            forces[:, 3:, 6 + j] = -_cross(turn, K)
+            if self.drag:
+                forces[:, 3:, 6 + j] -= h * self.drag * _along(turn, n)
+                forces[0, 3:, 6 + j] += h * self.drag * turn
+            if slow:
+                forces[:, 3:, 6 + j] -= slow * (lean + _along(w, n))
         flow = np.zeros((M + 1, 6, 6 + count))
         flow[0, :, :6] = np.eye(6)
         matrices = field.transpose(1, 0, 2)
@@ -60,11 +64,14 @@ class TangentSource:
             rows = flow[:, :, :6] @ y + flow[:, :, 6 + j]
             self.ends[j] = (end[:, :6] @ y + end[:, 6 + j]) / unit
             bits = FINE - frexp(np.abs(rows).max() or 1.0)[1]
-            proposals.append(([[int(x) for x in np.rint(np.ldexp(row, bits))] for row in rows.T], max(bits, 0)))
+            proposals.append((np.rint(np.ldexp(rows.T, bits)).astype(np.int64).tolist(), max(bits, 0)))
         return proposals
+
+
+def _cross(a: Any, rows: Any) -> Any:
+    return rows @ hats(a[None])[0].T
 
 
 def _along(a: Any, n: Any) -> Any:
     """Return the coefficients of (a·n) n."""
-    along = n @ a
-    return np.array([sum(along[i] * n[k - i] for i in range(k + 1)) for k in range(len(n))])
+    return np.array([np.convolve(n @ a, column)[: len(n)] for column in n.T]).T

@@ -74,6 +74,20 @@ class Intervals(Framed):
         return data_frame({f"{name}_{word}": of(name) for name in self.columns for word, of in ends})
 
 
+class Derivative(NamedTuple):
+    """Derivatives to one input, per SI unit of it (degrees for angles), as proven intervals.
+
+    Attributes:
+        grid: of position and velocity at the grid times.
+        transits: of the times of transits; without rows where one of them is undecided.
+        period: of the period; None where this is open.
+    """
+
+    grid: Intervals
+    transits: Intervals
+    period: Ends | None
+
+
 @dataclass(frozen=True)
 class Ranges:
     """Proven intervals of a scene with uncertain inputs: they hold for every value that each input may have.
@@ -116,6 +130,40 @@ class Ranges:
         (low, high), (last_low, last_high) = times[0], times[2 * swings]
         return (last_low - high) / swings, (last_high - low) / swings
 
+    def derivative(self, name: str) -> Derivative:
+        """Return the derivatives to an uncertain input; they hold for every pendulum of the box.
+
+        Args:
+            name: its full name, such as "pendulum.length", or a short one.
+
+        Raises:
+            InputError: it is not uncertain, or `solve` was not asked for derivatives.
+        """
+        found, name = getattr(self.proof, "derivatives", None), full_name(name)
+        if found is None:
+            advice = "reference.solve(…, uncertain=…, derivatives=True)"
+            raise InputError("derivative", name, "ranges that were solved with derivatives", f"Write {advice}.")
+        if name not in found.names:
+            raise unknown("derivative", name, "an uncertain input", found.names, f"There are {', '.join(found.names)}.")
+        j = found.names.index(name)
+        zeros = [row[j] for row, z in zip(found.transits, found.proved.transits or (), strict=True) if row]
+        ones = len(zeros) == len(self.transits) and zeros
+        swings = (len(self.transits) - 1) // 2 if ones and self.period else 0
+        first, last = (zeros[0], zeros[2 * swings]) if swings else (None, None)
+        period = Ends((last.low - first.high) / swings, (last.high - first.low) / swings) if first and last else None
+        return Derivative(
+            Intervals(GRID, tuple(row[j] for row in found.states)),
+            Intervals(("t",), tuple((x,) for x in zeros) if ones else ()),
+            period,
+        )
+
+    def shares(self) -> dict[str, tuple[Fraction, float]]:
+        """Return by how much each uncertain input alone may move the period, in s, at most, and its share of all."""
+        found = {name: self.derivative(name).period for name in self.uncertain}
+        moved = {name: Fraction(self.uncertain[name]) * max(-x.low, x.high) for name, x in found.items() if x}
+        whole = sum(moved.values())
+        return {name: (far, float(far / whole) if whole else 0.0) for name, far in moved.items()}
+
     def __repr__(self) -> str:
         """Return scene, uncertain inputs, and the numbers of rows and transits."""
         box = ", ".join(f"{name} ±{width}" for name, width in self.uncertain.items())
@@ -128,10 +176,11 @@ def solve_ranges(
     engine: str = AUTO,
     report: Report | None = None,
     times: Sequence[Fraction] | None = None,
+    derivatives: bool = False,
 ) -> Ranges:
     """Prove what holds for a scene with uncertain inputs, at its grid times, with the transits if it asks for them.
 
-    Other `times` take the place of the grid's, from 0 on, increasing.
+    Other `times` take the place of the grid's, from 0 on, increasing. With `derivatives` it proves these too.
 
     Raises:
         InputError: an input that scenes do not have, or a width that is wrong; or python-flint is not installed.
@@ -160,7 +209,7 @@ def solve_ranges(
 
     try:
         tell = report and (lambda part: report(part * float(end)))
-        proof = enclose_box(box, list(times), approximant, scene.run.transits, tell)
+        proof = enclose_box(box, list(times), approximant, scene.run.transits, tell, widths, derivatives)
     finally:
         for feed in feeds:
             feed.stop()

@@ -42,6 +42,7 @@ def solve(
     transits: bool | None = None,
     engine: str | None = None,
     report: Report | None = None,
+    derivatives: bool = False,
 ) -> Ranges: ...
 
 
@@ -59,6 +60,7 @@ def solve(
     function: bool = False,
     report: Report | None = None,
     uncertain: None = None,
+    derivatives: bool = False,
 ) -> Solution: ...
 
 
@@ -75,6 +77,7 @@ def solve(
     function: bool = False,
     report: Report | None = None,
     uncertain: Mapping[str, Any] | None = None,
+    derivatives: bool = False,
 ) -> Solution | Ranges:
     """Solve a scene to the digits and the level asked for (the scene's own by default).
 
@@ -94,6 +97,7 @@ def solve(
         report: called with the simulated time reached, in s.
         uncertain: half of the width of inputs that are not known exactly, by name: {"pendulum.length": "±0.001"}. Then
             intervals are proved that hold for every value of each of them, at the level enclosed; digits do not matter.
+        derivatives: with `uncertain`, prove derivatives to these inputs too: `Ranges.derivative`. It takes longer.
 
     Returns:
         A `Solution`: binary64 arrays, exact values, and a bound on every number. With `uncertain` a `Ranges`: proven
@@ -112,6 +116,8 @@ def solve(
         if level not in (None, "enclosed"):
             raise InputError("level", level, "enclosed, together with uncertain", "Ranges are proved, or refused.")
         level = "enclosed"
+    elif derivatives:
+        raise InputError("derivatives", True, "uncertain inputs, to which they are taken", "Give uncertain={…} too.")
     requested = {"digits": digits, "level": level, "t_end": t_end, "transits": transits}
     scene = as_scene(scene).with_values(f"run.{key}={value}" for key, value in requested.items() if value is not None)
     settings, times = scene.run, tuple(scene.exact.grid)
@@ -124,7 +130,7 @@ def solve(
     if uncertain is not None:
         from .ranges import solve_ranges  # nor that of a box
 
-        return solve_ranges(scene, uncertain, engine, report)
+        return solve_ranges(scene, uncertain, engine, report, derivatives=derivatives)
     if settings.level == "enclosed":
         from .enclosed import solve_enclosed  # the proof is not imported unless the level asks for it
 

@@ -92,9 +92,62 @@ def widened(inputs: Inputs, widths: dict[str, str]) -> Box:
     return Box(inputs, *ends)
 
 
-def proof_of(box: Box, times: list[Fraction]) -> Any:
-    """Return the `BoxEnclosure`, by limbs."""
-    return enclose_box(box, times, lambda bits, end: Feed(box.inputs, (end,), "limbs", 1)(bits - COEFFICIENT_BITS))
+def proof_of(box: Box, times: list[Fraction], halves: dict[str, Fraction] | None = None) -> Any:
+    """Return the `BoxEnclosure`, by limbs; with derivatives to the inputs whose half-widths are given."""
+
+    def steps(bits: int, end: Fraction) -> Any:
+        return Feed(box.inputs, (end,), "limbs", 1)(bits - COEFFICIENT_BITS)
+
+    return enclose_box(box, times, steps, halves=halves, derivatives=halves is not None)
+
+
+def inputs_of(box: Box) -> dict[str, Fraction]:
+    """Return half of the width of every input, by its full name; the flattening's is to be 0."""
+    kind = "position" if box.inputs.position else "angles"
+    plain = [name for name in PLAIN if name != "flattening" and (name != "drag" or box.inputs.drag)]
+    halves = {name: (getattr(box.high, name) - getattr(box.low, name)) / 2 for name in plain}
+    release = zip(NAMES[kind], getattr(box.low, kind), getattr(box.high, kind), strict=True)
+    halves |= {name: (high - low) / 2 for name, low, high in release}
+    sections = {"length": "pendulum", "drag": "pendulum"} | dict.fromkeys(NAMES[kind], "release")
+    full = {f"{sections.get(name, 'site')}.{name}": half for name, half in halves.items()}
+    return full | {"site.inverse_flattening": Fraction(0)}
+
+
+def moved(inputs: Inputs, name: str, off: Fraction) -> Inputs:
+    """Return inputs with something added to one of them."""
+    short = name.partition(".")[2]
+    if short == "inverse_flattening":
+        return replace(inputs, flattening=1 / (1 / inputs.flattening + off))
+    kind = "position" if inputs.position else "angles"
+    if short not in NAMES[kind]:
+        return replace(inputs, **{short: getattr(inputs, short) + off})
+    numbers = zip(NAMES[kind], getattr(inputs, kind), strict=True)
+    return replace(inputs, **{kind: tuple(value + off * (other == short) for other, value in numbers)})
+
+
+def wrong_derivatives(found: Any, inputs: Inputs, name: str) -> list[str]:
+    """Return which proven derivatives to an input a central difference of two runs of limbs contradicts."""
+    value = getattr(inputs, name.partition(".")[2], None)
+    off, j = Fraction(1, 10**12) * max(1, abs(value or 0)), found.names.index(name)
+    up, down = (truth(moved(inputs, name, side * off), found.proved.times) for side in (1, -1))
+    wrong = []
+
+    def check(what: str, high: Fraction, low: Fraction, interval: Any) -> None:
+        slope = (high - low) / (2 * off)
+        slack = ROUNDING * abs(slope) + Fraction(1, 10**20) * abs(slope)  # of the third derivative, too
+        if not interval.low - slack <= slope <= interval.high + slack:
+            wrong.append(f"{name}, {what}: {float(slope)} not in {float(interval.low)} to {float(interval.high)}")
+
+    for i, column in enumerate(GRID):
+        pairs = zip(up.grid.exact(column), down.grid.exact(column), found.states, strict=True)
+        for k, (high, low, row) in enumerate(pairs):
+            check(f"{column} of row {k}", high, low, row[j][i])
+    times = [run.transits.exact("t") for run in (up, down)]
+    for z, row in zip(found.proved.transits or (), found.transits, strict=True):
+        near = [[t for t in run if z.t.low - 1000 * off <= t <= z.t.high + 1000 * off] for run in times]
+        if row and all(len(zeros) == 1 for zeros in near):
+            check(f"transit at {float(z.t.low)}", near[0][0], near[1][0], row[j])
+    return wrong
 
 
 def drawn(box: Box, rng: Random, corner: bool) -> Inputs:
