@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import Any
 
 from ..numbers.columns import GRID, TRANSITS
 from ..numbers.precision import fixed_decimal, rounded_up
 from ..numbers.table import Integers, Table, integers
 from ..scenes.scene import Scene
+from ..scenes.sections import SEPARATOR
 from ..solver.solution import Solution, exact_decimals, grid_decimals, transit_decimals
 
 GRID_HEADER = ("t", *GRID)
@@ -113,7 +115,10 @@ def by_field(inputs: Mapping[str, Mapping[str, str]]) -> dict[str, str]:
 def scene_inputs(scene: Scene) -> dict[str, dict[str, str]]:
     """Return all inputs of a scene as strings, section by section."""
     document = scene.model_dump(exclude_none=True, include={"pendulum", "site", "release", "run"})
-    return {
-        section: {key: str(value).lower() if isinstance(value, bool) else str(value) for key, value in table.items()}
-        for section, table in document.items()
-    }
+
+    def text(value: Any) -> str:
+        if isinstance(value, tuple):
+            return SEPARATOR.join(value)
+        return str(value).lower() if isinstance(value, bool) else str(value)
+
+    return {section: {key: text(value) for key, value in table.items()} for section, table in document.items()}
