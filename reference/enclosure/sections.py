@@ -84,7 +84,9 @@ def check_sections(texts: Any, sections: Any, proved: Any) -> None:
     for word, zeros in sections.passages.items():
         ones, others = ([z for z in zeros if (z.parity == "one") is single] for single in (True, False))
         rows += [(word, [k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz]) for k, z in enumerate(ones, 1)]
-        check_possible(others, said["possible"][word], proved.times[-1])
+        for z, part in zip(others, said["possible"][word], strict=True):
+            inside = Fraction(part["from_s"]) <= max(z.t.low, Fraction(0)) and z.t.high <= Fraction(part["to_s"])
+            demand(inside and part["parity"] == z.parity, "misprint: a possible passage")
     cells = [line.partition(",") for line in lines]
     demand([cell[0] for cell in cells] == [row[0] for row in rows], "misprint: other sections")
     text = "\n".join([HEADER, *(cell[2] for cell in cells)])

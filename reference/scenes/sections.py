@@ -13,7 +13,7 @@ from .inputs import Refused
 SEPARATOR = "; "  # of several words in a text
 WORDS = "highest, lowest, gate AZIMUTH, gate AZIMUTH@0 or turn AZIMUTH"
 _AZIMUTH = "-?[0-9]{1,3}(?:[.][0-9]{1,200})?"
-_WORD = re.compile(f"highest|lowest|turn {_AZIMUTH}|gate {_AZIMUTH}(?:@0)?", re.ASCII)
+WORD = f"highest|lowest|turn {_AZIMUTH}|gate {_AZIMUTH}(?:@0)?"  # as a regular expression
 
 
 def _words(value: Any) -> Any:
@@ -25,7 +25,7 @@ def _words(value: Any) -> Any:
 
 def _checked(words: tuple[str, ...]) -> tuple[str, ...]:
     for word in words:
-        if not _WORD.fullmatch(word) or abs(azimuth_of(word)) > 360:
+        if not re.fullmatch(WORD, word, re.ASCII) or abs(azimuth_of(word)) > 360:
             raise Refused(WORDS, f"{word!r} is none; an azimuth is a decimal from -360 to 360 degrees, east to north.")
     if len(set(words)) < len(words):
         raise Refused("each section once", "Leave out the second one.")
@@ -37,7 +37,7 @@ def azimuth_of(word: str) -> Fraction:
     return Fraction(word.partition(" ")[2].removesuffix("@0") or 0)
 
 
-_SCHEMA = {"type": "array", "items": {"type": "string", "pattern": f"^({_WORD.pattern})$"}}
+_SCHEMA = {"type": "array", "items": {"type": "string", "pattern": f"^({WORD})$"}}
 Sections = Annotated[
     Annotated[tuple[str, ...], AfterValidator(_checked)] | None, BeforeValidator(_words), WithJsonSchema(_SCHEMA)
 ]
