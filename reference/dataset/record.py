@@ -120,7 +120,7 @@ def manifest_of(
         generator=generator(),
         command=command(scene, name, options),
         files={},
-        sections=sections and _sections(solution, sections),
+        sections=None if sections is None else _sections(solution, sections),
         **following(scene, run.formulation, run.number, grid),
     )
 

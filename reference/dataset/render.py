@@ -12,7 +12,16 @@ from ..solver.solution import SAMPLED, Solution
 from .function import FunctionRecord
 from .manifest import ALWAYS, FUNCTION, MANIFEST, Content, FileRecord, Manifest
 from .record import CONFIRM, Making, manifest_of
-from .sheets import GRID_HEADER, Sheet, binary64_sheet, by_field, grid_sheet, nearest_doubles, sections_sheet, transits_sheet
+from .sheets import (
+    GRID_HEADER,
+    Sheet,
+    binary64_sheet,
+    by_field,
+    grid_sheet,
+    nearest_doubles,
+    sections_sheet,
+    transits_sheet,
+)
 from .vectors import vectors
 
 MOST_DOUBLES = 1000  # transits; more are written as decimals alone, which read as the same doubles

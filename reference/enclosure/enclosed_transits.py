@@ -43,7 +43,6 @@ class Slope:
         k, bend = self.piece.k, [f.derivative()(s) / self.piece.unit + self.forms[1][1] for f in self.piece.v]
         return sign(cross(bend, k.omega)[0]) if 4 * s.rad() ** 2 * (k.c_size + k.speed**2) < 1 else 0
 
-
     def row(self, s: arb) -> Vector:
         """Return x, y, z, vy and ax over the length at a transit; xdot, the velocity's first component, is 0."""
         turned, h, (r, v) = self.piece.balls.turned, self.piece.k.h, state(self.covered, s, 1)
@@ -66,8 +65,7 @@ class Scan:
             slope, low, high = self.slope(covered), ball(piece.step.low), ball(piece.step.high)
             self.left = self.left if self.time else sign(slope.at(0, low))
             self.end, self.time, self.leaves = (slope, high), piece.end, 0
-            ends = [low, *((low + (high - low) * k / 4).mid() for k in (1, 2, 3)), high]
-            for part in pairwise(ends):
+            for part in pairwise([low, *((low + (high - low) * k / 4).mid() for k in (1, 2, 3)), high]):
                 self._sort(slope, *part, 2)
 
     def _sort(self, slope: Slope, low: arb, high: arb, depth: int) -> None:
@@ -110,8 +108,8 @@ class Scan:
         t = narrowed(leaves, begin, end, sides) if steady else begin.union(end)
         parity = "one" if steady and product < 0 else {-1: "odd", 0: "unknown", 1: "even"}[product]
         way = leaves[0].bend if steady else right if product < 0 else 0
-        rows = [slope.row(s) for slope, s in touched(leaves, t)]
-        values = [interval(reduce(arb.union, x) * self.balls.length) for x in zip(*rows, strict=True)]
+        rows = zip(*(slope.row(s) for slope, s in touched(leaves, t)), strict=True)
+        values = (interval(reduce(arb.union, x) * self.balls.length) for x in rows)
         self.found.append(self.kind(parity, way, interval(t), *values))
 
 

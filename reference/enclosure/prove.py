@@ -187,7 +187,9 @@ class _Run:
         self.clock.lap("function" if function else "proof")
         passages = sections.finish(proved) if sections else None
         position, velocity = self._check_widths(proved.states, self.end, 1, bits)
-        return Enclosure(proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts, function, passages)
+        return Enclosure(
+            proved, bits, order, count, self.plan.method, position, velocity, self.clock.parts, function, passages
+        )
 
     def _check_widths(self, states: Sequence[State], time: Fraction, factor: int, bits: int) -> list[Fraction]:
         """Return the largest half-widths of position and velocity up to `time`; raise _TooWide above `factor` radii."""

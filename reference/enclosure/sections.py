@@ -6,7 +6,7 @@ from typing import Any
 
 from flint import arb, arb_poly, ctx
 
-from .balls import UNIT, Vector, add, ball, cross, demand, dot, size, times
+from .balls import SHORT, UNIT, Vector, add, ball, cross, demand, dot, size, times, upper
 from .bound import SceneBalls, state
 from .course import FINISHED, Course
 from .enclosed_transits import Scan, Slope
@@ -27,8 +27,8 @@ def form(balls: SceneBalls, word: str) -> tuple[Vector, Vector, arb]:
         return balls.turned([-sin, cos, arb(0)], 1), zero, arb(0)
     for _ in range(balls.prec):
         pull = add(balls.c, times(-1, cross(balls.omega, cross(balls.omega, rest))))
+        demand(dot(pull, pull) > 0, "so fast a rotation singles out no rest position, which the gate goes through")
         rest = times(1 / dot(pull, pull).sqrt(), pull)
-    demand(size(rest) < 2, "no rest position is singled out")
     return (across := cross(along, balls.c)), zero, dot(across, rest)
 
 
@@ -36,13 +36,21 @@ class Form(Slope):
     """The form, times h, lies in f ± off on a piece, and its rate in f' ± off'."""
 
     def __init__(self, covered: Covered, a: Vector, b: Vector, d: arb) -> None:
-        super().__init__(covered)
-        piece, (eta, u, bend), h = self.piece, covered.tube, self.piece.k.h
-        p, v = ([arb_poly(f) for f in row] for row in (piece.p, piece.v))
-        f, off = dot(times(h, a), p) + dot(b, v) - h * d * piece.unit, size(a) * h * eta + size(b) * u
-        self.forms = (f, arb(0, off)), (f.derivative(), arb(0, size(a) * h * u + size(b) * bend))
-        self.tube, self.flat = covered.tube._replace(u=off), False
-        self.slow = all(x.is_zero() for x in [*a, d, *piece.balls.release[1]])  # at rest, of a velocity alone
+        piece, (eta, u, bend), h = covered.piece, covered.tube, covered.piece.k.h
+        terms = zip([*times(h, a), *b], [*piece.p, *piece.v], strict=True)
+        f = sum((arb_poly(g) * x for x, g in terms if not x.is_zero()), -h * d * arb_poly([piece.unit]))
+        off, more = (arb(0, upper(size(a) * h * x + size(b) * y)) for x, y in ((eta, u), (u, bend)))
+        self.covered, self.piece, self.centre = covered, piece, ball(piece.step.centre)
+        self.long, self.tube = ((f, off), (f.derivative(), more)), covered.tube._replace(u=off.rad())
+        with ctx.workprec(SHORT):  # most leaves are sorted with coefficients rounded to that
+            self.short = tuple((g * arb(1), x) for g, x in self.long)
+        # at rest, of a velocity alone
+        self.slow, self.flat = all(x.is_zero() for x in [*a, d, *piece.balls.release[1]]), False
+
+    @property
+    def forms(self) -> Any:  # type: ignore[override]
+        """The form and its rate, each with its radius, in the precision at work."""
+        return self.short if ctx.prec == SHORT else self.long
 
     def row(self, s: arb) -> Vector:
         """Return the state over the length."""
@@ -68,10 +76,13 @@ class Sections:
 
     def finish(self, proved: Any) -> ProvedSections:
         """Return the passages in the course, whose result is `proved`."""
-        demand(proved in FINISHED and proved.times is self.course.times and len({*proved.times[-1:], *(s.time for s in self.scans)}) == 1, "the proof is of another course")
+        right = proved in FINISHED and proved.times is self.course.times
+        demand(right and {scan.time for scan in self.scans} == {proved.times[-1]}, "the proof is of another course")
         found = [(word, WAYS.get(word), scan.finish()) for word, scan in zip(self.words, self.scans, strict=True)]
-        ways = {word: tuple(z for z in zeros if not (way and way * z.direction < 0)) for word, way, zeros in found}
-        FINISHED.add(sections := ProvedSections(proved, ways))
+        kept = {
+            w: tuple(z for z in zeros if not way or z.parity != "one" or z.direction == way) for w, way, zeros in found
+        }
+        FINISHED.add(sections := ProvedSections(proved, kept))
         return sections
 
 
@@ -85,7 +96,8 @@ def check_sections(texts: Any, sections: Any, proved: Any) -> None:
         ones, others = ([z for z in zeros if (z.parity == "one") is single] for single in (True, False))
         rows += [(word, [k, z.t, z.direction, z.x, z.y, z.z, z.vx, z.vy, z.vz]) for k, z in enumerate(ones, 1)]
         for z, part in zip(others, said["possible"][word], strict=True):
-            inside = Fraction(part["from_s"]) <= max(z.t.low, Fraction(0)) and z.t.high <= Fraction(part["to_s"])
+            low, high = max(z.t.low, Fraction(0)), min(z.t.high, proved.times[-1])
+            inside = Fraction(part["from_s"]) <= low and high <= Fraction(part["to_s"])
             demand(inside and part["parity"] == z.parity, "misprint: a possible passage")
     cells = [line.partition(",") for line in lines]
     demand([cell[0] for cell in cells] == [row[0] for row in rows], "misprint: other sections")

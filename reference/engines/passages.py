@@ -43,7 +43,9 @@ class Search:
         """Find the passages in a step whose polynomials are x, y, z over l."""
         unit, h = 1 << self.bits, step.h
         a, b = ([int(to_fraction(x) * f * unit) for x in v] for v, f in ((self.form.a, h), (self.form.b, 1)))
-        g = [sum(p * row[k] + (k + 1) * q * row[k + 1] for p, q, row in zip(a, b, rows)) for k in range(len(rows[0]) - 1)]
+        g = [
+            sum(p * row[k] + (k + 1) * q * row[k + 1] for p, q, row in zip(a, b, rows)) for k in range(len(rows[0]) - 1)
+        ]
         g[0] -= int(to_fraction(self.form.d) * h * unit) << step.bits
         least = (sum(map(abs, a)) + sum(map(abs, b))) << step.bits >> self.noise
         if not self.left:  # at the release
@@ -148,7 +150,9 @@ def _shifted(value: int, bits: int) -> int:
     return value << bits if bits >= 0 else value >> -bits
 
 
-def passages(plan: Plan, steps: Iterable[TaylorStep], report: Report | None = None) -> dict[str, tuple[Table, list[int]]]:
+def passages(
+    plan: Plan, steps: Iterable[TaylorStep], report: Report | None = None
+) -> dict[str, tuple[Table, list[int]]]:
     """Return `columns.SECTION` at each passage of a plan's sections, and its direction, from the plan's Taylor steps.
 
     Raises:

@@ -169,7 +169,9 @@ def with_passage_errors(run: Run, errors: Mapping[str, Fraction], word: str, apa
     g = (size_a * _norm(a) + size_b * (_norm(v) + _norm(a) / start.fastest_rate) * 4 * start.fastest_rate**2) * k.length
     with np.errstate(divide="ignore", invalid="ignore"):
         late = 2 * off / f
-        late = np.where(g * np.ldexp(late, power) <= f, late, np.inf) + np.ldexp(table["t"], -run.plan.number.prec - power)
+        late = np.where(g * np.ldexp(late, power) <= f, late, np.inf) + np.ldexp(
+            table["t"], -run.plan.number.prec - power
+        )
         rates = dict(zip(STATE, (*v, *a), strict=True))
         columns = {"t": late} | {name: parts[name] + abs(rates[name]) * k.length * late for name in STATE}
     for i, name in enumerate(SECTION if apart is not None else ()):

@@ -135,7 +135,9 @@ def _sampled(plan: Plan, solution: Solution, report: Report | None = None) -> Ru
     """Return heyoka's run over the drawn intervals, each from the middle of the proven one at its first row."""
     from ..engines.heyoka.run import run_between
 
-    return run_between(replace(plan, transits=False, sections=()), solution.grid, drawn_intervals(solution.scene), report)
+    return run_between(
+        replace(plan, transits=False, sections=()), solution.grid, drawn_intervals(solution.scene), report
+    )
 
 
 def confirmed(problem: Problem, solution: Solution, confirm: Confirmation, witness: Run) -> Solution:
@@ -170,7 +172,9 @@ def _compared(witness: Run, solution: Solution, grid: Table) -> tuple[CrossCheck
     """
     gaps = grid.distance(witness.grid.only(GRID)).largest()
     decimals = grid_decimals(solution)
-    decided = {w: (p.table, p.directions) for w, p in solution.sections.items() if w in witness.passages and not p.possible}
+    decided = {
+        w: (p.table, p.directions) for w, p in solution.sections.items() if w in witness.passages and not p.possible
+    }
     lacking, _ = passages_lacking(decided, witness, decimals, solution.scene.run.digits)
     missing = max(lacking, bits_lacking(gaps, decimals))
     if solution.zeros is None or witness.transits is None or solution.possible:

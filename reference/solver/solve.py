@@ -108,8 +108,8 @@ def solve(
         UnreachableError: the level or the digits cannot be reached; no numbers are returned then.
     """
     if uncertain is not None:
-        wanted = {"digits": digits, "audit": audit, "function": function, "confirm": confirm != "none"}
-        wanted["sections"] = sections
+        wanted: dict[str, Any] = {"digits": digits, "audit": audit, "function": function, "sections": sections}
+        wanted["confirm"] = confirm != "none"
         for wish in (name for name, asked in wanted.items() if asked):
             raise InputError(
                 wish, wanted[wish], "nothing together with uncertain", "Intervals have the digits they support."

@@ -90,7 +90,9 @@ def _sections(files: Files) -> Iterator[str]:
     words = files.scene.run.sections or ()
     if not tuple(said.counts) == tuple(said.possible) == words:
         yield f"{MANIFEST}: sections are not those of the scene: {', '.join(words)}"
-    if sheet and [row[:2] for row in sheet.rows] != [(w, str(k)) for w, n in said.counts.items() for k in range(1, n + 1)]:
+    if sheet and [row[:2] for row in sheet.rows] != [
+        (w, str(k)) for w, n in said.counts.items() for k in range(1, n + 1)
+    ]:
         yield "sections.csv: its rows are not those that the manifest counts, each section's from 1 on"
     for name, bound in said.bounds.items():
         if Fraction(bound) * 10 ** said.decimals[name] < Fraction(1, 2):

@@ -114,12 +114,12 @@ def _compared(files: Files, coarse: Run, fine: Run) -> list[str] | None:
         if any(coarse.passages[word][1] != directions for word, (_, directions) in fine.passages.items()):
             return None
         decided = [row for row in sheet.rows if row[0] in fine.passages]
-        found = [(word, f"{sign:+d}") for word, (_, signs) in fine.passages.items() for sign in signs]
-        if [(row[0], row[3]) for row in decided] != found:
-            differing.append(f"sections.csv: {len(decided)} passages are not the motion's, which are {len(found)}")
-        elif found:
+        signs = [(word, f"{sign:+d}") for word, (_, ways) in fine.passages.items() for sign in ways]
+        if [(row[0], row[3]) for row in decided] != signs:
+            differing.append(f"sections.csv: {len(decided)} passages are not the motion's, which are {len(signs)}")
+        elif signs:
             files = replace(files, tables={**files.tables, "sections.csv": replace(sheet, rows=decided)})
-            kinds.append(("sections", *(_joined(run.passages) for run in (coarse, fine))))
+            kinds.append(("sections", _joined(coarse.passages), _joined(fine.passages)))
     for kind, rough, table in kinds:
         columns = table.only({"grid": GRID, "transits": TRANSITS, "sections": SECTION}[kind])
         apart = columns.distance(rough).largest()
